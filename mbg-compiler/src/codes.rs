@@ -1,0 +1,45 @@
+//! Every code that a diagnostic may carry, by stage.
+
+use crate::diagnostics::Code;
+
+macro_rules! codes {
+    ($($name:ident = $text:literal, $meaning:literal;)*) => {
+        $(#[doc = $meaning] pub const $name: Code = Code { text: $text, meaning: $meaning };)*
+        /// All codes in order.
+        pub const ALL: &[Code] = &[$($name),*];
+    };
+}
+
+codes! {
+    SYNTAX = "MBG0101", "a token that the grammar does not expect here";
+    UNIT = "MBG0102", "a unit that is not a product of powers";
+    DIMENSION_LITERAL = "MBG0103", "a dimension that is not a positive integer";
+    FIELD_REPEATED = "MBG0104", "a word given twice in one element";
+    EMPTY_MODEL = "MBG0201", "a model without a storage, an integral or an attitude";
+    DUPLICATE_NAME = "MBG0202", "a name declared twice";
+    UNKNOWN_NAME = "MBG0203", "a name that is not declared";
+    WRONG_DIMENSION = "MBG0204", "dimensions that do not agree";
+    MISSING_LAW = "MBG0205", "an element without a law";
+    TWO_LAWS = "MBG0206", "an element with two laws";
+    UNKNOWN_FIELD = "MBG0207", "a word that the element does not know";
+    UNCONNECTED = "MBG0208", "a port without a bond";
+    TOO_MANY_BONDS = "MBG0209", "a port with more than one bond";
+    EQUAL_ONE_PORTS = "MBG0210", "a bond between two one-ports that fix the same variable";
+    LITERAL = "MBG0211", "a literal that is not a finite number";
+    POWER_OPERATOR = "MBG0212", "`^`, which is not a power in Rust";
+    EXPRESSION = "MBG0213", "an expression outside the subset for laws";
+    MISSING_DEFAULT = "MBG0214", "a parameter without a value";
+    RECURSION = "MBG0215", "a component that contains itself";
+    NOT_FINITE = "MBG0216", "a law that divides by zero or whose literal breaks an assumption";
+    STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
+    SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
+    NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";
+    GYROSCOPIC_INVERSE = "MBG0304", "a gyroscopic multiport that would need its inverse";
+    RECTANGULAR_INVERSE = "MBG0305", "a rectangular transformer or gyrator that would need its inverse";
+    ORDER_LOST = "MBG0306", "storages that depend on each other by the physics";
+    FIXED_RESISTOR = "MBG0307", "a resistor law that fits one causality only, and not the one required";
+    SINGULAR_JUNCTIONS = "MBG0401", "a junction structure that leaves variables undetermined";
+    NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop";
+    ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
+    TOO_LARGE = "MBG0601", "a model over the size limit";
+}

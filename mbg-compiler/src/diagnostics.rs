@@ -1,0 +1,124 @@
+//! Errors as values: collected, never thrown, and rendered at the edge.
+//!
+//! House style: the first line says what is wrong, in lower case, without a full stop, names in backticks; notes
+//! carry the causal chain; `help` says what to type. Every diagnostic has a code from [`codes`].
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote_spanned;
+
+/// A code such as `MBG0301`; the first two digits name the stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Code {
+    /// The code's text.
+    pub text: &'static str,
+    /// What the code stands for, one line.
+    pub meaning: &'static str,
+}
+
+/// One mistake, at one place.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// Which mistake.
+    pub code: Code,
+    /// Where.
+    pub span: Span,
+    /// What is wrong.
+    pub message: String,
+    /// Why: the chain of causes, one step a line.
+    pub notes: Vec<String>,
+    /// What to do about it, with the text to type.
+    pub helps: Vec<String>,
+}
+
+impl Diagnostic {
+    /// Adds a line to the chain of causes.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Adds a way out.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.helps.push(help.into());
+        self
+    }
+
+    /// The text that the user reads.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!("{} [{}]", self.message, self.code.text);
+        for note in &self.notes {
+            text.push_str("\n  ");
+            text.push_str(note);
+        }
+        for help in &self.helps {
+            text.push_str("\n  help: ");
+            text.push_str(help);
+        }
+        text
+    }
+}
+
+/// The sink into which every stage reports.
+#[derive(Debug, Default)]
+pub struct Diagnostics {
+    list: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// An empty sink.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Reports one mistake.
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        debug_assert!(!diagnostic.message.ends_with('.'), "house style: no full stop");
+        self.list.push(diagnostic);
+    }
+
+    /// Reports a mistake that needs no more than its message.
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.report(error(code, span, message));
+    }
+
+    /// Whether anything was reported.
+    #[must_use]
+    pub fn any(&self) -> bool {
+        !self.list.is_empty()
+    }
+
+    /// What was reported, in order.
+    #[must_use]
+    pub fn list(&self) -> &[Diagnostic] {
+        &self.list
+    }
+
+    /// One `compile_error!` per mistake, each at its own token.
+    #[must_use]
+    pub fn to_tokens(&self) -> TokenStream {
+        self.list
+            .iter()
+            .map(|diagnostic| {
+                let text = diagnostic.text();
+                quote_spanned!(diagnostic.span=> ::core::compile_error!(#text);)
+            })
+            .collect()
+    }
+}
+
+/// Starts a diagnostic.
+pub fn error(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
+    Diagnostic { code, span, message: message.into(), notes: Vec::new(), helps: Vec::new() }
+}
+
+/// At most eight names, then how many more.
+#[must_use]
+pub fn listing<I: IntoIterator<Item = String>>(names: I) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    let shown = names.iter().take(8).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > 8 { format!("{shown} and {} more", names.len() - 8) } else { shown }
+}

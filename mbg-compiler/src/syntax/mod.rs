@@ -1,0 +1,2 @@
+//! Stage 1, syntax: tokens to a tree.
+pub mod ast;

@@ -1,0 +1,120 @@
+//! What a generated model is to everything that runs it.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::{Meta, Real};
+
+/// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
+///
+/// `mbg!` implements it for every scalar that implements [`Real`]. A model written by hand may implement it too.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a system with this scalar and these sizes",
+    note = "the sizes are the numbers of states, inputs and outputs, as the documentation of the generated type says"
+)]
+pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
+    /// Names, units, strokes and counts, known at compile time.
+    const META: &'static Meta;
+
+    /// Warm start and residual of bounded solves; `()` for a model without any.
+    type Memory: Copy + Default;
+
+    /// One value per inverted block; an array.
+    type Conditioning: AsRef<[T]> + Copy;
+
+    /// The state at the start, from the model's `initial:` values.
+    fn initial_state(&self) -> SVector<T, N>;
+
+    /// Time derivative of the state.
+    fn derivative(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> SVector<T, N>;
+
+    /// Outputs.
+    fn output(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut Self::Memory) -> SVector<T, P>;
+
+    /// `∂f/∂x`, exact.
+    fn jacobian_state(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> SMatrix<T, N, N>;
+
+    /// `∂f/∂u`, exact.
+    fn jacobian_input(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> SMatrix<T, N, M>;
+
+    /// Energy stored, in joule when the model is in SI units.
+    fn energy(&self, t: T, x: &SVector<T, N>) -> T;
+
+    /// Power supplied by the sources and dissipated by the resistors: `dH/dt = supplied − dissipated`.
+    fn power(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut Self::Memory) -> Power<T>;
+
+    /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
+    /// edge of its singular set where one of them is zero.
+    fn conditioning(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Self::Conditioning;
+
+    /// Why the last evaluation at this state must not be trusted, if there is a reason.
+    ///
+    /// A block is too near its singular set when its normalised determinant is below the square root of the
+    /// scalar's precision. Steppers ask once a step.
+    fn trouble(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, _memory: &Self::Memory) -> Option<Trouble> {
+        let conditioning = self.conditioning(t, x, u);
+        Self::META.conditioning.iter().zip(conditioning.as_ref()).find_map(|(name, value)| {
+            value.find(|lane| !(lane.abs() >= T::SINGULAR)).map(|value| Trouble { name, value })
+        })
+    }
+}
+
+/// Power across a model's border.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Power<T> {
+    /// From the sources into the model.
+    pub supplied: T,
+    /// Lost in resistors.
+    pub dissipated: T,
+}
+
+/// A singular set that is too near.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trouble {
+    /// The block, as [`Meta::conditioning`] names it.
+    pub name: &'static str,
+    /// Its normalised determinant.
+    pub value: f64,
+}
+
+impl core::fmt::Display for Trouble {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(formatter, "{} is {:e}, too near its singular set", self.name, self.value)
+    }
+}
+
+/// A parameter that breaks an assumption of the chosen causality.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterError {
+    /// The parameter, or the expression of parameters.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What it must be, and what relies on that.
+    pub reason: &'static str,
+}
+
+impl core::fmt::Display for ParameterError {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(formatter, "`{}` is {:e}: {}", self.name, self.value, self.reason)
+    }
+}
+
+impl core::error::Error for ParameterError {}

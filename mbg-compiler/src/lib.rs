@@ -1,6 +1,9 @@
 //! The compiler behind `mbg!`.
 pub mod codes;
+pub mod causality;
 pub mod diagnostics;
+pub mod graph;
+pub mod symbolic;
 pub mod syntax;
 
 /// Compiles the tokens between the braces of `mbg! { … }`.

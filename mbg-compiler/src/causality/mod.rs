@@ -1,0 +1,2 @@
+//! Stage 3, causality: who imposes what.
+pub mod uniform;

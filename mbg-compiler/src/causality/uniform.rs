@@ -1,0 +1,1 @@
+//! One stroke per multibond: the verdict.

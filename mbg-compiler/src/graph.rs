@@ -1,0 +1,244 @@
+//! The bond graph: flat, with vector bonds and typed ids. Elaboration makes it; later stages only read it.
+
+use std::ops::Range;
+
+use proc_macro2::Span;
+
+use crate::symbolic::{Expression, Matrix, Product};
+pub use crate::syntax::ast::{Causality, ElementKind, JunctionKind};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident;)*) => {
+        $($(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub usize);)*
+    };
+}
+
+ids! {
+    /// Index into [`BondGraph::junctions`].
+    JunctionId;
+    /// Index into [`BondGraph::elements`].
+    ElementId;
+    /// Index into [`BondGraph::bonds`].
+    BondId;
+    /// Index into [`Origins`].
+    OriginId;
+}
+
+/// Where an entity was written, and the path under which users know it.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    /// Such as `arm.spring`.
+    pub path: String,
+    /// Its name's token.
+    pub span: Span,
+}
+
+/// All origins of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Origins(Vec<Origin>);
+
+impl Origins {
+    /// Adds an origin.
+    pub fn add(&mut self, path: impl Into<String>, span: Span) -> OriginId {
+        self.0.push(Origin { path: path.into(), span });
+        OriginId(self.0.len() - 1)
+    }
+
+    /// Where it was written.
+    #[must_use]
+    pub fn span(&self, id: OriginId) -> Span {
+        self.0[id.0].span
+    }
+
+    /// Under which path.
+    #[must_use]
+    pub fn path(&self, id: OriginId) -> &str {
+        &self.0[id.0].path
+    }
+}
+
+/// A model after elaboration.
+#[derive(Clone, Debug)]
+pub struct BondGraph {
+    /// Junctions in order of declaration.
+    pub junctions: Vec<Junction>,
+    /// One-ports and two-ports in order of declaration.
+    pub elements: Vec<Element>,
+    /// Bonds in order of declaration.
+    pub bonds: Vec<Bond>,
+    /// One stroke per bond or one per component.
+    pub causality: Causality,
+    /// Where everything was written.
+    pub origins: Origins,
+}
+
+/// An array of scalar junctions of one kind.
+#[derive(Clone, Debug)]
+pub struct Junction {
+    /// Zero or one.
+    pub kind: JunctionKind,
+    /// Path.
+    pub name: String,
+    /// Number of scalar junctions.
+    pub dimension: usize,
+    /// Marked `coordinate`.
+    pub coordinate: bool,
+    /// Where it was written.
+    pub origin: OriginId,
+}
+
+/// A one-port or a two-port.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Which element.
+    pub kind: ElementKind,
+    /// Path.
+    pub name: String,
+    /// Its constitutive law.
+    pub law: Law,
+    /// Which strokes the law allows.
+    pub rule: Rule,
+    /// Whether `#[derivative]` stands on it, its component or the model.
+    pub derivative: bool,
+    /// Where it was written.
+    pub origin: OriginId,
+}
+
+/// Which strokes an element allows at its port or ports. Effort *out* means that the element imposes the effort.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// `Se`: imposes effort.
+    EffortOut,
+    /// `Sf`: imposes flow.
+    FlowOut,
+    /// `C`: imposes effort when integral. Its inverse for derivative causality exists.
+    PreferEffortOut,
+    /// `I`: imposes flow when integral.
+    PreferFlowOut,
+    /// Linear `R`: either.
+    Either,
+    /// Gyroscopic multiport: receives flow, imposes effort, and never otherwise under one stroke (rank 2 of 3).
+    Gyroscopic,
+    /// `R` with a law that gives the effort: imposes effort only.
+    ResistanceOnly,
+    /// `R` with a law that gives the flow: imposes flow only.
+    ConductanceOnly,
+    /// `f_out = M f_in`, `e_in = Mᵀ e_out`: forward (flow enters at `in`, effort enters at `out`) always; backward
+    /// only if M has an inverse.
+    Transformer {
+        /// Rows of M: dimension of the bond at `out`.
+        rows: usize,
+        /// Columns of M: dimension of the bond at `in`.
+        columns: usize,
+        /// Whether M is square and not identically singular.
+        invertible: bool,
+    },
+    /// `e_out = G f_in`, `e_in = Gᵀ f_out`: both bonds bring flow (forward, always), or both bring effort (backward,
+    /// only if G has an inverse).
+    Gyrator {
+        /// Rows of G: dimension of the bond at `out`.
+        rows: usize,
+        /// Columns of G: dimension of the bond at `in`.
+        columns: usize,
+        /// Whether G is square and not identically singular.
+        invertible: bool,
+    },
+}
+
+/// A vector bond; positive power goes from `from` to `to`.
+#[derive(Clone, Debug)]
+pub struct Bond {
+    /// Where positive power comes from.
+    pub from: End,
+    /// Where positive power goes to.
+    pub to: End,
+    /// Number of scalar bonds.
+    pub dimension: usize,
+    /// Where it was written.
+    pub origin: OriginId,
+}
+
+/// What a bond ends in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Some or all components of a junction.
+    Junction(JunctionId, Range<usize>),
+    /// The port of a one-port.
+    OnePort(ElementId),
+    /// The `in` side of a two-port.
+    In(ElementId),
+    /// The `out` side of a two-port.
+    Out(ElementId),
+    /// The border of a graph that is studied by itself: any stroke.
+    Border,
+}
+
+/// A constitutive law, in the symbols of the pool.
+#[derive(Clone, Debug)]
+pub enum Law {
+    /// `Se` or `Sf`: the effort or flow it imposes.
+    Source(Vec<Expression>),
+    /// `I` or `C`.
+    Storage(Storage),
+    /// Linear `R`: `e = R f`.
+    Resistance(Matrix),
+    /// Linear `R`: `f = G e`.
+    Conductance(Matrix),
+    /// Nonlinear `R`: effort in terms of its own flow, which stands as the signals given.
+    EffortLaw(Vec<Expression>),
+    /// Nonlinear `R`: flow in terms of its own effort.
+    FlowLaw(Vec<Expression>),
+    /// `f_out = M f_in`.
+    Transformer(Product),
+    /// `e_out = G f_in`.
+    Gyrator(Product),
+    /// Gyroscopic multiport `e = ω × h` with momentum h.
+    EulerJunction(Vec<Expression>),
+}
+
+/// What a storage does in integral causality.
+#[derive(Clone, Debug)]
+pub struct Storage {
+    /// Its candidate states, numbers of `Symbol::State`.
+    pub states: Range<usize>,
+    /// The co-energy variable: flow of an `I`, effort of a `C`.
+    pub coenergy: Vec<Expression>,
+    /// Stored energy.
+    pub energy: Expression,
+}
+
+impl BondGraph {
+    /// The path of an end, for people.
+    #[must_use]
+    pub fn end_name(&self, end: &End) -> String {
+        match end {
+            End::Junction(id, range) => {
+                let junction = &self.junctions[id.0];
+                if *range == (0..junction.dimension) {
+                    junction.name.clone()
+                } else if range.len() == 1 {
+                    format!("{}.{}", junction.name, component_name(range.start, junction.dimension))
+                } else {
+                    format!("{}[{}..{}]", junction.name, range.start, range.end)
+                }
+            }
+            End::OnePort(id) | End::In(id) | End::Out(id) => self.elements[id.0].name.clone(),
+            End::Border => "border".to_owned(),
+        }
+    }
+
+    /// `a -> b`, for people.
+    #[must_use]
+    pub fn bond_name(&self, id: BondId) -> String {
+        let bond = &self.bonds[id.0];
+        format!("{} -> {}", self.end_name(&bond.from), self.end_name(&bond.to))
+    }
+}
+
+/// `x`, `y`, `z` up to dimension 3, else the number.
+#[must_use]
+pub fn component_name(index: usize, dimension: usize) -> String {
+    if dimension <= 3 { ["x", "y", "z"][index].to_owned() } else { index.to_string() }
+}

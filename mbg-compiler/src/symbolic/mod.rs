@@ -1,20 +1,16 @@
-//! Symbolic expressions.
+//! Symbolic expressions: a pool in which equal functions are one node, and matrices over it.
+//!
+//! This is the ground on which the stages from elaboration to the program stand. Nothing in it knows of bond graphs.
 
-/// A handle to an expression.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Expression(u32);
+pub mod differentiate;
+pub mod field;
+pub mod identity;
+pub mod matrix;
+pub mod pool;
+pub mod print;
+pub mod substitute;
 
-/// A dense matrix of expressions, by rows.
-#[derive(Clone, Debug)]
-pub struct Matrix {
-    /// Number of rows.
-    pub rows: usize,
-    /// Number of columns.
-    pub columns: usize,
-    /// Entries by rows.
-    pub entries: Vec<Expression>,
-}
-
-/// A product of matrices, kept as factors.
-#[derive(Clone, Debug)]
-pub struct Product;
+pub use differentiate::Differentiator;
+pub use matrix::{Factor, Matrix, Product};
+pub use pool::{Expression, Function, Operation, Pool, Rate, Symbol};
+pub use substitute::Substitution;

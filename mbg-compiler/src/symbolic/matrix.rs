@@ -1,0 +1,365 @@
+//! Matrices over the pool, and products that stay products.
+//!
+//! A rotation is known as a rotation: a [`Product`] keeps its factors, so that it can be applied axis by axis,
+//! turned round by changing signs of angles, or split into transformers in a row.
+
+use super::pool::{Expression, Pool};
+
+/// A dense matrix, by rows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Matrix {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub columns: usize,
+    /// Entries by rows.
+    pub entries: Vec<Expression>,
+}
+
+impl Matrix {
+    /// From entries by rows.
+    #[must_use]
+    pub fn new(rows: usize, columns: usize, entries: Vec<Expression>) -> Self {
+        debug_assert_eq!(entries.len(), rows * columns);
+        Self { rows, columns, entries }
+    }
+
+    /// A column.
+    #[must_use]
+    pub fn column(entries: Vec<Expression>) -> Self {
+        Self::new(entries.len(), 1, entries)
+    }
+
+    /// With the given diagonal, zero elsewhere.
+    #[must_use]
+    pub fn diagonal(entries: &[Expression]) -> Self {
+        let size = entries.len();
+        let mut matrix = Self::new(size, size, vec![Expression::ZERO; size * size]);
+        for (index, entry) in entries.iter().enumerate() {
+            matrix.entries[index * size + index] = *entry;
+        }
+        matrix
+    }
+
+    /// Entry at (row, column).
+    #[must_use]
+    pub fn at(&self, row: usize, column: usize) -> Expression {
+        self.entries[row * self.columns + column]
+    }
+
+    /// Transposed.
+    #[must_use]
+    pub fn transpose(&self) -> Self {
+        let entries = (0..self.columns).flat_map(|c| (0..self.rows).map(move |r| self.at(r, c))).collect();
+        Self::new(self.columns, self.rows, entries)
+    }
+
+    /// Product; the caller has compared the dimensions.
+    #[must_use]
+    pub fn times(&self, pool: &mut Pool, other: &Self) -> Self {
+        let mut entries = Vec::with_capacity(self.rows * other.columns);
+        for row in 0..self.rows {
+            for column in 0..other.columns {
+                let terms: Vec<_> =
+                    (0..self.columns).map(|k| pool.multiply(self.at(row, k), other.at(k, column))).collect();
+                entries.push(pool.sum(&terms));
+            }
+        }
+        Self::new(self.rows, other.columns, entries)
+    }
+
+    /// Entry by entry.
+    #[must_use]
+    pub fn map(&self, operation: impl FnMut(Expression) -> Expression) -> Self {
+        Self::new(self.rows, self.columns, self.entries.iter().copied().map(operation).collect())
+    }
+
+    /// Whether all entries off the diagonal are zero.
+    #[must_use]
+    pub fn is_diagonal(&self) -> bool {
+        self.rows == self.columns
+            && (0..self.rows).all(|r| (0..self.columns).all(|c| r == c || self.at(r, c) == Expression::ZERO))
+    }
+
+    /// Whether it equals its transpose.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        *self == self.transpose()
+    }
+
+    /// Determinant by minors along the rows, each minor once; meant for the small blocks that models have.
+    #[must_use]
+    pub fn determinant(&self, pool: &mut Pool) -> Expression {
+        let all: Vec<usize> = (0..self.rows).collect();
+        Minors::new(self).minor(pool, &all, &all)
+    }
+
+    /// Adjugate: `A · adj A = det A · 1`.
+    #[must_use]
+    pub fn adjugate(&self, pool: &mut Pool) -> Self {
+        let size = self.rows;
+        let mut minors = Minors::new(self);
+        let mut entries = Vec::with_capacity(size * size);
+        for row in 0..size {
+            for column in 0..size {
+                let rows: Vec<usize> = (0..size).filter(|r| *r != column).collect();
+                let columns: Vec<usize> = (0..size).filter(|c| *c != row).collect();
+                entries.push(minors.minor(pool, &rows, &columns).flipped((row + column) % 2 == 1));
+            }
+        }
+        Self::new(size, size, entries)
+    }
+
+    /// Inverse; none if it is identically singular. Diagonal matrices are inverted entry by entry.
+    #[must_use]
+    pub fn inverse(&self, pool: &mut Pool) -> Option<Self> {
+        if self.is_diagonal() {
+            let inverted: Option<Vec<_>> =
+                (0..self.rows).map(|k| pool.divide(Expression::ONE, self.at(k, k))).collect();
+            return Some(Self::diagonal(&inverted?));
+        }
+        let determinant = self.determinant(pool);
+        let adjugate = self.adjugate(pool);
+        let entries: Option<Vec<_>> =
+            adjugate.entries.iter().map(|entry| pool.divide(*entry, determinant)).collect();
+        Some(Self::new(self.rows, self.columns, entries?))
+    }
+}
+
+/// Minors of one matrix, each computed once.
+struct Minors<'a> {
+    matrix: &'a Matrix,
+    known: std::collections::BTreeMap<(Vec<usize>, Vec<usize>), Expression>,
+}
+
+impl<'a> Minors<'a> {
+    fn new(matrix: &'a Matrix) -> Self {
+        Self { matrix, known: std::collections::BTreeMap::new() }
+    }
+
+    fn minor(&mut self, pool: &mut Pool, rows: &[usize], columns: &[usize]) -> Expression {
+        let Some((&first, rest)) = rows.split_first() else { return Expression::ONE };
+        let key = (rows.to_vec(), columns.to_vec());
+        if let Some(known) = self.known.get(&key) {
+            return *known;
+        }
+        let mut sum = Expression::ZERO;
+        for (position, &column) in columns.iter().enumerate() {
+            let entry = self.matrix.at(first, column);
+            if entry == Expression::ZERO {
+                continue;
+            }
+            let others: Vec<usize> = columns.iter().copied().filter(|other| *other != column).collect();
+            let minor = self.minor(pool, rest, &others);
+            let term = pool.multiply(entry, minor).flipped(position % 2 == 1);
+            sum = pool.add(sum, term);
+        }
+        self.known.insert(key, sum);
+        sum
+    }
+}
+
+/// One factor of a product.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Factor {
+    /// The active rotation about axis 0, 1 or 2; its transpose is the one by the opposite angle.
+    Rotation {
+        /// 0, 1 or 2 for x, y or z.
+        axis: usize,
+        /// In radians.
+        angle: Expression,
+    },
+    /// Eq. (8) of Tod et al. (2013): angular velocity of three concentric gimbals, in the axes before the first,
+    /// from the rates of their angles: columns `e_x`, `Rx e_y`, `Rx Ry e_z`.
+    GimbalJacobian {
+        /// The gimbals' angles.
+        angles: [Expression; 3],
+        /// Whether it is transposed.
+        transposed: bool,
+    },
+    /// Anything else.
+    Dense(Matrix),
+}
+
+impl Factor {
+    fn size(&self) -> (usize, usize) {
+        match self {
+            Self::Rotation { .. } | Self::GimbalJacobian { .. } => (3, 3),
+            Self::Dense(matrix) => (matrix.rows, matrix.columns),
+        }
+    }
+
+    /// Transposed.
+    #[must_use]
+    pub fn transpose(&self) -> Self {
+        match self {
+            Self::Rotation { axis, angle } => Self::Rotation { axis: *axis, angle: angle.negated() },
+            Self::GimbalJacobian { angles, transposed } => {
+                Self::GimbalJacobian { angles: *angles, transposed: !transposed }
+            }
+            Self::Dense(matrix) => Self::Dense(matrix.transpose()),
+        }
+    }
+
+    /// Entries.
+    #[must_use]
+    pub fn to_matrix(&self, pool: &mut Pool) -> Matrix {
+        match self {
+            Self::Rotation { axis, angle } => rotation(pool, *axis, *angle),
+            Self::GimbalJacobian { angles, transposed } => {
+                let matrix = gimbal_jacobian(pool, *angles);
+                if *transposed { matrix.transpose() } else { matrix }
+            }
+            Self::Dense(matrix) => matrix.clone(),
+        }
+    }
+
+    fn apply(&self, pool: &mut Pool, vector: &Matrix) -> Matrix {
+        match self {
+            Self::GimbalJacobian { angles, transposed } => apply_jacobian(pool, *angles, *transposed, vector),
+            _ => self.to_matrix(pool).times(pool, vector),
+        }
+    }
+}
+
+/// A product of matrices, leftmost factor first; never empty.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Product {
+    /// Leftmost first.
+    pub factors: Vec<Factor>,
+}
+
+impl Product {
+    /// One factor.
+    #[must_use]
+    pub fn of(factor: Factor) -> Self {
+        Self { factors: vec![factor] }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.factors.first().map_or(0, |factor| factor.size().0)
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.factors.last().map_or(0, |factor| factor.size().1)
+    }
+
+    /// Followed on the right by `other`.
+    #[must_use]
+    pub fn then(mut self, other: Self) -> Self {
+        self.factors.extend(other.factors);
+        self
+    }
+
+    /// Transposed.
+    #[must_use]
+    pub fn transpose(&self) -> Self {
+        Self { factors: self.factors.iter().rev().map(Factor::transpose).collect() }
+    }
+
+    /// Multiplied out.
+    #[must_use]
+    pub fn to_matrix(&self, pool: &mut Pool) -> Matrix {
+        let mut factors = self.factors.iter().rev();
+        let Some(last) = factors.next() else { return Matrix::column(Vec::new()) };
+        let mut matrix = last.to_matrix(pool);
+        for factor in factors {
+            matrix = factor.to_matrix(pool).times(pool, &matrix);
+        }
+        matrix
+    }
+
+    /// Applied to a column, factor by factor.
+    #[must_use]
+    pub fn apply(&self, pool: &mut Pool, vector: &Matrix) -> Matrix {
+        self.factors.iter().rev().fold(vector.clone(), |vector, factor| factor.apply(pool, &vector))
+    }
+}
+
+/// Active rotation about an axis.
+fn rotation(pool: &mut Pool, axis: usize, angle: Expression) -> Matrix {
+    let (sine, cosine) = (pool.sine(angle), pool.cosine(angle));
+    let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut matrix = Matrix::diagonal(&[Expression::ONE; 3]);
+    matrix.entries[first * 3 + first] = cosine;
+    matrix.entries[second * 3 + second] = cosine;
+    matrix.entries[first * 3 + second] = sine.negated();
+    matrix.entries[second * 3 + first] = sine;
+    matrix
+}
+
+fn gimbal_jacobian(pool: &mut Pool, [first, second, _]: [Expression; 3]) -> Matrix {
+    let (s1, c1) = (pool.sine(first), pool.cosine(first));
+    let (s2, c2) = (pool.sine(second), pool.cosine(second));
+    let (zero, one) = (Expression::ZERO, Expression::ONE);
+    let (upper, lower) = (pool.multiply(c2, s1).negated(), pool.multiply(c1, c2));
+    Matrix::new(3, 3, vec![one, zero, s2, zero, c1, upper, zero, s1, lower])
+}
+
+/// In nested frames: `e_x v₀ + Rx (e_y v₁ + Ry e_z v₂)`, or the transposed of that.
+fn apply_jacobian(pool: &mut Pool, angles: [Expression; 3], transposed: bool, vector: &Matrix) -> Matrix {
+    let [first, second, _] = angles;
+    let unit = |axis: usize, value: Expression| {
+        let mut entries = vec![Expression::ZERO; 3];
+        entries[axis] = value;
+        Matrix::column(entries)
+    };
+    if transposed {
+        let inner = rotation(pool, 0, first.negated()).times(pool, vector);
+        let innermost = rotation(pool, 1, second.negated()).times(pool, &inner);
+        return Matrix::column(vec![vector.at(0, 0), inner.at(1, 0), innermost.at(2, 0)]);
+    }
+    let mut sum = rotation(pool, 1, second).times(pool, &unit(2, vector.at(2, 0)));
+    sum.entries[1] = pool.add(sum.entries[1], vector.at(1, 0));
+    let mut sum = rotation(pool, 0, first).times(pool, &sum);
+    sum.entries[0] = pool.add(sum.entries[0], vector.at(0, 0));
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pool::Symbol;
+    use super::*;
+
+    fn angles(pool: &mut Pool) -> [Expression; 3] {
+        [0, 1, 2].map(|index| pool.symbol(Symbol::State(index)))
+    }
+
+    #[test]
+    fn rotation_times_its_transpose_is_the_identity_node_for_node() {
+        let mut pool = Pool::new();
+        let angles = angles(&mut pool);
+        let turn = (0..3).map(|axis| Factor::Rotation { axis, angle: angles[axis] });
+        let turn = Product { factors: turn.collect() };
+        let product = turn.transpose().then(turn.clone()).to_matrix(&mut pool);
+        assert_eq!(product, Matrix::diagonal(&[Expression::ONE; 3]));
+        assert_eq!(turn.to_matrix(&mut pool).determinant(&mut pool), Expression::ONE);
+    }
+
+    #[test]
+    fn determinant_of_the_gimbal_jacobian_is_the_cosine_of_the_second_angle() {
+        let mut pool = Pool::new();
+        let angles = angles(&mut pool);
+        let jacobian = Factor::GimbalJacobian { angles, transposed: false }.to_matrix(&mut pool);
+        assert_eq!(jacobian.determinant(&mut pool), pool.cosine(angles[1]));
+        let inverse = jacobian.inverse(&mut pool).unwrap();
+        assert_eq!(inverse.times(&mut pool, &jacobian), Matrix::diagonal(&[Expression::ONE; 3]));
+    }
+
+    #[test]
+    fn applying_the_jacobian_in_nested_frames_equals_its_matrix() {
+        let mut pool = Pool::new();
+        let angles = angles(&mut pool);
+        let vector = Matrix::column((3..6).map(|index| pool.symbol(Symbol::State(index))).collect());
+        for transposed in [false, true] {
+            let factor = Factor::GimbalJacobian { angles, transposed };
+            let nested = factor.apply(&mut pool, &vector);
+            let dense = factor.to_matrix(&mut pool).times(&mut pool, &vector);
+            assert_eq!(nested, dense);
+        }
+    }
+}

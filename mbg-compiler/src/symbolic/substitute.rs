@@ -1,0 +1,92 @@
+//! Replacing symbols by expressions.
+
+use std::collections::HashMap;
+
+use super::pool::{Expression, Operation, Pool, Symbol};
+
+/// Replaces symbols; what it does not know stays.
+#[derive(Default)]
+pub struct Substitution {
+    values: HashMap<Symbol, Expression>,
+    known: HashMap<usize, Expression>,
+}
+
+impl Substitution {
+    /// Nothing replaced yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Replaces `symbol` by `value` from now on; `value` must hold no symbol that is replaced.
+    pub fn set(&mut self, symbol: Symbol, value: Expression) {
+        self.values.insert(symbol, value);
+        self.known.clear();
+    }
+
+    /// The value given for a symbol.
+    #[must_use]
+    pub fn get(&self, symbol: Symbol) -> Option<Expression> {
+        self.values.get(&symbol).copied()
+    }
+
+    /// The expression with every known symbol replaced; none if that divides by zero.
+    #[must_use]
+    pub fn apply(&mut self, pool: &mut Pool, expression: Expression) -> Option<Expression> {
+        let mut pending = vec![expression.magnitude()];
+        while let Some(&current) = pending.last() {
+            if self.known.contains_key(&current.node()) {
+                pending.pop();
+                continue;
+            }
+            let operation = pool.operation(current).clone();
+            let before = pending.len();
+            let missing = operation.operands().into_iter().filter(|part| !self.known.contains_key(&part.node()));
+            pending.extend(missing.map(Expression::magnitude));
+            if pending.len() == before {
+                let replaced = self.rebuild(pool, current, &operation)?;
+                self.known.insert(current.node(), replaced);
+                pending.pop();
+            }
+        }
+        Some(self.of(expression))
+    }
+
+    fn of(&self, expression: Expression) -> Expression {
+        self.known[&expression.node()].flipped(expression.is_negative())
+    }
+
+    fn rebuild(&self, pool: &mut Pool, whole: Expression, operation: &Operation) -> Option<Expression> {
+        Some(match operation {
+            Operation::Constant(_) => whole,
+            Operation::Symbol(symbol) => self.get(*symbol).unwrap_or(whole),
+            Operation::Add(a, b) => pool.add(self.of(*a), self.of(*b)),
+            Operation::Multiply(a, b) => pool.multiply(self.of(*a), self.of(*b)),
+            Operation::Divide(a, b) => pool.divide(self.of(*a), self.of(*b))?,
+            Operation::Sine(a) => pool.sine(self.of(*a)),
+            Operation::Cosine(a) => pool.cosine(self.of(*a)),
+            Operation::Call(function, arguments) => {
+                let arguments: Vec<_> = arguments.iter().map(|argument| self.of(*argument)).collect();
+                pool.call(*function, &arguments)
+            }
+        })
+    }
+}
+
+/// The symbols that an expression holds, in order of first sight by depth.
+#[must_use]
+pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
+    let mut seen = vec![false; pool.len()];
+    let mut found = Vec::new();
+    let mut pending: Vec<Expression> = expressions.iter().rev().copied().collect();
+    while let Some(current) = pending.pop() {
+        if std::mem::replace(&mut seen[current.node()], true) {
+            continue;
+        }
+        match pool.operation(current) {
+            Operation::Symbol(symbol) => found.push(*symbol),
+            operation => pending.extend(operation.operands().into_iter().rev()),
+        }
+    }
+    found
+}

@@ -3,10 +3,16 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+#[doc(hidden)]
+pub mod __private;
+mod dual;
 mod meta;
+mod polynomial;
 mod real;
+mod scalar;
 mod system;
 
+pub use dual::Dual;
 pub use meta::{Bond, Meta, Operations, Stroke, Variable};
 pub use real::Real;
 pub use system::{ParameterError, Power, System, Trouble};

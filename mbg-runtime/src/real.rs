@@ -6,6 +6,13 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// A real number, a lane of several, or a dual number.
 ///
 /// There is no ordering, so that lanes and dual numbers can implement it: a choice is a [`Real::select_less`].
+/// No function panics; outside of its domain a function gives NaN, as the functions of `f64` do.
+///
+/// | type | elementary functions |
+/// |---|---|
+/// | `f64` | standard library with the feature `std`, else the crate `libm` |
+/// | `f32` | likewise; without `std`, [`Real::sin_cos`] is a polynomial up to 1000 rad, see there |
+/// | [`Dual<T>`](crate::Dual) | those of `T`, with their slopes |
 pub trait Real:
     Copy
     + Debug
@@ -27,8 +34,14 @@ pub trait Real:
     /// The nearest number to a constant of the model.
     fn from_f64(value: f64) -> Self;
     /// The first lane, seen as `f64`, for which `test` holds.
+    ///
+    /// Lanes are asked in order, each once, until one passes. `number.find(|_| true)` is the first lane.
     fn find(self, test: impl Fn(f64) -> bool) -> Option<f64>;
-    /// Sine and cosine of an angle in radians.
+    /// Sine and cosine of an angle in radians, in one call.
+    ///
+    /// For `f32` without the feature `std`, angles up to 1000 rad take a polynomial in single precision: the error
+    /// stays below 1.5e-7, on a processor without a double-precision unit in a fraction of the time. Larger angles
+    /// take `libm`.
     fn sin_cos(self) -> (Self, Self);
     /// Sine.
     fn sin(self) -> Self {
@@ -40,27 +53,27 @@ pub trait Real:
     }
     /// Tangent.
     fn tan(self) -> Self;
-    /// Arc sine.
+    /// Arc sine, in [−π/2, π/2]; NaN outside of [−1, 1].
     fn asin(self) -> Self;
-    /// Arc cosine.
+    /// Arc cosine, in [0, π]; NaN outside of [−1, 1].
     fn acos(self) -> Self;
-    /// Angle of the vector (`x`, `self`).
+    /// Angle of the vector (`x`, `self`), in (−π, π].
     fn atan2(self, x: Self) -> Self;
     /// Exponential.
     fn exp(self) -> Self;
-    /// Natural logarithm.
+    /// Natural logarithm; NaN for negative numbers.
     fn ln(self) -> Self;
-    /// Square root.
+    /// Square root; NaN for negative numbers.
     fn sqrt(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
-    /// −1, 0 or 1.
+    /// −1, 0 or 1, and NaN for NaN.
     fn sign(self) -> Self;
-    /// The smaller of two.
+    /// The smaller of two; NaN when either is, so that no NaN gets lost in a limiter.
     fn min(self, other: Self) -> Self;
-    /// The larger of two.
+    /// The larger of two; NaN when either is.
     fn max(self, other: Self) -> Self;
     /// `yes` where `self < bound`, else `no`.
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self;

@@ -34,7 +34,13 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ) -> SVector<T, N>;
 
     /// Outputs.
-    fn output(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut Self::Memory) -> SVector<T, P>;
+    fn output(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> SVector<T, P>;
 
     /// `∂f/∂x`, exact.
     fn jacobian_state(
@@ -58,7 +64,13 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     fn energy(&self, t: T, x: &SVector<T, N>) -> T;
 
     /// Power supplied by the sources and dissipated by the resistors: `dH/dt = supplied − dissipated`.
-    fn power(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut Self::Memory) -> Power<T>;
+    fn power(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> Power<T>;
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero.
@@ -68,11 +80,23 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ///
     /// A block is too near its singular set when its normalised determinant is below the square root of the
     /// scalar's precision. Steppers ask once a step.
-    fn trouble(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, _memory: &Self::Memory) -> Option<Trouble> {
+    fn trouble(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        _memory: &Self::Memory,
+    ) -> Option<Trouble> {
         let conditioning = self.conditioning(t, x, u);
-        Self::META.conditioning.iter().zip(conditioning.as_ref()).find_map(|(name, value)| {
-            value.find(|lane| !(lane.abs() >= T::SINGULAR)).map(|value| Trouble { name, value })
-        })
+        Self::META
+            .conditioning
+            .iter()
+            .zip(conditioning.as_ref())
+            .find_map(|(name, value)| {
+                value
+                    .find(|lane| lane.is_nan() || lane.abs() < T::SINGULAR)
+                    .map(|value| Trouble { name, value })
+            })
     }
 }
 
@@ -96,7 +120,11 @@ pub struct Trouble {
 
 impl core::fmt::Display for Trouble {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(formatter, "{} is {:e}, too near its singular set", self.name, self.value)
+        write!(
+            formatter,
+            "{} is {:e}, too near its singular set",
+            self.name, self.value
+        )
     }
 }
 
@@ -113,7 +141,11 @@ pub struct ParameterError {
 
 impl core::fmt::Display for ParameterError {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(formatter, "`{}` is {:e}: {}", self.name, self.value, self.reason)
+        write!(
+            formatter,
+            "`{}` is {:e}: {}",
+            self.name, self.value, self.reason
+        )
     }
 }
 

@@ -1,0 +1,159 @@
+//! `f64` and `f32` as [`Real`].
+
+use crate::Real;
+
+/// Functions of one argument: from the standard library where there is one, else from `libm`.
+macro_rules! elementary {
+    ($scalar:ident: $($name:ident = $bare:ident),*) => { $(
+        #[inline]
+        fn $name(self) -> Self {
+            #[cfg(any(test, feature = "std"))]
+            return $scalar::$name(self);
+            #[cfg(not(any(test, feature = "std")))]
+            return libm::$bare(self);
+        }
+    )* };
+}
+
+/// What `f64` and `f32` have in common.
+macro_rules! ordered {
+    ($scalar:ident) => {
+        const EPSILON: f64 = $scalar::EPSILON as f64;
+
+        #[inline]
+        fn from_f64(value: f64) -> Self {
+            value as $scalar
+        }
+
+        #[inline]
+        fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
+            let lane = f64::from(self);
+            test(lane).then_some(lane)
+        }
+
+        #[inline]
+        fn abs(self) -> Self {
+            $scalar::abs(self)
+        }
+
+        #[inline]
+        fn sign(self) -> Self {
+            if self > 0.0 {
+                1.0
+            } else if self < 0.0 {
+                -1.0
+            } else {
+                self
+            }
+        }
+
+        #[inline]
+        fn min(self, other: Self) -> Self {
+            if self < other || self.is_nan() {
+                self
+            } else {
+                other
+            }
+        }
+
+        #[inline]
+        fn max(self, other: Self) -> Self {
+            if self > other || self.is_nan() {
+                self
+            } else {
+                other
+            }
+        }
+
+        #[inline]
+        fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
+            if self < bound { yes } else { no }
+        }
+    };
+}
+
+impl Real for f64 {
+    const SINGULAR: f64 = 1.490_116_119_384_765_6e-8;
+
+    ordered!(f64);
+    elementary!(f64: tan = tan, asin = asin, acos = acos, exp = exp, ln = log, sqrt = sqrt, tanh = tanh);
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        #[cfg(any(test, feature = "std"))]
+        return f64::sin_cos(self);
+        #[cfg(not(any(test, feature = "std")))]
+        return libm::sincos(self);
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        #[cfg(any(test, feature = "std"))]
+        return f64::atan2(self, x);
+        #[cfg(not(any(test, feature = "std")))]
+        return libm::atan2(self, x);
+    }
+}
+
+impl Real for f32 {
+    const SINGULAR: f64 = 3.452_669_830_012_439_4e-4;
+
+    ordered!(f32);
+    elementary!(f32: tan = tanf, asin = asinf, acos = acosf, exp = expf, ln = logf, sqrt = sqrtf, tanh = tanhf);
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        #[cfg(any(test, feature = "std"))]
+        return f32::sin_cos(self);
+        #[cfg(not(any(test, feature = "std")))]
+        return crate::polynomial::sin_cos(self);
+    }
+
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        #[cfg(any(test, feature = "std"))]
+        return f32::atan2(self, x);
+        #[cfg(not(any(test, feature = "std")))]
+        return libm::atan2f(self, x);
+    }
+}
+
+/// `base` to the power of `exponent`, for step control.
+#[inline]
+pub(crate) fn power(base: f64, exponent: f64) -> f64 {
+    #[cfg(any(test, feature = "std"))]
+    return base.powf(exponent);
+    #[cfg(not(any(test, feature = "std")))]
+    return libm::pow(base, exponent);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn singular_is_the_square_root_of_the_precision() {
+        assert_eq!(<f64 as Real>::SINGULAR, <f64 as Real>::EPSILON.sqrt());
+        assert_eq!(<f32 as Real>::SINGULAR, <f32 as Real>::EPSILON.sqrt());
+    }
+
+    #[test]
+    fn signs_and_choices_do_not_lose_a_nan() {
+        assert_eq!([3.0, 0.0, -2.0].map(Real::sign), [1.0, 0.0, -1.0]);
+        assert!(Real::sign(f64::NAN).is_nan());
+        for (a, b) in [(f64::NAN, 1.0), (1.0, f64::NAN)] {
+            assert!(Real::min(a, b).is_nan());
+            assert!(Real::max(a, b).is_nan());
+        }
+        assert_eq!((Real::min(1.0, 2.0), Real::max(1.0, 2.0)), (1.0, 2.0));
+        assert_eq!(1.0.select_less(2.0, 10.0, 20.0), 10.0);
+        assert_eq!(2.0.select_less(2.0, 10.0, 20.0), 20.0);
+        assert_eq!(f32::NAN.select_less(2.0, 10.0, 20.0), 20.0);
+    }
+
+    #[test]
+    fn find_gives_the_number_that_passes() {
+        assert_eq!(0.5_f32.find(|lane| lane < 1.0), Some(0.5));
+        assert_eq!(0.5_f32.find(|lane| lane > 1.0), None);
+    }
+}

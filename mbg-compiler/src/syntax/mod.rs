@@ -1,2 +1,49 @@
 //! Stage 1, syntax: tokens to a tree.
+//!
+//! - Input: the tokens between the braces of `mbg! { … }`, any tokens at all.
+//! - Output: an [`ast::Source`]. A statement that could not be read is an [`ast::Statement::Broken`] for each name that
+//!   it declares, and its error is reported; what stands around it is kept.
+//! - Errors: `MBG0101` to `MBG0104`, each at a token that the user wrote.
+//!
+//! The structure is read from token trees by hand, and only laws are handed to `syn`: a failed `syn` parse inside
+//! braces spoils the parse of everything around them, which would cost every error but the first.
+
 pub mod ast;
+mod attributes;
+mod chains;
+mod cursor;
+pub mod dump;
+mod elements;
+mod expressions;
+mod items;
+mod recovery;
+mod statements;
+mod units;
+mod words;
+
+pub use dump::dump;
+
+use proc_macro2::TokenStream;
+
+use crate::diagnostics::Diagnostics;
+
+/// The largest dimension and index: far above any model, far below where sizes overflow.
+pub const LARGEST_DIMENSION: usize = 1_000_000;
+
+/// Reads the tokens between the braces of `mbg! { … }`.
+///
+/// It never panics, and reports every mistake that it can tell apart.
+///
+/// ```
+/// use mbg_compiler::{diagnostics::Diagnostics, syntax};
+///
+/// let tokens = "model Mass { 1 body { I mass { inertia: 2.0 } } }".parse().unwrap();
+/// let mut diagnostics = Diagnostics::new();
+/// let source = syntax::parse(tokens, &mut diagnostics);
+/// assert!(!diagnostics.any());
+/// assert_eq!(source.items.len(), 1);
+/// ```
+#[must_use]
+pub fn parse(tokens: TokenStream, diagnostics: &mut Diagnostics) -> ast::Source {
+    items::source(tokens, &mut recovery::Sink::new(diagnostics))
+}

@@ -1,0 +1,128 @@
+//! The words of the language, and the nearest one to what was typed.
+
+use super::ast::ElementKind;
+
+/// Words that begin a statement.
+pub(super) const STATEMENTS: &[&str] = &["param", "input", "output", "integral", "attitude", "causality"];
+
+/// Words that will begin a statement one day.
+pub(super) const LATER: &[&str] = &["for", "include", "close"];
+
+/// Words that begin an item.
+pub(super) const ITEMS: &[&str] = &["model", "component"];
+
+/// The elements by name.
+pub(super) const ELEMENTS: &[(&str, ElementKind)] = &[
+    ("Se", ElementKind::Se),
+    ("Sf", ElementKind::Sf),
+    ("I", ElementKind::I),
+    ("C", ElementKind::C),
+    ("R", ElementKind::R),
+    ("TF", ElementKind::TF),
+    ("GY", ElementKind::GY),
+    ("MTF", ElementKind::MTF),
+    ("MGY", ElementKind::MGY),
+    ("EJS", ElementKind::EJS),
+];
+
+/// What cannot be a name, because the generated code could not spell it.
+const RESERVED: &[&str] = &[
+    "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
+    "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro",
+    "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "Self", "static", "struct",
+    "super", "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while",
+    "yield",
+];
+
+/// Whether this is a keyword of Rust.
+pub(super) fn is_reserved(word: &str) -> bool {
+    RESERVED.contains(&word)
+}
+
+/// The element of this name.
+pub(super) fn element(word: &str) -> Option<ElementKind> {
+    ELEMENTS.iter().find(|(name, _)| *name == word).map(|(_, kind)| *kind)
+}
+
+/// The name of this element.
+pub(super) fn element_name(kind: ElementKind) -> &'static str {
+    ELEMENTS.iter().find(|(_, other)| *other == kind).map_or("", |(name, _)| name)
+}
+
+/// The names of the elements.
+pub(super) fn element_names() -> Vec<&'static str> {
+    ELEMENTS.iter().map(|(name, _)| *name).collect()
+}
+
+/// The elements as errors list them.
+pub(super) fn element_listing() -> String {
+    alternatives(&element_names())
+}
+
+/// `` `a`, `b` or `c` ``.
+pub(super) fn alternatives(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}
+
+/// The word that was probably meant: two slips at most, fewer for a short word, since every word of two letters is
+/// two slips from every other.
+pub(super) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
+    // A word far longer than any of ours is none of ours, and measuring it would cost its length squared.
+    if found.chars().count() > 16 {
+        return None;
+    }
+    let lower = found.to_lowercase();
+    words
+        .iter()
+        .filter(|word| **word != found)
+        .map(|word| (distance(&lower, &word.to_lowercase()), *word))
+        .filter(|(distance, word)| *distance <= (word.len() / 2).min(2))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, word)| word)
+}
+
+/// Edit distance in which a swap of neighbours counts as one slip (optimal string alignment).
+fn distance(left: &str, right: &str) -> usize {
+    let left: Vec<char> = left.chars().collect();
+    let right: Vec<char> = right.chars().collect();
+    let mut rows: Vec<Vec<usize>> = vec![(0..=right.len()).collect()];
+    for i in 1..=left.len() {
+        let mut row = vec![i];
+        for j in 1..=right.len() {
+            let differ = usize::from(left[i - 1] != right[j - 1]);
+            let mut best = (rows[i - 1][j] + 1).min(row[j - 1] + 1).min(rows[i - 1][j - 1] + differ);
+            if i > 1 && j > 1 && left[i - 1] == right[j - 2] && left[i - 2] == right[j - 1] {
+                best = best.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(best);
+        }
+        rows.push(row);
+    }
+    rows[left.len()][right.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_word_is_found() {
+        assert_eq!(nearest("parm", STATEMENTS), Some("param"));
+        assert_eq!(nearest("ouptut", STATEMENTS), Some("output"));
+        assert_eq!(nearest("parameter", STATEMENTS), None);
+        assert_eq!(nearest("Model", ITEMS), Some("model"));
+        assert_eq!(nearest("mtf", &element_names()), Some("MTF"));
+        assert_eq!(nearest("r", &element_names()), Some("R"));
+        assert_eq!(nearest("x", &element_names()), None);
+    }
+
+    #[test]
+    fn alternatives_read_as_a_sentence() {
+        assert_eq!(alternatives(&["a"]), "`a`");
+        assert_eq!(alternatives(&["a", "b", "c"]), "`a`, `b` or `c`");
+    }
+}

@@ -5,16 +5,27 @@ extern crate std;
 
 #[doc(hidden)]
 pub mod __private;
+pub mod attitude;
 mod dual;
+mod input;
+mod input;
 mod meta;
 mod polynomial;
 mod real;
 mod scalar;
+mod step;
 mod system;
 
 pub use dual::Dual;
+pub use input::{Constant, Input, Piece, PiecewiseConstant, Pulse, Smooth, WithJumps};
+pub use input::{Constant, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Meta, Operations, Stroke, Variable};
 pub use real::Real;
+pub use step::{
+    Absolute, Adaptive, Cause, Compensated, Dense, Finished, FixedStep, Rk4, Statistics, Stopped,
+    Tsit5,
+};
+pub use step::{Cause, Rk4, Statistics, Stopped};
 pub use system::{ParameterError, Power, System, Trouble};
 
 #[cfg(feature = "macros")]

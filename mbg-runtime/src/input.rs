@@ -1,0 +1,227 @@
+//! Inputs over time.
+
+use nalgebra::SVector;
+
+use crate::Real;
+use crate::step::less;
+
+/// An input `u(t)` that is smooth but for jumps at times known in advance.
+///
+/// Integrators end a step at each jump and start anew behind it, so that no step straddles a jump. All stages of a
+/// step ask for the value on the step's own side: a piece is continued up to its end, where the next one begins.
+///
+/// | input | value |
+/// |---|---|
+/// | `()` | zero |
+/// | [`Constant`] | a constant |
+/// | [`Pulse`] | a constant for a time, zero else |
+/// | [`Smooth`] | a function of time without jumps |
+/// | [`Sum`] | two inputs added |
+/// | `&I` | what `I` is |
+pub trait Input<T: Real, const M: usize> {
+    /// The value at `t` on the piece that begins at, or covers, the time `since`.
+    ///
+    /// `since` is not later than `t`, and no jump lies between the two, though `t` may be the end of the piece or,
+    /// by rounding, a little behind it; there the piece is continued.
+    fn value(&self, t: T, since: T) -> SVector<T, M>;
+
+    /// The first jump later than `t`.
+    fn next_jump(&self, t: T) -> Option<T>;
+
+    /// The value at `t`; at a jump, the one behind it.
+    fn at(&self, t: T) -> SVector<T, M> {
+        self.value(t, t)
+    }
+}
+
+impl<T: Real, const M: usize, I: Input<T, M> + ?Sized> Input<T, M> for &I {
+    fn value(&self, t: T, since: T) -> SVector<T, M> {
+        (**self).value(t, since)
+    }
+
+    fn next_jump(&self, t: T) -> Option<T> {
+        (**self).next_jump(t)
+    }
+}
+
+impl<T: Real, const M: usize> Input<T, M> for () {
+    fn value(&self, _t: T, _since: T) -> SVector<T, M> {
+        zero()
+    }
+
+    fn next_jump(&self, _t: T) -> Option<T> {
+        None
+    }
+}
+
+/// An input that stays as it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant<T, const M: usize>(
+    /// The value.
+    pub SVector<T, M>,
+);
+
+impl<T: Real, const M: usize> Input<T, M> for Constant<T, M> {
+    fn value(&self, _t: T, _since: T) -> SVector<T, M> {
+        self.0
+    }
+
+    fn next_jump(&self, _t: T) -> Option<T> {
+        None
+    }
+}
+
+/// A constant for `start ≤ t < end`, zero before and after.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Input, Pulse};
+/// use nalgebra::SVector;
+///
+/// let push = Pulse { amplitude: SVector::from([2.0]), start: 1.0, end: 1.5 };
+/// assert_eq!(push.at(1.0), SVector::from([2.0]));
+/// assert_eq!(push.at(1.5), SVector::from([0.0]));
+/// assert_eq!(push.next_jump(0.0), Some(1.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse<T, const M: usize> {
+    /// The value in between.
+    pub amplitude: SVector<T, M>,
+    /// The time of the first jump.
+    pub start: T,
+    /// The time of the second jump; may be infinite, which makes a step of the pulse.
+    pub end: T,
+}
+
+impl<T: Real, const M: usize> Input<T, M> for Pulse<T, M> {
+    fn value(&self, _t: T, since: T) -> SVector<T, M> {
+        if less(since, self.start) || !less(since, self.end) {
+            zero()
+        } else {
+            self.amplitude
+        }
+    }
+
+    fn next_jump(&self, t: T) -> Option<T> {
+        if !less(self.start, self.end) {
+            None
+        } else if less(t, self.start) {
+            Some(self.start)
+        } else if less(t, self.end) {
+            Some(self.end)
+        } else {
+            None
+        }
+    }
+}
+
+/// A function of time without jumps.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Input, Smooth};
+/// use nalgebra::SVector;
+///
+/// let sway = Smooth(|t: f64| SVector::from([t.sin()]));
+/// assert_eq!(sway.at(0.3), SVector::from([0.3_f64.sin()]));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Smooth<F>(
+    /// The function.
+    pub F,
+);
+
+impl<T: Real, const M: usize, F: Fn(T) -> SVector<T, M>> Input<T, M> for Smooth<F> {
+    fn value(&self, t: T, _since: T) -> SVector<T, M> {
+        (self.0)(t)
+    }
+
+    fn next_jump(&self, _t: T) -> Option<T> {
+        None
+    }
+}
+
+/// Two inputs added, with the jumps of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sum<A, B>(
+    /// One.
+    pub A,
+    /// The other.
+    pub B,
+);
+
+impl<T: Real, const M: usize, A: Input<T, M>, B: Input<T, M>> Input<T, M> for Sum<A, B> {
+    fn value(&self, t: T, since: T) -> SVector<T, M> {
+        self.0
+            .value(t, since)
+            .zip_map(&self.1.value(t, since), |a, b| a + b)
+    }
+
+    fn next_jump(&self, t: T) -> Option<T> {
+        match (self.0.next_jump(t), self.1.next_jump(t)) {
+            (Some(a), Some(b)) => Some(if less(b, a) { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+}
+
+fn zero<T: Real, const M: usize>() -> SVector<T, M> {
+    SVector::from_element(T::from_f64(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pulse_holds_from_its_start_up_to_its_end() {
+        let pulse = Pulse {
+            amplitude: SVector::from([3.0, -1.0]),
+            start: 1.0,
+            end: 2.0,
+        };
+        assert_eq!(pulse.at(0.999), SVector::from([0.0, 0.0]));
+        assert_eq!(pulse.at(1.0), SVector::from([3.0, -1.0]));
+        assert_eq!(pulse.at(2.0), SVector::from([0.0, 0.0]));
+        // From the left.
+        assert_eq!(pulse.value(1.0, 0.5), SVector::from([0.0, 0.0]));
+        assert_eq!(pulse.value(2.0, 1.0), SVector::from([3.0, -1.0]));
+        assert_eq!(
+            [0.0, 1.0, 1.5, 2.0].map(|t| pulse.next_jump(t)),
+            [Some(1.0), Some(2.0), Some(2.0), None]
+        );
+    }
+
+    #[test]
+    fn pulse_that_ends_before_it_starts_is_zero() {
+        let pulse = Pulse {
+            amplitude: SVector::from([3.0]),
+            start: 2.0,
+            end: 1.0,
+        };
+        assert_eq!([0.0, 1.5, 3.0].map(|t| pulse.at(t)[0]), [0.0; 3]);
+        assert_eq!([0.0, 1.5, 3.0].map(|t| pulse.next_jump(t)), [None; 3]);
+    }
+
+    #[test]
+    fn sums_have_the_jumps_of_both() {
+        let pulse = |start, end| Pulse {
+            amplitude: SVector::from([1.0]),
+            start,
+            end,
+        };
+        let sum = Sum(
+            pulse(1.0, 3.0),
+            Sum(&pulse(2.0, 4.0), Constant(SVector::from([0.5]))),
+        );
+        assert_eq!(
+            [0.0, 1.0, 2.0, 3.0, 4.0].map(|t| sum.at(t)[0]),
+            [0.5, 1.5, 2.5, 1.5, 0.5]
+        );
+        let jumps = [0.0, 1.0, 2.0, 3.0, 4.0].map(|t| Input::<f64, 1>::next_jump(&sum, t));
+        assert_eq!(jumps, [Some(1.0), Some(2.0), Some(3.0), Some(4.0), None]);
+        assert_eq!(Input::<f64, 2>::at(&(), 1.0), SVector::from([0.0, 0.0]));
+    }
+}

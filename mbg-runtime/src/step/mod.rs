@@ -1,0 +1,192 @@
+//! Integrators for initial value problems.
+
+mod fixed;
+#[cfg(test)]
+mod models;
+
+use core::cell::Cell;
+use core::fmt;
+
+use nalgebra::SVector;
+
+use crate::{Input, Real, System, Trouble};
+
+pub use fixed::Rk4;
+
+/// What a simulation took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps tried and thrown away as too inaccurate.
+    pub rejected: u64,
+    /// Evaluations of [`System::derivative`].
+    pub evaluations: u64,
+}
+
+/// A simulation that could not go on.
+///
+/// Whatever the observer has been given before is valid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stopped {
+    /// When.
+    pub time: f64,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Why a simulation could not go on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Cause {
+    /// The model came too near a singular set.
+    Trouble(Trouble),
+    /// A state, or its derivative, became infinite or NaN.
+    NotFinite {
+        /// The first such state, as [`Meta::states`](crate::Meta::states) names it.
+        state: &'static str,
+    },
+    /// The step is so small that time does not advance by it; the problem is stiff or has a singularity there.
+    StepTooSmall,
+    /// More steps than allowed.
+    TooManySteps,
+    /// The simulation was not set up properly.
+    Argument(&'static str),
+}
+
+impl fmt::Display for Stopped {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "stopped at t = {}: {}", self.time, self.cause)
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Trouble(trouble) => trouble.fmt(formatter),
+            Self::NotFinite { state } => {
+                write!(formatter, "state `{state}` or its derivative is not finite")
+            }
+            Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
+            Self::TooManySteps => formatter.write_str("more steps than allowed"),
+            Self::Argument(what) => formatter.write_str(what),
+        }
+    }
+}
+
+impl core::error::Error for Stopped {}
+
+impl Stopped {
+    fn new<T: Real>(time: T, cause: Cause) -> Self {
+        Self {
+            time: seen(time),
+            cause,
+        }
+    }
+}
+
+/// The number, seen as `f64`; of several lanes the first.
+fn seen<T: Real>(number: T) -> f64 {
+    number.find(|_| true).unwrap_or(f64::NAN)
+}
+
+/// Whether `a < b`, for times, which are the same in all lanes.
+pub(crate) fn less<T: Real>(a: T, b: T) -> bool {
+    (a - b).find(|difference| difference < 0.0).is_some()
+}
+
+/// Largest absolute value of all lanes; NaN when one is.
+fn magnitude<T: Real>(number: T) -> f64 {
+    let largest = Cell::new(0.0_f64);
+    number.find(|lane| {
+        if lane.is_nan() || lane.abs() > largest.get() {
+            largest.set(lane.abs());
+        }
+        lane.is_nan()
+    });
+    largest.get()
+}
+
+/// Whether two times differ by rounding alone, in units of the time or of `scale`.
+fn same_time<T: Real>(a: T, b: T, scale: f64) -> bool {
+    let largest = magnitude(a).max(magnitude(b)).max(scale);
+    magnitude(b - a) <= 8.0 * T::EPSILON * largest
+}
+
+/// Where the piece of the input that begins at `from` ends, at most `end`.
+fn piece_end<T: Real, const M: usize>(
+    input: &impl Input<T, M>,
+    from: T,
+    end: T,
+    scale: f64,
+) -> Result<T, Stopped> {
+    match input.next_jump(from) {
+        Some(jump) if !less(from, jump) => Err(Stopped::new(
+            from,
+            Cause::Argument("the input's next jump is not later than the one before"),
+        )),
+        Some(jump) if less(jump, end) && !same_time(jump, end, scale) => Ok(jump),
+        _ => Ok(end),
+    }
+}
+
+/// Refuses times that are not finite or go backwards.
+fn check_times<T: Real>(start: T, end: T) -> Result<(), Stopped> {
+    if !seen(start).is_finite() || !seen(end).is_finite() {
+        return Err(Stopped::new(
+            start,
+            Cause::Argument("the times of start and end must be finite"),
+        ));
+    }
+    if less(end, start) {
+        return Err(Stopped::new(
+            start,
+            Cause::Argument("the end must not be earlier than the start"),
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a state, or a derivative, that is infinite or NaN in some lane.
+fn check_finite<T, S, const N: usize, const M: usize, const P: usize>(
+    _system: &S,
+    time: T,
+    x: &SVector<T, N>,
+) -> Result<(), Stopped>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    match x
+        .iter()
+        .position(|component| component.find(|lane| !lane.is_finite()).is_some())
+    {
+        Some(index) => {
+            let state = S::META.states.get(index).map_or("?", |state| state.name);
+            Err(Stopped::new(time, Cause::NotFinite { state }))
+        }
+        None => Ok(()),
+    }
+}
+
+/// `x + h · Σ weight · slope`.
+fn advance<T: Real, const N: usize, const K: usize>(
+    x: &SVector<T, N>,
+    h: T,
+    terms: [(f64, &SVector<T, N>); K],
+) -> SVector<T, N> {
+    let increment = weighted(terms);
+    x.zip_map(&increment, |x, increment| x + h * increment)
+}
+
+/// `Σ weight · slope`.
+fn weighted<T: Real, const N: usize, const K: usize>(
+    terms: [(f64, &SVector<T, N>); K],
+) -> SVector<T, N> {
+    let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
+    for (weight, slope) in terms {
+        let weight = T::from_f64(weight);
+        sum.zip_apply(slope, |sum, slope| *sum += weight * slope);
+    }
+    sum
+}

@@ -1,7 +1,8 @@
 //! The compiler behind `mbg!`.
-pub mod codes;
 pub mod causality;
+pub mod codes;
 pub mod diagnostics;
+pub mod elaborate;
 pub mod graph;
 pub mod symbolic;
 pub mod syntax;

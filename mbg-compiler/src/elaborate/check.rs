@@ -1,0 +1,82 @@
+//! What must hold of the finished graph: equal dimensions, one bond per port.
+
+use super::Builder;
+use crate::codes;
+use crate::graph::{ElementId, End, Rule};
+
+impl Builder<'_> {
+    /// Completes the dimensions of bonds at two-ports and reports what does not fit.
+    pub(super) fn check(&mut self) {
+        if self.diagnostics.any() {
+            return;
+        }
+        self.check_bonds();
+        self.check_ports();
+        if self.states.is_empty() {
+            let span = proc_macro2::Span::call_site();
+            let message = "the model has no storage, integral or attitude: nothing changes with time";
+            self.diagnostics.error(codes::EMPTY_MODEL, span, message);
+        }
+    }
+
+    fn check_bonds(&mut self) {
+        for index in 0..self.graph.bonds.len() {
+            let bond = &self.graph.bonds[index];
+            let (from, to) = (self.size(&bond.from), self.size(&bond.to));
+            let span = self.graph.origins.span(bond.origin);
+            let name = self.graph.origins.path(bond.origin).to_owned();
+            if let (End::OnePort(a), End::OnePort(b)) = (&bond.from, &bond.to)
+                && self.graph.elements[a.0].kind == self.graph.elements[b.0].kind
+            {
+                let message = format!("`{name}` joins two equal one-ports; both fix the same variable");
+                self.diagnostics.error(codes::EQUAL_ONE_PORTS, span, message);
+            } else if from != to {
+                let message = format!("`{name}` joins dimension {from} to dimension {to}");
+                self.diagnostics.error(codes::WRONG_DIMENSION, span, message);
+            }
+            self.graph.bonds[index].dimension = from;
+        }
+    }
+
+    fn size(&self, end: &End) -> usize {
+        match end {
+            End::Junction(_, range) => range.len(),
+            End::OnePort(id) => self.ports[id.0].1,
+            End::In(id) => self.two_port(*id).1,
+            End::Out(id) => self.two_port(*id).0,
+            End::Border => 0,
+        }
+    }
+
+    fn two_port(&self, id: ElementId) -> (usize, usize) {
+        match self.graph.elements[id.0].rule {
+            Rule::Transformer { rows, columns, .. } | Rule::Gyrator { rows, columns, .. } => (rows, columns),
+            _ => (0, 0),
+        }
+    }
+
+    fn check_ports(&mut self) {
+        let mut counts = vec![[0usize; 2]; self.graph.elements.len()];
+        for bond in &self.graph.bonds {
+            for end in [&bond.from, &bond.to] {
+                match end {
+                    End::OnePort(id) | End::In(id) => counts[id.0][0] += 1,
+                    End::Out(id) => counts[id.0][1] += 1,
+                    End::Junction(..) | End::Border => {}
+                }
+            }
+        }
+        for (element, count) in self.graph.elements.iter().zip(counts) {
+            let two_port = matches!(element.rule, Rule::Transformer { .. } | Rule::Gyrator { .. });
+            let expected = [1, usize::from(two_port)];
+            let span = self.graph.origins.span(element.origin);
+            if count.iter().zip(expected).any(|(found, expected)| *found < expected) {
+                let message = format!("`{}` has a port without a bond", element.name);
+                self.diagnostics.error(codes::UNCONNECTED, span, message);
+            } else if count != expected {
+                let message = format!("`{}` has a port with more than one bond", element.name);
+                self.diagnostics.error(codes::TOO_MANY_BONDS, span, message);
+            }
+        }
+    }
+}

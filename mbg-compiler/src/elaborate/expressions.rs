@@ -1,0 +1,413 @@
+//! Laws: from Rust expressions to the pool.
+
+use proc_macro2::{Ident, Span};
+use syn::spanned::Spanned;
+use syn::{BinOp, Expr, Lit, Member, UnOp};
+
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
+use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product};
+
+/// What an expression stands for.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// A number.
+    Scalar(Expression),
+    /// A matrix; a vector is a matrix with one column.
+    Matrix(Product),
+}
+
+/// A failed evaluation.
+pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+
+/// Where names get their meaning.
+pub trait Names {
+    /// The value of a dotted path such as `spring.q`; none if the name is unknown.
+    fn value(&mut self, pool: &mut Pool, path: &[Ident]) -> Option<Result<Value>>;
+}
+
+impl Value {
+    /// A column.
+    #[must_use]
+    pub fn column(entries: Vec<Expression>) -> Self {
+        match entries[..] {
+            [only] => Self::Scalar(only),
+            _ => Self::Matrix(Product::of(Factor::Dense(Matrix::column(entries)))),
+        }
+    }
+
+    /// Entries of a scalar or a vector.
+    #[must_use]
+    pub fn entries(&self, pool: &mut Pool) -> Option<Vec<Expression>> {
+        match self {
+            Self::Scalar(value) => Some(vec![*value]),
+            Self::Matrix(product) if product.columns() == 1 => Some(product.to_matrix(pool).entries),
+            Self::Matrix(_) => None,
+        }
+    }
+
+    /// `3`, `3×3`, or nothing for a number, as messages show it.
+    #[must_use]
+    pub fn shape(&self) -> String {
+        match self {
+            Self::Scalar(_) => "a number".to_owned(),
+            Self::Matrix(product) if product.columns() == 1 => format!("a vector of {}", product.rows()),
+            Self::Matrix(product) => format!("a {}×{} matrix", product.rows(), product.columns()),
+        }
+    }
+}
+
+/// A failure at a place.
+pub fn fail<T>(span: Span, message: impl Into<String>) -> Result<T> {
+    Err(Box::new(error(codes::EXPRESSION, span, message)))
+}
+
+fn mismatch<T>(span: Span, message: String) -> Result<T> {
+    Err(Box::new(error(codes::WRONG_DIMENSION, span, message)))
+}
+
+/// Evaluates expressions with names from `names`.
+pub struct Evaluator<'a, N: Names> {
+    /// Where nodes go.
+    pub pool: &'a mut Pool,
+    /// Where names come from.
+    pub names: &'a mut N,
+}
+
+impl<N: Names> Evaluator<'_, N> {
+    /// The value of an expression.
+    pub fn evaluate(&mut self, expression: &Expr) -> Result<Value> {
+        match expression {
+            Expr::Lit(literal) => self.literal(&literal.lit),
+            Expr::Paren(inner) => self.evaluate(&inner.expr),
+            Expr::Group(inner) => self.evaluate(&inner.expr),
+            Expr::Path(_) | Expr::Field(_) => self.path(expression),
+            Expr::Index(index) => self.index(index),
+            Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+                let value = self.evaluate(&unary.expr)?;
+                self.scale(Expression::ONE.negated(), value, unary.span())
+            }
+            Expr::Binary(binary) => self.binary(binary),
+            Expr::Call(call) => self.call(call),
+            Expr::MethodCall(call) => {
+                let mut arguments = vec![(*call.receiver).clone()];
+                arguments.extend(call.args.iter().cloned());
+                self.function(&call.method, &arguments)
+            }
+            Expr::Array(array) => self.array(array),
+            Expr::If(choice) => self.choice(choice),
+            _ => fail(expression.span(), "expected a law: numbers, names, + - * /, functions, vectors or `if`"),
+        }
+    }
+
+    /// The value, which must be a number.
+    pub fn scalar(&mut self, expression: &Expr) -> Result<Expression> {
+        match self.evaluate(expression)? {
+            Value::Scalar(value) => Ok(value),
+            other => mismatch(expression.span(), format!("expected a number, found {}", other.shape())),
+        }
+    }
+
+    fn literal(&mut self, literal: &Lit) -> Result<Value> {
+        let (text, suffix) = match literal {
+            Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned()),
+            Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned()),
+            _ => return fail(literal.span(), "expected a number"),
+        };
+        match self.pool.literal(&text) {
+            Some(value) if suffix.is_empty() || suffix == "f64" => Ok(Value::Scalar(value)),
+            Some(_) => fail(literal.span(), format!("expected a number without suffix, found `{suffix}`")),
+            None => Err(Box::new(error(
+                codes::LITERAL,
+                literal.span(),
+                format!("expected a finite number, found `{text}`"),
+            ))),
+        }
+    }
+
+    fn path(&mut self, expression: &Expr) -> Result<Value> {
+        let mut members = Vec::new();
+        let mut rest = expression;
+        while let Expr::Field(field) = rest {
+            let Member::Named(name) = &field.member else {
+                return fail(field.member.span(), "expected a name after `.`; a component is `[0]` or `.x`");
+            };
+            members.push(name.clone());
+            rest = &field.base;
+        }
+        let Expr::Path(base) = rest else {
+            let Some(last) = members.first().cloned() else { return fail(rest.span(), "expected a name") };
+            let Expr::Field(field) = expression else { return fail(rest.span(), "expected a name") };
+            let value = self.evaluate(&field.base)?;
+            return self.component(value, &last);
+        };
+        let Some(base) = base.path.get_ident() else { return fail(rest.span(), "expected a plain name") };
+        members.push(base.clone());
+        members.reverse();
+        if let Some(value) = self.names.value(self.pool, &members) {
+            return value;
+        }
+        if let Some((last, front)) = members.split_last()
+            && !front.is_empty()
+            && component_index(last).is_some()
+            && let Some(value) = self.names.value(self.pool, front)
+        {
+            return self.component(value?, last);
+        }
+        let text = members.iter().map(ToString::to_string).collect::<Vec<_>>().join(".");
+        let name = members.last().map_or_else(|| expression.span(), Ident::span);
+        Err(Box::new(error(codes::UNKNOWN_NAME, name, format!("`{text}` is not declared"))))
+    }
+
+    fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
+        let Some(index) = component_index(name) else {
+            return fail(name.span(), format!("expected `x`, `y` or `z`, found `{name}`"));
+        };
+        self.pick(value, index, name.span())
+    }
+
+    fn pick(&mut self, value: Value, index: usize, span: Span) -> Result<Value> {
+        let shape = value.shape();
+        match value.entries(self.pool) {
+            Some(entries) if index < entries.len() => Ok(Value::Scalar(entries[index])),
+            _ => mismatch(span, format!("component {index} of {shape} does not exist")),
+        }
+    }
+
+    fn index(&mut self, index: &syn::ExprIndex) -> Result<Value> {
+        let value = self.evaluate(&index.expr)?;
+        let Expr::Lit(syn::ExprLit { lit: Lit::Int(number), .. }) = &*index.index else {
+            return fail(index.index.span(), "expected the number of a component");
+        };
+        let Ok(number) = number.base10_parse() else {
+            return fail(index.index.span(), "expected the number of a component");
+        };
+        self.pick(value, number, index.index.span())
+    }
+
+    fn binary(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
+        let span = binary.op.span();
+        if matches!(binary.op, BinOp::BitXor(_)) {
+            let report = error(codes::POWER_OPERATOR, span, "`^` is not a power; in Rust it is the exclusive or");
+            return Err(Box::new(report.help("write `powi(x, 2)`")));
+        }
+        if !matches!(binary.op, BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_)) {
+            return fail(span, "expected +, -, * or /; comparisons belong into an `if`");
+        }
+        let left = self.evaluate(&binary.left)?;
+        let right = self.evaluate(&binary.right)?;
+        match binary.op {
+            BinOp::Add(_) => self.sum(left, right, false, span),
+            BinOp::Sub(_) => self.sum(left, right, true, span),
+            BinOp::Mul(_) => self.product(left, right, span),
+            _ => {
+                let Value::Scalar(divisor) = right else {
+                    return mismatch(span, format!("expected a number as divisor, found {}", right.shape()));
+                };
+                match left {
+                    Value::Scalar(dividend) => self.quotient(dividend, divisor, span).map(Value::Scalar),
+                    matrix @ Value::Matrix(_) => {
+                        let reciprocal = self.quotient(Expression::ONE, divisor, span)?;
+                        self.scale(reciprocal, matrix, span)
+                    }
+                }
+            }
+        }
+    }
+
+    fn quotient(&mut self, dividend: Expression, divisor: Expression, span: Span) -> Result<Expression> {
+        self.pool
+            .divide(dividend, divisor)
+            .ok_or_else(|| Box::new(error(codes::NOT_FINITE, span, "this divides by zero, whatever the state")))
+    }
+
+    fn sum(&mut self, left: Value, right: Value, minus: bool, span: Span) -> Result<Value> {
+        match (&left, &right) {
+            (Value::Scalar(a), Value::Scalar(b)) => Ok(Value::Scalar(self.pool.add(*a, b.flipped(minus)))),
+            (Value::Matrix(a), Value::Matrix(b)) if (a.rows(), a.columns()) == (b.rows(), b.columns()) => {
+                let (a, b) = (a.to_matrix(self.pool), b.to_matrix(self.pool));
+                let entries =
+                    a.entries.iter().zip(&b.entries).map(|(a, b)| self.pool.add(*a, b.flipped(minus))).collect();
+                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::new(a.rows, a.columns, entries)))))
+            }
+            _ => mismatch(span, format!("expected equal dimensions, found {} and {}", left.shape(), right.shape())),
+        }
+    }
+
+    fn product(&mut self, left: Value, right: Value, span: Span) -> Result<Value> {
+        match (left, right) {
+            (Value::Scalar(a), Value::Scalar(b)) => Ok(Value::Scalar(self.pool.multiply(a, b))),
+            (Value::Scalar(a), matrix) | (matrix, Value::Scalar(a)) => self.scale(a, matrix, span),
+            (Value::Matrix(a), Value::Matrix(b)) if a.columns() != b.rows() => {
+                let (a, b) = (Value::Matrix(a).shape(), Value::Matrix(b).shape());
+                mismatch(span, format!("a product of {a} with {b} does not exist"))
+            }
+            (Value::Matrix(a), Value::Matrix(b)) if b.columns() == 1 => {
+                let vector = b.to_matrix(self.pool);
+                let result = a.apply(self.pool, &vector);
+                Ok(Value::Matrix(Product::of(Factor::Dense(result))))
+            }
+            (Value::Matrix(a), Value::Matrix(b)) => Ok(Value::Matrix(a.then(b))),
+        }
+    }
+
+    fn scale(&mut self, factor: Expression, value: Value, _span: Span) -> Result<Value> {
+        Ok(match value {
+            Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
+            Value::Matrix(product) => {
+                let matrix = product.to_matrix(self.pool).map(|entry| self.pool.multiply(factor, entry));
+                Value::Matrix(Product::of(Factor::Dense(matrix)))
+            }
+        })
+    }
+
+    fn call(&mut self, call: &syn::ExprCall) -> Result<Value> {
+        let Expr::Path(path) = &*call.func else { return fail(call.func.span(), "expected the name of a function") };
+        let Some(name) = path.path.get_ident() else { return fail(call.func.span(), "expected a plain name") };
+        let arguments: Vec<Expr> = call.args.iter().cloned().collect();
+        self.function(name, &arguments)
+    }
+
+    fn function(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
+        let text = name.to_string();
+        let count = |expected: usize| {
+            if arguments.len() == expected {
+                Ok(())
+            } else {
+                fail(name.span(), format!("`{text}` takes {expected} arguments, found {}", arguments.len()))
+            }
+        };
+        match text.as_str() {
+            "sin" | "cos" => {
+                count(1)?;
+                let angle = self.scalar(&arguments[0])?;
+                Ok(Value::Scalar(if text == "sin" { self.pool.sine(angle) } else { self.pool.cosine(angle) }))
+            }
+            "powi" => {
+                count(2)?;
+                self.power(arguments)
+            }
+            "rot_x" | "rot_y" | "rot_z" => {
+                count(1)?;
+                let axis = usize::from(text.as_bytes()[4] - b'x');
+                let angle = self.scalar(&arguments[0])?;
+                Ok(Value::Matrix(Product::of(Factor::Rotation { axis, angle })))
+            }
+            "transpose" => {
+                count(1)?;
+                match self.evaluate(&arguments[0])? {
+                    Value::Matrix(product) => Ok(Value::Matrix(product.transpose())),
+                    scalar @ Value::Scalar(_) => Ok(scalar),
+                }
+            }
+            "diag" => {
+                let entries: Result<Vec<_>> = arguments.iter().map(|argument| self.scalar(argument)).collect();
+                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::diagonal(&entries?)))))
+            }
+            "jacobian_xyz" => {
+                count(1)?;
+                self.jacobian(&arguments[0])
+            }
+            _ => self.elementary(name, arguments),
+        }
+    }
+
+    fn elementary(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
+        let known = Function::ALL.into_iter().find(|function| name == function.name());
+        let Some(function) = known.filter(|function| *function != Function::SelectLess) else {
+            let report = error(codes::UNKNOWN_NAME, name.span(), format!("`{name}` is not a function of the language"));
+            return Err(Box::new(report.help(
+                "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
+                 diag, transpose, rot_x, rot_y, rot_z, jacobian_xyz",
+            )));
+        };
+        if arguments.len() != function.arity() {
+            return fail(name.span(), format!("`{name}` takes {} arguments", function.arity()));
+        }
+        let values: Result<Vec<_>> = arguments.iter().map(|argument| self.scalar(argument)).collect();
+        Ok(Value::Scalar(self.pool.call(function, &values?)))
+    }
+
+    fn power(&mut self, arguments: &[Expr]) -> Result<Value> {
+        let base = self.scalar(&arguments[0])?;
+        let exponent = self.scalar(&arguments[1])?;
+        match self.pool.constant_value(exponent) {
+            Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => match self.pool.power(base, value as i32) {
+                Some(power) => Ok(Value::Scalar(power)),
+                None => fail(arguments[0].span(), "this divides by zero, whatever the state"),
+            },
+            _ => fail(arguments[1].span(), "expected an integer exponent between -64 and 64"),
+        }
+    }
+
+    fn jacobian(&mut self, argument: &Expr) -> Result<Value> {
+        let value = self.evaluate(argument)?;
+        let shape = value.shape();
+        match value.entries(self.pool).as_deref() {
+            Some(&[a, b, c]) => {
+                Ok(Value::Matrix(Product::of(Factor::GimbalJacobian { angles: [a, b, c], transposed: false })))
+            }
+            _ => mismatch(argument.span(), format!("expected a vector of 3 angles, found {shape}")),
+        }
+    }
+
+    fn array(&mut self, array: &syn::ExprArray) -> Result<Value> {
+        if array.elems.is_empty() {
+            return mismatch(array.span(), "expected at least one entry".to_owned());
+        }
+        let rows: Result<Vec<Vec<Expression>>> = array
+            .elems
+            .iter()
+            .map(|entry| match entry {
+                Expr::Array(row) => row.elems.iter().map(|entry| self.scalar(entry)).collect(),
+                _ => Ok(vec![self.scalar(entry)?]),
+            })
+            .collect();
+        let rows = rows?;
+        let columns = rows[0].len();
+        if columns == 0 || rows.iter().any(|row| row.len() != columns) {
+            return mismatch(array.span(), "expected rows of equal length".to_owned());
+        }
+        let matrix = Matrix::new(rows.len(), columns, rows.concat());
+        Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+    }
+
+    fn choice(&mut self, choice: &syn::ExprIf) -> Result<Value> {
+        let Expr::Binary(test) = &*choice.cond else {
+            return fail(choice.cond.span(), "expected a comparison with < <= > or >=");
+        };
+        let (a, b) = (self.scalar(&test.left)?, self.scalar(&test.right)?);
+        let yes = self.block(&choice.then_branch)?;
+        let no = match &choice.else_branch {
+            Some((_, branch)) => match &**branch {
+                Expr::Block(block) => self.block(&block.block)?,
+                other => self.scalar(other)?,
+            },
+            None => return fail(choice.span(), "expected an `else`: both branches are evaluated and one is selected"),
+        };
+        let arguments = match test.op {
+            BinOp::Lt(_) => [a, b, yes, no],
+            BinOp::Gt(_) => [b, a, yes, no],
+            BinOp::Le(_) => [b, a, no, yes],
+            BinOp::Ge(_) => [a, b, no, yes],
+            _ => return fail(test.op.span(), "expected a comparison with < <= > or >="),
+        };
+        if yes == no {
+            return Ok(Value::Scalar(yes));
+        }
+        Ok(Value::Scalar(self.pool.call(Function::SelectLess, &arguments)))
+    }
+
+    fn block(&mut self, block: &syn::Block) -> Result<Expression> {
+        match block.stmts.as_slice() {
+            [syn::Stmt::Expr(expression, None)] => self.scalar(expression),
+            _ => fail(block.span(), "expected one expression"),
+        }
+    }
+}
+
+/// 0, 1, 2 for `x`, `y`, `z`.
+#[must_use]
+pub fn component_index(name: &Ident) -> Option<usize> {
+    ["x", "y", "z"].iter().position(|known| name == known)
+}

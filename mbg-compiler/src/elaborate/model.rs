@@ -1,0 +1,147 @@
+//! What elaboration hands on: the graph and everything around it, in scalars.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::{Ident, Span};
+use syn::{Attribute, Visibility};
+
+use crate::graph::{BondGraph, ElementId, JunctionId};
+use crate::symbolic::Expression;
+
+/// A model in which every name is resolved.
+pub struct Elaborated {
+    /// Documentation comments of the model.
+    pub documentation: Vec<Attribute>,
+    /// Visibility of the type.
+    pub visibility: Visibility,
+    /// Name of the type.
+    pub name: Ident,
+    /// The graph.
+    pub graph: BondGraph,
+    /// Parameters in order of declaration.
+    pub parameters: Vec<Parameter>,
+    /// Scalar inputs in order of declaration.
+    pub inputs: Vec<Variable>,
+    /// Scalar outputs in order of declaration.
+    pub outputs: Vec<Output>,
+    /// Candidate states in order of declaration: storages, then integrals and attitudes.
+    pub states: Vec<State>,
+    /// Efforts and flows that laws and outputs read.
+    pub signals: Signals,
+    /// What parameters must fulfil.
+    pub assumptions: Vec<Assumption>,
+}
+
+/// A scalar parameter.
+pub struct Parameter {
+    /// Name.
+    pub name: Ident,
+    /// Documentation comments.
+    pub documentation: Vec<Attribute>,
+    /// Unit as written, or empty.
+    pub unit: String,
+    /// Default value.
+    pub default: f64,
+}
+
+/// A name with a unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variable {
+    /// Such as `hull.p.x`.
+    pub name: String,
+    /// Unit as written, or empty.
+    pub unit: String,
+}
+
+/// A scalar output.
+pub struct Output {
+    /// Name and unit.
+    pub variable: Variable,
+    /// What it shows.
+    pub value: Expression,
+}
+
+/// A candidate state.
+pub struct State {
+    /// Name and unit.
+    pub variable: Variable,
+    /// Value at the start, of parameters alone.
+    pub initial: Expression,
+    /// Where its time derivative comes from.
+    pub rate: StateRate,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// Where a state's time derivative comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StateRate {
+    /// Effort of an `I` or flow of a `C`, by component.
+    Storage(ElementId, usize),
+    /// An expression: an integral or an attitude.
+    Expression(Expression),
+}
+
+/// What an assumption says of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// Not zero.
+    NonZero,
+    /// Greater than zero.
+    Positive,
+}
+
+/// An inequality that the equations rely on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assumption {
+    /// Of parameters alone.
+    pub expression: Expression,
+    /// What must hold of it.
+    pub condition: Condition,
+    /// What relies on it.
+    pub reason: String,
+}
+
+/// Effort or flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Effort.
+    Effort,
+    /// Flow.
+    Flow,
+}
+
+/// Whose effort or flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// The common variable of a junction.
+    Junction(JunctionId),
+    /// The port of a one-port.
+    Port(ElementId),
+}
+
+/// An effort or flow by component.
+pub type Signal = (Quantity, Place, usize);
+
+/// Numbered signals, each once.
+#[derive(Default)]
+pub struct Signals {
+    list: Vec<Signal>,
+    numbers: BTreeMap<Signal, usize>,
+}
+
+impl Signals {
+    /// The number of a signal, new or known.
+    pub fn number(&mut self, signal: Signal) -> usize {
+        *self.numbers.entry(signal).or_insert_with(|| {
+            self.list.push(signal);
+            self.list.len() - 1
+        })
+    }
+
+    /// All of them by number.
+    #[must_use]
+    pub fn list(&self) -> &[Signal] {
+        &self.list
+    }
+}

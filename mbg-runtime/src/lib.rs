@@ -5,9 +5,7 @@ extern crate std;
 
 #[doc(hidden)]
 pub mod __private;
-pub mod attitude;
 mod dual;
-mod input;
 mod input;
 mod meta;
 mod polynomial;
@@ -17,14 +15,9 @@ mod step;
 mod system;
 
 pub use dual::Dual;
-pub use input::{Constant, Input, Piece, PiecewiseConstant, Pulse, Smooth, WithJumps};
 pub use input::{Constant, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Meta, Operations, Stroke, Variable};
 pub use real::Real;
-pub use step::{
-    Absolute, Adaptive, Cause, Compensated, Dense, Finished, FixedStep, Rk4, Statistics, Stopped,
-    Tsit5,
-};
 pub use step::{Cause, Rk4, Statistics, Stopped};
 pub use system::{ParameterError, Power, System, Trouble};
 

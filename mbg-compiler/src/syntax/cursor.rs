@@ -14,8 +14,8 @@ pub(super) type Parsed<T> = Result<T, Box<Diagnostic>>;
 
 /// Operators of several characters, longest first, so that an error shows what was typed.
 const OPERATORS: &[&str] = &[
-    "..=", "...", "<<=", ">>=", "->", "=>", "<-", "::", "..", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "*=",
-    "/=", "^=", "<<", ">>",
+    "..=", "...", "<<=", ">>=", "->", "=>", "<-", "::", "..", "==", "!=", "<=", ">=", "&&", "||",
+    "+=", "-=", "*=", "/=", "^=", "<<", ">>",
 ];
 
 /// A place in the tokens of one group.
@@ -31,7 +31,12 @@ pub(super) struct Cursor {
 impl Cursor {
     /// The tokens of the whole macro call.
     pub(super) fn new(stream: TokenStream) -> Self {
-        Self { tokens: dissolved(stream), at: 0, close: Span::call_site(), end: "the end of the macro call" }
+        Self {
+            tokens: dissolved(stream),
+            at: 0,
+            close: Span::call_site(),
+            end: "the end of the macro call",
+        }
     }
 
     /// The tokens between delimiters.
@@ -42,7 +47,12 @@ impl Cursor {
             Delimiter::Bracket => "the end of the brackets",
             Delimiter::None => "the end of the group",
         };
-        Self { tokens: dissolved(group.stream()), at: 0, close: group.span_close(), end }
+        Self {
+            tokens: dissolved(group.stream()),
+            at: 0,
+            close: group.span_close(),
+            end,
+        }
     }
 
     /// How many tokens lie behind.
@@ -146,7 +156,9 @@ impl Cursor {
 
     /// Reads `[n]`, when it stands here.
     pub(super) fn dimension(&mut self) -> Parsed<Option<usize>> {
-        let Some(group) = self.take_group(Delimiter::Bracket) else { return Ok(None) };
+        let Some(group) = self.take_group(Delimiter::Bracket) else {
+            return Ok(None);
+        };
         let mut inner = Self::inside(&group);
         let what = "a dimension, which is an integer from 1 up";
         let dimension = inner.integer(what, codes::DIMENSION_LITERAL)?;
@@ -163,7 +175,9 @@ impl Cursor {
     /// Reads a plain integer up to [`LARGEST_DIMENSION`].
     pub(super) fn integer(&mut self, what: &str, code: Code) -> Parsed<usize> {
         let number = match self.peek(0) {
-            Some(TokenTree::Literal(literal)) => syn::parse_str::<LitInt>(&literal.to_string()).ok(),
+            Some(TokenTree::Literal(literal)) => {
+                syn::parse_str::<LitInt>(&literal.to_string()).ok()
+            }
             _ => None,
         };
         let Some(number) = number.filter(|number| number.suffix().is_empty()) else {
@@ -175,7 +189,10 @@ impl Cursor {
                 Ok(value)
             }
             _ => {
-                let message = format!("`{}` is over the limit of {LARGEST_DIMENSION} for dimensions", shortened(&number.to_string()));
+                let message = format!(
+                    "`{}` is over the limit of {LARGEST_DIMENSION} for dimensions",
+                    shortened(&number.to_string())
+                );
                 Err(self.failure(code, message))
             }
         }
@@ -193,7 +210,11 @@ impl Cursor {
 
     /// The place of the token just read.
     pub(super) fn last_span(&self) -> Span {
-        match self.at.checked_sub(1).and_then(|last| self.tokens.get(last)) {
+        match self
+            .at
+            .checked_sub(1)
+            .and_then(|last| self.tokens.get(last))
+        {
             Some(TokenTree::Group(group)) => group.span_close(),
             Some(token) => token.span(),
             None => self.close,
@@ -220,14 +241,22 @@ impl Cursor {
                 if documentation {
                     return "a documentation comment".to_owned();
                 }
-                format!("`{}`", self.operator(0).unwrap_or_else(|| punct.as_char().to_string()))
+                format!(
+                    "`{}`",
+                    self.operator(0)
+                        .unwrap_or_else(|| punct.as_char().to_string())
+                )
             }
         }
     }
 
     /// The token just read as errors show it.
     pub(super) fn previous(&self) -> String {
-        match self.at.checked_sub(1).and_then(|last| self.tokens.get(last)) {
+        match self
+            .at
+            .checked_sub(1)
+            .and_then(|last| self.tokens.get(last))
+        {
             Some(TokenTree::Group(group)) => match group.delimiter() {
                 Delimiter::Brace => "`}`".to_owned(),
                 Delimiter::Parenthesis => "`)`".to_owned(),
@@ -268,29 +297,42 @@ impl Cursor {
     /// The operator `offset` places ahead, joined from its characters.
     fn operator(&self, offset: usize) -> Option<String> {
         let mut text = String::new();
-        for token in self.tokens[self.tokens.len().min(self.at + offset)..].iter().take(3) {
-            let TokenTree::Punct(punct) = token else { break };
+        for token in self.tokens[self.tokens.len().min(self.at + offset)..]
+            .iter()
+            .take(3)
+        {
+            let TokenTree::Punct(punct) = token else {
+                break;
+            };
             text.push(punct.as_char());
             if punct.spacing() == Spacing::Alone {
                 break;
             }
         }
-        let operator = OPERATORS.iter().find(|operator| text.starts_with(**operator));
-        operator.map_or_else(|| text.chars().next().map(String::from), |operator| Some((*operator).to_owned()))
+        let operator = OPERATORS
+            .iter()
+            .find(|operator| text.starts_with(**operator));
+        operator.map_or_else(
+            || text.chars().next().map(String::from),
+            |operator| Some((*operator).to_owned()),
+        )
     }
 }
 
 /// At most forty characters of what was written.
 fn shortened(text: &str) -> String {
-    if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(39).chain(['…']).collect() }
+    if text.chars().count() <= 40 {
+        text.to_owned()
+    } else {
+        text.chars().take(39).chain(['…']).collect()
+    }
 }
 
 /// The tokens, without the invisible groups around single tokens that `macro_rules!` leaves.
 fn dissolved(stream: TokenStream) -> Vec<TokenTree> {
     let mut tokens = Vec::new();
     for mut token in stream {
-        loop {
-            let TokenTree::Group(group) = &token else { break };
+        while let TokenTree::Group(group) = &token {
             if group.delimiter() != Delimiter::None {
                 break;
             }

@@ -1,154 +1,192 @@
-//! The syntax tree as text, one statement a line.
+//! The tree as plain text, for tests and for people.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
+use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, Visibility};
 
-use super::ast::{ChainNode, Element, Item, JunctionKind, Reference, Source, Statement, Unit};
+use super::ast::{
+    Causality, Chain, ChainNode, Component, Element, Field, Instance, Item, Junction, JunctionKind,
+    Model, Reference, Source, Statement, Unit,
+};
+use super::words;
 
-/// The tree as text.
+/// The whole tree, one statement or element a line.
+///
+/// Equal trees give equal text, whichever compiler they came through.
 #[must_use]
 pub fn dump(source: &Source) -> String {
     let mut text = String::new();
-    for item in &source.items {
-        let (head, statements) = match item {
-            Item::Model(model) => (format!("model {}", model.name), &model.statements),
-            Item::Component(component) => {
-                let ports: Vec<_> = component
-                    .ports
-                    .iter()
-                    .map(|port| format!("{}[{}]", port.name, port.dimension))
-                    .collect();
-                (
-                    format!("component {}({})", component.name, ports.join(", ")),
-                    &component.statements,
-                )
-            }
-        };
-        let _ = writeln!(text, "{head}");
-        for line in statements.iter().flat_map(lines) {
-            let _ = writeln!(text, "  {line}");
-        }
-    }
+    // Writing to a string does not fail.
+    let _ = source.items.iter().try_for_each(|item| match item {
+        Item::Model(model) => write_model(&mut text, model),
+        Item::Component(component) => write_component(&mut text, component),
+    });
     text
 }
 
-fn lines(statement: &Statement) -> Vec<String> {
-    vec![match statement {
-        Statement::Parameter(parameter) => {
-            let default = parameter
-                .default
-                .as_ref()
-                .map_or_else(String::new, |value| format!(" = {}", code(value)));
-            format!(
-                "param {}{}{default}",
-                parameter.name,
-                unit(parameter.unit.as_ref())
-            )
-        }
-        Statement::Input(input) => format!(
-            "input {}[{}]{}",
-            input.name,
-            input.dimension,
-            unit(input.unit.as_ref())
-        ),
-        Statement::Output(output) => {
-            let unit = unit(output.unit.as_ref());
-            format!(
-                "output {}[{}]{unit} = {}",
-                output.name,
-                output.dimension,
-                code(&output.value)
-            )
-        }
-        Statement::Integral(integral) => {
-            format!(
-                "integral {}[{}] = {}",
-                integral.name,
-                integral.dimension,
-                code(&integral.rate)
-            )
-        }
-        Statement::Attitude(attitude) => {
-            format!(
-                "attitude {} = quaternion({})",
-                attitude.name,
-                code(&attitude.angular_velocity)
-            )
-        }
-        Statement::Junction(junction) => {
-            let digit = if junction.kind == JunctionKind::Zero {
-                0
-            } else {
-                1
-            };
-            let mark = if junction.coordinate {
-                " coordinate"
-            } else {
-                ""
-            };
-            let mut all = vec![format!(
-                "{digit} {}[{}]{mark}",
-                junction.name, junction.dimension
-            )];
-            all.extend(
-                junction
-                    .elements
-                    .iter()
-                    .map(|inner| format!("  {}", element(inner))),
-            );
-            return all;
-        }
-        Statement::Chain(chain) => chain
-            .nodes
-            .iter()
-            .map(node)
-            .collect::<Vec<_>>()
-            .join(" -> "),
-        Statement::Instance(instance) => {
-            let connections: Vec<_> = instance.connections.iter().map(reference).collect();
-            format!(
-                "{}: {} ({})",
-                instance.name,
-                instance.component,
-                connections.join(", ")
-            )
-        }
-        Statement::Causality(causality, _) => format!("causality {causality:?}"),
-        Statement::Broken(name) => format!(
-            "broken {}",
-            name.as_ref().map_or_else(String::new, ToString::to_string)
-        ),
-    }]
+/// An expression as a person would type it.
+#[must_use]
+pub fn expression(expression: &Expr) -> String {
+    let mut text = String::new();
+    spell(expression.to_token_stream(), &mut text);
+    text
 }
 
-fn node(node: &ChainNode) -> String {
-    match node {
-        ChainNode::Reference(inner) => reference(inner),
-        ChainNode::Element(inner) => element(inner),
+fn write_model(text: &mut String, model: &Model) -> fmt::Result {
+    let mut visibility = String::new();
+    spell(model.visibility.to_token_stream(), &mut visibility);
+    if !matches!(model.visibility, Visibility::Inherited) {
+        visibility.push(' ');
+    }
+    write_documentation(text, "", &model.documentation)?;
+    writeln!(
+        text,
+        "{visibility}model {}{}",
+        model.name,
+        mark(model.derivative.is_some())
+    )?;
+    write_statements(text, &model.statements)
+}
+
+fn write_component(text: &mut String, component: &Component) -> fmt::Result {
+    write_documentation(text, "", &component.documentation)?;
+    writeln!(
+        text,
+        "component {}{}",
+        component.name,
+        mark(component.derivative.is_some())
+    )?;
+    for port in &component.ports {
+        writeln!(text, "  port {}[{}]", port.name, port.dimension)?;
+    }
+    write_statements(text, &component.statements)
+}
+
+fn write_statements(text: &mut String, statements: &[Statement]) -> fmt::Result {
+    statements
+        .iter()
+        .try_for_each(|statement| write_statement(text, statement))
+}
+
+fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
+    match statement {
+        Statement::Parameter(it) => {
+            write_documentation(text, "  ", &it.documentation)?;
+            writeln!(
+                text,
+                "  param {}{}{}",
+                it.name,
+                unit(it.unit.as_ref()),
+                assigned(it.default.as_ref())
+            )
+        }
+        Statement::Input(it) => {
+            write_documentation(text, "  ", &it.documentation)?;
+            writeln!(
+                text,
+                "  input {}[{}]{}",
+                it.name,
+                it.dimension,
+                unit(it.unit.as_ref())
+            )
+        }
+        Statement::Output(it) => {
+            write_documentation(text, "  ", &it.documentation)?;
+            let value = assigned(Some(&it.value));
+            writeln!(
+                text,
+                "  output {}[{}]{}{value}",
+                it.name,
+                it.dimension,
+                unit(it.unit.as_ref())
+            )
+        }
+        Statement::Integral(it) => {
+            write_documentation(text, "  ", &it.documentation)?;
+            let (unit, rate, initial) = (
+                unit(it.unit.as_ref()),
+                assigned(Some(&it.rate)),
+                initial(it.initial.as_ref()),
+            );
+            writeln!(
+                text,
+                "  integral {}[{}]{unit}{rate}{initial}",
+                it.name, it.dimension
+            )
+        }
+        Statement::Attitude(it) => {
+            write_documentation(text, "  ", &it.documentation)?;
+            let velocity = expression(&it.angular_velocity);
+            writeln!(
+                text,
+                "  attitude {} = quaternion({velocity}){}",
+                it.name,
+                initial(it.initial.as_ref())
+            )
+        }
+        Statement::Junction(junction) => write_junction(text, junction),
+        Statement::Chain(chain) => writeln!(text, "  chain {}", chain_text(chain)),
+        Statement::Instance(instance) => writeln!(text, "  {}", instance_text(instance)),
+        Statement::Causality(Causality::Uniform, _) => writeln!(text, "  causality uniform"),
+        Statement::Causality(Causality::Componentwise, _) => {
+            writeln!(text, "  causality componentwise")
+        }
+        Statement::Broken(Some(name)) => writeln!(text, "  broken {name}"),
+        Statement::Broken(None) => writeln!(text, "  broken"),
     }
 }
 
-fn reference(reference: &Reference) -> String {
-    let path: Vec<_> = reference.path.iter().map(ToString::to_string).collect();
-    let selection = reference
-        .selection
-        .as_ref()
-        .map_or_else(String::new, |selection| {
-            format!("[{}..{}]", selection.start, selection.end)
-        });
-    path.join(".") + &selection
+fn write_documentation(
+    text: &mut String,
+    indent: &str,
+    documentation: &[Attribute],
+) -> fmt::Result {
+    for attribute in documentation {
+        match &attribute.meta {
+            Meta::NameValue(MetaNameValue {
+                value:
+                    Expr::Lit(ExprLit {
+                        lit: Lit::Str(line),
+                        ..
+                    }),
+                ..
+            }) => {
+                writeln!(text, "{indent}///{}", line.value().escape_debug())?;
+            }
+            other => {
+                let mut line = String::new();
+                spell(other.to_token_stream(), &mut line);
+                writeln!(text, "{indent}#[{line}]")?;
+            }
+        }
+    }
+    Ok(())
 }
 
-fn element(element: &Element) -> String {
-    let fields: Vec<_> = element
-        .fields
+fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
+    let digit = match junction.kind {
+        JunctionKind::Zero => '0',
+        JunctionKind::One => '1',
+    };
+    let coordinate = if junction.coordinate {
+        " coordinate"
+    } else {
+        ""
+    };
+    writeln!(
+        text,
+        "  {digit} {}[{}]{coordinate}",
+        junction.name, junction.dimension
+    )?;
+    junction
+        .elements
         .iter()
-        .map(|field| match &field.value {
-            Some(value) => format!("{}: {}", field.name, code(value)),
-            None => field.name.to_string(),
-        })
-        .collect();
+        .try_for_each(|element| writeln!(text, "    {}", element_text(element)))
+}
+
+fn element_text(element: &Element) -> String {
     let mark = if element.derivative.is_some() {
         "#[derivative] "
     } else {
@@ -156,27 +194,194 @@ fn element(element: &Element) -> String {
     };
     let dimension = element
         .dimension
-        .map_or_else(String::new, |size| format!("[{size}]"));
+        .map(|dimension| format!("[{dimension}]"))
+        .unwrap_or_default();
+    let kind = words::element_name(element.kind);
     format!(
-        "{mark}{:?} {}{dimension} {{ {} }}",
-        element.kind,
+        "{mark}{kind} {}{dimension} {}",
         element.name,
-        fields.join(", ")
+        fields_text(&element.fields)
     )
 }
 
-fn unit(unit: Option<&Unit>) -> String {
-    unit.map_or_else(String::new, |unit| format!(": {}", unit.text))
+fn fields_text(fields: &[Field]) -> String {
+    if fields.is_empty() {
+        return "{}".to_owned();
+    }
+    let fields: Vec<String> = fields
+        .iter()
+        .map(|field| match &field.value {
+            Some(value) => format!("{}: {}", field.name, expression(value)),
+            None => field.name.to_string(),
+        })
+        .collect();
+    format!("{{ {} }}", fields.join(", "))
 }
 
-/// An expression without the spaces that token printing leaves.
-fn code(tokens: &impl ToTokens) -> String {
-    tokens
-        .to_token_stream()
-        .to_string()
-        .replace(" . ", ".")
-        .replace(" (", "(")
-        .replace("( ", "(")
-        .replace(" )", ")")
-        .replace(" ,", ",")
+fn chain_text(chain: &Chain) -> String {
+    let nodes: Vec<String> = chain
+        .nodes
+        .iter()
+        .map(|node| match node {
+            ChainNode::Reference(reference) => reference_text(reference),
+            ChainNode::Element(element) => element_text(element),
+        })
+        .collect();
+    nodes.join(" -> ")
+}
+
+fn reference_text(reference: &Reference) -> String {
+    let path: Vec<String> = reference.path.iter().map(ToString::to_string).collect();
+    let selection = reference
+        .selection
+        .as_ref()
+        .map(|it| format!("[{}..{}]", it.start, it.end))
+        .unwrap_or_default();
+    format!("{}{selection}", path.join("."))
+}
+
+fn instance_text(instance: &Instance) -> String {
+    let mark = if instance.derivative.is_some() {
+        "#[derivative] "
+    } else {
+        ""
+    };
+    let connections: Vec<String> = instance.connections.iter().map(reference_text).collect();
+    let arguments = fields_text(&instance.arguments);
+    format!(
+        "{mark}instance {}: {} {arguments} ({})",
+        instance.name,
+        instance.component,
+        connections.join(", ")
+    )
+}
+
+fn mark(derivative: bool) -> &'static str {
+    if derivative { " #[derivative]" } else { "" }
+}
+
+fn unit(unit: Option<&Unit>) -> String {
+    let Some(unit) = unit else {
+        return String::new();
+    };
+    let factors: Vec<String> = unit
+        .factors
+        .iter()
+        .map(|(name, power)| format!("{name}^{power}"))
+        .collect();
+    format!(": {} <{}>", unit.text, factors.join(" "))
+}
+
+fn assigned(value: Option<&Expr>) -> String {
+    value
+        .map(|value| format!(" = {}", expression(value)))
+        .unwrap_or_default()
+}
+
+fn initial(value: Option<&Expr>) -> String {
+    value
+        .map(|value| format!(", initial: {}", expression(value)))
+        .unwrap_or_default()
+}
+
+/// What was printed last, as far as the next space depends on it.
+#[derive(Clone, Copy, PartialEq)]
+enum Last {
+    /// Nothing, or an operator that holds on to what follows.
+    Open,
+    /// A word of Rust such as `if`.
+    Keyword,
+    /// A name, a literal or a bracket: an operator after it is a binary one.
+    Operand,
+    /// A binary operator, a comma or a colon.
+    Operator,
+}
+
+/// Prints tokens. The spaces of `TokenStream::to_string` differ from compiler to compiler; these do not.
+fn spell(tokens: TokenStream, text: &mut String) {
+    let mut last = Last::Open;
+    let mut tokens = tokens.into_iter().peekable();
+    while let Some(token) = tokens.next() {
+        let (word, kind) = match token {
+            TokenTree::Group(group) => {
+                let brace = group.delimiter() == Delimiter::Brace;
+                if matches!(last, Last::Keyword | Last::Operator) || (brace && last != Last::Open) {
+                    text.push(' ');
+                }
+                spell_group(&group, text);
+                last = if brace { Last::Keyword } else { Last::Operand };
+                continue;
+            }
+            TokenTree::Ident(ident) => {
+                let word = ident.to_string();
+                let kind = if words::is_reserved(&word) && word != "pub" {
+                    Last::Keyword
+                } else {
+                    Last::Operand
+                };
+                (word, kind)
+            }
+            TokenTree::Literal(literal) => (literal.to_string(), Last::Operand),
+            TokenTree::Punct(punct) => {
+                let mut operator = String::from(punct.as_char());
+                let mut joint = punct.spacing() == Spacing::Joint;
+                while joint && let Some(TokenTree::Punct(next)) = tokens.peek() {
+                    operator.push(next.as_char());
+                    joint = next.spacing() == Spacing::Joint;
+                    tokens.next();
+                }
+                last = spell_operator(&operator, last, text);
+                continue;
+            }
+        };
+        if last != Last::Open {
+            text.push(' ');
+        }
+        text.push_str(&word);
+        last = kind;
+    }
+}
+
+fn spell_group(group: &proc_macro2::Group, text: &mut String) {
+    let (open, close) = match group.delimiter() {
+        Delimiter::Parenthesis => ("(", ")"),
+        Delimiter::Bracket => ("[", "]"),
+        Delimiter::Brace => ("{ ", " }"),
+        Delimiter::None => ("", ""),
+    };
+    text.push_str(open);
+    spell(group.stream(), text);
+    text.push_str(close);
+}
+
+fn spell_operator(operator: &str, last: Last, text: &mut String) -> Last {
+    match operator {
+        "," | ";" | ":" => {
+            text.push_str(operator);
+            Last::Operator
+        }
+        "." | ".." | "..=" | "::" | "?" | "#" => {
+            text.push_str(operator);
+            if operator == "?" {
+                Last::Operand
+            } else {
+                Last::Open
+            }
+        }
+        _ if last == Last::Operand => {
+            let _ = write!(text, " {operator}");
+            Last::Operator
+        }
+        _ => {
+            if last != Last::Open {
+                text.push(' ');
+            }
+            text.push_str(operator);
+            if operator == "=" {
+                Last::Operator
+            } else {
+                Last::Open
+            }
+        }
+    }
 }

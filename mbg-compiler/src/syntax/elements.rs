@@ -1,214 +1,167 @@
-//! Elements, references and chains.
+//! Elements and the words in their braces.
 
-use proc_macro2::Span;
-use syn::parse::ParseStream;
-use syn::punctuated::Punctuated;
-use syn::spanned::Spanned;
-use syn::{Attribute, Expr, Ident, LitInt, Token, token};
+use proc_macro2::{Delimiter, Group, Span};
 
-use super::ast::{Chain, ChainNode, Element, ElementKind, Field, Reference, Selection};
+use super::ast::{Element, ElementKind, Field};
+use super::attributes::Attributes;
+use super::cursor::{Cursor, Parsed};
+use super::expressions::expression;
+use super::recovery::Sink;
+use super::words;
+use crate::codes;
+use crate::diagnostics::Diagnostic;
 
-/// The largest dimension that is read; far beyond the size limit of a model.
-const LARGEST: usize = 100_000;
-
-/// `[n]`, if it stands here.
-pub(super) fn dimension(input: ParseStream) -> syn::Result<Option<usize>> {
-    if !input.peek(token::Bracket) {
-        return Ok(None);
-    }
-    let content;
-    syn::bracketed!(content in input);
-    let size = integer(&content)?;
-    if !content.is_empty() || size == 0 || size > LARGEST {
-        return Err(syn::Error::new(
-            content.span(),
-            "expected a dimension, a positive integer",
-        ));
-    }
-    Ok(Some(size))
+/// The element whose kind stands `offset` places ahead.
+pub(super) fn kind(cursor: &Cursor, offset: usize) -> Option<ElementKind> {
+    words::element(&cursor.ident(offset)?.to_string())
 }
 
-fn integer(input: ParseStream) -> syn::Result<usize> {
-    let literal: LitInt = input.parse().map_err(|error| {
-        syn::Error::new(error.span(), "expected a dimension, a positive integer")
-    })?;
-    literal.base10_parse()
-}
-
-/// The element that a word names.
-pub(super) fn kind(word: &Ident) -> Option<ElementKind> {
-    Some(match word.to_string().as_str() {
-        "Se" => ElementKind::Se,
-        "Sf" => ElementKind::Sf,
-        "I" => ElementKind::I,
-        "C" => ElementKind::C,
-        "R" => ElementKind::R,
-        "TF" => ElementKind::TF,
-        "GY" => ElementKind::GY,
-        "MTF" => ElementKind::MTF,
-        "MGY" => ElementKind::MGY,
-        "EJS" => ElementKind::EJS,
-        _ => return None,
-    })
-}
-
-/// Whether `derivative` is among the attributes; any other attribute but documentation is refused.
-pub(super) fn derivative(attributes: &[Attribute]) -> syn::Result<Option<Span>> {
-    let mut found = None;
-    for attribute in attributes {
-        if attribute.path().is_ident("derivative") {
-            found = Some(attribute.path().span());
-        } else if !attribute.path().is_ident("doc") {
-            return Err(syn::Error::new(
-                attribute.path().span(),
-                "expected `#[derivative]`, found another attribute",
-            ));
-        }
-    }
-    Ok(found)
-}
-
-/// Elements in a junction's braces.
-pub(super) fn elements(input: ParseStream) -> syn::Result<Vec<Element>> {
-    let mut all = Vec::new();
-    while !input.is_empty() {
-        let attributes = input.call(Attribute::parse_outer)?;
-        all.push(element(input, &attributes)?);
-        while input.peek(Token![,]) || input.peek(Token![;]) {
-            input.parse::<proc_macro2::TokenTree>()?;
-        }
-    }
-    Ok(all)
-}
-
-fn element(input: ParseStream, attributes: &[Attribute]) -> syn::Result<Element> {
-    let word: Ident = input.parse()?;
-    let Some(kind) = kind(&word) else {
-        let text = format!(
-            "expected an element (Se, Sf, I, C, R, TF, GY, MTF, MGY or EJS), found `{word}`"
-        );
-        return Err(syn::Error::new(word.span(), text));
+/// Reads `R name[n] { … }`, given that a kind stands here.
+pub(super) fn element(
+    cursor: &mut Cursor,
+    kind: ElementKind,
+    derivative: Option<Span>,
+    sink: &mut Sink<'_>,
+) -> Parsed<Element> {
+    let spelling = words::element_name(kind);
+    let span = cursor.span();
+    cursor.advance(1);
+    let name = cursor.name(&format!("the name of the element after `{spelling}`"))?;
+    let dimension = cursor.dimension()?;
+    let Some(group) = cursor.take_group(Delimiter::Brace) else {
+        let brackets = if dimension.is_none() { "`[` or " } else { "" };
+        let error = *cursor.expected(&format!("{brackets}`{{` after `{spelling} {name}`"));
+        return Err(Box::new(error.help(format!(
+            "the law of an element stands in braces: `{spelling} {name} {{ … }}`"
+        ))));
     };
-    let name: Ident = input.parse().map_err(|error| {
-        syn::Error::new(error.span(), format!("expected a name for this `{word}`"))
-    })?;
-    let dimension = dimension(input)?;
-    if !input.peek(token::Brace) {
-        return Err(input.error(format!("expected `{{` and the law of `{name}`")));
-    }
-    let content;
-    syn::braced!(content in input);
-    let fields = fields(&content)?;
+    let fields = fields(&group, &format!("{spelling} {name}"), sink)?;
     Ok(Element {
-        derivative: derivative(attributes)?,
+        derivative,
         kind,
-        span: word.span(),
+        span,
         name,
         dimension,
         fields,
     })
 }
 
-/// `word: value, word`.
-pub(super) fn fields(input: ParseStream) -> syn::Result<Vec<Field>> {
-    let mut all: Vec<Field> = Vec::new();
-    while !input.is_empty() {
-        let name: Ident = input.parse()?;
-        if all.iter().any(|field| field.name == name) {
-            return Err(syn::Error::new(
-                name.span(),
-                format!("`{name}` is given twice"),
-            ));
+/// Reads `word: value, word`; `owner` is whose words they are.
+///
+/// A missing comma and a repeated word are reported, and reading goes on.
+pub(super) fn fields(group: &Group, owner: &str, sink: &mut Sink<'_>) -> Parsed<Vec<Field>> {
+    let mut cursor = Cursor::inside(group);
+    let mut fields: Vec<Field> = Vec::new();
+    loop {
+        Attributes::read(&mut cursor, sink)?.unmarked("a word of an element", sink);
+        if cursor.ended() {
+            return Ok(fields);
         }
-        let value = if input.peek(Token![:]) {
-            input.parse::<Token![:]>()?;
-            Some(input.parse::<Expr>()?)
+        let name = cursor.name(&format!("a word of `{owner}`"))?;
+        let value = if cursor.take_punct(':') {
+            Some(expression(&mut cursor, &format!("the value of `{name}`"))?)
         } else {
             None
         };
-        all.push(Field { name, value });
-        if !input.is_empty() {
-            input.parse::<Token![,]>()?;
+        let bare = value.is_none();
+        if fields.iter().any(|field| field.name == name) {
+            sink.error(
+                codes::FIELD_REPEATED,
+                name.span(),
+                format!("`{name}` is given twice in `{owner}`"),
+            );
+        } else {
+            fields.push(Field { name, value });
+        }
+        if !cursor.ended() && !cursor.take_punct(',') {
+            let error = unseparated(&cursor, bare);
+            if bare || cursor.ident(0).is_none() {
+                return Err(error);
+            }
+            sink.report(error);
         }
     }
-    Ok(all)
 }
 
-/// A name with an optional selection of components.
-pub(super) fn reference(input: ParseStream) -> syn::Result<Reference> {
-    let first: Ident = input.parse()?;
-    let span = first.span();
-    let mut path = vec![first];
-    while input.peek(Token![.]) {
-        input.parse::<Token![.]>()?;
-        path.push(input.parse()?);
-    }
-    let selection = if input.peek(token::Bracket) {
-        Some(selection(input)?)
+/// Neither the end nor a comma follows a word or its value.
+fn unseparated(cursor: &Cursor, bare: bool) -> Box<Diagnostic> {
+    let wanted = if bare {
+        "`:`, `,` or `}`"
     } else {
-        None
+        "`,` or `}`"
     };
-    Ok(Reference {
-        path,
-        selection,
-        span,
-    })
-}
-
-fn selection(input: ParseStream) -> syn::Result<Selection> {
-    let content;
-    syn::bracketed!(content in input);
-    let start = integer(&content)?;
-    let end = if content.peek(Token![..]) {
-        content.parse::<Token![..]>()?;
-        integer(&content)?
-    } else {
-        start + 1
-    };
-    if !content.is_empty() || end <= start {
-        return Err(syn::Error::new(
-            content.span(),
-            "expected one component `[0]` or a range `[1..3]`",
-        ));
+    let mut error = *cursor.expected(&format!("{wanted} after {}", cursor.previous()));
+    if bare && cursor.punct(0, '=') {
+        error = error.help("a value follows a colon: `word: value`");
     }
-    Ok(Selection { start, end })
+    Box::new(error)
 }
 
-/// `A -> B -> C;`
-pub(super) fn chain(input: ParseStream) -> syn::Result<Chain> {
-    let mut chain = Chain {
-        nodes: vec![node(input)?],
-        arrows: Vec::new(),
-    };
-    while !input.is_empty() && !input.peek(Token![;]) {
-        if !input.peek(Token![->]) {
-            return Err(input.error("expected `->` or `;`"));
+/// Reads the one-ports in a junction's braces.
+///
+/// One that cannot be read is reported and its name remembered; the others are kept.
+pub(super) fn one_ports(group: &Group, sink: &mut Sink<'_>) -> Vec<Element> {
+    let mut cursor = Cursor::inside(group);
+    let mut elements = Vec::new();
+    loop {
+        while cursor.take_punct(',') || cursor.take_punct(';') {}
+        if cursor.ended() {
+            return elements;
         }
-        let arrow: Token![->] = input.parse()?;
-        chain.arrows.push(arrow.spans[0]);
-        chain.nodes.push(node(input)?);
+        let start = cursor.position();
+        match one_port(&mut cursor, sink) {
+            Ok(element) => elements.push(element),
+            Err(error) => {
+                sink.report(error);
+                next_element(&mut cursor, start);
+                sink.lose(cursor.since(start));
+            }
+        }
     }
-    if chain.arrows.is_empty() {
-        return Err(input.error("expected `->`"));
-    }
-    input.parse::<Token![;]>()?;
-    Ok(chain)
 }
 
-fn node(input: ParseStream) -> syn::Result<ChainNode> {
-    let attributes = input.call(Attribute::parse_outer)?;
-    let ahead = input.fork();
-    let word: Option<Ident> = ahead.parse().ok();
-    if word.as_ref().and_then(kind).is_some() && ahead.peek(Ident) {
-        return Ok(ChainNode::Element(element(input, &attributes)?));
+/// Reads one element of a junction's braces.
+fn one_port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Element> {
+    let attributes = Attributes::read(cursor, sink)?;
+    if let Some(kind) = kind(cursor, 0) {
+        return element(cursor, kind, attributes.derivative, sink);
     }
-    Ok(ChainNode::Reference(reference(input)?))
+    let mut error = no_element(cursor, "an element");
+    if cursor.arrow(1) {
+        error = error.help(
+            "a chain of bonds stands outside the junction's braces, as a statement of its own",
+        );
+    }
+    Err(Box::new(error))
 }
 
-/// References in parentheses.
-pub(super) fn connections(input: ParseStream) -> syn::Result<Vec<Reference>> {
-    let content;
-    syn::parenthesized!(content in input);
-    let all: Punctuated<Reference, Token![,]> = content.parse_terminated(reference, Token![,])?;
-    Ok(all.into_iter().collect())
+/// What stands here is the name of no element.
+pub(super) fn no_element(cursor: &Cursor, what: &str) -> Diagnostic {
+    let mut error = *cursor.expected(what);
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    match words::nearest(&word, &words::element_names()) {
+        Some(near) => error = error.help(format!("did you mean `{near}`?")),
+        None => {
+            error = error.note(format!(
+                "the elements are {}",
+                words::element_listing().replace(" or ", " and ")
+            ))
+        }
+    }
+    error
+}
+
+/// Steps to the next element after the one from `start` failed.
+fn next_element(cursor: &mut Cursor, start: usize) {
+    while !cursor.ended() {
+        let opens = kind(cursor, 0).is_some() && cursor.ident(1).is_some();
+        if cursor.position() > start && (opens || cursor.punct(0, ';')) {
+            return;
+        }
+        let brace = cursor.group(0, Delimiter::Brace).is_some();
+        cursor.advance(1);
+        if brace {
+            return;
+        }
+    }
 }

@@ -1,435 +1,263 @@
-//! Models, components and their statements.
+//! Models and components.
 
-use proc_macro2::{Span, TokenStream, TokenTree};
-use syn::parse::ParseStream;
-use syn::punctuated::Punctuated;
-use syn::{Attribute, Expr, Ident, LitInt, Token, Visibility, token};
+use proc_macro2::{Delimiter, Group, Ident, TokenStream};
+use syn::Visibility;
+use syn::parse::Parser;
 
-use super::ast::{
-    Attitude, Causality, Component, Input, Instance, Integral, Item, Junction, JunctionKind, Model,
-    Output, Parameter, Port, Source, Statement, Unit,
-};
-use super::elements::{chain, connections, derivative, dimension, elements, fields, kind};
-use super::split::{is_punct, read, statements};
-use super::units::unit;
+use super::ast::{Component, Item, Model, Port, Source, Statement};
+use super::attributes::Attributes;
+use super::cursor::{Cursor, Parsed};
+use super::recovery::Sink;
+use super::statements::body;
+use super::words;
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
+use crate::diagnostics::Diagnostic;
 
-/// All models and components.
-pub(super) fn source(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Source {
+/// Reads everything.
+pub(super) fn source(tokens: TokenStream, sink: &mut Sink<'_>) -> Source {
+    let mut cursor = Cursor::new(tokens);
     let mut items = Vec::new();
-    for piece in statements(tokens) {
-        if let Some((head, body)) = read(&piece, header, diagnostics) {
-            let statements = statements(body)
-                .iter()
-                .map(|piece| statement(piece, diagnostics))
-                .collect();
-            items.push(head.with(statements));
+    loop {
+        while cursor.take_punct(';') {}
+        if cursor.ended() {
+            return Source { items };
+        }
+        let start = cursor.position();
+        match item(&mut cursor, sink) {
+            Ok(item) => items.push(item),
+            Err(error) => {
+                sink.report(error);
+                next_item(&mut cursor, start);
+            }
         }
     }
-    Source { items }
 }
 
-/// What stands before a body.
-struct Header {
-    documentation: Vec<Attribute>,
-    derivative: Option<Span>,
+/// Reads one model or component. It fails only before its name is known: from there on, what uses the name is
+/// spared a second error.
+fn item(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Item> {
+    let attributes = Attributes::read(cursor, sink)?;
+    let place = cursor.span();
+    let visibility = visibility(cursor)?;
+    let public = !matches!(visibility, Visibility::Inherited);
+    match keyword(cursor, public, sink)? {
+        "component" => {
+            if public {
+                let message = "expected `component` without a visibility: it is known in this macro call only";
+                sink.error(codes::SYNTAX, place, message);
+            }
+            let name = cursor.name("the name of the component after `component`")?;
+            Ok(Item::Component(component(cursor, attributes, name, sink)))
+        }
+        _ => {
+            let name = cursor.name("the name of the model after `model`")?;
+            Ok(Item::Model(model(
+                cursor, attributes, visibility, name, sink,
+            )))
+        }
+    }
+}
+
+/// Reads `pub` and the like, when it stands here.
+fn visibility(cursor: &mut Cursor) -> Parsed<Visibility> {
+    if cursor.ident(0).is_none_or(|word| word != "pub") {
+        return Ok(Visibility::Inherited);
+    }
+    let start = cursor.position();
+    cursor.advance(1);
+    cursor.take_group(Delimiter::Parenthesis);
+    let tokens: TokenStream = cursor.since(start).iter().cloned().collect();
+    <Visibility as syn::parse::Parse>::parse
+        .parse2(tokens)
+        .map_err(|_| {
+            Box::new(crate::diagnostics::error(
+                codes::SYNTAX,
+                cursor.last_span(),
+                "expected `pub`, `pub(crate)` or `pub(super)`",
+            ))
+        })
+}
+
+/// Reads `model` or `component`, or what is near enough to one of them.
+fn keyword(cursor: &mut Cursor, public: bool, sink: &mut Sink<'_>) -> Parsed<&'static str> {
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    let exact = words::ITEMS.iter().find(|item| **item == word).copied();
+    if let Some(item) = exact {
+        cursor.advance(1);
+        return Ok(item);
+    }
+    let error = *cursor.expected(if public {
+        "`model` after `pub`"
+    } else {
+        "`model` or `component`"
+    });
+    // A word, a name and a group is an item whatever the word: its name must not be lost to a slip of the finger.
+    let shaped = cursor.ident(1).is_some()
+        && matches!(cursor.peek(2), Some(proc_macro2::TokenTree::Group(_)));
+    match words::ITEMS
+        .iter()
+        .copied()
+        .find(|item| words::nearest(&word, &[item]).is_some())
+    {
+        Some(near) if shaped => {
+            sink.report(Box::new(error.help(format!("did you mean `{near}`?"))));
+            cursor.advance(1);
+            Ok(near)
+        }
+        Some(near) => Err(Box::new(error.help(format!("did you mean `{near}`?")))),
+        None => Err(elsewhere(cursor, error, &word)),
+    }
+}
+
+/// What stands here is no item; perhaps it is a statement.
+fn elsewhere(cursor: &Cursor, error: Diagnostic, word: &str) -> Box<Diagnostic> {
+    if words::LATER.contains(&word) {
+        return cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet"));
+    }
+    let statement = words::STATEMENTS.contains(&word)
+        || words::element(word).is_some()
+        || cursor.junction_digit(0)
+        || cursor.arrow(1)
+        || cursor.punct(1, ':');
+    Box::new(if statement {
+        error.help("statements stand inside braces: `model Name { … }`")
+    } else {
+        error
+    })
+}
+
+fn model(
+    cursor: &mut Cursor,
+    attributes: Attributes,
     visibility: Visibility,
     name: Ident,
-    /// Ports of a component; none for a model.
-    ports: Option<Vec<Port>>,
-}
-
-impl Header {
-    fn with(self, statements: Vec<Statement>) -> Item {
-        let Self {
-            documentation,
-            derivative,
-            visibility,
-            name,
-            ports,
-        } = self;
-        match ports {
-            Some(ports) => Item::Component(Component {
-                documentation,
-                derivative,
-                name,
-                ports,
-                statements,
-            }),
-            None => Item::Model(Model {
-                documentation,
-                derivative,
-                visibility,
-                name,
-                statements,
-            }),
-        }
-    }
-}
-
-fn header(input: ParseStream) -> syn::Result<(Header, TokenStream)> {
-    let attributes = input.call(Attribute::parse_outer)?;
-    let derivative = derivative(&attributes)?;
-    let documentation = documentation(attributes);
-    let visibility: Visibility = input.parse()?;
-    let word: Ident = input
-        .parse()
-        .map_err(|error| syn::Error::new(error.span(), "expected `model` or `component`"))?;
-    if word != "model" && word != "component" {
-        return Err(syn::Error::new(
-            word.span(),
-            format!("expected `model` or `component`, found `{word}`"),
-        ));
-    }
-    let name: Ident = input.parse()?;
-    let ports = if word == "component" {
-        Some(ports(input)?)
-    } else {
-        None
-    };
-    if !input.peek(token::Brace) {
-        return Err(input.error(format!("expected `{{` and the body of `{name}`")));
-    }
-    let content;
-    syn::braced!(content in input);
-    let body = content.parse()?;
-    Ok((
-        Header {
-            documentation,
-            derivative,
-            visibility,
-            name,
-            ports,
-        },
-        body,
-    ))
-}
-
-fn documentation(attributes: Vec<Attribute>) -> Vec<Attribute> {
-    attributes
-        .into_iter()
-        .filter(|attribute| attribute.path().is_ident("doc"))
-        .collect()
-}
-
-fn ports(input: ParseStream) -> syn::Result<Vec<Port>> {
-    let content;
-    syn::parenthesized!(content in input);
-    let port = |input: ParseStream| {
-        let word: Ident = input.parse()?;
-        if word != "port" {
-            return Err(syn::Error::new(
-                word.span(),
-                format!("expected `port`, found `{word}`"),
-            ));
-        }
-        Ok(Port {
-            name: input.parse()?,
-            dimension: dimension(input)?.unwrap_or(1),
-        })
-    };
-    let all: Punctuated<Port, Token![,]> = content.parse_terminated(port, Token![,])?;
-    Ok(all.into_iter().collect())
-}
-
-/// The words that may begin a statement.
-const WORDS: [&str; 7] = [
-    "param",
-    "input",
-    "output",
-    "integral",
-    "attitude",
-    "causality",
-    "component",
-];
-
-fn statement(tokens: &[TokenTree], diagnostics: &mut Diagnostics) -> Statement {
-    let name = name_of(tokens);
-    if let Some(word) = misspelt(tokens) {
-        let found = tokens[0].to_string();
-        let text = format!("expected a statement, found `{found}`");
-        diagnostics
-            .report(error(codes::SYNTAX, tokens[0].span(), text).help(format!("write `{word}`")));
-        return Statement::Broken(name);
-    }
-    read(tokens, any_statement, diagnostics).unwrap_or(Statement::Broken(name))
-}
-
-/// The name that a statement declares, as far as one can see.
-fn name_of(tokens: &[TokenTree]) -> Option<Ident> {
-    let ident = |token: Option<&TokenTree>| match token {
-        Some(TokenTree::Ident(ident)) => Some(ident.clone()),
-        _ => None,
-    };
-    if tokens.get(1).is_some_and(|token| is_punct(token, ':')) {
-        ident(tokens.first())
-    } else {
-        ident(tokens.get(1))
-    }
-}
-
-/// The word that was meant, where two identifiers stand side by side and the first is none of ours.
-fn misspelt(tokens: &[TokenTree]) -> Option<&'static str> {
-    let (Some(TokenTree::Ident(first)), Some(TokenTree::Ident(_))) =
-        (tokens.first(), tokens.get(1))
-    else {
-        return None;
-    };
-    let first = first.to_string();
-    if WORDS.contains(&first.as_str()) || kind(&Ident::new(&first, Span::call_site())).is_some() {
-        return None;
-    }
-    WORDS.into_iter().find(|word| distance(&first, word) <= 2)
-}
-
-/// Edit distance of two short words.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
-fn any_statement(input: ParseStream) -> syn::Result<Statement> {
-    let attributes = input.fork().call(Attribute::parse_outer)?;
-    let ahead = input.fork();
-    ahead.call(Attribute::parse_outer)?;
-    if ahead.peek(LitInt) {
-        input.call(Attribute::parse_outer)?;
-        return junction(input);
-    }
-    let word: Ident = ahead.fork().parse()?;
-    let starts_declaration = ahead.peek2(Ident);
-    match word.to_string().as_str() {
-        "param" if starts_declaration => after_word(input, attributes, parameter),
-        "input" if starts_declaration => after_word(input, attributes, self::input),
-        "output" if starts_declaration => after_word(input, attributes, output),
-        "integral" if starts_declaration => after_word(input, attributes, integral),
-        "attitude" if starts_declaration => after_word(input, attributes, attitude),
-        "causality" if starts_declaration => after_word(input, attributes, causality),
-        "close" | "include" if starts_declaration => Err(syn::Error::new(
-            word.span(),
-            format!("`{word}` is not supported yet"),
-        )),
-        _ if ahead.peek2(Token![:]) => instance(input),
-        _ => chain(input).map(Statement::Chain),
-    }
-}
-
-fn after_word(
-    input: ParseStream,
-    attributes: Vec<Attribute>,
-    parser: fn(ParseStream, Vec<Attribute>) -> syn::Result<Statement>,
-) -> syn::Result<Statement> {
-    input.call(Attribute::parse_outer)?;
-    input.parse::<Ident>()?;
-    let statement = parser(input, documentation(attributes))?;
-    if !input.peek(Token![;]) {
-        return Err(input.error("expected `;`"));
-    }
-    input.parse::<Token![;]>()?;
-    Ok(statement)
-}
-
-fn optional_unit(input: ParseStream) -> syn::Result<Option<Unit>> {
-    if !input.peek(Token![:]) {
-        return Ok(None);
-    }
-    input.parse::<Token![:]>()?;
-    unit(input).map(Some)
-}
-
-fn parameter(input: ParseStream, documentation: Vec<Attribute>) -> syn::Result<Statement> {
-    let name = input.parse()?;
-    let unit = optional_unit(input)?;
-    let default = if input.parse::<Option<Token![=]>>()?.is_some() {
-        Some(input.parse::<Expr>()?)
-    } else {
-        None
-    };
-    Ok(Statement::Parameter(Parameter {
+    sink: &mut Sink<'_>,
+) -> Model {
+    let statements = braces(cursor, &format!("`{{` after `model {name}`"), sink);
+    let Attributes {
         documentation,
-        name,
-        unit,
-        default,
-    }))
-}
-
-fn input(input: ParseStream, documentation: Vec<Attribute>) -> syn::Result<Statement> {
-    let name = input.parse()?;
-    let dimension = dimension(input)?.unwrap_or(1);
-    Ok(Statement::Input(Input {
-        documentation,
-        name,
-        dimension,
-        unit: optional_unit(input)?,
-    }))
-}
-
-fn output(input: ParseStream, documentation: Vec<Attribute>) -> syn::Result<Statement> {
-    let name = input.parse()?;
-    let dimension = dimension(input)?.unwrap_or(1);
-    let unit = optional_unit(input)?;
-    input.parse::<Token![=]>()?;
-    Ok(Statement::Output(Output {
-        documentation,
-        name,
-        dimension,
-        unit,
-        value: input.parse()?,
-    }))
-}
-
-fn integral(input: ParseStream, documentation: Vec<Attribute>) -> syn::Result<Statement> {
-    let name = input.parse()?;
-    let dimension = dimension(input)?.unwrap_or(1);
-    let unit = optional_unit(input)?;
-    input.parse::<Token![=]>()?;
-    let rate = input.parse()?;
-    Ok(Statement::Integral(Integral {
-        documentation,
-        name,
-        dimension,
-        unit,
-        rate,
-        initial: initial(input)?,
-    }))
-}
-
-fn attitude(input: ParseStream, documentation: Vec<Attribute>) -> syn::Result<Statement> {
-    let name = input.parse()?;
-    input.parse::<Token![=]>()?;
-    let word: Ident = input.parse()?;
-    if word != "quaternion" {
-        return Err(syn::Error::new(
-            word.span(),
-            format!("expected `quaternion(…)`, found `{word}`"),
-        ));
-    }
-    let content;
-    syn::parenthesized!(content in input);
-    let angular_velocity = content.parse()?;
-    if !content.is_empty() {
-        return Err(content.error("expected one argument, the angular velocity in body axes"));
-    }
-    Ok(Statement::Attitude(Attitude {
-        documentation,
-        name,
-        angular_velocity,
-        initial: initial(input)?,
-    }))
-}
-
-fn initial(input: ParseStream) -> syn::Result<Option<Expr>> {
-    if input.parse::<Option<Token![,]>>()?.is_none() {
-        return Ok(None);
-    }
-    let word: Ident = input.parse()?;
-    if word != "initial" {
-        return Err(syn::Error::new(
-            word.span(),
-            format!("expected `initial`, found `{word}`"),
-        ));
-    }
-    input.parse::<Token![:]>()?;
-    input.parse().map(Some)
-}
-
-fn causality(input: ParseStream, _: Vec<Attribute>) -> syn::Result<Statement> {
-    let word: Ident = input.parse()?;
-    let causality = match word.to_string().as_str() {
-        "uniform" => Causality::Uniform,
-        "componentwise" => Causality::Componentwise,
-        _ => {
-            let text = format!("expected `uniform` or `componentwise`, found `{word}`");
-            return Err(syn::Error::new(word.span(), text));
-        }
-    };
-    Ok(Statement::Causality(causality, word.span()))
-}
-
-fn junction(input: ParseStream) -> syn::Result<Statement> {
-    let literal: LitInt = input.parse()?;
-    let kind = match literal.to_string().as_str() {
-        "0" => JunctionKind::Zero,
-        "1" => JunctionKind::One,
-        other => {
-            let text = format!("expected a junction, `0` or `1`, found `{other}`");
-            return Err(syn::Error::new(literal.span(), text));
-        }
-    };
-    let name: Ident = input.parse()?;
-    let mut coordinate = coordinate_mark(input)?;
-    let dimension = dimension(input)?.unwrap_or(1);
-    coordinate |= coordinate_mark(input)?;
-    let elements = if input.peek(token::Brace) {
-        let content;
-        syn::braced!(content in input);
-        input.parse::<Option<Token![;]>>()?;
-        elements(&content)?
-    } else if input.peek(Token![;]) {
-        input.parse::<Token![;]>()?;
-        Vec::new()
-    } else {
-        return Err(input.error(format!(
-            "expected `;` or the elements of `{name}` in braces"
-        )));
-    };
-    Ok(Statement::Junction(Junction {
-        kind,
-        span: literal.span(),
-        name,
-        dimension,
-        coordinate,
-        elements,
-    }))
-}
-
-fn coordinate_mark(input: ParseStream) -> syn::Result<bool> {
-    let marked = input
-        .fork()
-        .parse::<Ident>()
-        .is_ok_and(|word| word == "coordinate");
-    if marked {
-        input.parse::<Ident>()?;
-    }
-    Ok(marked)
-}
-
-fn instance(input: ParseStream) -> syn::Result<Statement> {
-    let attributes = input.call(Attribute::parse_outer)?;
-    let name: Ident = input.parse()?;
-    input.parse::<Token![:]>()?;
-    let component: Ident = input.parse()?;
-    let arguments = if input.peek(token::Brace) {
-        let content;
-        syn::braced!(content in input);
-        fields(&content)?
-    } else {
-        Vec::new()
-    };
-    if !input.peek(token::Paren) {
-        return Err(input.error(format!(
-            "expected `(` and the junctions that the ports of `{component}` stand for"
-        )));
-    }
-    let connections = connections(input)?;
-    input.parse::<Token![;]>()?;
-    let derivative = derivative(&attributes)?;
-    Ok(Statement::Instance(Instance {
-        name,
         derivative,
-        component,
-        arguments,
-        connections,
-    }))
+    } = attributes;
+    Model {
+        documentation,
+        derivative,
+        visibility,
+        name,
+        statements,
+    }
+}
+
+fn component(
+    cursor: &mut Cursor,
+    attributes: Attributes,
+    name: Ident,
+    sink: &mut Sink<'_>,
+) -> Component {
+    let mut ports = Some(Vec::new());
+    let mut wanted = format!("`(` after `component {name}`");
+    if let Some(group) = cursor.take_group(Delimiter::Parenthesis) {
+        ports = ports_in(&group, sink);
+        wanted = "`{` after the ports".to_owned();
+    } else if cursor.group(0, Delimiter::Brace).is_some() {
+        let error = *cursor.expected(&wanted);
+        sink.report(Box::new(error.help(format!(
+            "the ports stand in parentheses: `component {name}(port a[3], port b[3]) {{ … }}`"
+        ))));
+        ports = None;
+    }
+    let mut statements = braces(cursor, &wanted, sink);
+    if ports.is_none() {
+        statements.push(Statement::Broken(None));
+    }
+    let ports = ports.unwrap_or_default();
+    let Attributes {
+        documentation,
+        derivative,
+    } = attributes;
+    Component {
+        documentation,
+        derivative,
+        name,
+        ports,
+        statements,
+    }
+}
+
+/// Reads the statements in braces, stepping over what wrongly stands before them.
+fn braces(cursor: &mut Cursor, wanted: &str, sink: &mut Sink<'_>) -> Vec<Statement> {
+    if let Some(group) = cursor.take_group(Delimiter::Brace) {
+        return body(&group, sink);
+    }
+    sink.report(cursor.expected(wanted));
+    let start = cursor.position();
+    while !cursor.ended() && !item_opens(cursor) && cursor.group(0, Delimiter::Brace).is_none() {
+        cursor.advance(1);
+    }
+    let mut statements = match cursor.take_group(Delimiter::Brace) {
+        Some(group) => body(&group, sink),
+        None => Vec::new(),
+    };
+    debug_assert!(cursor.position() >= start);
+    statements.push(Statement::Broken(None));
+    statements
+}
+
+/// Reads `port a[3], port b`; nothing when one of them cannot be read, since an instance's junctions could not be
+/// told apart then.
+fn ports_in(group: &Group, sink: &mut Sink<'_>) -> Option<Vec<Port>> {
+    let mut cursor = Cursor::inside(group);
+    let (mut ports, mut whole) = (Vec::new(), true);
+    while !cursor.ended() {
+        match port(&mut cursor, sink) {
+            Ok(port) => ports.push(port),
+            Err(error) => {
+                sink.report(error);
+                whole = false;
+                let length = cursor.length_until(|cursor, offset| cursor.punct(offset, ','));
+                cursor.advance(length + 1);
+            }
+        }
+    }
+    whole.then_some(ports)
+}
+
+/// Reads one port and the comma after it.
+fn port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Port> {
+    Attributes::read(cursor, sink)?.unmarked("a port", sink);
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if word != "port" {
+        let mut error = *cursor.expected("`port`");
+        if words::nearest(&word, &["port"]).is_some() {
+            error = error.help("did you mean `port`?");
+        } else if !word.is_empty() {
+            error = error.help(format!("a port is written `port {word}`"));
+        }
+        return Err(Box::new(error));
+    }
+    cursor.advance(1);
+    let name = cursor.name("the name of the port after `port`")?;
+    let dimension = cursor.dimension()?.unwrap_or(1);
+    if !cursor.ended() && !cursor.take_punct(',') {
+        return Err(cursor.expected(&format!("`,` or `)` after {}", cursor.previous())));
+    }
+    Ok(Port { name, dimension })
+}
+
+/// Whether an item begins here.
+fn item_opens(cursor: &Cursor) -> bool {
+    let Some(word) = cursor.ident(0) else {
+        return cursor.punct(0, '#');
+    };
+    word == "pub" || (cursor.ident(1).is_some() && words::ITEMS.iter().any(|item| word == item))
+}
+
+/// Steps to the next item after the one from `start` failed, however many statements lie between: they all have the
+/// same mistake.
+fn next_item(cursor: &mut Cursor, start: usize) {
+    if cursor.position() == start {
+        cursor.advance(1);
+    }
+    while !cursor.ended() && !item_opens(cursor) {
+        cursor.advance(1);
+    }
 }

@@ -1,6 +1,6 @@
 //! Where a new statement begins, and how to get there after a mistake.
 
-use proc_macro2::{Delimiter, Ident, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Ident, Span, TokenTree};
 
 use super::cursor::{Cursor, Parsed};
 use super::words;
@@ -18,12 +18,16 @@ pub(super) struct Sink<'a> {
 impl<'a> Sink<'a> {
     /// An empty sink in front of the stage's.
     pub(super) fn new(diagnostics: &'a mut Diagnostics) -> Self {
-        Self { diagnostics, lost: Vec::new() }
+        Self {
+            diagnostics,
+            lost: Vec::new(),
+        }
     }
 
     /// Reports a mistake after which reading goes on.
-    pub(super) fn report(&mut self, diagnostic: Box<Diagnostic>) {
-        self.diagnostics.report(*diagnostic);
+    #[allow(clippy::boxed_local, reason = "rules return their mistake in a box")]
+    pub(super) fn report(&mut self, mistake: Box<Diagnostic>) {
+        self.diagnostics.report(*mistake);
     }
 
     /// Reports a mistake that needs no more than its message.
@@ -46,7 +50,9 @@ impl<'a> Sink<'a> {
 ///
 /// A word followed by a word, or a digit followed by a word, stands in no expression.
 pub(super) fn opens(cursor: &Cursor, offset: usize) -> bool {
-    let Some(next) = cursor.ident(offset + 1) else { return false };
+    let Some(next) = cursor.ident(offset + 1) else {
+        return false;
+    };
     match cursor.ident(offset) {
         Some(word) => {
             let word = word.to_string();
@@ -61,7 +67,9 @@ pub(super) fn may_open(cursor: &Cursor) -> bool {
     if opens(cursor, 0) || cursor.punct(0, '#') {
         return true;
     }
-    let Some(word) = cursor.ident(0) else { return false };
+    let Some(word) = cursor.ident(0) else {
+        return false;
+    };
     let element = cursor.ident(1).is_some() && words::element(&word.to_string()).is_some();
     element || cursor.arrow(1) || cursor.punct(1, ':')
 }
@@ -76,7 +84,11 @@ pub(super) fn finish(cursor: &mut Cursor, sink: &mut Sink<'_>, expected: &str) -
     if !cursor.ended() && !may_open(cursor) {
         return Err(cursor.expected(expected));
     }
-    let message = format!("expected `;` after {}, found {}", cursor.previous(), cursor.found());
+    let message = format!(
+        "expected `;` after {}, found {}",
+        cursor.previous(),
+        cursor.found()
+    );
     sink.error(crate::codes::SYNTAX, cursor.last_span(), message);
     Ok(())
 }
@@ -87,7 +99,8 @@ pub(super) fn synchronize(cursor: &mut Cursor, start: usize) {
         if cursor.position() > start && opens(cursor, 0) {
             return;
         }
-        let brace = matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
+        let brace =
+            matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
         if cursor.take_punct(';') {
             return;
         }
@@ -110,64 +123,44 @@ fn continues(cursor: &Cursor) -> bool {
 
 /// Collects the names that tokens declare, as far as can be told without understanding them.
 fn declared(tokens: &[TokenTree], depth: usize, names: &mut Vec<Ident>) {
+    let outermost = depth == DEPTH;
+    let attributes = tokens
+        .iter()
+        .step_by(2)
+        .take_while(|token| is_hash(token))
+        .count()
+        * 2;
     for (at, token) in tokens.iter().enumerate() {
+        let first = outermost && at == attributes;
         let name = match (token, tokens.get(at + 1), tokens.get(at + 2)) {
             (TokenTree::Ident(word), Some(TokenTree::Ident(name)), _) => {
                 let word = word.to_string();
-                let known = words::STATEMENTS.contains(&word.as_str()) || words::element(&word).is_some();
+                let known =
+                    words::STATEMENTS.contains(&word.as_str()) || words::element(&word).is_some();
                 // The first word of a statement may be misspelt.
-                (at == 0 || known).then_some(name)
+                (first || known).then_some(name)
             }
             (TokenTree::Literal(literal), Some(TokenTree::Ident(name)), _) => {
                 matches!(literal.to_string().as_str(), "0" | "1").then_some(name)
             }
             (TokenTree::Ident(name), Some(TokenTree::Punct(colon)), Some(TokenTree::Ident(_))) => {
-                (at == 0 && colon.as_char() == ':').then_some(name)
+                (first && colon.as_char() == ':').then_some(name)
             }
             _ => None,
         };
         if let Some(name) = name.filter(|name| !words::is_reserved(&name.to_string())) {
             names.push(name.clone());
         }
-        match token {
-            TokenTree::Group(group) if depth > 0 && group.delimiter() == Delimiter::Brace => {
-                let inner: Vec<TokenTree> = group.stream().into_iter().collect();
-                declared(&inner, depth - 1, names);
-            }
-            _ => {}
+        let TokenTree::Group(group) = token else {
+            continue;
+        };
+        if depth > 0 && group.delimiter() == Delimiter::Brace {
+            let inner: Vec<TokenTree> = group.stream().into_iter().collect();
+            declared(&inner, depth - 1, names);
         }
     }
 }
 
-/// Whether the tokens nest or run so far that the reader of laws, which recurses, could exhaust the stack.
-///
-/// A token weighs one and a nested group [`NESTING`]; a comma or a semicolon starts again.
-pub(super) fn too_deep(tokens: &[TokenTree]) -> bool {
-    weight(tokens.iter().cloned(), HEAVIEST).is_none()
-}
-
-/// What may weigh on the stack.
-const HEAVIEST: usize = 4_000;
-
-/// What one more level of brackets weighs, in tokens.
-const NESTING: usize = 60;
-
-fn weight(tokens: impl Iterator<Item = TokenTree>, budget: usize) -> Option<usize> {
-    let (mut heaviest, mut run, mut nested) = (0, 0, 0);
-    for token in tokens {
-        match token {
-            TokenTree::Punct(punct) if matches!(punct.as_char(), ',' | ';') => (run, nested) = (0, 0),
-            TokenTree::Group(group) => {
-                run += 1;
-                let left = budget.checked_sub(NESTING)?;
-                nested = nested.max(NESTING + weight(TokenStream::into_iter(group.stream()), left)?);
-            }
-            _ => run += 1,
-        }
-        heaviest = heaviest.max(run + nested);
-        if heaviest > budget {
-            return None;
-        }
-    }
-    Some(heaviest)
+fn is_hash(token: &TokenTree) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == '#')
 }

@@ -1,83 +1,157 @@
-//! Units: `kg*m^2/s`, `N/(m*s)`, `1/s`.
+//! Units: products of powers.
+//!
+//! They have a grammar of their own because `N*m*s/rad = 1e3` is an assignment to a quotient in Rust, and
+//! `s^-1` an exclusive or.
 
-use syn::parse::ParseStream;
-use syn::{Ident, LitInt, Token, token};
+use proc_macro2::{Delimiter, TokenTree};
+use syn::LitInt;
 
 use super::ast::Unit;
+use super::cursor::{Cursor, Parsed};
+use super::recovery::{Sink, opens};
+use crate::codes;
 
-/// Reads a unit up to the token that no unit holds.
-pub(super) fn unit(input: ParseStream) -> syn::Result<Unit> {
+/// How deep parentheses may nest.
+const DEPTH: usize = 8;
+
+/// The largest exponent either way, far above any quantity of physics.
+const LARGEST_EXPONENT: i32 = 99;
+
+/// Reads `: unit`, when a colon stands here, up to `=`, `,` or `;`.
+///
+/// A unit that cannot be read is reported and left out: units are optional, and what carries them is still good.
+pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
+    if !cursor.take_punct(':') {
+        return None;
+    }
+    let length = cursor.length_until(|cursor, offset| {
+        ['=', ',', ';'].iter().any(|&end| cursor.punct(offset, end))
+            || opens(cursor, offset)
+            || cursor.punct(offset, '#')
+    });
+    let end = cursor.position() + length;
     let mut unit = Unit {
         text: String::new(),
         factors: Vec::new(),
     };
-    product(input, &mut unit, 1)?;
-    Ok(unit)
+    let parsed = product(cursor, &mut unit, 1, DEPTH).and_then(|()| {
+        if cursor.position() < end {
+            return Err(cursor.expected_with(codes::UNIT, "`*`, `/`, `^` or the end of the unit"));
+        }
+        Ok(())
+    });
+    match parsed {
+        Ok(()) => Some(unit),
+        Err(error) => {
+            sink.report(error);
+            cursor.advance(end.saturating_sub(cursor.position()));
+            None
+        }
+    }
 }
 
-fn product(input: ParseStream, unit: &mut Unit, sign: i32) -> syn::Result<()> {
-    factor(input, unit, sign)?;
+/// Reads factors between `*` and `/`; `sign` is -1 in a denominator.
+fn product(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Parsed<()> {
+    factor(cursor, unit, sign, depth)?;
     loop {
-        if input.peek(Token![*]) {
-            input.parse::<Token![*]>()?;
+        if cursor.take_punct('*') {
             unit.text.push('*');
-            factor(input, unit, sign)?;
-        } else if input.peek(Token![/]) {
-            input.parse::<Token![/]>()?;
+            factor(cursor, unit, sign, depth)?;
+        } else if cursor.take_punct('/') {
             unit.text.push('/');
-            factor(input, unit, -sign)?;
+            factor(cursor, unit, -sign, depth)?;
         } else {
             return Ok(());
         }
     }
 }
 
-fn factor(input: ParseStream, unit: &mut Unit, sign: i32) -> syn::Result<()> {
-    if input.peek(token::Paren) {
-        let content;
-        syn::parenthesized!(content in input);
-        unit.text.push('(');
-        product(&content, unit, sign)?;
-        unit.text.push(')');
-        return if content.is_empty() {
-            Ok(())
-        } else {
-            Err(content.error("expected `*`, `/` or `)` in a unit"))
-        };
+/// Reads a name, `1` or parentheses, with an exponent.
+fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Parsed<()> {
+    if let Some(name) = cursor.ident(0).map(ToString::to_string) {
+        if name.contains('·') {
+            let error = *cursor.failure(
+                codes::UNIT,
+                format!("expected the name of a unit, found `{name}`"),
+            );
+            return Err(Box::new(
+                error.help(format!("write `{}`", name.replace('·', "*"))),
+            ));
+        }
+        cursor.advance(1);
+        unit.text.push_str(&name);
+        let exponent = exponent(cursor, unit)?;
+        unit.factors.push((name, sign * exponent));
+        return Ok(());
     }
-    if input.peek(LitInt) {
-        let one: LitInt = input.parse()?;
+    if matches!(cursor.peek(0), Some(TokenTree::Literal(literal)) if literal.to_string() == "1") {
+        cursor.advance(1);
         unit.text.push('1');
-        return if one.base10_digits() == "1" {
-            Ok(())
-        } else {
-            Err(syn::Error::new(
-                one.span(),
-                "expected the name of a unit or `1`, found another number",
-            ))
-        };
+        return Ok(());
     }
-    let name: Ident = input
-        .parse()
-        .map_err(|error| syn::Error::new(error.span(), "expected the name of a unit"))?;
-    unit.text.push_str(&name.to_string());
-    let exponent = if input.peek(Token![^]) {
-        exponent(input, unit)?
-    } else {
-        1
+    let Some(group) = cursor.group(0, Delimiter::Parenthesis).cloned() else {
+        return Err(cursor.expected_with(codes::UNIT, "the name of a unit"));
     };
-    unit.factors.push((name.to_string(), sign * exponent));
+    if depth == 0 {
+        return Err(cursor.failure(
+            codes::UNIT,
+            format!("parentheses nest deeper than {DEPTH} in a unit"),
+        ));
+    }
+    cursor.advance(1);
+    let mut inner = Cursor::inside(&group);
+    let first = unit.factors.len();
+    unit.text.push('(');
+    product(&mut inner, unit, sign, depth - 1)?;
+    if !inner.ended() {
+        return Err(inner.expected_with(codes::UNIT, "`*`, `/`, `^` or `)`"));
+    }
+    unit.text.push(')');
+    let place = cursor.position();
+    let exponent = exponent(cursor, unit)?;
+    for (_, power) in &mut unit.factors[first..] {
+        *power *= exponent;
+        if power.abs() > LARGEST_EXPONENT {
+            return Err(large(cursor, place));
+        }
+    }
     Ok(())
 }
 
-fn exponent(input: ParseStream, unit: &mut Unit) -> syn::Result<i32> {
-    input.parse::<Token![^]>()?;
-    let negative = input.parse::<Option<Token![-]>>()?.is_some();
-    let digits: LitInt = input
-        .parse()
-        .map_err(|error| syn::Error::new(error.span(), "expected an integer exponent"))?;
-    let value: i32 = digits.base10_parse()?;
-    let value = if negative { -value } else { value };
-    unit.text.push_str(&format!("^{value}"));
-    Ok(value)
+/// Reads `^n`, 1 when it is not there.
+fn exponent(cursor: &mut Cursor, unit: &mut Unit) -> Parsed<i32> {
+    if !cursor.take_punct('^') {
+        return Ok(1);
+    }
+    unit.text.push('^');
+    let place = cursor.position();
+    let sign = if cursor.take_punct('-') { -1 } else { 1 };
+    if sign < 0 {
+        unit.text.push('-');
+    }
+    let number = match cursor.peek(0) {
+        Some(TokenTree::Literal(literal)) => syn::parse_str::<LitInt>(&literal.to_string()).ok(),
+        _ => None,
+    };
+    let Some(number) = number.filter(|number| number.suffix().is_empty()) else {
+        return Err(cursor.expected_with(codes::UNIT, "an integer exponent"));
+    };
+    cursor.advance(1);
+    match number.base10_parse::<i32>() {
+        Ok(value) if value <= LARGEST_EXPONENT => {
+            unit.text.push_str(&value.to_string());
+            Ok(sign * value)
+        }
+        _ => Err(large(cursor, place)),
+    }
+}
+
+/// The exponent at `place` is too large.
+fn large(cursor: &Cursor, place: usize) -> Box<crate::diagnostics::Diagnostic> {
+    let span = cursor
+        .since(place)
+        .last()
+        .map_or_else(|| cursor.last_span(), TokenTree::span);
+    let message = format!("expected an exponent from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}");
+    Box::new(crate::diagnostics::error(codes::UNIT, span, message))
 }

@@ -3,7 +3,14 @@
 use super::ast::ElementKind;
 
 /// Words that begin a statement.
-pub(super) const STATEMENTS: &[&str] = &["param", "input", "output", "integral", "attitude", "causality"];
+pub(super) const STATEMENTS: &[&str] = &[
+    "param",
+    "input",
+    "output",
+    "integral",
+    "attitude",
+    "causality",
+];
 
 /// Words that will begin a statement one day.
 pub(super) const LATER: &[&str] = &["for", "include", "close"];
@@ -27,11 +34,11 @@ pub(super) const ELEMENTS: &[(&str, ElementKind)] = &[
 
 /// What cannot be a name, because the generated code could not spell it.
 const RESERVED: &[&str] = &[
-    "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
-    "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro",
-    "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "Self", "static", "struct",
-    "super", "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while",
-    "yield",
+    "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "Self", "static", "struct", "super", "trait", "true", "try", "type",
+    "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
 /// Whether this is a keyword of Rust.
@@ -41,12 +48,18 @@ pub(super) fn is_reserved(word: &str) -> bool {
 
 /// The element of this name.
 pub(super) fn element(word: &str) -> Option<ElementKind> {
-    ELEMENTS.iter().find(|(name, _)| *name == word).map(|(_, kind)| *kind)
+    ELEMENTS
+        .iter()
+        .find(|(name, _)| *name == word)
+        .map(|(_, kind)| *kind)
 }
 
 /// The name of this element.
 pub(super) fn element_name(kind: ElementKind) -> &'static str {
-    ELEMENTS.iter().find(|(_, other)| *other == kind).map_or("", |(name, _)| name)
+    ELEMENTS
+        .iter()
+        .find(|(_, other)| *other == kind)
+        .map_or("", |(name, _)| name)
 }
 
 /// The names of the elements.
@@ -94,7 +107,9 @@ fn distance(left: &str, right: &str) -> usize {
         let mut row = vec![i];
         for j in 1..=right.len() {
             let differ = usize::from(left[i - 1] != right[j - 1]);
-            let mut best = (rows[i - 1][j] + 1).min(row[j - 1] + 1).min(rows[i - 1][j - 1] + differ);
+            let mut best = (rows[i - 1][j] + 1)
+                .min(row[j - 1] + 1)
+                .min(rows[i - 1][j - 1] + differ);
             if i > 1 && j > 1 && left[i - 1] == right[j - 2] && left[i - 2] == right[j - 1] {
                 best = best.min(rows[i - 2][j - 2] + 1);
             }

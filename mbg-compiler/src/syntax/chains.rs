@@ -1,0 +1,247 @@
+//! Chains of bonds, references to junctions, and instances of components.
+
+use proc_macro2::{Delimiter, Group, Span};
+
+use super::ast::{Chain, ChainNode, Instance, Reference, Selection};
+use super::attributes::Attributes;
+use super::cursor::{Cursor, Parsed};
+use super::elements::{element, fields, kind, no_element};
+use super::recovery::{Sink, finish};
+use super::words;
+use crate::codes;
+use crate::diagnostics::Diagnostic;
+
+/// What may stand at either end of an arrow.
+const NODE: &str = "a junction, a port or an element";
+
+/// Reads `a -> R x { … } -> b;`, given the attributes before it.
+pub(super) fn chain(
+    cursor: &mut Cursor,
+    derivative: Option<Span>,
+    sink: &mut Sink<'_>,
+) -> Parsed<Chain> {
+    let mut nodes = vec![node(cursor, derivative, NODE, sink)?];
+    let mut arrows = Vec::new();
+    while let Some(arrow) = cursor.take_arrow() {
+        arrows.push(arrow);
+        let derivative = Attributes::read(cursor, sink)?.derivative;
+        nodes.push(node(
+            cursor,
+            derivative,
+            &format!("{NODE} after `->`"),
+            sink,
+        )?);
+    }
+    if arrows.is_empty() {
+        return Err(unbonded(cursor, &nodes[0]));
+    }
+    if !cursor.punct(0, ';')
+        && let Some(error) = slipped(cursor, nodes.last())
+    {
+        return Err(error);
+    }
+    finish(
+        cursor,
+        sink,
+        &format!("`->` or `;` after {}", cursor.previous()),
+    )?;
+    Ok(Chain { nodes, arrows })
+}
+
+/// Reads a reference, or an element declared in place.
+fn node(
+    cursor: &mut Cursor,
+    derivative: Option<Span>,
+    what: &str,
+    sink: &mut Sink<'_>,
+) -> Parsed<ChainNode> {
+    let named = cursor.ident(1).is_some() || cursor.group(1, Delimiter::Brace).is_some();
+    if let Some(kind) = kind(cursor, 0)
+        && named
+    {
+        return element(cursor, kind, derivative, sink).map(ChainNode::Element);
+    }
+    if let Some(span) = derivative {
+        let message = format!(
+            "expected an element after `#[derivative]`, found {}",
+            cursor.found()
+        );
+        sink.error(codes::SYNTAX, span, message);
+    }
+    if cursor.junction_digit(0) && cursor.ident(1).is_some() {
+        let help =
+            "a junction is declared in a statement of its own, and its name stands in the chain";
+        return Err(Box::new((*cursor.expected(what)).help(help)));
+    }
+    let misspelt = cursor.ident(0).is_some()
+        && cursor.ident(1).is_some()
+        && (cursor.group(2, Delimiter::Brace).is_some()
+            || cursor.group(3, Delimiter::Brace).is_some());
+    if misspelt {
+        return Err(Box::new(no_element(cursor, what)));
+    }
+    reference(cursor, what).map(ChainNode::Reference)
+}
+
+/// Nothing follows the first node of a chain but something that is no arrow.
+fn unbonded(cursor: &Cursor, node: &ChainNode) -> Box<Diagnostic> {
+    if let Some(error) = slipped(cursor, Some(node)) {
+        return error;
+    }
+    let wanted = match node {
+        ChainNode::Reference(reference)
+            if reference.path.len() == 1 && reference.selection.is_none() =>
+        {
+            "`->`, `.`, `[` or `:`"
+        }
+        ChainNode::Reference(reference) if reference.selection.is_none() => "`->`, `.` or `[`",
+        _ => "`->`",
+    };
+    cursor.expected(&format!("{wanted} after {}", cursor.previous()))
+}
+
+/// The usual slips where an arrow should stand, with what to type.
+fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>> {
+    let wanted = format!("`->` after {}", cursor.previous());
+    let found = cursor.found();
+    let error = match found.as_str() {
+        "`=>`" | "`-`" => (*cursor.expected(&wanted)).help("a bond is written `a -> b`"),
+        "`<-`" | "`<`" => (*cursor.expected(&wanted))
+            .help("a bond points where its power is positive: write `b -> a`"),
+        "`{`" => match node {
+            Some(ChainNode::Reference(reference)) => {
+                let name = reference.path.last()?;
+                (*cursor.expected(&wanted)).help(format!(
+                    "an element is written `R {name} {{ … }}`, with its kind before its name"
+                ))
+            }
+            _ => return None,
+        },
+        _ => return None,
+    };
+    Some(Box::new(error))
+}
+
+/// Reads `arm.rel[1..3]`.
+pub(super) fn reference(cursor: &mut Cursor, what: &str) -> Parsed<Reference> {
+    let start = cursor.span();
+    let mut path = vec![cursor.name(what)?];
+    while cursor.take_punct('.') {
+        let before = format!("a name after `{}.`", path[path.len() - 1]);
+        match cursor.name(&before) {
+            Ok(name) => path.push(name),
+            Err(error)
+                if cursor.ident(0).is_none()
+                    && cursor.peek(0).is_some_and(|token| {
+                        matches!(token, proc_macro2::TokenTree::Literal(_))
+                    }) =>
+            {
+                return Err(Box::new(
+                    (*error).help("a component by number stands in brackets: `name[0]`"),
+                ));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    let selection = cursor
+        .take_group(Delimiter::Bracket)
+        .map(|group| selection(&group))
+        .transpose()?;
+    let span = start.join(cursor.last_span()).unwrap_or(start);
+    Ok(Reference {
+        path,
+        selection,
+        span,
+    })
+}
+
+/// Reads `0` or `1..3`, between brackets.
+fn selection(group: &Group) -> Parsed<Selection> {
+    const WHAT: &str = "a component such as `0` or a range such as `1..3`";
+    let mut cursor = Cursor::inside(group);
+    let start = cursor.integer(WHAT, codes::SYNTAX)?;
+    if cursor.ended() {
+        return Ok(Selection {
+            start,
+            end: start + 1,
+        });
+    }
+    if !(cursor.punct(0, '.') && cursor.punct(1, '.')) {
+        return Err(cursor.expected("`..` or `]` after the component"));
+    }
+    cursor.advance(2);
+    if cursor.punct(0, '=') {
+        let error = *cursor.expected("the end of the range after `..`");
+        return Err(Box::new(error.help(
+            "a range excludes its end: `1..3` selects the components 1 and 2",
+        )));
+    }
+    let end = cursor.integer("the end of the range after `..`", codes::SYNTAX)?;
+    if end <= start {
+        let message = format!("expected a range that selects a component, found `{start}..{end}`");
+        return Err(Box::new(crate::diagnostics::error(
+            codes::SYNTAX,
+            cursor.last_span(),
+            message,
+        )));
+    }
+    if !cursor.ended() {
+        return Err(cursor.expected("`]` after the range"));
+    }
+    Ok(Selection { start, end })
+}
+
+/// Reads `name: Component { … } (a, b);`, given the mark before it.
+pub(super) fn instance(
+    cursor: &mut Cursor,
+    derivative: Option<Span>,
+    sink: &mut Sink<'_>,
+) -> Parsed<Instance> {
+    let name = cursor.name("the name of an instance")?;
+    cursor.take_punct(':');
+    let component = cursor.name(&format!("the name of a component after `{name}:`"))?;
+    let arguments = match cursor.take_group(Delimiter::Brace) {
+        Some(group) => fields(&group, &format!("{name}: {component}"), sink)?,
+        None => Vec::new(),
+    };
+    let Some(group) = cursor.take_group(Delimiter::Parenthesis) else {
+        let wanted = if arguments.is_empty() {
+            "`{` or `(`"
+        } else {
+            "`(`"
+        };
+        let mut error = *cursor.expected(&format!("{wanted} after {}", cursor.previous()));
+        error = if words::element(&component.to_string()).is_some() {
+            error.help(format!(
+                "an element is written `{component} {name} {{ … }}`, without a colon"
+            ))
+        } else {
+            error.help(format!(
+                "the junctions for its ports stand in parentheses: `{name}: {component} (a, b);`"
+            ))
+        };
+        return Err(Box::new(error));
+    };
+    let connections = connections(&group)?;
+    finish(cursor, sink, "`;` after the instance")?;
+    Ok(Instance {
+        name,
+        derivative,
+        component,
+        arguments,
+        connections,
+    })
+}
+
+/// Reads the junctions given for the ports.
+fn connections(group: &Group) -> Parsed<Vec<Reference>> {
+    let mut cursor = Cursor::inside(group);
+    let mut connections = Vec::new();
+    while !cursor.ended() {
+        connections.push(reference(&mut cursor, "a junction for a port")?);
+        if !cursor.ended() && !cursor.take_punct(',') {
+            return Err(cursor.expected(&format!("`,` or `)` after {}", cursor.previous())));
+        }
+    }
+    Ok(connections)
+}

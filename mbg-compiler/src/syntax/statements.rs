@@ -1,0 +1,415 @@
+//! The statements of a model or component.
+
+use proc_macro2::{Delimiter, Group};
+use syn::Expr;
+
+use super::ast::{
+    Attitude, Causality, Input, Integral, Junction, JunctionKind, Output, Parameter, Statement,
+};
+use super::attributes::Attributes;
+use super::chains::{chain, instance};
+use super::cursor::{Cursor, Parsed};
+use super::elements::one_ports;
+use super::expressions::expression;
+use super::recovery::{Sink, finish, synchronize};
+use super::units::unit;
+use super::words;
+use crate::codes;
+use crate::diagnostics::Diagnostic;
+
+/// Reads the statements between braces.
+pub(super) fn body(group: &Group, sink: &mut Sink<'_>) -> Vec<Statement> {
+    let mut cursor = Cursor::inside(group);
+    let mut statements = Vec::new();
+    while !cursor.ended() {
+        if cursor.take_punct(';') {
+            continue;
+        }
+        let start = cursor.position();
+        match statement(&mut cursor, sink) {
+            Ok(statement) => statements.push(statement),
+            Err(error) => {
+                sink.report(error);
+                synchronize(&mut cursor, start);
+                // The names inside were perhaps lost one by one already; this finds them all.
+                sink.lost();
+                statements.extend(broken(cursor.since(start), sink));
+            }
+        }
+        statements.extend(
+            sink.lost()
+                .into_iter()
+                .map(|name| Statement::Broken(Some(name))),
+        );
+    }
+    statements
+}
+
+/// One broken statement for each name that the tokens would have declared, or one without a name.
+fn broken(tokens: &[proc_macro2::TokenTree], sink: &mut Sink<'_>) -> Vec<Statement> {
+    sink.lose(tokens);
+    let names = sink.lost();
+    if names.is_empty() {
+        return vec![Statement::Broken(None)];
+    }
+    names
+        .into_iter()
+        .map(|name| Statement::Broken(Some(name)))
+        .collect()
+}
+
+/// Reads one statement.
+fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
+    let attributes = Attributes::read(cursor, sink)?;
+    if cursor.junction_digit(0) {
+        attributes.unmarked("a junction", sink);
+        return junction(cursor, sink).map(Statement::Junction);
+    }
+    let Some(word) = cursor.ident(0).map(ToString::to_string) else {
+        return Err(no_statement(cursor));
+    };
+    // A junction may bear one of the words as its name, and then an arrow, a dot or a bracket follows.
+    let referred =
+        cursor.arrow(1) || cursor.punct(1, '.') || cursor.group(1, Delimiter::Bracket).is_some();
+    if !referred {
+        if words::STATEMENTS.contains(&word.as_str()) {
+            attributes.unmarked(&format!("`{word}`"), sink);
+            cursor.advance(1);
+            return declaration(cursor, &word, attributes, sink);
+        }
+        if words::LATER.contains(&word.as_str()) {
+            return Err(cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet")));
+        }
+    }
+    let misspelt = cursor.ident(1).is_some() && words::element(&word).is_none();
+    if misspelt || words::is_reserved(&word) {
+        return Err(no_statement(cursor));
+    }
+    if cursor.punct(1, ':') {
+        return instance(cursor, attributes.derivative, sink).map(Statement::Instance);
+    }
+    chain(cursor, attributes.derivative, sink).map(Statement::Chain)
+}
+
+/// What stands here begins no statement.
+fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
+    let error = *cursor.expected("a statement");
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if words::ITEMS.contains(&word.as_str()) {
+        return Box::new(
+            error.note("models and components stand side by side, not inside each other"),
+        );
+    }
+    if let Some(near) = words::nearest(
+        &word,
+        &[words::STATEMENTS, &words::element_names()].concat(),
+    ) {
+        return Box::new(error.help(format!("did you mean `{near}`?")));
+    }
+    if let Some(digit) = glued(cursor) {
+        return Box::new(error.help(format!(
+            "a junction is written `{digit} name`, with a space after the `{digit}`"
+        )));
+    }
+    Box::new(
+        error
+            .note(format!("a statement begins with {},", words::alternatives(words::STATEMENTS)))
+            .note("or is a junction `1 name[3] { … }`, a chain `a -> b;` or an instance `name: Component (a, b);`"),
+    )
+}
+
+/// The digit of a junction that has grown together with its name, as in `1body`.
+fn glued(cursor: &Cursor) -> Option<char> {
+    let Some(proc_macro2::TokenTree::Literal(literal)) = cursor.peek(0) else {
+        return None;
+    };
+    literal
+        .to_string()
+        .chars()
+        .next()
+        .filter(|digit| matches!(digit, '0' | '1'))
+}
+
+/// Reads what follows one of [`words::STATEMENTS`].
+fn declaration(
+    cursor: &mut Cursor,
+    word: &str,
+    attributes: Attributes,
+    sink: &mut Sink<'_>,
+) -> Parsed<Statement> {
+    match word {
+        "param" => parameter(cursor, attributes, sink).map(Statement::Parameter),
+        "input" => input(cursor, attributes, sink).map(Statement::Input),
+        "output" => output(cursor, attributes, sink).map(Statement::Output),
+        "integral" => integral(cursor, attributes, sink).map(Statement::Integral),
+        "attitude" => attitude(cursor, attributes, sink).map(Statement::Attitude),
+        _ => causality(cursor, sink),
+    }
+}
+
+fn parameter(
+    cursor: &mut Cursor,
+    attributes: Attributes,
+    sink: &mut Sink<'_>,
+) -> Parsed<Parameter> {
+    let name = cursor.name("the name of the parameter after `param`")?;
+    let unit = unit(cursor, sink);
+    let equals = cursor.take_punct('=');
+    let default = if equals {
+        Some(expression(
+            cursor,
+            &format!("the value of `{name}` after `=`"),
+        )?)
+    } else {
+        None
+    };
+    let wanted = match (&unit, equals) {
+        (_, true) => "`;`",
+        (Some(_), false) => "`=` or `;`",
+        (None, false) => "`:`, `=` or `;`",
+    };
+    finish(
+        cursor,
+        sink,
+        &format!("{wanted} after {}", cursor.previous()),
+    )?;
+    Ok(Parameter {
+        documentation: attributes.documentation,
+        name,
+        unit,
+        default,
+    })
+}
+
+fn input(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Input> {
+    let name = cursor.name("the name of the input after `input`")?;
+    let dimension = cursor.dimension()?;
+    let unit = unit(cursor, sink);
+    let wanted = match (dimension, &unit) {
+        (_, Some(_)) => "`;`",
+        (Some(_), None) => "`:` or `;`",
+        (None, None) => "`[`, `:` or `;`",
+    };
+    finish(
+        cursor,
+        sink,
+        &format!("{wanted} after {}", cursor.previous()),
+    )?;
+    Ok(Input {
+        documentation: attributes.documentation,
+        name,
+        dimension: dimension.unwrap_or(1),
+        unit,
+    })
+}
+
+fn output(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Output> {
+    let name = cursor.name("the name of the output after `output`")?;
+    let dimension = cursor.dimension()?;
+    let unit = unit(cursor, sink);
+    equals(cursor, dimension.is_some(), unit.is_some())?;
+    let value = expression(cursor, &format!("the value of `{name}` after `=`"))?;
+    finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
+    Ok(Output {
+        documentation: attributes.documentation,
+        name,
+        dimension: dimension.unwrap_or(1),
+        unit,
+        value,
+    })
+}
+
+fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Integral> {
+    let name = cursor.name("the name of the integral after `integral`")?;
+    let dimension = cursor.dimension()?;
+    let unit = unit(cursor, sink);
+    equals(cursor, dimension.is_some(), unit.is_some())?;
+    let rate = expression(cursor, &format!("the rate of `{name}` after `=`"))?;
+    let initial = initial(cursor)?;
+    finish(cursor, sink, &ending(cursor, initial.is_some()))?;
+    let dimension = dimension.unwrap_or(1);
+    Ok(Integral {
+        documentation: attributes.documentation,
+        name,
+        dimension,
+        unit,
+        rate,
+        initial,
+    })
+}
+
+fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Attitude> {
+    let name = cursor.name("the name of the attitude after `attitude`")?;
+    if !cursor.take_punct('=') {
+        return Err(cursor.expected(&format!("`=` after {}", cursor.previous())));
+    }
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if word != "quaternion" {
+        let help = match words::nearest(&word, &["quaternion"]) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "an attitude is the integral of an angular velocity in body axes".to_owned(),
+        };
+        return Err(Box::new(
+            (*cursor.expected("`quaternion(…)` after `=`")).help(help),
+        ));
+    }
+    cursor.advance(1);
+    let Some(group) = cursor.take_group(Delimiter::Parenthesis) else {
+        return Err(cursor.expected("`(` after `quaternion`"));
+    };
+    let mut inner = Cursor::inside(&group);
+    let angular_velocity = expression(&mut inner, "the angular velocity")?;
+    if !inner.ended() {
+        return Err(inner.expected("`)` after the angular velocity"));
+    }
+    let initial = initial(cursor)?;
+    finish(cursor, sink, &ending(cursor, initial.is_some()))?;
+    Ok(Attitude {
+        documentation: attributes.documentation,
+        name,
+        angular_velocity,
+        initial,
+    })
+}
+
+/// Reads the `=` before a value.
+fn equals(cursor: &mut Cursor, dimension: bool, unit: bool) -> Parsed<()> {
+    if cursor.take_punct('=') {
+        return Ok(());
+    }
+    let wanted = match (dimension, unit) {
+        (_, true) => "`=`",
+        (true, false) => "`:` or `=`",
+        (false, false) => "`[`, `:` or `=`",
+    };
+    Err(cursor.expected(&format!("{wanted} after {}", cursor.previous())))
+}
+
+/// Reads `, initial: value`.
+fn initial(cursor: &mut Cursor) -> Parsed<Option<Expr>> {
+    if !cursor.take_punct(',') {
+        return Ok(None);
+    }
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if word != "initial" {
+        let mut error = *cursor.expected("`initial: value` after `,`");
+        if words::nearest(&word, &["initial"]).is_some() {
+            error = error.help("did you mean `initial`?");
+        }
+        return Err(Box::new(error));
+    }
+    cursor.advance(1);
+    if !cursor.take_punct(':') {
+        return Err(cursor.expected("`:` after `initial`"));
+    }
+    expression(cursor, "the initial value").map(Some)
+}
+
+/// What may end a statement that may have an initial value.
+fn ending(cursor: &Cursor, started: bool) -> String {
+    let wanted = if started {
+        "`;`"
+    } else {
+        "`, initial: value` or `;`"
+    };
+    format!("{wanted} after {}", cursor.previous())
+}
+
+fn causality(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
+    const WORDS: &[&str] = &["uniform", "componentwise"];
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    let causality = match word.as_str() {
+        "uniform" => Causality::Uniform,
+        "componentwise" => Causality::Componentwise,
+        _ => {
+            let mut error = *cursor.expected("`uniform` or `componentwise` after `causality`");
+            if let Some(near) = words::nearest(&word, WORDS) {
+                error = error.help(format!("did you mean `{near}`?"));
+            }
+            return Err(Box::new(error));
+        }
+    };
+    let span = cursor.span();
+    cursor.advance(1);
+    finish(cursor, sink, &format!("`;` after `{word}`"))?;
+    Ok(Statement::Causality(causality, span))
+}
+
+/// Reads `1 name[n] coordinate { … }` or `0 name;`, given that the digit stands here.
+fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
+    let span = cursor.span();
+    let kind = if cursor.found() == "`0`" {
+        JunctionKind::Zero
+    } else {
+        JunctionKind::One
+    };
+    let name = {
+        let digit = cursor.found();
+        cursor.advance(1);
+        cursor.name(&format!("the name of the junction after {digit}"))?
+    };
+    let (mut dimension, mut coordinate) = (None, false);
+    loop {
+        if dimension.is_none() && cursor.group(0, Delimiter::Bracket).is_some() {
+            dimension = cursor.dimension()?;
+        } else if !coordinate && cursor.ident(0).is_some_and(|word| word == "coordinate") {
+            coordinate = true;
+            cursor.advance(1);
+        } else {
+            break;
+        }
+    }
+    let elements = match cursor.take_group(Delimiter::Brace) {
+        Some(group) => {
+            let elements = one_ports(&group, sink);
+            if cursor.arrow(0) {
+                let error = *cursor.expected("the next statement after the junction's braces");
+                return Err(Box::new(error.help(format!(
+                    "bonds stand in a statement of their own: `{name} -> …;`"
+                ))));
+            }
+            elements
+        }
+        None => {
+            undelimited(cursor, dimension.is_some(), coordinate, sink)?;
+            Vec::new()
+        }
+    };
+    Ok(Junction {
+        kind,
+        span,
+        name,
+        dimension: dimension.unwrap_or(1),
+        coordinate,
+        elements,
+    })
+}
+
+/// Ends a junction without braces.
+fn undelimited(
+    cursor: &mut Cursor,
+    dimension: bool,
+    coordinate: bool,
+    sink: &mut Sink<'_>,
+) -> Parsed<()> {
+    let mut wanted = Vec::new();
+    if !dimension {
+        wanted.push("[");
+    }
+    if !coordinate {
+        wanted.push("coordinate");
+    }
+    wanted.extend(["{", ";"]);
+    let wanted = format!(
+        "{} after {}",
+        words::alternatives(&wanted),
+        cursor.previous()
+    );
+    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if !coordinate && words::nearest(&word, &["coordinate"]).is_some() {
+        return Err(Box::new(
+            (*cursor.expected(&wanted)).help("did you mean `coordinate`?"),
+        ));
+    }
+    finish(cursor, sink, &wanted)
+}

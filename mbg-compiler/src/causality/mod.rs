@@ -1,2 +1,15 @@
 //! Stage 3, causality: who imposes what.
 pub mod uniform;
+pub mod conflict;
+pub mod enumerate;
+pub mod explain;
+pub mod propagation;
+pub mod report;
+pub mod search;
+pub mod strokes;
+pub mod words;
+
+#[cfg(test)]
+mod fixtures;
+#[cfg(test)]
+mod tests;

@@ -76,7 +76,10 @@ impl Diagnostics {
 
     /// Reports one mistake.
     pub fn report(&mut self, diagnostic: Diagnostic) {
-        debug_assert!(!diagnostic.message.ends_with('.'), "house style: no full stop");
+        debug_assert!(
+            !diagnostic.message.ends_with('.'),
+            "house style: no full stop"
+        );
         self.list.push(diagnostic);
     }
 
@@ -112,7 +115,13 @@ impl Diagnostics {
 
 /// Starts a diagnostic.
 pub fn error(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
-    Diagnostic { code, span, message: message.into(), notes: Vec::new(), helps: Vec::new() }
+    Diagnostic {
+        code,
+        span,
+        message: message.into(),
+        notes: Vec::new(),
+        helps: Vec::new(),
+    }
 }
 
 /// At most eight names, then how many more.
@@ -120,5 +129,9 @@ pub fn error(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
 pub fn listing<I: IntoIterator<Item = String>>(names: I) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     let shown = names.iter().take(8).cloned().collect::<Vec<_>>().join(", ");
-    if names.len() > 8 { format!("{shown} and {} more", names.len() - 8) } else { shown }
+    if names.len() > 8 {
+        format!("{shown} and {} more", names.len() - 8)
+    } else {
+        shown
+    }
 }

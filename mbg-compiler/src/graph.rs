@@ -42,7 +42,10 @@ pub struct Origins(Vec<Origin>);
 impl Origins {
     /// Adds an origin.
     pub fn add(&mut self, path: impl Into<String>, span: Span) -> OriginId {
-        self.0.push(Origin { path: path.into(), span });
+        self.0.push(Origin {
+            path: path.into(),
+            span,
+        });
         OriginId(self.0.len() - 1)
     }
 
@@ -219,7 +222,11 @@ impl BondGraph {
                 if *range == (0..junction.dimension) {
                     junction.name.clone()
                 } else if range.len() == 1 {
-                    format!("{}.{}", junction.name, component_name(range.start, junction.dimension))
+                    format!(
+                        "{}.{}",
+                        junction.name,
+                        component_name(range.start, junction.dimension)
+                    )
                 } else {
                     format!("{}[{}..{}]", junction.name, range.start, range.end)
                 }
@@ -233,12 +240,20 @@ impl BondGraph {
     #[must_use]
     pub fn bond_name(&self, id: BondId) -> String {
         let bond = &self.bonds[id.0];
-        format!("{} -> {}", self.end_name(&bond.from), self.end_name(&bond.to))
+        format!(
+            "{} -> {}",
+            self.end_name(&bond.from),
+            self.end_name(&bond.to)
+        )
     }
 }
 
 /// `x`, `y`, `z` up to dimension 3, else the number.
 #[must_use]
 pub fn component_name(index: usize, dimension: usize) -> String {
-    if dimension <= 3 { ["x", "y", "z"][index].to_owned() } else { index.to_string() }
+    if dimension <= 3 {
+        ["x", "y", "z"][index].to_owned()
+    } else {
+        index.to_string()
+    }
 }

@@ -3,7 +3,10 @@ pub mod causality;
 pub mod codes;
 pub mod diagnostics;
 pub mod elaborate;
+pub mod equations;
 pub mod graph;
+pub mod network;
+pub mod structure;
 pub mod symbolic;
 pub mod syntax;
 

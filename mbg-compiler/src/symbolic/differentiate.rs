@@ -14,7 +14,10 @@ impl Differentiator {
     /// With respect to `symbol`.
     #[must_use]
     pub fn new(symbol: Symbol) -> Self {
-        Self { symbol, known: HashMap::new() }
+        Self {
+            symbol,
+            known: HashMap::new(),
+        }
     }
 
     /// The derivative. Walks with a stack of its own, so that depth is no limit.
@@ -27,7 +30,10 @@ impl Differentiator {
             }
             let operation = pool.operation(current).clone();
             let before = pending.len();
-            let missing = operation.operands().into_iter().filter(|part| !self.known.contains_key(&part.node()));
+            let missing = operation
+                .operands()
+                .into_iter()
+                .filter(|part| !self.known.contains_key(&part.node()));
             pending.extend(missing.map(Expression::magnitude));
             if pending.len() == before {
                 let derivative = self.rule(pool, current, &operation);
@@ -67,7 +73,9 @@ impl Differentiator {
                 let sine = pool.sine(*a);
                 pool.multiply(sine, self.of(*a)).negated()
             }
-            Operation::Call(function, arguments) => self.call_rule(pool, whole, *function, arguments),
+            Operation::Call(function, arguments) => {
+                self.call_rule(pool, whole, *function, arguments)
+            }
         }
     }
 
@@ -84,8 +92,20 @@ impl Differentiator {
                 let (yes, no) = (self.of(arguments[2]), self.of(arguments[3]));
                 Self::select(pool, arguments[0], arguments[1], yes, no)
             }
-            Function::Min => Self::select(pool, arguments[0], arguments[1], inner, self.of(arguments[1])),
-            Function::Max => Self::select(pool, arguments[1], arguments[0], inner, self.of(arguments[1])),
+            Function::Min => Self::select(
+                pool,
+                arguments[0],
+                arguments[1],
+                inner,
+                self.of(arguments[1]),
+            ),
+            Function::Max => Self::select(
+                pool,
+                arguments[1],
+                arguments[0],
+                inner,
+                self.of(arguments[1]),
+            ),
             Function::Atan2 => self.atan2_rule(pool, arguments[0], arguments[1]),
             _ if inner == Expression::ZERO => Expression::ZERO,
             _ => {
@@ -95,8 +115,18 @@ impl Differentiator {
         }
     }
 
-    fn select(pool: &mut Pool, a: Expression, b: Expression, yes: Expression, no: Expression) -> Expression {
-        if yes == no { yes } else { pool.call(Function::SelectLess, &[a, b, yes, no]) }
+    fn select(
+        pool: &mut Pool,
+        a: Expression,
+        b: Expression,
+        yes: Expression,
+        no: Expression,
+    ) -> Expression {
+        if yes == no {
+            yes
+        } else {
+            pool.call(Function::SelectLess, &[a, b, yes, no])
+        }
     }
 
     fn atan2_rule(&self, pool: &mut Pool, y: Expression, x: Expression) -> Expression {
@@ -136,9 +166,11 @@ impl Differentiator {
                 quotient(pool, one, root).flipped(function == Function::Acos)
             }
             // The derivative of a step is zero wherever it exists; the others are handled by their own rules.
-            Function::Sign | Function::Min | Function::Max | Function::Atan2 | Function::SelectLess => {
-                Expression::ZERO
-            }
+            Function::Sign
+            | Function::Min
+            | Function::Max
+            | Function::Atan2
+            | Function::SelectLess => Expression::ZERO,
         }
     }
 }
@@ -165,6 +197,12 @@ mod tests {
         let y = pool.symbol(Symbol::State(1));
         let smaller = pool.call(Function::Min, &[x, y]);
         let slope = Differentiator::new(Symbol::State(0)).derivative(&mut pool, smaller);
-        assert_eq!(slope, pool.call(Function::SelectLess, &[x, y, Expression::ONE, Expression::ZERO]));
+        assert_eq!(
+            slope,
+            pool.call(
+                Function::SelectLess,
+                &[x, y, Expression::ONE, Expression::ZERO]
+            )
+        );
     }
 }

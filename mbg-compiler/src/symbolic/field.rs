@@ -96,15 +96,27 @@ impl Image {
     #[must_use]
     pub fn integer(value: i64) -> Self {
         let magnitude = value.unsigned_abs() % PRIME;
-        Self([if value < 0 { negate(magnitude) } else { magnitude }; POINTS])
+        Self(
+            [if value < 0 {
+                negate(magnitude)
+            } else {
+                magnitude
+            }; POINTS],
+        )
     }
 
     /// `digits · 10^exponent`.
     #[must_use]
     pub fn decimal(digits: &str, exponent: i64) -> Self {
-        let mantissa = digits.bytes().fold(0, |value, digit| add(multiply(value, 10), u64::from(digit - b'0')));
+        let mantissa = digits.bytes().fold(0, |value, digit| {
+            add(multiply(value, 10), u64::from(digit - b'0'))
+        });
         let scale = power(10, exponent.unsigned_abs());
-        let scale = if exponent < 0 { invert(scale).unwrap_or(0) } else { scale };
+        let scale = if exponent < 0 {
+            invert(scale).unwrap_or(0)
+        } else {
+            scale
+        };
         Self([multiply(mantissa, scale); POINTS])
     }
 

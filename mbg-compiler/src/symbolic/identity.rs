@@ -9,5 +9,8 @@ use super::pool::Pool;
 #[must_use]
 pub fn identical(pool: &Pool, a: &Matrix, b: &Matrix) -> bool {
     (a.rows, a.columns) == (b.rows, b.columns)
-        && a.entries.iter().zip(&b.entries).all(|(a, b)| pool.image(*a) == pool.image(*b))
+        && a.entries
+            .iter()
+            .zip(&b.entries)
+            .all(|(a, b)| pool.image(*a) == pool.image(*b))
 }

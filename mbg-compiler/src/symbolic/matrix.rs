@@ -21,7 +21,11 @@ impl Matrix {
     #[must_use]
     pub fn new(rows: usize, columns: usize, entries: Vec<Expression>) -> Self {
         debug_assert_eq!(entries.len(), rows * columns);
-        Self { rows, columns, entries }
+        Self {
+            rows,
+            columns,
+            entries,
+        }
     }
 
     /// A column.
@@ -50,7 +54,9 @@ impl Matrix {
     /// Transposed.
     #[must_use]
     pub fn transpose(&self) -> Self {
-        let entries = (0..self.columns).flat_map(|c| (0..self.rows).map(move |r| self.at(r, c))).collect();
+        let entries = (0..self.columns)
+            .flat_map(|c| (0..self.rows).map(move |r| self.at(r, c)))
+            .collect();
         Self::new(self.columns, self.rows, entries)
     }
 
@@ -60,8 +66,9 @@ impl Matrix {
         let mut entries = Vec::with_capacity(self.rows * other.columns);
         for row in 0..self.rows {
             for column in 0..other.columns {
-                let terms: Vec<_> =
-                    (0..self.columns).map(|k| pool.multiply(self.at(row, k), other.at(k, column))).collect();
+                let terms: Vec<_> = (0..self.columns)
+                    .map(|k| pool.multiply(self.at(row, k), other.at(k, column)))
+                    .collect();
                 entries.push(pool.sum(&terms));
             }
         }
@@ -71,14 +78,19 @@ impl Matrix {
     /// Entry by entry.
     #[must_use]
     pub fn map(&self, operation: impl FnMut(Expression) -> Expression) -> Self {
-        Self::new(self.rows, self.columns, self.entries.iter().copied().map(operation).collect())
+        Self::new(
+            self.rows,
+            self.columns,
+            self.entries.iter().copied().map(operation).collect(),
+        )
     }
 
     /// Whether all entries off the diagonal are zero.
     #[must_use]
     pub fn is_diagonal(&self) -> bool {
         self.rows == self.columns
-            && (0..self.rows).all(|r| (0..self.columns).all(|c| r == c || self.at(r, c) == Expression::ZERO))
+            && (0..self.rows)
+                .all(|r| (0..self.columns).all(|c| r == c || self.at(r, c) == Expression::ZERO))
     }
 
     /// Whether it equals its transpose.
@@ -104,7 +116,11 @@ impl Matrix {
             for column in 0..size {
                 let rows: Vec<usize> = (0..size).filter(|r| *r != column).collect();
                 let columns: Vec<usize> = (0..size).filter(|c| *c != row).collect();
-                entries.push(minors.minor(pool, &rows, &columns).flipped((row + column) % 2 == 1));
+                entries.push(
+                    minors
+                        .minor(pool, &rows, &columns)
+                        .flipped((row + column) % 2 == 1),
+                );
             }
         }
         Self::new(size, size, entries)
@@ -114,14 +130,18 @@ impl Matrix {
     #[must_use]
     pub fn inverse(&self, pool: &mut Pool) -> Option<Self> {
         if self.is_diagonal() {
-            let inverted: Option<Vec<_>> =
-                (0..self.rows).map(|k| pool.divide(Expression::ONE, self.at(k, k))).collect();
+            let inverted: Option<Vec<_>> = (0..self.rows)
+                .map(|k| pool.divide(Expression::ONE, self.at(k, k)))
+                .collect();
             return Some(Self::diagonal(&inverted?));
         }
         let determinant = self.determinant(pool);
         let adjugate = self.adjugate(pool);
-        let entries: Option<Vec<_>> =
-            adjugate.entries.iter().map(|entry| pool.divide(*entry, determinant)).collect();
+        let entries: Option<Vec<_>> = adjugate
+            .entries
+            .iter()
+            .map(|entry| pool.divide(*entry, determinant))
+            .collect();
         Some(Self::new(self.rows, self.columns, entries?))
     }
 }
@@ -134,11 +154,16 @@ struct Minors<'a> {
 
 impl<'a> Minors<'a> {
     fn new(matrix: &'a Matrix) -> Self {
-        Self { matrix, known: std::collections::BTreeMap::new() }
+        Self {
+            matrix,
+            known: std::collections::BTreeMap::new(),
+        }
     }
 
     fn minor(&mut self, pool: &mut Pool, rows: &[usize], columns: &[usize]) -> Expression {
-        let Some((&first, rest)) = rows.split_first() else { return Expression::ONE };
+        let Some((&first, rest)) = rows.split_first() else {
+            return Expression::ONE;
+        };
         let key = (rows.to_vec(), columns.to_vec());
         if let Some(known) = self.known.get(&key) {
             return *known;
@@ -149,7 +174,11 @@ impl<'a> Minors<'a> {
             if entry == Expression::ZERO {
                 continue;
             }
-            let others: Vec<usize> = columns.iter().copied().filter(|other| *other != column).collect();
+            let others: Vec<usize> = columns
+                .iter()
+                .copied()
+                .filter(|other| *other != column)
+                .collect();
             let minor = self.minor(pool, rest, &others);
             let term = pool.multiply(entry, minor).flipped(position % 2 == 1);
             sum = pool.add(sum, term);
@@ -193,10 +222,14 @@ impl Factor {
     #[must_use]
     pub fn transpose(&self) -> Self {
         match self {
-            Self::Rotation { axis, angle } => Self::Rotation { axis: *axis, angle: angle.negated() },
-            Self::GimbalJacobian { angles, transposed } => {
-                Self::GimbalJacobian { angles: *angles, transposed: !transposed }
-            }
+            Self::Rotation { axis, angle } => Self::Rotation {
+                axis: *axis,
+                angle: angle.negated(),
+            },
+            Self::GimbalJacobian { angles, transposed } => Self::GimbalJacobian {
+                angles: *angles,
+                transposed: !transposed,
+            },
             Self::Dense(matrix) => Self::Dense(matrix.transpose()),
         }
     }
@@ -208,7 +241,11 @@ impl Factor {
             Self::Rotation { axis, angle } => rotation(pool, *axis, *angle),
             Self::GimbalJacobian { angles, transposed } => {
                 let matrix = gimbal_jacobian(pool, *angles);
-                if *transposed { matrix.transpose() } else { matrix }
+                if *transposed {
+                    matrix.transpose()
+                } else {
+                    matrix
+                }
             }
             Self::Dense(matrix) => matrix.clone(),
         }
@@ -216,7 +253,9 @@ impl Factor {
 
     fn apply(&self, pool: &mut Pool, vector: &Matrix) -> Matrix {
         match self {
-            Self::GimbalJacobian { angles, transposed } => apply_jacobian(pool, *angles, *transposed, vector),
+            Self::GimbalJacobian { angles, transposed } => {
+                apply_jacobian(pool, *angles, *transposed, vector)
+            }
             _ => self.to_matrix(pool).times(pool, vector),
         }
     }
@@ -233,7 +272,9 @@ impl Product {
     /// One factor.
     #[must_use]
     pub fn of(factor: Factor) -> Self {
-        Self { factors: vec![factor] }
+        Self {
+            factors: vec![factor],
+        }
     }
 
     /// Number of rows.
@@ -258,14 +299,18 @@ impl Product {
     /// Transposed.
     #[must_use]
     pub fn transpose(&self) -> Self {
-        Self { factors: self.factors.iter().rev().map(Factor::transpose).collect() }
+        Self {
+            factors: self.factors.iter().rev().map(Factor::transpose).collect(),
+        }
     }
 
     /// Multiplied out.
     #[must_use]
     pub fn to_matrix(&self, pool: &mut Pool) -> Matrix {
         let mut factors = self.factors.iter().rev();
-        let Some(last) = factors.next() else { return Matrix::column(Vec::new()) };
+        let Some(last) = factors.next() else {
+            return Matrix::column(Vec::new());
+        };
         let mut matrix = last.to_matrix(pool);
         for factor in factors {
             matrix = factor.to_matrix(pool).times(pool, &matrix);
@@ -276,7 +321,10 @@ impl Product {
     /// Applied to a column, factor by factor.
     #[must_use]
     pub fn apply(&self, pool: &mut Pool, vector: &Matrix) -> Matrix {
-        self.factors.iter().rev().fold(vector.clone(), |vector, factor| factor.apply(pool, &vector))
+        self.factors
+            .iter()
+            .rev()
+            .fold(vector.clone(), |vector, factor| factor.apply(pool, &vector))
     }
 }
 
@@ -301,7 +349,12 @@ fn gimbal_jacobian(pool: &mut Pool, [first, second, _]: [Expression; 3]) -> Matr
 }
 
 /// In nested frames: `e_x v₀ + Rx (e_y v₁ + Ry e_z v₂)`, or the transposed of that.
-fn apply_jacobian(pool: &mut Pool, angles: [Expression; 3], transposed: bool, vector: &Matrix) -> Matrix {
+fn apply_jacobian(
+    pool: &mut Pool,
+    angles: [Expression; 3],
+    transposed: bool,
+    vector: &Matrix,
+) -> Matrix {
     let [first, second, _] = angles;
     let unit = |axis: usize, value: Expression| {
         let mut entries = vec![Expression::ZERO; 3];
@@ -333,28 +386,47 @@ mod tests {
     fn rotation_times_its_transpose_is_the_identity_node_for_node() {
         let mut pool = Pool::new();
         let angles = angles(&mut pool);
-        let turn = (0..3).map(|axis| Factor::Rotation { axis, angle: angles[axis] });
-        let turn = Product { factors: turn.collect() };
+        let turn = (0..3).map(|axis| Factor::Rotation {
+            axis,
+            angle: angles[axis],
+        });
+        let turn = Product {
+            factors: turn.collect(),
+        };
         let product = turn.transpose().then(turn.clone()).to_matrix(&mut pool);
         assert_eq!(product, Matrix::diagonal(&[Expression::ONE; 3]));
-        assert_eq!(turn.to_matrix(&mut pool).determinant(&mut pool), Expression::ONE);
+        assert_eq!(
+            turn.to_matrix(&mut pool).determinant(&mut pool),
+            Expression::ONE
+        );
     }
 
     #[test]
     fn determinant_of_the_gimbal_jacobian_is_the_cosine_of_the_second_angle() {
         let mut pool = Pool::new();
         let angles = angles(&mut pool);
-        let jacobian = Factor::GimbalJacobian { angles, transposed: false }.to_matrix(&mut pool);
+        let jacobian = Factor::GimbalJacobian {
+            angles,
+            transposed: false,
+        }
+        .to_matrix(&mut pool);
         assert_eq!(jacobian.determinant(&mut pool), pool.cosine(angles[1]));
         let inverse = jacobian.inverse(&mut pool).unwrap();
-        assert_eq!(inverse.times(&mut pool, &jacobian), Matrix::diagonal(&[Expression::ONE; 3]));
+        assert_eq!(
+            inverse.times(&mut pool, &jacobian),
+            Matrix::diagonal(&[Expression::ONE; 3])
+        );
     }
 
     #[test]
     fn applying_the_jacobian_in_nested_frames_equals_its_matrix() {
         let mut pool = Pool::new();
         let angles = angles(&mut pool);
-        let vector = Matrix::column((3..6).map(|index| pool.symbol(Symbol::State(index))).collect());
+        let vector = Matrix::column(
+            (3..6)
+                .map(|index| pool.symbol(Symbol::State(index)))
+                .collect(),
+        );
         for transposed in [false, true] {
             let factor = Factor::GimbalJacobian { angles, transposed };
             let nested = factor.apply(&mut pool, &vector);

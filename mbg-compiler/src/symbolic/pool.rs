@@ -44,7 +44,11 @@ impl Expression {
     /// With the opposite sign.
     #[must_use]
     pub fn negated(self) -> Self {
-        if self == Self::ZERO { self } else { Self(self.0 ^ 1) }
+        if self == Self::ZERO {
+            self
+        } else {
+            Self(self.0 ^ 1)
+        }
     }
 
     /// Negated where `flip` holds.
@@ -243,7 +247,10 @@ impl Pool {
     /// A pool that holds 0 and 1.
     #[must_use]
     pub fn new() -> Self {
-        let mut pool = Self { nodes: Vec::new(), found: HashMap::new() };
+        let mut pool = Self {
+            nodes: Vec::new(),
+            found: HashMap::new(),
+        };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
         pool.insert(Operation::Constant(1.0), Image::ONE, Rate::Constant);
         pool
@@ -277,14 +284,22 @@ impl Pool {
     #[must_use]
     pub fn image(&self, expression: Expression) -> Image {
         let image = self.nodes[expression.node()].image;
-        if expression.is_negative() { image.negated() } else { image }
+        if expression.is_negative() {
+            image.negated()
+        } else {
+            image
+        }
     }
 
     /// Its value, if it is a constant.
     #[must_use]
     pub fn constant_value(&self, expression: Expression) -> Option<f64> {
         match self.operation(expression) {
-            Operation::Constant(value) => Some(if expression.is_negative() { -value } else { *value }),
+            Operation::Constant(value) => Some(if expression.is_negative() {
+                -value
+            } else {
+                *value
+            }),
             _ => None,
         }
     }
@@ -300,7 +315,11 @@ impl Pool {
 
     fn insert(&mut self, operation: Operation, image: Image, rate: Rate) -> Expression {
         let node = self.nodes.len();
-        self.nodes.push(Node { operation, image, rate });
+        self.nodes.push(Node {
+            operation,
+            image,
+            rate,
+        });
         self.found.insert(image, node as u32);
         Expression::new(node, false)
     }
@@ -309,7 +328,9 @@ impl Pool {
         if let Some(node) = self.found.get(&image) {
             return Some(Expression::new(*node as usize, false));
         }
-        self.found.get(&image.negated()).map(|node| Expression::new(*node as usize, true))
+        self.found
+            .get(&image.negated())
+            .map(|node| Expression::new(*node as usize, true))
     }
 
     /// The node with this image, or a new one.
@@ -317,7 +338,11 @@ impl Pool {
         if let Some(expression) = self.look_up(image) {
             return expression;
         }
-        let rate = operation.operands().iter().map(|operand| self.rate(*operand)).max();
+        let rate = operation
+            .operands()
+            .iter()
+            .map(|operand| self.rate(*operand))
+            .max();
         self.insert(operation, image, rate.unwrap_or(Rate::Constant))
     }
 
@@ -344,7 +369,10 @@ impl Pool {
         let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((&text, "0"));
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
         let exponent: i64 = exponent.parse().ok()?;
-        let image = Image::decimal(&format!("{whole}{fraction}"), exponent - fraction.len() as i64);
+        let image = Image::decimal(
+            &format!("{whole}{fraction}"),
+            exponent - fraction.len() as i64,
+        );
         Some(self.constant(value, image))
     }
 
@@ -364,7 +392,8 @@ impl Pool {
             Symbol::Signal(index) => (5, index, Rate::Varying),
         };
         let image = Image::unknown(&[kind, index as u64]);
-        self.look_up(image).unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
+        self.look_up(image)
+            .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
     }
 
     /// Sum.
@@ -383,7 +412,9 @@ impl Pool {
             return self.constant(x + y, image);
         }
         match (a.is_negative(), b.is_negative()) {
-            (true, true) => self.intern(Operation::Add(a.negated(), b.negated()), image.negated()).negated(),
+            (true, true) => self
+                .intern(Operation::Add(a.negated(), b.negated()), image.negated())
+                .negated(),
             (true, false) => self.intern(Operation::Add(b, a), image),
             _ => self.intern(Operation::Add(a, b), image),
         }
@@ -396,7 +427,9 @@ impl Pool {
 
     /// Sum of several, from the left.
     pub fn sum(&mut self, terms: &[Expression]) -> Expression {
-        terms.iter().fold(Expression::ZERO, |sum, term| self.add(sum, *term))
+        terms
+            .iter()
+            .fold(Expression::ZERO, |sum, term| self.add(sum, *term))
     }
 
     /// Product. Factors that change seldom are gathered, so that they are computed seldom.
@@ -423,7 +456,11 @@ impl Pool {
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
             return self.constant(x * y, image);
         }
-        let (slow, fast) = if self.rate(a) <= self.rate(b) { (a, b) } else { (b, a) };
+        let (slow, fast) = if self.rate(a) <= self.rate(b) {
+            (a, b)
+        } else {
+            (b, a)
+        };
         if let Operation::Multiply(inner, rest) = *self.operation(fast)
             && self.rate(inner) < self.rate(rest)
             && self.rate(slow) < self.rate(rest)
@@ -471,7 +508,11 @@ impl Pool {
                 square = self.multiply(square, square);
             }
         }
-        if exponent < 0 { self.divide(Expression::ONE, result) } else { Some(result) }
+        if exponent < 0 {
+            self.divide(Expression::ONE, result)
+        } else {
+            Some(result)
+        }
     }
 
     /// Sine.
@@ -481,7 +522,8 @@ impl Pool {
         }
         let magnitude = angle.magnitude();
         let (_, image) = self.circle(magnitude);
-        self.trigonometric(Operation::Sine(magnitude), image, magnitude, f64::sin).flipped(angle.is_negative())
+        self.trigonometric(Operation::Sine(magnitude), image, magnitude, f64::sin)
+            .flipped(angle.is_negative())
     }
 
     /// Cosine.
@@ -527,7 +569,11 @@ impl Pool {
     }
 
     fn angle_parts(&self, angle: Expression, multiple: i64, parts: &mut Vec<(Expression, i64)>) {
-        let multiple = if angle.is_negative() { -multiple } else { multiple };
+        let multiple = if angle.is_negative() {
+            -multiple
+        } else {
+            multiple
+        };
         let base = angle.magnitude();
         match *self.operation(base) {
             Operation::Add(a, b) => {
@@ -546,8 +592,14 @@ impl Pool {
 
     /// Any other function.
     pub fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
-        let values: Option<Vec<f64>> = arguments.iter().map(|argument| self.constant_value(*argument)).collect();
-        let images: Vec<Image> = arguments.iter().map(|argument| self.image(*argument)).collect();
+        let values: Option<Vec<f64>> = arguments
+            .iter()
+            .map(|argument| self.constant_value(*argument))
+            .collect();
+        let images: Vec<Image> = arguments
+            .iter()
+            .map(|argument| self.image(*argument))
+            .collect();
         let image = self.function_image(function, arguments, &images);
         match values.map(|values| function.evaluate(&values)) {
             Some(value) if value.is_finite() => self.folded_call(value, image),
@@ -562,13 +614,22 @@ impl Pool {
         self.constant(value, image)
     }
 
-    fn function_image(&self, function: Function, arguments: &[Expression], images: &[Image]) -> Image {
+    fn function_image(
+        &self,
+        function: Function,
+        arguments: &[Expression],
+        images: &[Image],
+    ) -> Image {
         if function == Function::Tan {
             let angle = arguments[0];
             let (cosine, sine) = self.circle(angle.magnitude());
             if let Some(inverse) = cosine.inverted() {
                 let tangent = sine.times(inverse);
-                return if angle.is_negative() { tangent.negated() } else { tangent };
+                return if angle.is_negative() {
+                    tangent.negated()
+                } else {
+                    tangent
+                };
             }
         }
         Image::opaque(function as u64, images)

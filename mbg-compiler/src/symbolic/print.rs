@@ -34,7 +34,11 @@ impl<'a> Printer<'a> {
 
     fn operand(&self, expression: Expression, at_least: Binding, depth: usize) -> String {
         let (text, binding) = self.at_depth(expression, depth);
-        if binding < at_least { format!("({text})") } else { text }
+        if binding < at_least {
+            format!("({text})")
+        } else {
+            text
+        }
     }
 
     fn at_depth(&self, expression: Expression, depth: usize) -> (String, Binding) {
@@ -42,7 +46,13 @@ impl<'a> Printer<'a> {
             return ("…".to_owned(), Binding::Atom);
         }
         if expression.is_negative() {
-            return (format!("-{}", self.operand(expression.magnitude(), Binding::Product, depth)), Binding::Sum);
+            return (
+                format!(
+                    "-{}",
+                    self.operand(expression.magnitude(), Binding::Product, depth)
+                ),
+                Binding::Sum,
+            );
         }
         let depth = depth - 1;
         match self.pool.operation(expression) {
@@ -51,23 +61,50 @@ impl<'a> Printer<'a> {
             Operation::Add(a, b) => {
                 let first = self.operand(*a, Binding::Sum, depth);
                 let sign = if b.is_negative() { '-' } else { '+' };
-                let least = if b.is_negative() { Binding::Product } else { Binding::Sum };
-                (format!("{first} {sign} {}", self.operand(b.magnitude(), least, depth)), Binding::Sum)
+                let least = if b.is_negative() {
+                    Binding::Product
+                } else {
+                    Binding::Sum
+                };
+                (
+                    format!(
+                        "{first} {sign} {}",
+                        self.operand(b.magnitude(), least, depth)
+                    ),
+                    Binding::Sum,
+                )
             }
             Operation::Multiply(a, b) => {
-                let (a, b) = (self.operand(*a, Binding::Product, depth), self.operand(*b, Binding::Product, depth));
+                let (a, b) = (
+                    self.operand(*a, Binding::Product, depth),
+                    self.operand(*b, Binding::Product, depth),
+                );
                 (format!("{a} {b}"), Binding::Product)
             }
             Operation::Divide(a, b) => {
-                let (a, b) = (self.operand(*a, Binding::Product, depth), self.operand(*b, Binding::Atom, depth));
+                let (a, b) = (
+                    self.operand(*a, Binding::Product, depth),
+                    self.operand(*b, Binding::Atom, depth),
+                );
                 (format!("{a}/{b}"), Binding::Product)
             }
-            Operation::Sine(a) => (format!("sin({})", self.at_depth(*a, depth).0), Binding::Atom),
-            Operation::Cosine(a) => (format!("cos({})", self.at_depth(*a, depth).0), Binding::Atom),
+            Operation::Sine(a) => (
+                format!("sin({})", self.at_depth(*a, depth).0),
+                Binding::Atom,
+            ),
+            Operation::Cosine(a) => (
+                format!("cos({})", self.at_depth(*a, depth).0),
+                Binding::Atom,
+            ),
             Operation::Call(function, arguments) => {
-                let arguments: Vec<_> =
-                    arguments.iter().map(|argument| self.at_depth(*argument, depth).0).collect();
-                (format!("{}({})", function.name(), arguments.join(", ")), Binding::Atom)
+                let arguments: Vec<_> = arguments
+                    .iter()
+                    .map(|argument| self.at_depth(*argument, depth).0)
+                    .collect();
+                (
+                    format!("{}({})", function.name(), arguments.join(", ")),
+                    Binding::Atom,
+                )
             }
         }
     }
@@ -78,5 +115,9 @@ impl<'a> Printer<'a> {
 pub fn number(value: f64) -> String {
     let plain = format!("{value}");
     let scientific = format!("{value:e}");
-    if plain.len() <= scientific.len() + 2 { plain } else { scientific }
+    if plain.len() <= scientific.len() + 2 {
+        plain
+    } else {
+        scientific
+    }
 }

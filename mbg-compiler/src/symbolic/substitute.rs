@@ -41,7 +41,10 @@ impl Substitution {
             }
             let operation = pool.operation(current).clone();
             let before = pending.len();
-            let missing = operation.operands().into_iter().filter(|part| !self.known.contains_key(&part.node()));
+            let missing = operation
+                .operands()
+                .into_iter()
+                .filter(|part| !self.known.contains_key(&part.node()));
             pending.extend(missing.map(Expression::magnitude));
             if pending.len() == before {
                 let replaced = self.rebuild(pool, current, &operation)?;
@@ -56,7 +59,12 @@ impl Substitution {
         self.known[&expression.node()].flipped(expression.is_negative())
     }
 
-    fn rebuild(&self, pool: &mut Pool, whole: Expression, operation: &Operation) -> Option<Expression> {
+    fn rebuild(
+        &self,
+        pool: &mut Pool,
+        whole: Expression,
+        operation: &Operation,
+    ) -> Option<Expression> {
         Some(match operation {
             Operation::Constant(_) => whole,
             Operation::Symbol(symbol) => self.get(*symbol).unwrap_or(whole),
@@ -66,7 +74,10 @@ impl Substitution {
             Operation::Sine(a) => pool.sine(self.of(*a)),
             Operation::Cosine(a) => pool.cosine(self.of(*a)),
             Operation::Call(function, arguments) => {
-                let arguments: Vec<_> = arguments.iter().map(|argument| self.of(*argument)).collect();
+                let arguments: Vec<_> = arguments
+                    .iter()
+                    .map(|argument| self.of(*argument))
+                    .collect();
                 pool.call(*function, &arguments)
             }
         })

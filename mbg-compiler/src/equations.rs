@@ -1,0 +1,416 @@
+//! Stage 4b, equations: one linear equation per unknown effort or flow.
+//!
+//! Input: the [`Network`] and the laws. Output: a [`Scalars`]: unknowns, and as many equations. An unknown is a
+//! *class* of variables: all efforts at a 0-junction are one, all flows at a 1-junction are one. Storages are in
+//! integral causality, so what they impose is known. A coefficient or constant may hold signals, which are unknowns
+//! that enter nonlinearly; where an equation is affine in one, it becomes an ordinary term.
+
+use std::collections::BTreeMap;
+
+use crate::elaborate::{Elaborated, Place, Quantity};
+use crate::graph::{ElementId, ElementKind, JunctionKind, Law};
+use crate::network::{Network, OnePort};
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Symbol};
+
+/// Who states an equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Owner {
+    /// Junctions and two-ports.
+    Structure,
+    /// A one-port.
+    Element(ElementId),
+}
+
+/// `Σ coefficient · unknown + constant = 0`.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    /// Unknowns with their coefficients.
+    pub terms: BTreeMap<usize, Expression>,
+    /// What is known.
+    pub constant: Expression,
+    /// Unknowns that enter nonlinearly.
+    pub signals: Vec<usize>,
+    /// Who states it.
+    pub owner: Owner,
+}
+
+/// The scalar equations of a model.
+pub struct Scalars {
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// As many equations.
+    pub equations: Vec<Equation>,
+    /// Unknown behind each signal, with its sign.
+    pub signals: Vec<(usize, bool)>,
+    /// Unknowns at the port of each one-port: effort and flow by component, and whether the flow is reversed.
+    pub ports: BTreeMap<ElementId, Port>,
+    /// Readable name of each unknown.
+    pub names: Vec<String>,
+}
+
+/// Efforts and flows at a one-port.
+#[derive(Clone, Debug)]
+pub struct Port {
+    /// Efforts by component.
+    pub effort: Vec<usize>,
+    /// Flows by component, along the bond.
+    pub flow: Vec<usize>,
+    /// Whether positive power goes into the element along the bond.
+    pub inward: bool,
+}
+
+/// Forms the equations.
+#[must_use]
+pub fn form(model: &Elaborated, network: &Network, pool: &mut Pool) -> Scalars {
+    let classes = Classes::of(network);
+    let mut former = Former { model, network, pool, classes, equations: Vec::new() };
+    former.junctions();
+    former.two_ports();
+    for one_port in network.one_ports.iter().flatten() {
+        former.one_port(one_port);
+    }
+    former.finish()
+}
+
+/// Union of variables that a junction makes equal. Variable `2 w` is an effort, `2 w + 1` a flow, of scalar wire w.
+struct Classes {
+    first: Vec<usize>,
+    class: Vec<usize>,
+    count: usize,
+}
+
+impl Classes {
+    fn of(network: &Network) -> Self {
+        let mut first = Vec::with_capacity(network.wires.len());
+        let mut total = 0;
+        for wire in &network.wires {
+            first.push(total);
+            total += wire.dimension;
+        }
+        let mut parent: Vec<usize> = (0..2 * total).collect();
+        let mut live = vec![false; 2 * total];
+        let mut mark = |wire: usize| {
+            for variable in 2 * first[wire]..2 * (first[wire] + network.wires[wire].dimension) {
+                live[variable] = true;
+            }
+        };
+        network.two_ports.iter().for_each(|two_port| {
+            mark(two_port.input);
+            mark(two_port.output);
+        });
+        network.one_ports.iter().flatten().for_each(|one_port| mark(one_port.wire));
+        for junction in &network.junctions {
+            junction.branches.iter().for_each(|branch| mark(branch.wire));
+            let offset = usize::from(junction.kind == JunctionKind::One);
+            for component in 0..junction.dimension {
+                let mut members = junction
+                    .branches
+                    .iter()
+                    .filter(|branch| branch.range.contains(&component))
+                    .map(|branch| 2 * (first[branch.wire] + component - branch.range.start) + offset);
+                if let Some(leader) = members.next() {
+                    for member in members {
+                        let (a, b) = (root(&mut parent, leader), root(&mut parent, member));
+                        parent[a.max(b)] = a.min(b);
+                    }
+                }
+            }
+        }
+        Self::number(first, parent, &live)
+    }
+
+    fn number(first: Vec<usize>, mut parent: Vec<usize>, live: &[bool]) -> Self {
+        let mut class = vec![usize::MAX; parent.len()];
+        let mut count = 0;
+        for variable in 0..parent.len() {
+            let leader = root(&mut parent, variable);
+            if live[variable] && class[leader] == usize::MAX {
+                class[leader] = count;
+                count += 1;
+            }
+            class[variable] = class[leader];
+        }
+        Self { first, class, count }
+    }
+
+    fn effort(&self, wire: usize, component: usize) -> usize {
+        self.class[2 * (self.first[wire] + component)]
+    }
+
+    fn flow(&self, wire: usize, component: usize) -> usize {
+        self.class[2 * (self.first[wire] + component) + 1]
+    }
+}
+
+fn root(parent: &mut [usize], mut variable: usize) -> usize {
+    while parent[variable] != variable {
+        parent[variable] = parent[parent[variable]];
+        variable = parent[variable];
+    }
+    variable
+}
+
+struct Former<'a> {
+    model: &'a Elaborated,
+    network: &'a Network,
+    pool: &'a mut Pool,
+    classes: Classes,
+    equations: Vec<Equation>,
+}
+
+impl Former<'_> {
+    fn add(&mut self, terms: &[(usize, Expression)], constant: Expression, owner: Owner) {
+        let mut sum: BTreeMap<usize, Expression> = BTreeMap::new();
+        for (unknown, coefficient) in terms {
+            let known = sum.get(unknown).copied().unwrap_or(Expression::ZERO);
+            sum.insert(*unknown, self.pool.add(known, *coefficient));
+        }
+        sum.retain(|_, coefficient| *coefficient != Expression::ZERO);
+        self.equations.push(Equation { terms: sum, constant, signals: Vec::new(), owner });
+    }
+
+    /// At a 0-junction flows sum to zero, at a 1-junction efforts.
+    fn junctions(&mut self) {
+        for junction in &self.network.junctions {
+            for component in 0..junction.dimension {
+                let terms: Vec<(usize, Expression)> = junction
+                    .branches
+                    .iter()
+                    .filter(|branch| branch.range.contains(&component))
+                    .map(|branch| {
+                        let inner = component - branch.range.start;
+                        let unknown = match junction.kind {
+                            JunctionKind::Zero => self.classes.flow(branch.wire, inner),
+                            JunctionKind::One => self.classes.effort(branch.wire, inner),
+                        };
+                        (unknown, Expression::ONE.flipped(!branch.inward))
+                    })
+                    .collect();
+                if !terms.is_empty() {
+                    self.add(&terms, Expression::ZERO, Owner::Structure);
+                }
+            }
+        }
+    }
+
+    /// `f_out = M f_in` and `e_in = Mᵀ e_out`, or for a gyrator `e_out = G f_in` and `e_in = Gᵀ f_out`.
+    fn two_ports(&mut self) {
+        for two_port in &self.network.two_ports {
+            let matrix = two_port.factor.to_matrix(self.pool);
+            let (input, output) = (two_port.input, two_port.output);
+            for row in 0..matrix.rows {
+                let result = if two_port.gyrator {
+                    self.classes.effort(output, row)
+                } else {
+                    self.classes.flow(output, row)
+                };
+                let mut terms = vec![(result, Expression::ONE.negated())];
+                terms.extend((0..matrix.columns).map(|k| (self.classes.flow(input, k), matrix.at(row, k))));
+                self.add(&terms, Expression::ZERO, Owner::Structure);
+            }
+            for column in 0..matrix.columns {
+                let mut terms = vec![(self.classes.effort(input, column), Expression::ONE.negated())];
+                terms.extend((0..matrix.rows).map(|k| {
+                    let unknown = if two_port.gyrator {
+                        self.classes.flow(output, k)
+                    } else {
+                        self.classes.effort(output, k)
+                    };
+                    (unknown, matrix.at(k, column))
+                }));
+                self.add(&terms, Expression::ZERO, Owner::Structure);
+            }
+        }
+    }
+
+    fn one_port(&mut self, one_port: &OnePort) {
+        let element = &self.model.graph.elements[one_port.element.0];
+        let owner = Owner::Element(one_port.element);
+        let wire = one_port.wire;
+        let reversed = !one_port.inward;
+        let minus = Expression::ONE.negated();
+        let size = self.network.wires[wire].dimension;
+        match &element.law {
+            Law::Source(values) => {
+                for (component, value) in values.iter().enumerate() {
+                    let unknown = match element.kind {
+                        ElementKind::Se => self.classes.effort(wire, component),
+                        _ => self.classes.flow(wire, component),
+                    };
+                    self.add(&[(unknown, minus)], *value, owner);
+                }
+            }
+            Law::Storage(storage) => {
+                for (component, value) in storage.coenergy.iter().enumerate() {
+                    if element.kind == ElementKind::I {
+                        let unknown = self.classes.flow(wire, component);
+                        self.add(&[(unknown, minus.flipped(reversed))], *value, owner);
+                    } else {
+                        self.add(&[(self.classes.effort(wire, component), minus)], *value, owner);
+                    }
+                }
+            }
+            Law::Resistance(matrix) => self.linear(matrix, wire, false, reversed, owner),
+            Law::Conductance(matrix) => self.linear(matrix, wire, true, reversed, owner),
+            Law::EffortLaw(values) => {
+                for (component, value) in values.iter().enumerate() {
+                    self.add(&[(self.classes.effort(wire, component), minus)], *value, owner);
+                }
+            }
+            Law::FlowLaw(values) => {
+                for (component, value) in values.iter().enumerate() {
+                    let unknown = self.classes.flow(wire, component);
+                    self.add(&[(unknown, minus.flipped(reversed))], *value, owner);
+                }
+            }
+            Law::EulerJunction(momentum) => {
+                // e = ω × h, row by row.
+                for row in 0..size.min(3) {
+                    let (next, last) = ((row + 1) % 3, (row + 2) % 3);
+                    let terms = [
+                        (self.classes.effort(wire, row), minus),
+                        (self.classes.flow(wire, next), momentum[last].flipped(reversed)),
+                        (self.classes.flow(wire, last), momentum[next].negated().flipped(reversed)),
+                    ];
+                    self.add(&terms, Expression::ZERO, owner);
+                }
+            }
+            Law::Transformer(_) | Law::Gyrator(_) => {}
+        }
+    }
+
+    /// `e = R f`, or `f = G e`.
+    fn linear(&mut self, matrix: &Matrix, wire: usize, conductance: bool, reversed: bool, owner: Owner) {
+        for row in 0..matrix.rows {
+            let (effort, flow) = (self.classes.effort(wire, row), self.classes.flow(wire, row));
+            let result = if conductance { flow } else { effort };
+            let mut terms = vec![(result, Expression::ONE.negated())];
+            for column in 0..matrix.columns {
+                let cause = if conductance {
+                    self.classes.effort(wire, column)
+                } else {
+                    self.classes.flow(wire, column)
+                };
+                terms.push((cause, matrix.at(row, column).flipped(reversed)));
+            }
+            self.add(&terms, Expression::ZERO, owner);
+        }
+    }
+
+    fn finish(mut self) -> Scalars {
+        let ports = self.ports();
+        let signals: Vec<(usize, bool)> = self.model.signals.list().iter().map(|s| self.signal(*s, &ports)).collect();
+        let mut equations = std::mem::take(&mut self.equations);
+        for equation in &mut equations {
+            linearise(self.pool, equation, &signals);
+        }
+        let names = self.names(&ports);
+        Scalars { unknowns: self.classes.count, equations, signals, ports, names }
+    }
+
+    fn ports(&self) -> BTreeMap<ElementId, Port> {
+        let port = |one_port: &OnePort| {
+            let size = self.network.wires[one_port.wire].dimension;
+            let effort = (0..size).map(|k| self.classes.effort(one_port.wire, k)).collect();
+            let flow = (0..size).map(|k| self.classes.flow(one_port.wire, k)).collect();
+            (one_port.element, Port { effort, flow, inward: one_port.inward })
+        };
+        self.network.one_ports.iter().flatten().map(port).collect()
+    }
+
+    fn signal(
+        &self,
+        (quantity, place, component): (Quantity, Place, usize),
+        ports: &BTreeMap<ElementId, Port>,
+    ) -> (usize, bool) {
+        match place {
+            Place::Port(id) => {
+                let port = &ports[&id];
+                match quantity {
+                    Quantity::Effort => (port.effort[component], false),
+                    Quantity::Flow => {
+                        let kind = self.model.graph.elements[id.0].kind;
+                        let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
+                        (port.flow[component], !port.inward && !source)
+                    }
+                }
+            }
+            Place::Junction(id) => {
+                let junction = &self.network.junctions[self.network.place[id.0]];
+                let branch = junction.branches.iter().find(|branch| branch.range.contains(&component));
+                let unknown = branch.map_or(0, |branch| {
+                    let inner = component - branch.range.start;
+                    match quantity {
+                        Quantity::Effort => self.classes.effort(branch.wire, inner),
+                        Quantity::Flow => self.classes.flow(branch.wire, inner),
+                    }
+                });
+                (unknown, false)
+            }
+        }
+    }
+
+    fn names(&self, ports: &BTreeMap<ElementId, Port>) -> Vec<String> {
+        let mut names = vec![String::new(); self.classes.count];
+        for (id, junction) in self.model.graph.junctions.iter().enumerate() {
+            let (quantity, letter) = match junction.kind {
+                JunctionKind::Zero => (Quantity::Effort, "e"),
+                JunctionKind::One => (Quantity::Flow, "f"),
+            };
+            for component in 0..junction.dimension {
+                let place = Place::Junction(crate::graph::JunctionId(id));
+                let (unknown, _) = self.signal((quantity, place, component), ports);
+                put(&mut names[unknown], &junction.name, letter, component, junction.dimension);
+            }
+        }
+        for (id, port) in ports {
+            let element = &self.model.graph.elements[id.0].name;
+            for component in 0..port.effort.len() {
+                put(&mut names[port.effort[component]], element, "e", component, port.effort.len());
+                put(&mut names[port.flow[component]], element, "f", component, port.flow.len());
+            }
+        }
+        names
+    }
+}
+
+fn put(slot: &mut String, name: &str, letter: &str, component: usize, dimension: usize) {
+    if slot.is_empty() {
+        *slot = if dimension == 1 {
+            format!("{name}.{letter}")
+        } else {
+            format!("{name}.{letter}.{}", crate::graph::component_name(component, dimension))
+        };
+    }
+}
+
+/// Turns signals that enter linearly into terms; lists those that do not.
+fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bool)]) {
+    for symbol in symbols(pool, &[equation.constant]) {
+        let Symbol::Signal(number) = symbol else { continue };
+        let slope = Differentiator::new(symbol).derivative(pool, equation.constant);
+        if symbols(pool, &[slope]).iter().any(|symbol| matches!(symbol, Symbol::Signal(_))) {
+            continue;
+        }
+        let mut absent = Substitution::new();
+        absent.set(symbol, Expression::ZERO);
+        let Some(rest) = absent.apply(pool, equation.constant) else { continue };
+        let (unknown, reversed) = signals[number];
+        let known = equation.terms.get(&unknown).copied().unwrap_or(Expression::ZERO);
+        let sum = pool.add(known, slope.flipped(reversed));
+        if sum == Expression::ZERO {
+            equation.terms.remove(&unknown);
+        } else {
+            equation.terms.insert(unknown, sum);
+        }
+        equation.constant = rest;
+    }
+    let mut held: Vec<Expression> = equation.terms.values().copied().collect();
+    held.push(equation.constant);
+    for symbol in symbols(pool, &held) {
+        if let Symbol::Signal(number) = symbol {
+            equation.signals.push(signals[number].0);
+        }
+    }
+}

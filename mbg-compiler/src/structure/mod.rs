@@ -1,0 +1,77 @@
+//! Stage 5, structure: which equation gives which unknown, in which order, and the solution.
+//!
+//! Input: [`Scalars`]. Output: a [`Solution`]: every unknown as an expression of states, inputs, parameters and time.
+//! The equations are brought into block triangular form (Dulmage and Mendelsohn 1958; Duff and Reid 1978), which is
+//! unique, and each irreducible block is solved by itself. **A block divides by its own determinant or by a constant
+//! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
+
+pub mod blocks;
+mod dependence;
+pub mod matching;
+mod solve;
+
+use std::collections::BTreeMap;
+
+use crate::elaborate::{Condition, Elaborated};
+use crate::equations::Scalars;
+use crate::symbolic::{Expression, Pool};
+
+pub use dependence::report_singular;
+
+/// Unknowns as expressions.
+pub struct Solution {
+    /// Value of each unknown.
+    pub values: Vec<Expression>,
+    /// Divisors that vary with the state, normalised.
+    pub conditioning: Vec<Inverted>,
+    /// Divisors that depend on parameters alone.
+    pub assumptions: Vec<(Expression, Condition)>,
+    /// Unknowns of each block with more than one, by number.
+    pub loops: Vec<Vec<usize>>,
+}
+
+/// A block whose determinant varies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inverted {
+    /// Its determinant over the norms of its rows.
+    pub normalised: Expression,
+}
+
+/// Why there is no solution.
+pub enum Failure {
+    /// The equations are dependent: a storage, a source or the junction structure says something twice.
+    Singular,
+    /// A block in which unknowns enter nonlinearly, by unknown.
+    Nonlinear(Vec<usize>),
+}
+
+/// Solves the equations.
+pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
+    let incidence: Vec<Vec<usize>> =
+        scalars.equations.iter().map(|equation| equation.terms.keys().copied().collect()).collect();
+    let matching = matching::perfect(&incidence, scalars.unknowns).ok_or(Failure::Singular)?;
+    let all: Vec<Vec<usize>> = scalars
+        .equations
+        .iter()
+        .map(|equation| equation.terms.keys().chain(&equation.signals).copied().collect())
+        .collect();
+    let order = blocks::ordered(&all, &matching);
+    solve::blocks(scalars, &matching, &order, pool)
+}
+
+/// The value of each signal, with its sign.
+#[must_use]
+pub fn signal_values(scalars: &Scalars, solution: &Solution) -> BTreeMap<usize, Expression> {
+    scalars
+        .signals
+        .iter()
+        .enumerate()
+        .map(|(number, (unknown, reversed))| (number, solution.values[*unknown].flipped(*reversed)))
+        .collect()
+}
+
+/// Names of the elements and junctions whose variables are in a block, for people.
+#[must_use]
+pub fn block_names(scalars: &Scalars, _model: &Elaborated, unknowns: &[usize]) -> Vec<String> {
+    unknowns.iter().map(|unknown| scalars.names[*unknown].clone()).filter(|name| !name.is_empty()).collect()
+}

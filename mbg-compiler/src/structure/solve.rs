@@ -1,0 +1,240 @@
+//! Solving the blocks one after another.
+
+use super::{Failure, Inverted, Solution};
+use crate::elaborate::Condition;
+use crate::equations::{Equation, Scalars};
+use crate::symbolic::{Expression, Function, Matrix, Pool, Rate, Substitution, Symbol};
+
+/// Up to this size a block is solved by its adjugate; larger ones are made smaller by pivots that never vanish.
+const ADJUGATE: usize = 3;
+
+/// Solves blocks in the order given.
+pub(super) fn blocks(
+    scalars: &Scalars,
+    unknown_of: &[usize],
+    order: &[Vec<usize>],
+    pool: &mut Pool,
+) -> Result<Solution, Failure> {
+    let solution = Solution {
+        values: vec![Expression::ZERO; scalars.unknowns],
+        conditioning: Vec::new(),
+        assumptions: Vec::new(),
+        loops: Vec::new(),
+    };
+    let mut solver = Solver {
+        scalars,
+        pool,
+        solution,
+        known: vec![false; scalars.unknowns],
+        signals_of: signals_of(scalars),
+        substitution: Substitution::new(),
+    };
+    for block in order {
+        let unknowns: Vec<usize> = block.iter().map(|equation| unknown_of[*equation]).collect();
+        solver.block(block, &unknowns)?;
+    }
+    Ok(solver.solution)
+}
+
+/// Signals that read each unknown.
+fn signals_of(scalars: &Scalars) -> Vec<Vec<(usize, bool)>> {
+    let mut readers = vec![Vec::new(); scalars.unknowns];
+    for (number, (unknown, reversed)) in scalars.signals.iter().enumerate() {
+        readers[*unknown].push((number, *reversed));
+    }
+    readers
+}
+
+struct Solver<'a> {
+    scalars: &'a Scalars,
+    pool: &'a mut Pool,
+    solution: Solution,
+    known: Vec<bool>,
+    signals_of: Vec<Vec<(usize, bool)>>,
+    substitution: Substitution,
+}
+
+impl Solver<'_> {
+    fn block(&mut self, equations: &[usize], unknowns: &[usize]) -> Result<(), Failure> {
+        let scalars = self.scalars;
+        let rows: Vec<&Equation> = equations.iter().map(|equation| &scalars.equations[*equation]).collect();
+        if rows.iter().any(|row| row.signals.iter().any(|signal| unknowns.contains(signal))) {
+            return Err(Failure::Nonlinear(unknowns.to_vec()));
+        }
+        let mut matrix = Vec::new();
+        let mut right = Vec::new();
+        let mut norms = Vec::new();
+        for row in rows {
+            let (coefficients, rest) = self.row(row, unknowns)?;
+            norms.push(self.norm(row)?);
+            matrix.extend(coefficients);
+            right.push(rest.negated());
+        }
+        let matrix = Matrix::new(unknowns.len(), unknowns.len(), matrix);
+        let mut divisor = Expression::ONE;
+        let values = self.dense(&matrix, &right, &mut divisor)?;
+        self.note(divisor, &norms);
+        if unknowns.len() > 1 && self.pool.rate(divisor) != Rate::Constant {
+            self.solution.loops.push(unknowns.to_vec());
+        }
+        for (unknown, value) in unknowns.iter().zip(values) {
+            self.solution.values[*unknown] = value;
+            self.known[*unknown] = true;
+            for (signal, reversed) in &self.signals_of[*unknown] {
+                self.substitution.set(Symbol::Signal(*signal), value.flipped(*reversed));
+            }
+        }
+        Ok(())
+    }
+
+    fn replaced(&mut self, expression: Expression) -> Result<Expression, Failure> {
+        if self.scalars.signals.is_empty() {
+            return Ok(expression);
+        }
+        self.substitution.apply(self.pool, expression).ok_or(Failure::Singular)
+    }
+
+    /// Coefficients of the block's unknowns, and the sum of what is known.
+    fn row(&mut self, row: &Equation, unknowns: &[usize]) -> Result<(Vec<Expression>, Expression), Failure> {
+        let mut coefficients = vec![Expression::ZERO; unknowns.len()];
+        let mut rest = self.replaced(row.constant)?;
+        for (unknown, coefficient) in &row.terms {
+            let coefficient = self.replaced(*coefficient)?;
+            match unknowns.iter().position(|own| own == unknown) {
+                Some(position) => coefficients[position] = coefficient,
+                None => {
+                    debug_assert!(self.known[*unknown], "blocks come in order of need");
+                    let term = self.pool.multiply(coefficient, self.solution.values[*unknown]);
+                    rest = self.pool.add(rest, term);
+                }
+            }
+        }
+        Ok((coefficients, rest))
+    }
+
+    /// Euclidean norm of the coefficients that vary; 1 if there are fewer than two of them.
+    fn norm(&mut self, row: &Equation) -> Result<Expression, Failure> {
+        let mut squares = Vec::new();
+        for coefficient in row.terms.values() {
+            let coefficient = self.replaced(*coefficient)?;
+            if self.pool.rate(coefficient) == Rate::Varying {
+                squares.push(self.pool.multiply(coefficient, coefficient));
+            }
+        }
+        if squares.len() < 2 {
+            return Ok(Expression::ONE);
+        }
+        let sum = self.pool.sum(&squares);
+        Ok(self.pool.call(Function::Sqrt, &[sum]))
+    }
+
+    /// Solves `A x = b`; `divisor` is multiplied by what was divided by.
+    fn dense(
+        &mut self,
+        matrix: &Matrix,
+        right: &[Expression],
+        divisor: &mut Expression,
+    ) -> Result<Vec<Expression>, Failure> {
+        let size = matrix.rows;
+        if size == 1 {
+            *divisor = self.pool.multiply(*divisor, matrix.at(0, 0));
+            let value = self.pool.divide(right[0], matrix.at(0, 0)).ok_or(Failure::Singular)?;
+            return Ok(vec![value]);
+        }
+        if size <= ADJUGATE {
+            return self.by_adjugate(matrix, right, divisor);
+        }
+        self.by_pivot(matrix, right, divisor)
+    }
+
+    fn by_adjugate(
+        &mut self,
+        matrix: &Matrix,
+        right: &[Expression],
+        divisor: &mut Expression,
+    ) -> Result<Vec<Expression>, Failure> {
+        let determinant = matrix.determinant(self.pool);
+        *divisor = self.pool.multiply(*divisor, determinant);
+        let adjugate = matrix.adjugate(self.pool);
+        let numerators = adjugate.times(self.pool, &Matrix::column(right.to_vec())).entries;
+        numerators
+            .into_iter()
+            .map(|numerator| self.pool.divide(numerator, determinant).ok_or(Failure::Singular))
+            .collect()
+    }
+
+    /// Eliminates one unknown by the pivot that is safest, then sparsest, and solves the rest.
+    fn by_pivot(
+        &mut self,
+        matrix: &Matrix,
+        right: &[Expression],
+        divisor: &mut Expression,
+    ) -> Result<Vec<Expression>, Failure> {
+        let size = matrix.rows;
+        let (row, column) = self.pivot(matrix).ok_or(Failure::Singular)?;
+        let pivot = matrix.at(row, column);
+        *divisor = self.pool.multiply(*divisor, pivot);
+        let rows: Vec<usize> = (0..size).filter(|other| *other != row).collect();
+        let columns: Vec<usize> = (0..size).filter(|other| *other != column).collect();
+        let mut entries = Vec::with_capacity(rows.len() * columns.len());
+        let mut rest = Vec::with_capacity(rows.len());
+        for other in &rows {
+            let factor = self.pool.divide(matrix.at(*other, column), pivot).ok_or(Failure::Singular)?;
+            for inner in &columns {
+                let product = self.pool.multiply(factor, matrix.at(row, *inner));
+                entries.push(self.pool.subtract(matrix.at(*other, *inner), product));
+            }
+            let product = self.pool.multiply(factor, right[row]);
+            rest.push(self.pool.subtract(right[*other], product));
+        }
+        let smaller = Matrix::new(rows.len(), columns.len(), entries);
+        let mut values = self.dense(&smaller, &rest, divisor)?;
+        let mut numerator = right[row];
+        for (inner, value) in columns.iter().zip(&values) {
+            let product = self.pool.multiply(matrix.at(row, *inner), *value);
+            numerator = self.pool.subtract(numerator, product);
+        }
+        values.insert(column, self.pool.divide(numerator, pivot).ok_or(Failure::Singular)?);
+        Ok(values)
+    }
+
+    /// Constants before parameters before what varies; among equals the one that fills in least (Markowitz 1957).
+    fn pivot(&self, matrix: &Matrix) -> Option<(usize, usize)> {
+        let size = matrix.rows;
+        let filled = |row: usize, column: usize| matrix.at(row, column) != Expression::ZERO;
+        let in_row: Vec<usize> = (0..size).map(|row| (0..size).filter(|c| filled(row, *c)).count()).collect();
+        let in_column: Vec<usize> = (0..size).map(|column| (0..size).filter(|r| filled(*r, column)).count()).collect();
+        (0..size)
+            .flat_map(|row| (0..size).map(move |column| (row, column)))
+            .filter(|(row, column)| filled(*row, *column))
+            .min_by_key(|(row, column)| {
+                let rate = self.pool.rate(matrix.at(*row, *column));
+                (rate, (in_row[*row] - 1) * (in_column[*column] - 1))
+            })
+    }
+
+    /// Remembers what was divided by.
+    fn note(&mut self, divisor: Expression, norms: &[Expression]) {
+        match self.pool.rate(divisor) {
+            Rate::Constant => {}
+            Rate::Parameter => {
+                let entry = (divisor.magnitude(), Condition::NonZero);
+                if !self.solution.assumptions.contains(&entry) {
+                    self.solution.assumptions.push(entry);
+                }
+            }
+            Rate::Varying => {
+                let mut normalised = divisor;
+                for norm in norms {
+                    if let Some(quotient) = self.pool.divide(normalised, *norm) {
+                        normalised = quotient;
+                    }
+                }
+                let inverted = Inverted { normalised: normalised.magnitude() };
+                if !self.solution.conditioning.contains(&inverted) {
+                    self.solution.conditioning.push(inverted);
+                }
+            }
+        }
+    }
+}

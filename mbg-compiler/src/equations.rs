@@ -64,7 +64,13 @@ pub struct Port {
 #[must_use]
 pub fn form(model: &Elaborated, network: &Network, pool: &mut Pool) -> Scalars {
     let classes = Classes::of(network);
-    let mut former = Former { model, network, pool, classes, equations: Vec::new() };
+    let mut former = Former {
+        model,
+        network,
+        pool,
+        classes,
+        equations: Vec::new(),
+    };
     former.junctions();
     former.two_ports();
     for one_port in network.one_ports.iter().flatten() {
@@ -99,16 +105,25 @@ impl Classes {
             mark(two_port.input);
             mark(two_port.output);
         });
-        network.one_ports.iter().flatten().for_each(|one_port| mark(one_port.wire));
+        network
+            .one_ports
+            .iter()
+            .flatten()
+            .for_each(|one_port| mark(one_port.wire));
         for junction in &network.junctions {
-            junction.branches.iter().for_each(|branch| mark(branch.wire));
+            junction
+                .branches
+                .iter()
+                .for_each(|branch| mark(branch.wire));
             let offset = usize::from(junction.kind == JunctionKind::One);
             for component in 0..junction.dimension {
                 let mut members = junction
                     .branches
                     .iter()
                     .filter(|branch| branch.range.contains(&component))
-                    .map(|branch| 2 * (first[branch.wire] + component - branch.range.start) + offset);
+                    .map(|branch| {
+                        2 * (first[branch.wire] + component - branch.range.start) + offset
+                    });
                 if let Some(leader) = members.next() {
                     for member in members {
                         let (a, b) = (root(&mut parent, leader), root(&mut parent, member));
@@ -131,7 +146,11 @@ impl Classes {
             }
             class[variable] = class[leader];
         }
-        Self { first, class, count }
+        Self {
+            first,
+            class,
+            count,
+        }
     }
 
     fn effort(&self, wire: usize, component: usize) -> usize {
@@ -167,7 +186,12 @@ impl Former<'_> {
             sum.insert(*unknown, self.pool.add(known, *coefficient));
         }
         sum.retain(|_, coefficient| *coefficient != Expression::ZERO);
-        self.equations.push(Equation { terms: sum, constant, signals: Vec::new(), owner });
+        self.equations.push(Equation {
+            terms: sum,
+            constant,
+            signals: Vec::new(),
+            owner,
+        });
     }
 
     /// At a 0-junction flows sum to zero, at a 1-junction efforts.
@@ -206,11 +230,16 @@ impl Former<'_> {
                     self.classes.flow(output, row)
                 };
                 let mut terms = vec![(result, Expression::ONE.negated())];
-                terms.extend((0..matrix.columns).map(|k| (self.classes.flow(input, k), matrix.at(row, k))));
+                terms.extend(
+                    (0..matrix.columns).map(|k| (self.classes.flow(input, k), matrix.at(row, k))),
+                );
                 self.add(&terms, Expression::ZERO, Owner::Structure);
             }
             for column in 0..matrix.columns {
-                let mut terms = vec![(self.classes.effort(input, column), Expression::ONE.negated())];
+                let mut terms = vec![(
+                    self.classes.effort(input, column),
+                    Expression::ONE.negated(),
+                )];
                 terms.extend((0..matrix.rows).map(|k| {
                     let unknown = if two_port.gyrator {
                         self.classes.flow(output, k)
@@ -247,7 +276,11 @@ impl Former<'_> {
                         let unknown = self.classes.flow(wire, component);
                         self.add(&[(unknown, minus.flipped(reversed))], *value, owner);
                     } else {
-                        self.add(&[(self.classes.effort(wire, component), minus)], *value, owner);
+                        self.add(
+                            &[(self.classes.effort(wire, component), minus)],
+                            *value,
+                            owner,
+                        );
                     }
                 }
             }
@@ -255,7 +288,11 @@ impl Former<'_> {
             Law::Conductance(matrix) => self.linear(matrix, wire, true, reversed, owner),
             Law::EffortLaw(values) => {
                 for (component, value) in values.iter().enumerate() {
-                    self.add(&[(self.classes.effort(wire, component), minus)], *value, owner);
+                    self.add(
+                        &[(self.classes.effort(wire, component), minus)],
+                        *value,
+                        owner,
+                    );
                 }
             }
             Law::FlowLaw(values) => {
@@ -270,8 +307,14 @@ impl Former<'_> {
                     let (next, last) = ((row + 1) % 3, (row + 2) % 3);
                     let terms = [
                         (self.classes.effort(wire, row), minus),
-                        (self.classes.flow(wire, next), momentum[last].flipped(reversed)),
-                        (self.classes.flow(wire, last), momentum[next].negated().flipped(reversed)),
+                        (
+                            self.classes.flow(wire, next),
+                            momentum[last].flipped(reversed),
+                        ),
+                        (
+                            self.classes.flow(wire, last),
+                            momentum[next].negated().flipped(reversed),
+                        ),
                     ];
                     self.add(&terms, Expression::ZERO, owner);
                 }
@@ -281,7 +324,14 @@ impl Former<'_> {
     }
 
     /// `e = R f`, or `f = G e`.
-    fn linear(&mut self, matrix: &Matrix, wire: usize, conductance: bool, reversed: bool, owner: Owner) {
+    fn linear(
+        &mut self,
+        matrix: &Matrix,
+        wire: usize,
+        conductance: bool,
+        reversed: bool,
+        owner: Owner,
+    ) {
         for row in 0..matrix.rows {
             let (effort, flow) = (self.classes.effort(wire, row), self.classes.flow(wire, row));
             let result = if conductance { flow } else { effort };
@@ -300,21 +350,44 @@ impl Former<'_> {
 
     fn finish(mut self) -> Scalars {
         let ports = self.ports();
-        let signals: Vec<(usize, bool)> = self.model.signals.list().iter().map(|s| self.signal(*s, &ports)).collect();
+        let signals: Vec<(usize, bool)> = self
+            .model
+            .signals
+            .list()
+            .iter()
+            .map(|s| self.signal(*s, &ports))
+            .collect();
         let mut equations = std::mem::take(&mut self.equations);
         for equation in &mut equations {
             linearise(self.pool, equation, &signals);
         }
         let names = self.names(&ports);
-        Scalars { unknowns: self.classes.count, equations, signals, ports, names }
+        Scalars {
+            unknowns: self.classes.count,
+            equations,
+            signals,
+            ports,
+            names,
+        }
     }
 
     fn ports(&self) -> BTreeMap<ElementId, Port> {
         let port = |one_port: &OnePort| {
             let size = self.network.wires[one_port.wire].dimension;
-            let effort = (0..size).map(|k| self.classes.effort(one_port.wire, k)).collect();
-            let flow = (0..size).map(|k| self.classes.flow(one_port.wire, k)).collect();
-            (one_port.element, Port { effort, flow, inward: one_port.inward })
+            let effort = (0..size)
+                .map(|k| self.classes.effort(one_port.wire, k))
+                .collect();
+            let flow = (0..size)
+                .map(|k| self.classes.flow(one_port.wire, k))
+                .collect();
+            (
+                one_port.element,
+                Port {
+                    effort,
+                    flow,
+                    inward: one_port.inward,
+                },
+            )
         };
         self.network.one_ports.iter().flatten().map(port).collect()
     }
@@ -338,7 +411,10 @@ impl Former<'_> {
             }
             Place::Junction(id) => {
                 let junction = &self.network.junctions[self.network.place[id.0]];
-                let branch = junction.branches.iter().find(|branch| branch.range.contains(&component));
+                let branch = junction
+                    .branches
+                    .iter()
+                    .find(|branch| branch.range.contains(&component));
                 let unknown = branch.map_or(0, |branch| {
                     let inner = component - branch.range.start;
                     match quantity {
@@ -361,14 +437,32 @@ impl Former<'_> {
             for component in 0..junction.dimension {
                 let place = Place::Junction(crate::graph::JunctionId(id));
                 let (unknown, _) = self.signal((quantity, place, component), ports);
-                put(&mut names[unknown], &junction.name, letter, component, junction.dimension);
+                put(
+                    &mut names[unknown],
+                    &junction.name,
+                    letter,
+                    component,
+                    junction.dimension,
+                );
             }
         }
         for (id, port) in ports {
             let element = &self.model.graph.elements[id.0].name;
             for component in 0..port.effort.len() {
-                put(&mut names[port.effort[component]], element, "e", component, port.effort.len());
-                put(&mut names[port.flow[component]], element, "f", component, port.flow.len());
+                put(
+                    &mut names[port.effort[component]],
+                    element,
+                    "e",
+                    component,
+                    port.effort.len(),
+                );
+                put(
+                    &mut names[port.flow[component]],
+                    element,
+                    "f",
+                    component,
+                    port.flow.len(),
+                );
             }
         }
         names
@@ -380,7 +474,10 @@ fn put(slot: &mut String, name: &str, letter: &str, component: usize, dimension:
         *slot = if dimension == 1 {
             format!("{name}.{letter}")
         } else {
-            format!("{name}.{letter}.{}", crate::graph::component_name(component, dimension))
+            format!(
+                "{name}.{letter}.{}",
+                crate::graph::component_name(component, dimension)
+            )
         };
     }
 }
@@ -388,16 +485,27 @@ fn put(slot: &mut String, name: &str, letter: &str, component: usize, dimension:
 /// Turns signals that enter linearly into terms; lists those that do not.
 fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bool)]) {
     for symbol in symbols(pool, &[equation.constant]) {
-        let Symbol::Signal(number) = symbol else { continue };
+        let Symbol::Signal(number) = symbol else {
+            continue;
+        };
         let slope = Differentiator::new(symbol).derivative(pool, equation.constant);
-        if symbols(pool, &[slope]).iter().any(|symbol| matches!(symbol, Symbol::Signal(_))) {
+        if symbols(pool, &[slope])
+            .iter()
+            .any(|symbol| matches!(symbol, Symbol::Signal(_)))
+        {
             continue;
         }
         let mut absent = Substitution::new();
         absent.set(symbol, Expression::ZERO);
-        let Some(rest) = absent.apply(pool, equation.constant) else { continue };
+        let Some(rest) = absent.apply(pool, equation.constant) else {
+            continue;
+        };
         let (unknown, reversed) = signals[number];
-        let known = equation.terms.get(&unknown).copied().unwrap_or(Expression::ZERO);
+        let known = equation
+            .terms
+            .get(&unknown)
+            .copied()
+            .unwrap_or(Expression::ZERO);
         let sum = pool.add(known, slope.flipped(reversed));
         if sum == Expression::ZERO {
             equation.terms.remove(&unknown);

@@ -1,17 +1,59 @@
-//! The compiler behind `mbg!`.
+//! The compiler behind `mbg!`, as an ordinary library.
+//!
+//! The stages, in order of execution; each takes one form and returns the next:
+//!
+//! | stage | module | result |
+//! |---|---|---|
+//! | syntax | [`syntax`] | a tree |
+//! | elaboration | [`elaborate`] | a flat [`graph::BondGraph`] with laws |
+//! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
+//! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
+//! | structure | [`structure`] | every unknown as an expression |
+//! | program | [`program`] | straight-line arithmetic |
+//! | emission | [`emit`] | Rust |
+//!
+//! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`.
+
 pub mod causality;
 pub mod codes;
+pub mod compile;
 pub mod diagnostics;
+pub mod drawing;
 pub mod elaborate;
+pub mod emit;
 pub mod equations;
 pub mod graph;
 pub mod network;
+pub mod program;
 pub mod structure;
 pub mod symbolic;
 pub mod syntax;
 
-/// Compiles the tokens between the braces of `mbg! { … }`.
+use proc_macro2::TokenStream;
+
+use diagnostics::Diagnostics;
+use syntax::ast::Item;
+
+/// Compiles the tokens between the braces of `mbg! { … }`: items, or located errors and the shells of the models.
 #[must_use]
-pub fn expand(_tokens: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
-    proc_macro2::TokenStream::new()
+pub fn expand(tokens: TokenStream) -> TokenStream {
+    let mut diagnostics = Diagnostics::new();
+    let source = syntax::parse(tokens, &mut diagnostics);
+    let sound = !diagnostics.any();
+    let components = elaborate::component_table(&source);
+    let mut output = TokenStream::new();
+    for item in &source.items {
+        let Item::Model(model) = item else { continue };
+        let compiled = if sound {
+            compile::compile(model, &components, &mut diagnostics)
+        } else {
+            None
+        };
+        output.extend(match &compiled {
+            Some(compiled) => emit::model(compiled),
+            None => emit::shell(model),
+        });
+    }
+    output.extend(diagnostics.to_tokens());
+    output
 }

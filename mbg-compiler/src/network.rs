@@ -98,7 +98,13 @@ impl Network {
             branches: Vec::new(),
         };
         let mut network = Self {
-            wires: graph.bonds.iter().map(|bond| Wire { dimension: bond.dimension }).collect(),
+            wires: graph
+                .bonds
+                .iter()
+                .map(|bond| Wire {
+                    dimension: bond.dimension,
+                })
+                .collect(),
             junctions: graph.junctions.iter().map(junction).collect(),
             place: (0..graph.junctions.len()).collect(),
             two_ports: Vec::new(),
@@ -109,9 +115,19 @@ impl Network {
             for (end, inward) in [(&bond.from, false), (&bond.to, true)] {
                 match end {
                     End::Junction(id, range) => {
-                        network.junctions[id.0].branches.push(Branch { wire, range: range.clone(), inward });
+                        network.junctions[id.0].branches.push(Branch {
+                            wire,
+                            range: range.clone(),
+                            inward,
+                        });
                     }
-                    End::OnePort(id) => network.one_ports[id.0] = Some(OnePort { element: *id, wire, inward }),
+                    End::OnePort(id) => {
+                        network.one_ports[id.0] = Some(OnePort {
+                            element: *id,
+                            wire,
+                            inward,
+                        })
+                    }
                     End::In(id) => sides[id.0][0] = wire,
                     End::Out(id) => sides[id.0][1] = wire,
                     End::Border => {}
@@ -139,8 +155,17 @@ impl Network {
         let mut input = input;
         for (position, factor) in product.factors.iter().enumerate().rev() {
             let last = position == 0;
-            let next = if last { output } else { self.wire(rows(factor)) };
-            self.two_ports.push(TwoPort { factor: factor.clone(), gyrator: gyrator && last, input, output: next });
+            let next = if last {
+                output
+            } else {
+                self.wire(rows(factor))
+            };
+            self.two_ports.push(TwoPort {
+                factor: factor.clone(),
+                gyrator: gyrator && last,
+                input,
+                output: next,
+            });
             input = next;
         }
     }
@@ -149,27 +174,50 @@ impl Network {
     fn expand_jacobians(&mut self) {
         for index in 0..self.two_ports.len() {
             let two_port = self.two_ports[index].clone();
-            let Factor::GimbalJacobian { angles, transposed: false } = two_port.factor else { continue };
+            let Factor::GimbalJacobian {
+                angles,
+                transposed: false,
+            } = two_port.factor
+            else {
+                continue;
+            };
             if two_port.gyrator {
                 continue;
             }
-            let branch = |wire, range, inward| Branch { wire, range, inward };
+            let branch = |wire, range, inward| Branch {
+                wire,
+                range,
+                inward,
+            };
             let rates: [usize; 3] = [0, 1, 2].map(|_| self.wire(1));
             let mut split = vec![branch(two_port.input, 0..3, true)];
             split.extend((0..3).map(|axis| branch(rates[axis], axis..axis + 1, false)));
-            self.junctions.push(Junction { kind: JunctionKind::One, dimension: 3, branches: split });
+            self.junctions.push(Junction {
+                kind: JunctionKind::One,
+                dimension: 3,
+                branches: split,
+            });
             let into_middle = [self.wire(3), self.wire(3)];
             let into_outer = [self.wire(3), self.wire(3)];
             let outgoing = [two_port.output, into_outer[0], into_middle[0]];
             let arriving = [Some(into_outer[1]), Some(into_middle[1]), None];
             for axis in 0..3 {
-                let mut branches =
-                    vec![branch(rates[axis], axis..axis + 1, true), branch(outgoing[axis], 0..3, false)];
+                let mut branches = vec![
+                    branch(rates[axis], axis..axis + 1, true),
+                    branch(outgoing[axis], 0..3, false),
+                ];
                 branches.extend(arriving[axis].map(|wire| branch(wire, 0..3, true)));
-                self.junctions.push(Junction { kind: JunctionKind::Zero, dimension: 3, branches });
+                self.junctions.push(Junction {
+                    kind: JunctionKind::Zero,
+                    dimension: 3,
+                    branches,
+                });
             }
             let turn = |axis, [input, output]: [usize; 2]| TwoPort {
-                factor: Factor::Rotation { axis, angle: angles[axis] },
+                factor: Factor::Rotation {
+                    axis,
+                    angle: angles[axis],
+                },
                 gyrator: false,
                 input,
                 output,
@@ -189,18 +237,26 @@ impl Network {
                 }
             }
         }
-        ends.iter().enumerate().find_map(|(wire, ends)| match ends[..] {
-            [a, b] if a != b && self.junctions[a].kind == self.junctions[b].kind => Some((wire, a.min(b), a.max(b))),
-            _ => None,
-        })
+        ends.iter()
+            .enumerate()
+            .find_map(|(wire, ends)| match ends[..] {
+                [a, b] if a != b && self.junctions[a].kind == self.junctions[b].kind => {
+                    Some((wire, a.min(b), a.max(b)))
+                }
+                _ => None,
+            })
     }
 
     /// Two junctions of one kind joined by a wire are one junction.
     fn merge_once(&mut self) -> bool {
-        let Some((wire, keep, gone)) = self.direct() else { return false };
+        let Some((wire, keep, gone)) = self.direct() else {
+            return false;
+        };
         let moved = std::mem::take(&mut self.junctions[gone].branches);
         self.junctions[keep].branches.extend(moved);
-        self.junctions[keep].branches.retain(|branch| branch.wire != wire);
+        self.junctions[keep]
+            .branches
+            .retain(|branch| branch.wire != wire);
         for place in &mut self.place {
             if *place == gone {
                 *place = keep;
@@ -214,9 +270,9 @@ impl Network {
         for index in 0..self.junctions.len() {
             let turns: Vec<(usize, usize, (usize, Expression))> = self.outward_turns(index);
             for (position, first) in turns.iter().enumerate() {
-                let second = turns[position + 1..]
-                    .iter()
-                    .find(|turn| turn.2.0 == first.2.0 && pool.image(turn.2.1) == pool.image(first.2.1));
+                let second = turns[position + 1..].iter().find(|turn| {
+                    turn.2.0 == first.2.0 && pool.image(turn.2.1) == pool.image(first.2.1)
+                });
                 if let Some(second) = second {
                     self.slide(index, first, second);
                     return true;
@@ -235,7 +291,9 @@ impl Network {
                 continue;
             }
             for (index, two_port) in self.two_ports.iter().enumerate() {
-                let Factor::Rotation { axis, angle } = two_port.factor else { continue };
+                let Factor::Rotation { axis, angle } = two_port.factor else {
+                    continue;
+                };
                 if two_port.gyrator {
                     continue;
                 }
@@ -259,20 +317,47 @@ impl Network {
         for (position, two_port, _) in [first, second] {
             let inward = self.junctions[junction].branches[*position].inward;
             let two_port = &self.two_ports[*two_port];
-            let wire = if inward { two_port.input } else { two_port.output };
-            beyond.push(Branch { wire, range: 0..3, inward });
+            let wire = if inward {
+                two_port.input
+            } else {
+                two_port.output
+            };
+            beyond.push(Branch {
+                wire,
+                range: 0..3,
+                inward,
+            });
         }
         let (before, after) = (self.wire(3), self.wire(3));
         let (axis, angle) = first.2;
-        self.two_ports[first.1] =
-            TwoPort { factor: Factor::Rotation { axis, angle }, gyrator: false, input: before, output: after };
+        self.two_ports[first.1] = TwoPort {
+            factor: Factor::Rotation { axis, angle },
+            gyrator: false,
+            input: before,
+            output: after,
+        };
         self.two_ports.remove(second.1);
         let branches = &mut self.junctions[junction].branches;
-        branches[first.0] = Branch { wire: before, range: 0..3, inward: false };
+        branches[first.0] = Branch {
+            wire: before,
+            range: 0..3,
+            inward: false,
+        };
         branches.remove(second.0);
         let kind = self.junctions[junction].kind;
-        beyond.insert(0, Branch { wire: after, range: 0..3, inward: true });
-        self.junctions.push(Junction { kind, dimension: 3, branches: beyond });
+        beyond.insert(
+            0,
+            Branch {
+                wire: after,
+                range: 0..3,
+                inward: true,
+            },
+        );
+        self.junctions.push(Junction {
+            kind,
+            dimension: 3,
+            branches: beyond,
+        });
     }
 }
 

@@ -1,5 +1,4 @@
 //! Stage 3, causality: who imposes what.
-pub mod uniform;
 pub mod conflict;
 pub mod enumerate;
 pub mod explain;
@@ -7,9 +6,12 @@ pub mod propagation;
 pub mod report;
 pub mod search;
 pub mod strokes;
+pub mod uniform;
 pub mod words;
 
 #[cfg(test)]
 mod fixtures;
+#[cfg(test)]
+mod property;
 #[cfg(test)]
 mod tests;

@@ -289,3 +289,60 @@ fn a_junction_without_a_bond_is_a_conflict() {
     assert_eq!(conflict.code, codes::NO_ASSIGNMENT);
     assert!(conflict.proven());
 }
+
+#[test]
+fn temporary_print() {
+    use super::report::*;
+    for graph in [
+        fig_12(Joint::Revolutes),
+        fig_12(Joint::Axes),
+        navigation(Joint::Revolutes, Joint::Revolutes, Ground::Sf),
+        alone(Joint::Axes, &[]),
+        alone(Joint::Revolutes, &[]),
+        alone(Joint::Revolutes, &[Attached::Se]),
+        alone(Joint::Revolutes, &[Attached::Coulomb]),
+        alone(Joint::Axes, &[Attached::Coulomb, Attached::C]),
+    ] {
+        let mut diagnostics = crate::diagnostics::Diagnostics::new();
+        match verdict(&graph) {
+            Ok(v) => diagnose(&graph, &v, &mut diagnostics),
+            Err(c) => conflict_diagnostics(&graph, &c, &mut diagnostics),
+        }
+        println!("=======");
+        for d in diagnostics.list() {
+            println!("{}\n", d.text());
+        }
+    }
+}
+#[test]
+fn temporary_speed() {
+    for joint in [Joint::New, Joint::Revolutes] {
+        let mut builder = Builder::new();
+        let mut last = builder.one("base", 3);
+        builder.port("floor", Rule::FlowOut, builder.whole(last));
+        for i in 0..(if joint == Joint::New { 400 } else { 170 }) {
+            let next = builder.one(&format!("b{i}"), 3);
+            builder.port(&format!("i{i}"), Rule::PreferFlowOut, builder.whole(next));
+            builder.joint(
+                joint,
+                &format!("j{i}"),
+                (last, next),
+                &[Attached::R, Attached::C],
+            );
+            last = next;
+        }
+        let t = std::time::Instant::now();
+        let v = verdict(&builder.graph).unwrap();
+        println!(
+            "{} bonds {:?} dependent {} {}",
+            builder.graph.bonds.len(),
+            t.elapsed(),
+            v.dependent.len(),
+            v.proven_optimal
+        );
+        let t = std::time::Instant::now();
+        let mut diagnostics = crate::diagnostics::Diagnostics::new();
+        super::report::diagnose(&builder.graph, &v, &mut diagnostics);
+        println!("diagnose {:?} {}", t.elapsed(), diagnostics.list().len());
+    }
+}

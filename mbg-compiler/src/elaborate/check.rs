@@ -14,7 +14,8 @@ impl Builder<'_> {
         self.check_ports();
         if self.states.is_empty() {
             let span = proc_macro2::Span::call_site();
-            let message = "the model has no storage, integral or attitude: nothing changes with time";
+            let message =
+                "the model has no storage, integral or attitude: nothing changes with time";
             self.diagnostics.error(codes::EMPTY_MODEL, span, message);
         }
     }
@@ -28,11 +29,14 @@ impl Builder<'_> {
             if let (End::OnePort(a), End::OnePort(b)) = (&bond.from, &bond.to)
                 && self.graph.elements[a.0].kind == self.graph.elements[b.0].kind
             {
-                let message = format!("`{name}` joins two equal one-ports; both fix the same variable");
-                self.diagnostics.error(codes::EQUAL_ONE_PORTS, span, message);
+                let message =
+                    format!("`{name}` joins two equal one-ports; both fix the same variable");
+                self.diagnostics
+                    .error(codes::EQUAL_ONE_PORTS, span, message);
             } else if from != to {
                 let message = format!("`{name}` joins dimension {from} to dimension {to}");
-                self.diagnostics.error(codes::WRONG_DIMENSION, span, message);
+                self.diagnostics
+                    .error(codes::WRONG_DIMENSION, span, message);
             }
             self.graph.bonds[index].dimension = from;
         }
@@ -50,7 +54,9 @@ impl Builder<'_> {
 
     fn two_port(&self, id: ElementId) -> (usize, usize) {
         match self.graph.elements[id.0].rule {
-            Rule::Transformer { rows, columns, .. } | Rule::Gyrator { rows, columns, .. } => (rows, columns),
+            Rule::Transformer { rows, columns, .. } | Rule::Gyrator { rows, columns, .. } => {
+                (rows, columns)
+            }
             _ => (0, 0),
         }
     }
@@ -67,10 +73,17 @@ impl Builder<'_> {
             }
         }
         for (element, count) in self.graph.elements.iter().zip(counts) {
-            let two_port = matches!(element.rule, Rule::Transformer { .. } | Rule::Gyrator { .. });
+            let two_port = matches!(
+                element.rule,
+                Rule::Transformer { .. } | Rule::Gyrator { .. }
+            );
             let expected = [1, usize::from(two_port)];
             let span = self.graph.origins.span(element.origin);
-            if count.iter().zip(expected).any(|(found, expected)| *found < expected) {
+            if count
+                .iter()
+                .zip(expected)
+                .any(|(found, expected)| *found < expected)
+            {
                 let message = format!("`{}` has a port without a bond", element.name);
                 self.diagnostics.error(codes::UNCONNECTED, span, message);
             } else if count != expected {

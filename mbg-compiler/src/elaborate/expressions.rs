@@ -41,7 +41,9 @@ impl Value {
     pub fn entries(&self, pool: &mut Pool) -> Option<Vec<Expression>> {
         match self {
             Self::Scalar(value) => Some(vec![*value]),
-            Self::Matrix(product) if product.columns() == 1 => Some(product.to_matrix(pool).entries),
+            Self::Matrix(product) if product.columns() == 1 => {
+                Some(product.to_matrix(pool).entries)
+            }
             Self::Matrix(_) => None,
         }
     }
@@ -51,7 +53,9 @@ impl Value {
     pub fn shape(&self) -> String {
         match self {
             Self::Scalar(_) => "a number".to_owned(),
-            Self::Matrix(product) if product.columns() == 1 => format!("a vector of {}", product.rows()),
+            Self::Matrix(product) if product.columns() == 1 => {
+                format!("a vector of {}", product.rows())
+            }
             Self::Matrix(product) => format!("a {}×{} matrix", product.rows(), product.columns()),
         }
     }
@@ -96,7 +100,10 @@ impl<N: Names> Evaluator<'_, N> {
             }
             Expr::Array(array) => self.array(array),
             Expr::If(choice) => self.choice(choice),
-            _ => fail(expression.span(), "expected a law: numbers, names, + - * /, functions, vectors or `if`"),
+            _ => fail(
+                expression.span(),
+                "expected a law: numbers, names, + - * /, functions, vectors or `if`",
+            ),
         }
     }
 
@@ -104,19 +111,28 @@ impl<N: Names> Evaluator<'_, N> {
     pub fn scalar(&mut self, expression: &Expr) -> Result<Expression> {
         match self.evaluate(expression)? {
             Value::Scalar(value) => Ok(value),
-            other => mismatch(expression.span(), format!("expected a number, found {}", other.shape())),
+            other => mismatch(
+                expression.span(),
+                format!("expected a number, found {}", other.shape()),
+            ),
         }
     }
 
     fn literal(&mut self, literal: &Lit) -> Result<Value> {
         let (text, suffix) = match literal {
             Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned()),
-            Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned()),
+            Lit::Int(integer) => (
+                integer.base10_digits().to_owned(),
+                integer.suffix().to_owned(),
+            ),
             _ => return fail(literal.span(), "expected a number"),
         };
         match self.pool.literal(&text) {
             Some(value) if suffix.is_empty() || suffix == "f64" => Ok(Value::Scalar(value)),
-            Some(_) => fail(literal.span(), format!("expected a number without suffix, found `{suffix}`")),
+            Some(_) => fail(
+                literal.span(),
+                format!("expected a number without suffix, found `{suffix}`"),
+            ),
             None => Err(Box::new(error(
                 codes::LITERAL,
                 literal.span(),
@@ -130,18 +146,27 @@ impl<N: Names> Evaluator<'_, N> {
         let mut rest = expression;
         while let Expr::Field(field) = rest {
             let Member::Named(name) = &field.member else {
-                return fail(field.member.span(), "expected a name after `.`; a component is `[0]` or `.x`");
+                return fail(
+                    field.member.span(),
+                    "expected a name after `.`; a component is `[0]` or `.x`",
+                );
             };
             members.push(name.clone());
             rest = &field.base;
         }
         let Expr::Path(base) = rest else {
-            let Some(last) = members.first().cloned() else { return fail(rest.span(), "expected a name") };
-            let Expr::Field(field) = expression else { return fail(rest.span(), "expected a name") };
+            let Some(last) = members.first().cloned() else {
+                return fail(rest.span(), "expected a name");
+            };
+            let Expr::Field(field) = expression else {
+                return fail(rest.span(), "expected a name");
+            };
             let value = self.evaluate(&field.base)?;
             return self.component(value, &last);
         };
-        let Some(base) = base.path.get_ident() else { return fail(rest.span(), "expected a plain name") };
+        let Some(base) = base.path.get_ident() else {
+            return fail(rest.span(), "expected a plain name");
+        };
         members.push(base.clone());
         members.reverse();
         if let Some(value) = self.names.value(self.pool, &members) {
@@ -154,14 +179,27 @@ impl<N: Names> Evaluator<'_, N> {
         {
             return self.component(value?, last);
         }
-        let text = members.iter().map(ToString::to_string).collect::<Vec<_>>().join(".");
-        let name = members.last().map_or_else(|| expression.span(), Ident::span);
-        Err(Box::new(error(codes::UNKNOWN_NAME, name, format!("`{text}` is not declared"))))
+        let text = members
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join(".");
+        let name = members
+            .last()
+            .map_or_else(|| expression.span(), Ident::span);
+        Err(Box::new(error(
+            codes::UNKNOWN_NAME,
+            name,
+            format!("`{text}` is not declared"),
+        )))
     }
 
     fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
         let Some(index) = component_index(name) else {
-            return fail(name.span(), format!("expected `x`, `y` or `z`, found `{name}`"));
+            return fail(
+                name.span(),
+                format!("expected `x`, `y` or `z`, found `{name}`"),
+            );
         };
         self.pick(value, index, name.span())
     }
@@ -176,7 +214,11 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn index(&mut self, index: &syn::ExprIndex) -> Result<Value> {
         let value = self.evaluate(&index.expr)?;
-        let Expr::Lit(syn::ExprLit { lit: Lit::Int(number), .. }) = &*index.index else {
+        let Expr::Lit(syn::ExprLit {
+            lit: Lit::Int(number),
+            ..
+        }) = &*index.index
+        else {
             return fail(index.index.span(), "expected the number of a component");
         };
         let Ok(number) = number.base10_parse() else {
@@ -188,11 +230,21 @@ impl<N: Names> Evaluator<'_, N> {
     fn binary(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
         let span = binary.op.span();
         if matches!(binary.op, BinOp::BitXor(_)) {
-            let report = error(codes::POWER_OPERATOR, span, "`^` is not a power; in Rust it is the exclusive or");
+            let report = error(
+                codes::POWER_OPERATOR,
+                span,
+                "`^` is not a power; in Rust it is the exclusive or",
+            );
             return Err(Box::new(report.help("write `powi(x, 2)`")));
         }
-        if !matches!(binary.op, BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_)) {
-            return fail(span, "expected +, -, * or /; comparisons belong into an `if`");
+        if !matches!(
+            binary.op,
+            BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_)
+        ) {
+            return fail(
+                span,
+                "expected +, -, * or /; comparisons belong into an `if`",
+            );
         }
         let left = self.evaluate(&binary.left)?;
         let right = self.evaluate(&binary.right)?;
@@ -202,10 +254,15 @@ impl<N: Names> Evaluator<'_, N> {
             BinOp::Mul(_) => self.product(left, right, span),
             _ => {
                 let Value::Scalar(divisor) = right else {
-                    return mismatch(span, format!("expected a number as divisor, found {}", right.shape()));
+                    return mismatch(
+                        span,
+                        format!("expected a number as divisor, found {}", right.shape()),
+                    );
                 };
                 match left {
-                    Value::Scalar(dividend) => self.quotient(dividend, divisor, span).map(Value::Scalar),
+                    Value::Scalar(dividend) => {
+                        self.quotient(dividend, divisor, span).map(Value::Scalar)
+                    }
                     matrix @ Value::Matrix(_) => {
                         let reciprocal = self.quotient(Expression::ONE, divisor, span)?;
                         self.scale(reciprocal, matrix, span)
@@ -215,22 +272,48 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    fn quotient(&mut self, dividend: Expression, divisor: Expression, span: Span) -> Result<Expression> {
-        self.pool
-            .divide(dividend, divisor)
-            .ok_or_else(|| Box::new(error(codes::NOT_FINITE, span, "this divides by zero, whatever the state")))
+    fn quotient(
+        &mut self,
+        dividend: Expression,
+        divisor: Expression,
+        span: Span,
+    ) -> Result<Expression> {
+        self.pool.divide(dividend, divisor).ok_or_else(|| {
+            Box::new(error(
+                codes::NOT_FINITE,
+                span,
+                "this divides by zero, whatever the state",
+            ))
+        })
     }
 
     fn sum(&mut self, left: Value, right: Value, minus: bool, span: Span) -> Result<Value> {
         match (&left, &right) {
-            (Value::Scalar(a), Value::Scalar(b)) => Ok(Value::Scalar(self.pool.add(*a, b.flipped(minus)))),
-            (Value::Matrix(a), Value::Matrix(b)) if (a.rows(), a.columns()) == (b.rows(), b.columns()) => {
-                let (a, b) = (a.to_matrix(self.pool), b.to_matrix(self.pool));
-                let entries =
-                    a.entries.iter().zip(&b.entries).map(|(a, b)| self.pool.add(*a, b.flipped(minus))).collect();
-                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::new(a.rows, a.columns, entries)))))
+            (Value::Scalar(a), Value::Scalar(b)) => {
+                Ok(Value::Scalar(self.pool.add(*a, b.flipped(minus))))
             }
-            _ => mismatch(span, format!("expected equal dimensions, found {} and {}", left.shape(), right.shape())),
+            (Value::Matrix(a), Value::Matrix(b))
+                if (a.rows(), a.columns()) == (b.rows(), b.columns()) =>
+            {
+                let (a, b) = (a.to_matrix(self.pool), b.to_matrix(self.pool));
+                let entries = a
+                    .entries
+                    .iter()
+                    .zip(&b.entries)
+                    .map(|(a, b)| self.pool.add(*a, b.flipped(minus)))
+                    .collect();
+                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::new(
+                    a.rows, a.columns, entries,
+                )))))
+            }
+            _ => mismatch(
+                span,
+                format!(
+                    "expected equal dimensions, found {} and {}",
+                    left.shape(),
+                    right.shape()
+                ),
+            ),
         }
     }
 
@@ -255,15 +338,21 @@ impl<N: Names> Evaluator<'_, N> {
         Ok(match value {
             Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
             Value::Matrix(product) => {
-                let matrix = product.to_matrix(self.pool).map(|entry| self.pool.multiply(factor, entry));
+                let matrix = product
+                    .to_matrix(self.pool)
+                    .map(|entry| self.pool.multiply(factor, entry));
                 Value::Matrix(Product::of(Factor::Dense(matrix)))
             }
         })
     }
 
     fn call(&mut self, call: &syn::ExprCall) -> Result<Value> {
-        let Expr::Path(path) = &*call.func else { return fail(call.func.span(), "expected the name of a function") };
-        let Some(name) = path.path.get_ident() else { return fail(call.func.span(), "expected a plain name") };
+        let Expr::Path(path) = &*call.func else {
+            return fail(call.func.span(), "expected the name of a function");
+        };
+        let Some(name) = path.path.get_ident() else {
+            return fail(call.func.span(), "expected a plain name");
+        };
         let arguments: Vec<Expr> = call.args.iter().cloned().collect();
         self.function(name, &arguments)
     }
@@ -274,14 +363,24 @@ impl<N: Names> Evaluator<'_, N> {
             if arguments.len() == expected {
                 Ok(())
             } else {
-                fail(name.span(), format!("`{text}` takes {expected} arguments, found {}", arguments.len()))
+                fail(
+                    name.span(),
+                    format!(
+                        "`{text}` takes {expected} arguments, found {}",
+                        arguments.len()
+                    ),
+                )
             }
         };
         match text.as_str() {
             "sin" | "cos" => {
                 count(1)?;
                 let angle = self.scalar(&arguments[0])?;
-                Ok(Value::Scalar(if text == "sin" { self.pool.sine(angle) } else { self.pool.cosine(angle) }))
+                Ok(Value::Scalar(if text == "sin" {
+                    self.pool.sine(angle)
+                } else {
+                    self.pool.cosine(angle)
+                }))
             }
             "powi" => {
                 count(2)?;
@@ -301,8 +400,13 @@ impl<N: Names> Evaluator<'_, N> {
                 }
             }
             "diag" => {
-                let entries: Result<Vec<_>> = arguments.iter().map(|argument| self.scalar(argument)).collect();
-                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::diagonal(&entries?)))))
+                let entries: Result<Vec<_>> = arguments
+                    .iter()
+                    .map(|argument| self.scalar(argument))
+                    .collect();
+                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::diagonal(
+                    &entries?,
+                )))))
             }
             "jacobian_xyz" => {
                 count(1)?;
@@ -313,18 +417,30 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     fn elementary(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let known = Function::ALL.into_iter().find(|function| name == function.name());
+        let known = Function::ALL
+            .into_iter()
+            .find(|function| name == function.name());
         let Some(function) = known.filter(|function| *function != Function::SelectLess) else {
-            let report = error(codes::UNKNOWN_NAME, name.span(), format!("`{name}` is not a function of the language"));
+            let report = error(
+                codes::UNKNOWN_NAME,
+                name.span(),
+                format!("`{name}` is not a function of the language"),
+            );
             return Err(Box::new(report.help(
                 "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
                  diag, transpose, rot_x, rot_y, rot_z, jacobian_xyz",
             )));
         };
         if arguments.len() != function.arity() {
-            return fail(name.span(), format!("`{name}` takes {} arguments", function.arity()));
+            return fail(
+                name.span(),
+                format!("`{name}` takes {} arguments", function.arity()),
+            );
         }
-        let values: Result<Vec<_>> = arguments.iter().map(|argument| self.scalar(argument)).collect();
+        let values: Result<Vec<_>> = arguments
+            .iter()
+            .map(|argument| self.scalar(argument))
+            .collect();
         Ok(Value::Scalar(self.pool.call(function, &values?)))
     }
 
@@ -332,11 +448,19 @@ impl<N: Names> Evaluator<'_, N> {
         let base = self.scalar(&arguments[0])?;
         let exponent = self.scalar(&arguments[1])?;
         match self.pool.constant_value(exponent) {
-            Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => match self.pool.power(base, value as i32) {
-                Some(power) => Ok(Value::Scalar(power)),
-                None => fail(arguments[0].span(), "this divides by zero, whatever the state"),
-            },
-            _ => fail(arguments[1].span(), "expected an integer exponent between -64 and 64"),
+            Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => {
+                match self.pool.power(base, value as i32) {
+                    Some(power) => Ok(Value::Scalar(power)),
+                    None => fail(
+                        arguments[0].span(),
+                        "this divides by zero, whatever the state",
+                    ),
+                }
+            }
+            _ => fail(
+                arguments[1].span(),
+                "expected an integer exponent between -64 and 64",
+            ),
         }
     }
 
@@ -344,10 +468,14 @@ impl<N: Names> Evaluator<'_, N> {
         let value = self.evaluate(argument)?;
         let shape = value.shape();
         match value.entries(self.pool).as_deref() {
-            Some(&[a, b, c]) => {
-                Ok(Value::Matrix(Product::of(Factor::GimbalJacobian { angles: [a, b, c], transposed: false })))
-            }
-            _ => mismatch(argument.span(), format!("expected a vector of 3 angles, found {shape}")),
+            Some(&[a, b, c]) => Ok(Value::Matrix(Product::of(Factor::GimbalJacobian {
+                angles: [a, b, c],
+                transposed: false,
+            }))),
+            _ => mismatch(
+                argument.span(),
+                format!("expected a vector of 3 angles, found {shape}"),
+            ),
         }
     }
 
@@ -374,7 +502,10 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn choice(&mut self, choice: &syn::ExprIf) -> Result<Value> {
         let Expr::Binary(test) = &*choice.cond else {
-            return fail(choice.cond.span(), "expected a comparison with < <= > or >=");
+            return fail(
+                choice.cond.span(),
+                "expected a comparison with < <= > or >=",
+            );
         };
         let (a, b) = (self.scalar(&test.left)?, self.scalar(&test.right)?);
         let yes = self.block(&choice.then_branch)?;
@@ -383,7 +514,12 @@ impl<N: Names> Evaluator<'_, N> {
                 Expr::Block(block) => self.block(&block.block)?,
                 other => self.scalar(other)?,
             },
-            None => return fail(choice.span(), "expected an `else`: both branches are evaluated and one is selected"),
+            None => {
+                return fail(
+                    choice.span(),
+                    "expected an `else`: both branches are evaluated and one is selected",
+                );
+            }
         };
         let arguments = match test.op {
             BinOp::Lt(_) => [a, b, yes, no],
@@ -395,7 +531,9 @@ impl<N: Names> Evaluator<'_, N> {
         if yes == no {
             return Ok(Value::Scalar(yes));
         }
-        Ok(Value::Scalar(self.pool.call(Function::SelectLess, &arguments)))
+        Ok(Value::Scalar(
+            self.pool.call(Function::SelectLess, &arguments),
+        ))
     }
 
     fn block(&mut self, block: &syn::Block) -> Result<Expression> {

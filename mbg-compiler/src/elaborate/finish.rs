@@ -24,7 +24,8 @@ impl<'a> Builder<'a> {
                 parameter.name.span(),
                 format!("parameter `{}` has no value", parameter.name),
             );
-            self.diagnostics.report(report.help(format!("write `param {} = 1.0;`", parameter.name)));
+            self.diagnostics
+                .report(report.help(format!("write `param {} = 1.0;`", parameter.name)));
             return 0.0;
         };
         match self.evaluate(0, expression) {
@@ -33,7 +34,8 @@ impl<'a> Builder<'a> {
             }
             Ok(_) => {
                 let message = format!("expected a number as the default of `{}`", parameter.name);
-                self.diagnostics.error(codes::EXPRESSION, parameter.name.span(), message);
+                self.diagnostics
+                    .error(codes::EXPRESSION, parameter.name.span(), message);
                 0.0
             }
             Err(report) => {
@@ -47,7 +49,9 @@ impl<'a> Builder<'a> {
     pub(super) fn declare_integrals(&mut self) {
         for (scope, statement) in std::mem::take(&mut self.integrals) {
             let (name, unit, dimension) = match statement {
-                Statement::Integral(integral) => (&integral.name, integral.unit.as_ref(), integral.dimension),
+                Statement::Integral(integral) => {
+                    (&integral.name, integral.unit.as_ref(), integral.dimension)
+                }
                 Statement::Attitude(attitude) => (&attitude.name, None, 4),
                 _ => continue,
             };
@@ -56,14 +60,27 @@ impl<'a> Builder<'a> {
             let path = self.path(scope, name);
             for variable in component_names(&path, dimension, unit) {
                 let rate = StateRate::Expression(Expression::ZERO);
-                self.states.push(State { variable, initial: Expression::ZERO, rate, span: name.span() });
+                self.states.push(State {
+                    variable,
+                    initial: Expression::ZERO,
+                    rate,
+                    span: name.span(),
+                });
             }
             let states = start..self.states.len();
             self.name(scope, name, Entity::States(states.clone()));
             // Before the outputs, which may read them; they are read after all laws anyway.
             self.pending.push(match statement {
-                Statement::Integral(integral) => Pending::Integral { scope, integral, states },
-                Statement::Attitude(attitude) => Pending::Attitude { scope, attitude, states },
+                Statement::Integral(integral) => Pending::Integral {
+                    scope,
+                    integral,
+                    states,
+                },
+                Statement::Attitude(attitude) => Pending::Attitude {
+                    scope,
+                    attitude,
+                    states,
+                },
                 _ => continue,
             });
         }
@@ -73,16 +90,31 @@ impl<'a> Builder<'a> {
     pub(super) fn resolve_laws(&mut self) {
         for pending in std::mem::take(&mut self.pending) {
             let result = match pending {
-                Pending::Argument { caller, scope, name, value } => self.argument(caller, scope, name, value),
+                Pending::Argument {
+                    caller,
+                    scope,
+                    name,
+                    value,
+                } => self.argument(caller, scope, name, value),
                 Pending::Law { scope, element, id } => self.law(scope, element, id),
                 Pending::Gyroscopic { storage, id } => {
                     let states = self.ports[storage.0].0.clone();
-                    let momentum = states.map(|state| self.pool.symbol(Symbol::State(state))).collect();
+                    let momentum = states
+                        .map(|state| self.pool.symbol(Symbol::State(state)))
+                        .collect();
                     self.graph.elements[id.0].law = Law::EulerJunction(momentum);
                     Ok(())
                 }
-                Pending::Integral { scope, integral, states } => self.integral(scope, integral, states),
-                Pending::Attitude { scope, attitude, states } => self.attitude(scope, attitude, states),
+                Pending::Integral {
+                    scope,
+                    integral,
+                    states,
+                } => self.integral(scope, integral, states),
+                Pending::Attitude {
+                    scope,
+                    attitude,
+                    states,
+                } => self.attitude(scope, attitude, states),
                 Pending::Output { scope, output } => self.output(scope, output),
             };
             if let Err(report) = result {
@@ -105,33 +137,66 @@ impl<'a> Builder<'a> {
 
     fn evaluate(&mut self, scope: usize, expression: &syn::Expr) -> Result<Value> {
         let (pool, mut lookup) = self.lookup(scope);
-        Evaluator { pool, names: &mut lookup }.evaluate(expression)
+        Evaluator {
+            pool,
+            names: &mut lookup,
+        }
+        .evaluate(expression)
     }
 
-    fn vector(&mut self, scope: usize, expression: &syn::Expr, dimension: usize, name: &Ident) -> Result<Vec<Expression>> {
+    fn vector(
+        &mut self,
+        scope: usize,
+        expression: &syn::Expr,
+        dimension: usize,
+        name: &Ident,
+    ) -> Result<Vec<Expression>> {
         let value = self.evaluate(scope, expression)?;
         let shape = value.shape();
         match value.entries(self.pool) {
             Some(entries) if entries.len() == dimension => Ok(entries),
             _ => {
                 let message = format!("`{name}` has dimension {dimension}, found {shape}");
-                Err(Box::new(error(codes::WRONG_DIMENSION, name.span(), message)))
+                Err(Box::new(error(
+                    codes::WRONG_DIMENSION,
+                    name.span(),
+                    message,
+                )))
             }
         }
     }
 
-    fn argument(&mut self, caller: usize, scope: usize, name: &Ident, value: &syn::Expr) -> Result<()> {
+    fn argument(
+        &mut self,
+        caller: usize,
+        scope: usize,
+        name: &Ident,
+        value: &syn::Expr,
+    ) -> Result<()> {
         let value = self.evaluate(caller, value)?;
-        self.scopes[scope].names.insert(name.to_string(), Entity::Value(Some(value)));
+        self.scopes[scope]
+            .names
+            .insert(name.to_string(), Entity::Value(Some(value)));
         Ok(())
     }
 
     fn law(&mut self, scope: usize, element: &ast::Element, id: ElementId) -> Result<()> {
         let field = law_field(element, self.diagnostics)?;
         let (states, dimension) = self.ports[id.0].clone();
-        let own = Own { element: id, states: states.clone(), dimension, component: None };
+        let own = Own {
+            element: id,
+            states: states.clone(),
+            dimension,
+            component: None,
+        };
         let (pool, mut lookup) = self.lookup(scope);
-        let reading = Reader { pool, lookup: &mut lookup, element, own }.read(field)?;
+        let reading = Reader {
+            pool,
+            lookup: &mut lookup,
+            element,
+            own,
+        }
+        .read(field)?;
         for (state, initial) in states.zip(reading.initial.into_iter().flatten()) {
             self.initial_value(state, initial)?;
         }
@@ -144,13 +209,22 @@ impl<'a> Builder<'a> {
     fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
         if self.pool.rate(initial) == crate::symbolic::Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
-            return Err(Box::new(error(codes::EXPRESSION, self.states[state].span, message)));
+            return Err(Box::new(error(
+                codes::EXPRESSION,
+                self.states[state].span,
+                message,
+            )));
         }
         self.states[state].initial = initial;
         Ok(())
     }
 
-    fn integral(&mut self, scope: usize, integral: &ast::Integral, states: std::ops::Range<usize>) -> Result<()> {
+    fn integral(
+        &mut self,
+        scope: usize,
+        integral: &ast::Integral,
+        states: std::ops::Range<usize>,
+    ) -> Result<()> {
         let rates = self.vector(scope, &integral.rate, integral.dimension, &integral.name)?;
         let initial = match &integral.initial {
             Some(value) => self.vector(scope, value, integral.dimension, &integral.name)?,
@@ -164,17 +238,32 @@ impl<'a> Builder<'a> {
     }
 
     /// `q̇ = ½ q∘(0, ω)`.
-    fn attitude(&mut self, scope: usize, attitude: &ast::Attitude, states: std::ops::Range<usize>) -> Result<()> {
+    fn attitude(
+        &mut self,
+        scope: usize,
+        attitude: &ast::Attitude,
+        states: std::ops::Range<usize>,
+    ) -> Result<()> {
         let omega = self.vector(scope, &attitude.angular_velocity, 3, &attitude.name)?;
         let initial = match &attitude.initial {
             Some(value) => self.vector(scope, value, 4, &attitude.name)?,
-            None => vec![Expression::ONE, Expression::ZERO, Expression::ZERO, Expression::ZERO],
+            None => vec![
+                Expression::ONE,
+                Expression::ZERO,
+                Expression::ZERO,
+                Expression::ZERO,
+            ],
         };
         let pool = &mut *self.pool;
         let two = pool.integer(2);
-        let half: Vec<Expression> =
-            omega.iter().map(|rate| pool.divide(*rate, two).unwrap_or(Expression::ZERO)).collect();
-        let q: Vec<Expression> = states.clone().map(|state| pool.symbol(Symbol::State(state))).collect();
+        let half: Vec<Expression> = omega
+            .iter()
+            .map(|rate| pool.divide(*rate, two).unwrap_or(Expression::ZERO))
+            .collect();
+        let q: Vec<Expression> = states
+            .clone()
+            .map(|state| pool.symbol(Symbol::State(state)))
+            .collect();
         let rows = [
             [(1, 0, true), (2, 1, true), (3, 2, true)],
             [(0, 0, false), (2, 2, false), (3, 1, true)],
@@ -182,7 +271,8 @@ impl<'a> Builder<'a> {
             [(0, 2, false), (1, 1, false), (2, 0, true)],
         ];
         for ((state, row), initial) in states.zip(rows).zip(initial) {
-            let terms = row.map(|(part, axis, minus)| self.pool.multiply(q[part], half[axis]).flipped(minus));
+            let terms = row
+                .map(|(part, axis, minus)| self.pool.multiply(q[part], half[axis]).flipped(minus));
             self.states[state].rate = StateRate::Expression(self.pool.sum(&terms));
             self.initial_value(state, initial)?;
         }
@@ -194,7 +284,12 @@ impl<'a> Builder<'a> {
         let unit = output.unit.as_ref().map_or("", |unit| unit.text.as_str());
         let path = self.path(scope, &output.name);
         let variables = component_names(&path, output.dimension, unit);
-        self.outputs.extend(variables.into_iter().zip(values).map(|(variable, value)| Output { variable, value }));
+        self.outputs.extend(
+            variables
+                .into_iter()
+                .zip(values)
+                .map(|(variable, value)| Output { variable, value }),
+        );
         Ok(())
     }
 
@@ -216,36 +311,60 @@ impl<'a> Builder<'a> {
 }
 
 /// The one field that carries the law.
-fn law_field<'e>(element: &'e ast::Element, diagnostics: &mut Diagnostics) -> Result<&'e ast::Field> {
+fn law_field<'e>(
+    element: &'e ast::Element,
+    diagnostics: &mut Diagnostics,
+) -> Result<&'e ast::Field> {
     let words = law_words(element.kind);
     let others = other_words(element.kind);
     for field in &element.fields {
         let word = field.name.to_string();
         if !words.contains(&word.as_str()) && !others.contains(&word.as_str()) {
             let message = format!("a {:?} does not know `{word}`", element.kind);
-            let known: Vec<String> = words.iter().chain(others).map(|word| (*word).to_owned()).collect();
+            let known: Vec<String> = words
+                .iter()
+                .chain(others)
+                .map(|word| (*word).to_owned())
+                .collect();
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
-            diagnostics.report(report.help(format!("its words are {}", crate::diagnostics::listing(known))));
+            diagnostics.report(report.help(format!(
+                "its words are {}",
+                crate::diagnostics::listing(known)
+            )));
         }
     }
-    let mut laws = element.fields.iter().filter(|field| words.iter().any(|word| field.name == word));
+    let mut laws = element
+        .fields
+        .iter()
+        .filter(|field| words.iter().any(|word| field.name == word));
     let Some(first) = laws.next() else {
         let message = format!("`{}` has no law", element.name);
-        let help = format!("write `{:?} {} {{ {}: … }}`", element.kind, element.name, words[0]);
-        return Err(Box::new(error(codes::MISSING_LAW, element.name.span(), message).help(help)));
+        let help = format!(
+            "write `{:?} {} {{ {}: … }}`",
+            element.kind, element.name, words[0]
+        );
+        return Err(Box::new(
+            error(codes::MISSING_LAW, element.name.span(), message).help(help),
+        ));
     };
     match laws.next() {
         None => Ok(first),
         Some(second) => {
-            let message =
-                format!("`{}` has two laws, `{}` and `{}`", element.name, first.name, second.name);
-            Err(Box::new(error(codes::TWO_LAWS, second.name.span(), message)))
+            let message = format!(
+                "`{}` has two laws, `{}` and `{}`",
+                element.name, first.name, second.name
+            );
+            Err(Box::new(error(
+                codes::TWO_LAWS,
+                second.name.span(),
+                message,
+            )))
         }
     }
 }
 
 /// Names of components, for the driver.
-pub(crate) fn component_table(source: &ast::Source) -> BTreeMap<String, &ast::Component> {
+pub fn component_table(source: &ast::Source) -> BTreeMap<String, &ast::Component> {
     source
         .items
         .iter()
@@ -255,4 +374,3 @@ pub(crate) fn component_table(source: &ast::Source) -> BTreeMap<String, &ast::Co
         })
         .collect()
 }
-

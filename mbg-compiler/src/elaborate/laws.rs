@@ -59,42 +59,95 @@ impl Reader<'_, '_> {
     pub(super) fn read(&mut self, field: &Field) -> Result<Reading> {
         let Some(value) = &field.value else {
             let message = format!("expected `{}: value`", field.name);
-            return Err(Box::new(error(codes::MISSING_LAW, field.name.span(), message)));
+            return Err(Box::new(error(
+                codes::MISSING_LAW,
+                field.name.span(),
+                message,
+            )));
         };
         let word = field.name.to_string();
-        let plain = |law, rule| Reading { law, rule, initial: None, assumptions: Vec::new() };
+        let plain = |law, rule| Reading {
+            law,
+            rule,
+            initial: None,
+            assumptions: Vec::new(),
+        };
         match (self.element.kind, word.as_str()) {
             (ElementKind::Se, _) => Ok(plain(Law::Source(self.vector(value)?), Rule::EffortOut)),
             (ElementKind::Sf, _) => Ok(plain(Law::Source(self.vector(value)?), Rule::FlowOut)),
-            (ElementKind::EJS, _) => Ok(plain(Law::EulerJunction(self.vector(value)?), Rule::Gyroscopic)),
+            (ElementKind::EJS, _) => Ok(plain(
+                Law::EulerJunction(self.vector(value)?),
+                Rule::Gyroscopic,
+            )),
             (ElementKind::I | ElementKind::C, _) => self.storage(&word, value),
-            (ElementKind::R, "resistance") => Ok(plain(Law::Resistance(self.coefficient(value)?), Rule::Either)),
-            (ElementKind::R, "conductance") => Ok(plain(Law::Conductance(self.coefficient(value)?), Rule::Either)),
-            (ElementKind::R, "effort") => Ok(plain(Law::EffortLaw(self.by_component(value)?), Rule::ResistanceOnly)),
-            (ElementKind::R, _) => Ok(plain(Law::FlowLaw(self.by_component(value)?), Rule::ConductanceOnly)),
+            (ElementKind::R, "resistance") => Ok(plain(
+                Law::Resistance(self.coefficient(value)?),
+                Rule::Either,
+            )),
+            (ElementKind::R, "conductance") => Ok(plain(
+                Law::Conductance(self.coefficient(value)?),
+                Rule::Either,
+            )),
+            (ElementKind::R, "effort") => Ok(plain(
+                Law::EffortLaw(self.by_component(value)?),
+                Rule::ResistanceOnly,
+            )),
+            (ElementKind::R, _) => Ok(plain(
+                Law::FlowLaw(self.by_component(value)?),
+                Rule::ConductanceOnly,
+            )),
             (ElementKind::TF | ElementKind::MTF, _) => {
                 let product = self.matrix(value)?;
                 let (rows, columns, invertible) = self.size(&product);
-                Ok(plain(Law::Transformer(product), Rule::Transformer { rows, columns, invertible }))
+                Ok(plain(
+                    Law::Transformer(product),
+                    Rule::Transformer {
+                        rows,
+                        columns,
+                        invertible,
+                    },
+                ))
             }
             (ElementKind::GY | ElementKind::MGY, _) => {
                 let product = self.matrix(value)?;
                 let (rows, columns, invertible) = self.size(&product);
-                Ok(plain(Law::Gyrator(product), Rule::Gyrator { rows, columns, invertible }))
+                Ok(plain(
+                    Law::Gyrator(product),
+                    Rule::Gyrator {
+                        rows,
+                        columns,
+                        invertible,
+                    },
+                ))
             }
         }
     }
 
     fn evaluate(&mut self, component: Option<usize>, value: &Expr) -> Result<Value> {
-        self.lookup.own = Some(Own { component, ..self.own.clone() });
-        Evaluator { pool: self.pool, names: self.lookup }.evaluate(value)
+        self.lookup.own = Some(Own {
+            component,
+            ..self.own.clone()
+        });
+        Evaluator {
+            pool: self.pool,
+            names: self.lookup,
+        }
+        .evaluate(value)
     }
 
     fn wrong_shape<T>(&self, value: &Expr, found: &Value) -> Result<T> {
         let size = self.own.dimension;
-        let expected = if size == 1 { "a number".to_owned() } else { format!("a number or a vector of {size}") };
+        let expected = if size == 1 {
+            "a number".to_owned()
+        } else {
+            format!("a number or a vector of {size}")
+        };
         let message = format!("expected {expected}, found {}", found.shape());
-        Err(Box::new(error(codes::WRONG_DIMENSION, value.span(), message)))
+        Err(Box::new(error(
+            codes::WRONG_DIMENSION,
+            value.span(),
+            message,
+        )))
     }
 
     /// One entry per component; a number stands for all of them.
@@ -113,12 +166,19 @@ impl Reader<'_, '_> {
 
     /// A scalar law applies to each component; a law that names components gives the vector.
     fn by_component(&mut self, value: &Expr) -> Result<Vec<Expression>> {
-        let scalar: Result<Vec<Value>> =
-            (0..self.own.dimension).map(|component| self.evaluate(Some(component), value)).collect();
+        let scalar: Result<Vec<Value>> = (0..self.own.dimension)
+            .map(|component| self.evaluate(Some(component), value))
+            .collect();
         if let Ok(values) = scalar {
             let entries: Option<Vec<Expression>> = values
                 .iter()
-                .map(|value| if let Value::Scalar(entry) = value { Some(*entry) } else { None })
+                .map(|value| {
+                    if let Value::Scalar(entry) = value {
+                        Some(*entry)
+                    } else {
+                        None
+                    }
+                })
                 .collect();
             if let Some(entries) = entries {
                 return Ok(entries);
@@ -136,8 +196,15 @@ impl Reader<'_, '_> {
                 Ok(product.to_matrix(self.pool))
             }
             found => {
-                let message = format!("expected a number or a {size}×{size} matrix, found {}", found.shape());
-                Err(Box::new(error(codes::WRONG_DIMENSION, value.span(), message)))
+                let message = format!(
+                    "expected a number or a {size}×{size} matrix, found {}",
+                    found.shape()
+                );
+                Err(Box::new(error(
+                    codes::WRONG_DIMENSION,
+                    value.span(),
+                    message,
+                )))
             }
         }
     }
@@ -146,9 +213,14 @@ impl Reader<'_, '_> {
     fn matrix(&mut self, value: &Expr) -> Result<Product> {
         match self.evaluate(None, value)? {
             Value::Matrix(product) => Ok(product),
-            Value::Scalar(entry) => {
-                Ok(Product::of(Factor::Dense(Matrix::diagonal(&vec![entry; self.own.dimension.max(1)]))))
-            }
+            Value::Scalar(entry) => Ok(Product::of(Factor::Dense(Matrix::diagonal(&vec![
+                entry;
+                self.own
+                    .dimension
+                    .max(
+                        1
+                    )
+            ])))),
         }
     }
 
@@ -167,8 +239,12 @@ impl Reader<'_, '_> {
     }
 
     fn storage(&mut self, word: &str, value: &Expr) -> Result<Reading> {
-        let states: Vec<Expression> =
-            self.own.states.clone().map(|state| self.pool.symbol(Symbol::State(state))).collect();
+        let states: Vec<Expression> = self
+            .own
+            .states
+            .clone()
+            .map(|state| self.pool.symbol(Symbol::State(state)))
+            .collect();
         let mut assumptions = Vec::new();
         let (coenergy, energy) = match word {
             "inertia" | "compliance" | "stiffness" => {
@@ -177,40 +253,70 @@ impl Reader<'_, '_> {
                 if word == "inertia" {
                     assumptions = self.positive(&matrix, value.span())?;
                 }
-                let matrix = if word == "stiffness" { matrix } else { self.inverse(&matrix, value.span())? };
-                let coenergy = matrix.times(self.pool, &Matrix::column(states.clone())).entries;
+                let matrix = if word == "stiffness" {
+                    matrix
+                } else {
+                    self.inverse(&matrix, value.span())?
+                };
+                let coenergy = matrix
+                    .times(self.pool, &Matrix::column(states.clone()))
+                    .entries;
                 let energy = self.half_product(&states, &coenergy);
                 (coenergy, energy)
             }
             "energy" => self.from_energy(value)?,
             _ => {
                 let coenergy = self.by_component(value)?;
-                (coenergy.clone(), quadrature::energy(self.pool, &self.own.states, &coenergy))
+                (
+                    coenergy.clone(),
+                    quadrature::energy(self.pool, &self.own.states, &coenergy),
+                )
             }
         };
-        let rule = if self.element.kind == ElementKind::I { Rule::PreferFlowOut } else { Rule::PreferEffortOut };
+        let rule = if self.element.kind == ElementKind::I {
+            Rule::PreferFlowOut
+        } else {
+            Rule::PreferEffortOut
+        };
         let initial = self.initial(&coenergy)?;
-        let law = Law::Storage(Storage { states: self.own.states.clone(), coenergy, energy });
-        Ok(Reading { law, rule, initial, assumptions })
+        let law = Law::Storage(Storage {
+            states: self.own.states.clone(),
+            coenergy,
+            energy,
+        });
+        Ok(Reading {
+            law,
+            rule,
+            initial,
+            assumptions,
+        })
     }
 
     fn from_energy(&mut self, value: &Expr) -> Result<(Vec<Expression>, Expression)> {
         let terms = self.energy_terms(value)?;
         let energy = self.pool.sum(&terms);
         let states: Range<usize> = self.own.states.clone();
-        let coenergy =
-            states.map(|state| Differentiator::new(Symbol::State(state)).derivative(self.pool, energy)).collect();
+        let coenergy = states
+            .map(|state| Differentiator::new(Symbol::State(state)).derivative(self.pool, energy))
+            .collect();
         Ok((coenergy, energy))
     }
 
     /// The energy of each component, or of the vector when components are named.
     fn energy_terms(&mut self, value: &Expr) -> Result<Vec<Expression>> {
-        let scalar: Result<Vec<Value>> =
-            (0..self.own.dimension).map(|component| self.evaluate(Some(component), value)).collect();
+        let scalar: Result<Vec<Value>> = (0..self.own.dimension)
+            .map(|component| self.evaluate(Some(component), value))
+            .collect();
         if let Ok(values) = scalar
             && let Some(entries) = values
                 .iter()
-                .map(|value| if let Value::Scalar(entry) = value { Some(*entry) } else { None })
+                .map(|value| {
+                    if let Value::Scalar(entry) = value {
+                        Some(*entry)
+                    } else {
+                        None
+                    }
+                })
                 .collect::<Option<Vec<_>>>()
         {
             return Ok(entries);
@@ -219,13 +325,21 @@ impl Reader<'_, '_> {
             Value::Scalar(energy) => Ok(vec![energy]),
             found => {
                 let message = format!("expected a number, the energy, found {}", found.shape());
-                Err(Box::new(error(codes::WRONG_DIMENSION, value.span(), message)))
+                Err(Box::new(error(
+                    codes::WRONG_DIMENSION,
+                    value.span(),
+                    message,
+                )))
             }
         }
     }
 
     fn half_product(&mut self, a: &[Expression], b: &[Expression]) -> Expression {
-        let terms: Vec<_> = a.iter().zip(b).map(|(a, b)| self.pool.multiply(*a, *b)).collect();
+        let terms: Vec<_> = a
+            .iter()
+            .zip(b)
+            .map(|(a, b)| self.pool.multiply(*a, *b))
+            .collect();
         let sum = self.pool.sum(&terms);
         let two = self.pool.integer(2);
         self.pool.divide(sum, two).unwrap_or(Expression::ZERO)
@@ -241,7 +355,11 @@ impl Reader<'_, '_> {
 
     fn inverse(&mut self, matrix: &Matrix, span: Span) -> Result<Matrix> {
         matrix.inverse(self.pool).ok_or_else(|| {
-            Box::new(error(codes::NOT_FINITE, span, format!("`{}` has a singular matrix", self.element.name)))
+            Box::new(error(
+                codes::NOT_FINITE,
+                span,
+                format!("`{}` has a singular matrix", self.element.name),
+            ))
         })
     }
 
@@ -252,20 +370,30 @@ impl Reader<'_, '_> {
             let expression = if matrix.is_diagonal() {
                 matrix.at(size - 1, size - 1)
             } else {
-                let entries = (0..size).flat_map(|r| (0..size).map(move |c| matrix.at(r, c))).collect();
+                let entries = (0..size)
+                    .flat_map(|r| (0..size).map(move |c| matrix.at(r, c)))
+                    .collect();
                 Matrix::new(size, size, entries).determinant(self.pool)
             };
             match self.pool.constant_value(expression) {
                 Some(value) if value > 0.0 => {}
                 Some(value) => {
-                    let message = format!("the inertia of `{}` is {value}, not positive", self.element.name);
+                    let message = format!(
+                        "the inertia of `{}` is {value}, not positive",
+                        self.element.name
+                    );
                     return Err(Box::new(error(codes::NOT_FINITE, span, message)));
                 }
-                None if assumptions.iter().any(|known| known.expression == expression) => {}
+                None if assumptions
+                    .iter()
+                    .any(|known| known.expression == expression) => {}
                 None => assumptions.push(Assumption {
                     expression,
                     condition: Condition::Positive,
-                    reason: format!("it is the inertia of `{}`", self.lookup.graph.elements[self.own.element.0].name),
+                    reason: format!(
+                        "it is the inertia of `{}`",
+                        self.lookup.graph.elements[self.own.element.0].name
+                    ),
                 }),
             }
         }
@@ -277,13 +405,20 @@ impl Reader<'_, '_> {
         if let Some(value) = find("initial").and_then(|field| field.value.as_ref()) {
             return self.vector(value).map(Some);
         }
-        let Some(value) = find("initial_flow").and_then(|field| field.value.as_ref()) else { return Ok(None) };
+        let Some(value) = find("initial_flow").and_then(|field| field.value.as_ref()) else {
+            return Ok(None);
+        };
         let flow = self.vector(value)?;
         self.momentum(coenergy, &flow, value.span()).map(Some)
     }
 
     /// The momentum whose flow is given: `p = I f`, from `f = I⁻¹ p`.
-    fn momentum(&mut self, coenergy: &[Expression], flow: &[Expression], span: Span) -> Result<Vec<Expression>> {
+    fn momentum(
+        &mut self,
+        coenergy: &[Expression],
+        flow: &[Expression],
+        span: Span,
+    ) -> Result<Vec<Expression>> {
         let mut entries = Vec::new();
         for row in coenergy {
             for state in self.own.states.clone() {
@@ -292,6 +427,8 @@ impl Reader<'_, '_> {
         }
         let size = self.own.dimension;
         let inertia = self.inverse(&Matrix::new(size, size, entries), span)?;
-        Ok(inertia.times(self.pool, &Matrix::column(flow.to_vec())).entries)
+        Ok(inertia
+            .times(self.pool, &Matrix::column(flow.to_vec()))
+            .entries)
     }
 }

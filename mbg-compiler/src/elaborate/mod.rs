@@ -18,8 +18,10 @@ use std::ops::Range;
 
 use proc_macro2::{Ident, Span};
 
+pub use finish::component_table;
 pub use model::{
-    Assumption, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal, Signals, State, StateRate, Variable,
+    Assumption, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal, Signals, State,
+    StateRate, Variable,
 };
 pub use size::LIMIT;
 
@@ -27,7 +29,8 @@ use self::scope::{Entity, Scope};
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::graph::{
-    Bond, BondGraph, Causality, Element, ElementId, ElementKind, End, Junction, JunctionId, Law, Origins, Rule,
+    Bond, BondGraph, Causality, Element, ElementId, ElementKind, End, Junction, JunctionId, Law,
+    Origins, Rule,
 };
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, ChainNode, Reference, Statement};
@@ -54,12 +57,35 @@ pub fn elaborate(
 
 /// A law or value that is read once all names are known.
 enum Pending<'a> {
-    Law { scope: usize, element: &'a ast::Element, id: ElementId },
-    Gyroscopic { storage: ElementId, id: ElementId },
-    Argument { caller: usize, scope: usize, name: &'a Ident, value: &'a syn::Expr },
-    Integral { scope: usize, integral: &'a ast::Integral, states: Range<usize> },
-    Attitude { scope: usize, attitude: &'a ast::Attitude, states: Range<usize> },
-    Output { scope: usize, output: &'a ast::Output },
+    Law {
+        scope: usize,
+        element: &'a ast::Element,
+        id: ElementId,
+    },
+    Gyroscopic {
+        storage: ElementId,
+        id: ElementId,
+    },
+    Argument {
+        caller: usize,
+        scope: usize,
+        name: &'a Ident,
+        value: &'a syn::Expr,
+    },
+    Integral {
+        scope: usize,
+        integral: &'a ast::Integral,
+        states: Range<usize>,
+    },
+    Attitude {
+        scope: usize,
+        attitude: &'a ast::Attitude,
+        states: Range<usize>,
+    },
+    Output {
+        scope: usize,
+        output: &'a ast::Output,
+    },
 }
 
 /// The graph while it is being built.
@@ -88,7 +114,11 @@ impl<'a> Builder<'a> {
         pool: &'a mut Pool,
         diagnostics: &'a mut Diagnostics,
     ) -> Self {
-        let root = Scope { prefix: String::new(), derivative: model.derivative.is_some(), names: BTreeMap::new() };
+        let root = Scope {
+            prefix: String::new(),
+            derivative: model.derivative.is_some(),
+            names: BTreeMap::new(),
+        };
         Self {
             components,
             pool,
@@ -123,7 +153,9 @@ impl<'a> Builder<'a> {
                 Statement::Junction(junction) => self.fill_junction(scope, junction),
                 Statement::Chain(chain) => self.chain(scope, chain),
                 Statement::Instance(instance) => self.instance(scope, instance),
-                Statement::Integral(_) | Statement::Attitude(_) => self.integrals.push((scope, statement)),
+                Statement::Integral(_) | Statement::Attitude(_) => {
+                    self.integrals.push((scope, statement))
+                }
                 Statement::Output(output) => self.pending.push(Pending::Output { scope, output }),
                 _ => {}
             }
@@ -143,13 +175,19 @@ impl<'a> Builder<'a> {
                     coordinate: junction.coordinate,
                     origin,
                 });
-                self.name(scope, &junction.name, Entity::Junction(id, 0..junction.dimension));
+                self.name(
+                    scope,
+                    &junction.name,
+                    Entity::Junction(id, 0..junction.dimension),
+                );
             }
             Statement::Parameter(parameter) => self.parameter(scope, parameter),
             Statement::Input(input) => self.input(scope, input),
             Statement::Causality(causality, _) => self.graph.causality = *causality,
             Statement::Broken(Some(name)) => {
-                self.scopes[scope].names.insert(name.to_string(), Entity::Opaque);
+                self.scopes[scope]
+                    .names
+                    .insert(name.to_string(), Entity::Opaque);
             }
             _ => {}
         }
@@ -161,35 +199,57 @@ impl<'a> Builder<'a> {
 
     /// Gives a name its meaning; a second meaning is an error.
     fn name(&mut self, scope: usize, name: &Ident, entity: Entity) {
-        if self.scopes[scope].names.insert(name.to_string(), entity).is_some() {
+        if self.scopes[scope]
+            .names
+            .insert(name.to_string(), entity)
+            .is_some()
+        {
             let message = format!("`{name}` is declared twice");
-            self.diagnostics.error(codes::DUPLICATE_NAME, name.span(), message);
+            self.diagnostics
+                .error(codes::DUPLICATE_NAME, name.span(), message);
         }
     }
 
     fn parameter(&mut self, scope: usize, parameter: &'a ast::Parameter) {
         if scope != 0 {
             // The call has named it already; a default stands in for a missing argument.
-            if self.scopes[scope].names.contains_key(&parameter.name.to_string()) {
+            if self.scopes[scope]
+                .names
+                .contains_key(&parameter.name.to_string())
+            {
                 return;
             }
             match &parameter.default {
                 Some(value) => {
                     self.name(scope, &parameter.name, Entity::Value(None));
                     let name = &parameter.name;
-                    self.pending.push(Pending::Argument { caller: scope, scope, name, value });
+                    self.pending.push(Pending::Argument {
+                        caller: scope,
+                        scope,
+                        name,
+                        value,
+                    });
                 }
                 None => self.name(scope, &parameter.name, Entity::Opaque),
             }
             return;
         }
         let default = self.default_value(parameter);
-        let symbol = self.pool.symbol(crate::symbolic::Symbol::Parameter(self.parameters.len()));
-        self.name(scope, &parameter.name, Entity::Value(Some(expressions::Value::Scalar(symbol))));
+        let symbol = self
+            .pool
+            .symbol(crate::symbolic::Symbol::Parameter(self.parameters.len()));
+        self.name(
+            scope,
+            &parameter.name,
+            Entity::Value(Some(expressions::Value::Scalar(symbol))),
+        );
         self.parameters.push(Parameter {
             name: parameter.name.clone(),
             documentation: parameter.documentation.clone(),
-            unit: parameter.unit.as_ref().map_or_else(String::new, |unit| unit.text.clone()),
+            unit: parameter
+                .unit
+                .as_ref()
+                .map_or_else(String::new, |unit| unit.text.clone()),
             default,
         });
     }
@@ -197,24 +257,43 @@ impl<'a> Builder<'a> {
     fn input(&mut self, scope: usize, input: &ast::Input) {
         if scope != 0 {
             let message = "an input belongs to a model; give a component a parameter or a port";
-            self.diagnostics.error(codes::EXPRESSION, input.name.span(), message);
+            self.diagnostics
+                .error(codes::EXPRESSION, input.name.span(), message);
             return;
         }
         let start = self.inputs.len();
-        let unit = input.unit.as_ref().map_or_else(String::new, |unit| unit.text.clone());
-        self.inputs.extend(component_names(&input.name.to_string(), input.dimension, &unit));
-        self.name(scope, &input.name, Entity::Input(start..start + input.dimension));
+        let unit = input
+            .unit
+            .as_ref()
+            .map_or_else(String::new, |unit| unit.text.clone());
+        self.inputs.extend(component_names(
+            &input.name.to_string(),
+            input.dimension,
+            &unit,
+        ));
+        self.name(
+            scope,
+            &input.name,
+            Entity::Input(start..start + input.dimension),
+        );
     }
 
     fn fill_junction(&mut self, scope: usize, junction: &'a ast::Junction) {
-        let Some(Entity::Junction(id, range)) = self.scopes[scope].names.get(&junction.name.to_string()).cloned()
+        let Some(Entity::Junction(id, range)) = self.scopes[scope]
+            .names
+            .get(&junction.name.to_string())
+            .cloned()
         else {
             return;
         };
         for element in &junction.elements {
             if is_two_port(element.kind) {
-                let message = format!("a {:?} has two ports; put it between two arrows", element.kind);
-                self.diagnostics.error(codes::UNCONNECTED, element.span, message);
+                let message = format!(
+                    "a {:?} has two ports; put it between two arrows",
+                    element.kind
+                );
+                self.diagnostics
+                    .error(codes::UNCONNECTED, element.span, message);
                 continue;
             }
             let end = End::Junction(id, range.clone());
@@ -222,25 +301,53 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn one_port_at(&mut self, scope: usize, element: &'a ast::Element, end: End, dimension: usize, span: Span) {
+    fn one_port_at(
+        &mut self,
+        scope: usize,
+        element: &'a ast::Element,
+        end: End,
+        dimension: usize,
+        span: Span,
+    ) {
         if let Some(own) = element.dimension.filter(|own| *own != dimension) {
-            let message = format!("`{}` has dimension {own}, its junction {dimension}", element.name);
-            self.diagnostics.error(codes::WRONG_DIMENSION, element.name.span(), message);
+            let message = format!(
+                "`{}` has dimension {own}, its junction {dimension}",
+                element.name
+            );
+            self.diagnostics
+                .error(codes::WRONG_DIMENSION, element.name.span(), message);
             return;
         }
         let id = self.element(scope, element, dimension);
         let source = matches!(element.kind, ElementKind::Se | ElementKind::Sf);
-        let (from, to) = if source { (End::OnePort(id), end.clone()) } else { (end.clone(), End::OnePort(id)) };
+        let (from, to) = if source {
+            (End::OnePort(id), end.clone())
+        } else {
+            (end.clone(), End::OnePort(id))
+        };
         self.bond(from, to, dimension, span);
         self.gyroscopic(element, id, &end, dimension);
     }
 
     /// `gyroscopic` puts the Euler junction structure at the same junction.
-    fn gyroscopic(&mut self, element: &ast::Element, storage: ElementId, end: &End, dimension: usize) {
-        let Some(mark) = element.fields.iter().find(|field| field.name == "gyroscopic") else { return };
+    fn gyroscopic(
+        &mut self,
+        element: &ast::Element,
+        storage: ElementId,
+        end: &End,
+        dimension: usize,
+    ) {
+        let Some(mark) = element
+            .fields
+            .iter()
+            .find(|field| field.name == "gyroscopic")
+        else {
+            return;
+        };
         if dimension != 3 || !matches!(end, End::Junction(..)) {
             let message = "`gyroscopic` needs an inertia of dimension 3 at a junction";
-            self.diagnostics.error(codes::WRONG_DIMENSION, mark.name.span(), message);
+            self.diagnostics
+                .error(codes::WRONG_DIMENSION, mark.name.span(), message);
             return;
         }
         let name = format!("{}.gyroscopic", self.graph.elements[storage.0].name);
@@ -266,11 +373,17 @@ impl<'a> Builder<'a> {
         let id = ElementId(self.graph.elements.len());
         let start = self.states.len();
         if let Some(letter) = state_letter(element.kind) {
-            for (component, variable) in
-                component_names(&format!("{path}.{letter}"), dimension, "").into_iter().enumerate()
+            for (component, variable) in component_names(&format!("{path}.{letter}"), dimension, "")
+                .into_iter()
+                .enumerate()
             {
                 let rate = StateRate::Storage(id, component);
-                self.states.push(State { variable, initial: Expression::ZERO, rate, span: element.name.span() });
+                self.states.push(State {
+                    variable,
+                    initial: Expression::ZERO,
+                    rate,
+                    span: element.name.span(),
+                });
             }
         }
         self.graph.elements.push(Element {
@@ -288,9 +401,18 @@ impl<'a> Builder<'a> {
     }
 
     fn bond(&mut self, from: End, to: End, dimension: usize, span: Span) {
-        let path = format!("{} -> {}", self.graph.end_name(&from), self.graph.end_name(&to));
+        let path = format!(
+            "{} -> {}",
+            self.graph.end_name(&from),
+            self.graph.end_name(&to)
+        );
         let origin = self.graph.origins.add(path, span);
-        self.graph.bonds.push(Bond { from, to, dimension, origin });
+        self.graph.bonds.push(Bond {
+            from,
+            to,
+            dimension,
+            origin,
+        });
     }
 
     fn chain(&mut self, scope: usize, chain: &'a ast::Chain) {
@@ -304,7 +426,9 @@ impl<'a> Builder<'a> {
             .collect();
         let ends: Vec<Option<(End, End, usize)>> = (0..chain.nodes.len())
             .map(|position| match &chain.nodes[position] {
-                ChainNode::Reference(_) => known[position].clone().map(|(end, size)| self.both_sides(end, size)),
+                ChainNode::Reference(_) => known[position]
+                    .clone()
+                    .map(|(end, size)| self.both_sides(end, size)),
                 ChainNode::Element(element) => {
                     let neighbour = [position.wrapping_sub(1), position + 1]
                         .into_iter()
@@ -314,7 +438,9 @@ impl<'a> Builder<'a> {
             })
             .collect();
         for (position, arrow) in chain.arrows.iter().enumerate() {
-            if let (Some((_, from, size)), Some((to, _, other))) = (&ends[position], &ends[position + 1]) {
+            if let (Some((_, from, size)), Some((to, _, other))) =
+                (&ends[position], &ends[position + 1])
+            {
                 let size = if *size == 0 { *other } else { *size };
                 self.bond(from.clone(), to.clone(), size, *arrow);
             }
@@ -324,7 +450,9 @@ impl<'a> Builder<'a> {
     /// The ends that an arrow arriving and an arrow leaving see, and the dimension (0 while unknown).
     fn both_sides(&self, end: End, size: usize) -> (End, End, usize) {
         match end {
-            End::OnePort(id) if is_two_port(self.graph.elements[id.0].kind) => (End::In(id), End::Out(id), 0),
+            End::OnePort(id) if is_two_port(self.graph.elements[id.0].kind) => {
+                (End::In(id), End::Out(id), 0)
+            }
             end => (end.clone(), end, size),
         }
     }
@@ -358,7 +486,9 @@ impl<'a> Builder<'a> {
             match &found {
                 None => {}
                 Some(Entity::Instance(inner)) => current = *inner,
-                Some(Entity::Junction(..)) if last && expressions::component_index(name).is_some() => {
+                Some(Entity::Junction(..))
+                    if last && expressions::component_index(name).is_some() =>
+                {
                     component = expressions::component_index(name);
                     continue;
                 }
@@ -374,8 +504,12 @@ impl<'a> Builder<'a> {
             Entity::Element(id) => Some((End::OnePort(id), self.ports[id.0].1)),
             Entity::Opaque => None,
             _ => {
-                let message = format!("expected a junction or an element, found `{}`", text(reference));
-                self.diagnostics.error(codes::UNKNOWN_NAME, reference.span, message);
+                let message = format!(
+                    "expected a junction or an element, found `{}`",
+                    text(reference)
+                );
+                self.diagnostics
+                    .error(codes::UNKNOWN_NAME, reference.span, message);
                 None
             }
         }
@@ -394,9 +528,14 @@ impl<'a> Builder<'a> {
             (None, None) => 0..range.len(),
         };
         if picked.end > range.len() {
-            let message =
-                format!("`{}` has {} components, `{}` asks for more", reference.path[0], range.len(), text(reference));
-            self.diagnostics.error(codes::WRONG_DIMENSION, reference.span, message);
+            let message = format!(
+                "`{}` has {} components, `{}` asks for more",
+                reference.path[0],
+                range.len(),
+                text(reference)
+            );
+            self.diagnostics
+                .error(codes::WRONG_DIMENSION, reference.span, message);
             return None;
         }
         let shifted = range.start + picked.start..range.start + picked.end;
@@ -414,7 +553,10 @@ impl<'a> Builder<'a> {
             .collect();
         let mut report = error(codes::UNKNOWN_NAME, reference.span, message);
         if !names.is_empty() {
-            report = report.help(format!("junctions here are {}", crate::diagnostics::listing(names)));
+            report = report.help(format!(
+                "junctions here are {}",
+                crate::diagnostics::listing(names)
+            ));
         }
         self.diagnostics.report(report);
         None
@@ -424,21 +566,34 @@ impl<'a> Builder<'a> {
         let components = self.components;
         let Some(component) = components.get(&instance.component.to_string()) else {
             let message = format!("component `{}` is not declared", instance.component);
-            self.diagnostics.error(codes::UNKNOWN_NAME, instance.component.span(), message);
+            self.diagnostics
+                .error(codes::UNKNOWN_NAME, instance.component.span(), message);
             self.name(scope, &instance.name, Entity::Opaque);
             return;
         };
         let inner = self.scopes.len();
-        let derivative = self.scopes[scope].derivative || instance.derivative.is_some() || component.derivative.is_some();
+        let derivative = self.scopes[scope].derivative
+            || instance.derivative.is_some()
+            || component.derivative.is_some();
         let prefix = format!("{}.", self.path(scope, &instance.name));
-        self.scopes.push(Scope { prefix, derivative, names: BTreeMap::new() });
+        self.scopes.push(Scope {
+            prefix,
+            derivative,
+            names: BTreeMap::new(),
+        });
         self.name(scope, &instance.name, Entity::Instance(inner));
         self.ports_of(scope, inner, instance, component);
         self.arguments_of(scope, inner, instance, component);
         self.declare(inner, &component.statements);
     }
 
-    fn ports_of(&mut self, scope: usize, inner: usize, instance: &ast::Instance, component: &ast::Component) {
+    fn ports_of(
+        &mut self,
+        scope: usize,
+        inner: usize,
+        instance: &ast::Instance,
+        component: &ast::Component,
+    ) {
         if instance.connections.len() != component.ports.len() {
             let message = format!(
                 "`{}` has {} ports, found {} junctions",
@@ -446,16 +601,26 @@ impl<'a> Builder<'a> {
                 component.ports.len(),
                 instance.connections.len()
             );
-            self.diagnostics.error(codes::UNCONNECTED, instance.name.span(), message);
+            self.diagnostics
+                .error(codes::UNCONNECTED, instance.name.span(), message);
         }
         for (position, port) in component.ports.iter().enumerate() {
-            let given = instance.connections.get(position).and_then(|reference| self.resolve(scope, reference));
+            let given = instance
+                .connections
+                .get(position)
+                .and_then(|reference| self.resolve(scope, reference));
             let entity = match given {
-                Some((End::Junction(id, range), size)) if size == port.dimension => Entity::Junction(id, range),
+                Some((End::Junction(id, range), size)) if size == port.dimension => {
+                    Entity::Junction(id, range)
+                }
                 Some((_, size)) => {
-                    let message = format!("port `{}` has dimension {}, found {size}", port.name, port.dimension);
+                    let message = format!(
+                        "port `{}` has dimension {}, found {size}",
+                        port.name, port.dimension
+                    );
                     let span = instance.connections[position].span;
-                    self.diagnostics.error(codes::WRONG_DIMENSION, span, message);
+                    self.diagnostics
+                        .error(codes::WRONG_DIMENSION, span, message);
                     Entity::Opaque
                 }
                 None => Entity::Opaque,
@@ -474,31 +639,56 @@ impl<'a> Builder<'a> {
         let parameters: Vec<&ast::Parameter> = component
             .statements
             .iter()
-            .filter_map(|statement| if let Statement::Parameter(parameter) = statement { Some(parameter) } else { None })
+            .filter_map(|statement| {
+                if let Statement::Parameter(parameter) = statement {
+                    Some(parameter)
+                } else {
+                    None
+                }
+            })
             .collect();
         for argument in &instance.arguments {
-            if !parameters.iter().any(|parameter| parameter.name == argument.name) {
+            if !parameters
+                .iter()
+                .any(|parameter| parameter.name == argument.name)
+            {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
-                self.diagnostics.error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+                self.diagnostics
+                    .error(codes::UNKNOWN_FIELD, argument.name.span(), message);
             } else if let Some(value) = &argument.value {
                 self.name(inner, &argument.name, Entity::Value(None));
                 let name = &argument.name;
-                self.pending.push(Pending::Argument { caller: scope, scope: inner, name, value });
+                self.pending.push(Pending::Argument {
+                    caller: scope,
+                    scope: inner,
+                    name,
+                    value,
+                });
             }
         }
         for parameter in parameters {
-            let given = instance.arguments.iter().any(|argument| argument.name == parameter.name);
+            let given = instance
+                .arguments
+                .iter()
+                .any(|argument| argument.name == parameter.name);
             if !given && parameter.default.is_none() {
-                let message = format!("`{}` needs a value for `{}`", component.name, parameter.name);
+                let message = format!(
+                    "`{}` needs a value for `{}`",
+                    component.name, parameter.name
+                );
                 let report = error(codes::MISSING_DEFAULT, instance.name.span(), message);
-                self.diagnostics.report(report.help(format!("write `{{ {}: … }}`", parameter.name)));
+                self.diagnostics
+                    .report(report.help(format!("write `{{ {}: … }}`", parameter.name)));
             }
         }
     }
 }
 
 fn is_two_port(kind: ElementKind) -> bool {
-    matches!(kind, ElementKind::TF | ElementKind::GY | ElementKind::MTF | ElementKind::MGY)
+    matches!(
+        kind,
+        ElementKind::TF | ElementKind::GY | ElementKind::MTF | ElementKind::MGY
+    )
 }
 
 fn state_letter(kind: ElementKind) -> Option<char> {
@@ -511,19 +701,34 @@ fn state_letter(kind: ElementKind) -> Option<char> {
 
 /// `name`, or `name.x`, `name.y`, … for more than one component.
 fn component_names(name: &str, dimension: usize, unit: &str) -> Vec<Variable> {
-    let scalar = |name: String| Variable { name, unit: unit.to_owned() };
+    let scalar = |name: String| Variable {
+        name,
+        unit: unit.to_owned(),
+    };
     if dimension == 1 {
         return vec![scalar(name.to_owned())];
     }
     (0..dimension)
-        .map(|index| scalar(format!("{name}.{}", crate::graph::component_name(index, dimension))))
+        .map(|index| {
+            scalar(format!(
+                "{name}.{}",
+                crate::graph::component_name(index, dimension)
+            ))
+        })
         .collect()
 }
 
 fn text(reference: &Reference) -> String {
-    let path = reference.path.iter().map(ToString::to_string).collect::<Vec<_>>().join(".");
+    let path = reference
+        .path
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join(".");
     match &reference.selection {
-        Some(selection) if selection.end == selection.start + 1 => format!("{path}[{}]", selection.start),
+        Some(selection) if selection.end == selection.start + 1 => {
+            format!("{path}[{}]", selection.start)
+        }
         Some(selection) => format!("{path}[{}..{}]", selection.start, selection.end),
         None => path,
     }

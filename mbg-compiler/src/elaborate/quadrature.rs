@@ -9,7 +9,10 @@ const NODES: usize = 16;
 
 /// The energy by Gauss–Legendre quadrature; exact when the law is a polynomial, with just as many nodes as it needs.
 pub(super) fn energy(pool: &mut Pool, states: &Range<usize>, law: &[Expression]) -> Expression {
-    let degree = law.iter().map(|row| degree(pool, *row, states)).try_fold(0, |a, b| b.map(|b| a.max(b)));
+    let degree = law
+        .iter()
+        .map(|row| degree(pool, *row, states))
+        .try_fold(0, |a, b| b.map(|b| a.max(b)));
     let count = degree.map_or(NODES, |degree| (degree as usize / 2 + 1).min(NODES));
     let mut total = Expression::ZERO;
     for (node, weight) in gauss_legendre(count) {
@@ -50,7 +53,10 @@ fn degree(pool: &Pool, expression: Expression, states: &Range<usize>) -> Option<
         Operation::Multiply(a, b) => degree(pool, *a, states)? + degree(pool, *b, states)?,
         Operation::Divide(a, b) if degree(pool, *b, states) == Some(0) => degree(pool, *a, states)?,
         operation => {
-            let constant = operation.operands().iter().all(|part| degree(pool, *part, states) == Some(0));
+            let constant = operation
+                .operands()
+                .iter()
+                .all(|part| degree(pool, *part, states) == Some(0));
             return constant.then_some(0);
         }
     })
@@ -66,14 +72,21 @@ fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
             let (mut previous, mut current) = (1.0, x);
             for k in 2..=count {
                 let k = k as f64;
-                (previous, current) = (current, ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k);
+                (previous, current) = (
+                    current,
+                    ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k,
+                );
             }
             slope = order * (x * current - previous) / (x * x - 1.0);
             x -= current / slope;
         }
         ((1.0 - x) / 2.0, 1.0 / ((1.0 - x * x) * slope * slope))
     };
-    if count == 1 { vec![(0.5, 1.0)] } else { (0..count).map(pair).collect() }
+    if count == 1 {
+        vec![(0.5, 1.0)]
+    } else {
+        (0..count).map(pair).collect()
+    }
 }
 
 #[cfg(test)]
@@ -84,8 +97,14 @@ mod tests {
     fn quadrature_integrates_polynomials() {
         for count in 1..=NODES {
             let nodes = gauss_legendre(count);
-            let integral: f64 = nodes.iter().map(|(x, w)| w * x.powi(2 * count as i32 - 1)).sum();
-            assert!((integral - 1.0 / (2 * count) as f64).abs() < 1e-14, "{count}: {integral}");
+            let integral: f64 = nodes
+                .iter()
+                .map(|(x, w)| w * x.powi(2 * count as i32 - 1))
+                .sum();
+            assert!(
+                (integral - 1.0 / (2 * count) as f64).abs() < 1e-14,
+                "{count}: {integral}"
+            );
         }
     }
 }

@@ -79,7 +79,9 @@ impl Names for Lookup<'_> {
             let rest = &path[position + 1..];
             match (entity, rest) {
                 (Entity::Instance(inner), [_, ..]) => scope = *inner,
-                (Entity::Element(id), [variable]) => return self.element_variable(pool, *id, variable),
+                (Entity::Element(id), [variable]) => {
+                    return self.element_variable(pool, *id, variable);
+                }
                 (Entity::Junction(id, range), [variable]) => {
                     return self.junction_variable(pool, *id, range.clone(), variable);
                 }
@@ -97,17 +99,23 @@ impl Lookup<'_> {
             Entity::Value(Some(value)) => Ok(value.clone()),
             Entity::Input(range) => Ok(symbols(pool, range.clone().map(Symbol::Input))),
             Entity::States(range) => Ok(symbols(pool, range.clone().map(Symbol::State))),
-            Entity::Junction(..) => fail(name.span(), format!("`{name}` is a junction; write `{name}.f` or `{name}.e`")),
-            Entity::Element(_) => {
-                fail(name.span(), format!("`{name}` is an element; write `{name}.q`, `.p`, `.e` or `.f`"))
-            }
+            Entity::Junction(..) => fail(
+                name.span(),
+                format!("`{name}` is a junction; write `{name}.f` or `{name}.e`"),
+            ),
+            Entity::Element(_) => fail(
+                name.span(),
+                format!("`{name}` is an element; write `{name}.q`, `.p`, `.e` or `.f`"),
+            ),
             _ => fail(name.span(), format!("`{name}` has no value here")),
         }
     }
 
     fn own_variable(&mut self, pool: &mut Pool, own: &Own, name: &Ident) -> Result<Value> {
         let kind = self.graph.elements[own.element.0].kind;
-        let components = own.component.map_or(0..own.dimension, |component| component..component + 1);
+        let components = own
+            .component
+            .map_or(0..own.dimension, |component| component..component + 1);
         match name.to_string().as_str() {
             "q" if kind == ElementKind::C => Ok(states(pool, &own.states, components)),
             "p" if kind == ElementKind::I => Ok(states(pool, &own.states, components)),
@@ -117,16 +125,37 @@ impl Lookup<'_> {
         }
     }
 
-    fn element_variable(&mut self, pool: &mut Pool, id: ElementId, name: &Ident) -> Option<Result<Value>> {
+    fn element_variable(
+        &mut self,
+        pool: &mut Pool,
+        id: ElementId,
+        name: &Ident,
+    ) -> Option<Result<Value>> {
         let kind = self.graph.elements[id.0].kind;
         let (range, dimension) = self.ports[id.0].clone();
         match (name.to_string().as_str(), kind) {
-            ("q", ElementKind::C) | ("p", ElementKind::I) => Some(Ok(states(pool, &range, 0..dimension))),
-            ("e" | "f", ElementKind::TF | ElementKind::MTF | ElementKind::GY | ElementKind::MGY) => {
-                Some(fail(name.span(), "a two-port has two efforts and two flows; read them at a junction"))
+            ("q", ElementKind::C) | ("p", ElementKind::I) => {
+                Some(Ok(states(pool, &range, 0..dimension)))
             }
-            ("e", _) => Some(Ok(self.signals(pool, Quantity::Effort, Place::Port(id), 0..dimension))),
-            ("f", _) => Some(Ok(self.signals(pool, Quantity::Flow, Place::Port(id), 0..dimension))),
+            (
+                "e" | "f",
+                ElementKind::TF | ElementKind::MTF | ElementKind::GY | ElementKind::MGY,
+            ) => Some(fail(
+                name.span(),
+                "a two-port has two efforts and two flows; read them at a junction",
+            )),
+            ("e", _) => Some(Ok(self.signals(
+                pool,
+                Quantity::Effort,
+                Place::Port(id),
+                0..dimension,
+            ))),
+            ("f", _) => Some(Ok(self.signals(
+                pool,
+                Quantity::Flow,
+                Place::Port(id),
+                0..dimension,
+            ))),
             _ => None,
         }
     }
@@ -139,24 +168,49 @@ impl Lookup<'_> {
         name: &Ident,
     ) -> Option<Result<Value>> {
         match (name.to_string().as_str(), self.graph.junctions[id.0].kind) {
-            ("f", JunctionKind::One) => Some(Ok(self.signals(pool, Quantity::Flow, Place::Junction(id), range))),
-            ("e", JunctionKind::Zero) => Some(Ok(self.signals(pool, Quantity::Effort, Place::Junction(id), range))),
-            ("e", JunctionKind::One) => {
-                Some(fail(name.span(), "a 1-junction has no common effort; read it at an element"))
-            }
-            ("f", JunctionKind::Zero) => Some(fail(name.span(), "a 0-junction has no common flow; read it at an element")),
+            ("f", JunctionKind::One) => Some(Ok(self.signals(
+                pool,
+                Quantity::Flow,
+                Place::Junction(id),
+                range,
+            ))),
+            ("e", JunctionKind::Zero) => Some(Ok(self.signals(
+                pool,
+                Quantity::Effort,
+                Place::Junction(id),
+                range,
+            ))),
+            ("e", JunctionKind::One) => Some(fail(
+                name.span(),
+                "a 1-junction has no common effort; read it at an element",
+            )),
+            ("f", JunctionKind::Zero) => Some(fail(
+                name.span(),
+                "a 0-junction has no common flow; read it at an element",
+            )),
             _ => None,
         }
     }
 
-    fn signals(&mut self, pool: &mut Pool, quantity: Quantity, place: Place, components: Range<usize>) -> Value {
-        let numbers: Vec<usize> = components.map(|index| self.signals.number((quantity, place, index))).collect();
+    fn signals(
+        &mut self,
+        pool: &mut Pool,
+        quantity: Quantity,
+        place: Place,
+        components: Range<usize>,
+    ) -> Value {
+        let numbers: Vec<usize> = components
+            .map(|index| self.signals.number((quantity, place, index)))
+            .collect();
         symbols(pool, numbers.into_iter().map(Symbol::Signal))
     }
 }
 
 fn states(pool: &mut Pool, range: &Range<usize>, components: Range<usize>) -> Value {
-    symbols(pool, components.map(|component| Symbol::State(range.start + component)))
+    symbols(
+        pool,
+        components.map(|component| Symbol::State(range.start + component)),
+    )
 }
 
 fn symbols(pool: &mut Pool, symbols: impl Iterator<Item = Symbol>) -> Value {

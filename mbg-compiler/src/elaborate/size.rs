@@ -10,14 +10,27 @@ use crate::syntax::ast::{Component, Element, Model, Statement};
 pub const LIMIT: usize = 4096;
 
 /// Reports a model that is too large or a component that contains itself; false if it did.
-pub(super) fn check(model: &Model, components: &BTreeMap<String, &Component>, diagnostics: &mut Diagnostics) -> bool {
-    let mut counter = Counter { components, known: BTreeMap::new(), open: Vec::new() };
+pub(super) fn check(
+    model: &Model,
+    components: &BTreeMap<String, &Component>,
+    diagnostics: &mut Diagnostics,
+) -> bool {
+    let mut counter = Counter {
+        components,
+        known: BTreeMap::new(),
+        open: Vec::new(),
+    };
     match counter.count(&model.statements) {
         Ok(count) if count <= LIMIT => true,
         Ok(count) => {
-            let message = format!("`{}` has {count} vector bonds, the limit is {LIMIT}", model.name);
+            let message = format!(
+                "`{}` has {count} vector bonds, the limit is {LIMIT}",
+                model.name
+            );
             let report = error(codes::TOO_LARGE, model.name.span(), message);
-            diagnostics.report(report.help("split the scene into models that exchange inputs and outputs"));
+            diagnostics.report(
+                report.help("split the scene into models that exchange inputs and outputs"),
+            );
             false
         }
         Err(name) => {
@@ -56,7 +69,9 @@ impl Counter<'_> {
         if self.open.contains(&text) {
             return Err(name.clone());
         }
-        let Some(component) = self.components.get(&text) else { return Ok(0) };
+        let Some(component) = self.components.get(&text) else {
+            return Ok(0);
+        };
         self.open.push(text.clone());
         let count = self.count(&component.statements)?;
         self.open.pop();
@@ -66,5 +81,10 @@ impl Counter<'_> {
 }
 
 fn bonds(element: &Element) -> usize {
-    1 + usize::from(element.fields.iter().any(|field| field.name == "gyroscopic"))
+    1 + usize::from(
+        element
+            .fields
+            .iter()
+            .any(|field| field.name == "gyroscopic"),
+    )
 }

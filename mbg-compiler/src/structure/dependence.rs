@@ -15,7 +15,12 @@ use crate::symbolic::Pool;
 use crate::symbolic::field;
 
 /// Reports every source and storage that says what others have said before.
-pub fn report_singular(model: &Elaborated, scalars: &Scalars, pool: &Pool, diagnostics: &mut Diagnostics) {
+pub fn report_singular(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) {
     let mut order: Vec<usize> = (0..scalars.equations.len()).collect();
     order.sort_by_key(|row| (priority(model, scalars.equations[*row].owner), *row));
     let mut echelon = Echelon::default();
@@ -23,7 +28,11 @@ pub fn report_singular(model: &Elaborated, scalars: &Scalars, pool: &Pool, diagn
     let mut structure = false;
     for row in order {
         let equation = &scalars.equations[row];
-        let terms = equation.terms.iter().map(|(unknown, c)| (*unknown, pool.image(*c).0[0])).collect();
+        let terms = equation
+            .terms
+            .iter()
+            .map(|(unknown, c)| (*unknown, pool.image(*c).0[0]))
+            .collect();
         let causes = match equation.owner {
             Owner::Element(id) if is_cause(model, id) => BTreeSet::from([id]),
             _ => BTreeSet::new(),
@@ -33,7 +42,9 @@ pub fn report_singular(model: &Elaborated, scalars: &Scalars, pool: &Pool, diagn
                 Owner::Element(id) => {
                     let entry = lost.entry(id).or_default();
                     entry.0 += 1;
-                    entry.1.extend(causes.into_iter().filter(|cause| *cause != id));
+                    entry
+                        .1
+                        .extend(causes.into_iter().filter(|cause| *cause != id));
                 }
                 Owner::Structure => structure = true,
             }
@@ -49,7 +60,10 @@ pub fn report_singular(model: &Elaborated, scalars: &Scalars, pool: &Pool, diagn
 }
 
 fn is_cause(model: &Elaborated, id: ElementId) -> bool {
-    matches!(model.graph.elements[id.0].law, Law::Source(_) | Law::Storage(_))
+    matches!(
+        model.graph.elements[id.0].law,
+        Law::Source(_) | Law::Storage(_)
+    )
 }
 
 fn priority(model: &Elaborated, owner: Owner) -> usize {
@@ -76,20 +90,42 @@ fn report(
     let graph = &model.graph;
     let element = &graph.elements[id.0];
     let span = graph.origins.span(element.origin);
-    let others = listing(causes.iter().map(|cause| graph.elements[cause.0].name.clone()));
-    let imposed = if matches!(element.kind, ElementKind::I | ElementKind::Sf) { "flow" } else { "effort" };
+    let others = listing(
+        causes
+            .iter()
+            .map(|cause| graph.elements[cause.0].name.clone()),
+    );
+    let imposed = if matches!(element.kind, ElementKind::I | ElementKind::Sf) {
+        "flow"
+    } else {
+        "effort"
+    };
     if matches!(element.law, Law::Source(_)) {
-        let message = format!("source `{}` imposes {imposed} that is imposed already", element.name);
-        diagnostics.report(error(codes::SOURCES_CONFLICT, span, message).note(format!("it is fixed by {others}")));
+        let message = format!(
+            "source `{}` imposes {imposed} that is imposed already",
+            element.name
+        );
+        diagnostics.report(
+            error(codes::SOURCES_CONFLICT, span, message).note(format!("it is fixed by {others}")),
+        );
         return;
     }
-    let components = if count == 1 { "one component".to_owned() } else { format!("{count} components") };
-    let message = format!("storage `{}` depends on others: {components} of its {imposed} follow from {others}", element.name);
+    let components = if count == 1 {
+        "one component".to_owned()
+    } else {
+        format!("{count} components")
+    };
+    let message = format!(
+        "storage `{}` depends on others: {components} of its {imposed} follow from {others}",
+        element.name
+    );
     if element.derivative {
         let report = error(codes::ORDER_LOST_UNSUPPORTED, span, message);
         diagnostics.report(
             report
-                .note("`#[derivative]` accepts this true loss of order, but it is not supported yet")
+                .note(
+                    "`#[derivative]` accepts this true loss of order, but it is not supported yet",
+                )
                 .help("put a spring and a damper between them, or merge the storages into one"),
         );
         return;
@@ -117,7 +153,8 @@ impl Echelon {
         while let Some((&lead, &value)) = row.first_key_value() {
             let Some((pivot, origin)) = self.rows.get(&lead) else {
                 let inverse = field::invert(value).unwrap_or(0);
-                row.values_mut().for_each(|entry| *entry = field::multiply(*entry, inverse));
+                row.values_mut()
+                    .for_each(|entry| *entry = field::multiply(*entry, inverse));
                 self.rows.insert(lead, (row, causes));
                 return None;
             };

@@ -10,7 +10,10 @@ pub fn perfect(incidence: &[Vec<usize>], unknowns: usize) -> Option<Vec<usize>> 
     let mut equation_of = vec![usize::MAX; unknowns];
     let mut unknown_of = vec![usize::MAX; incidence.len()];
     for (equation, neighbours) in incidence.iter().enumerate() {
-        if let Some(&free) = neighbours.iter().find(|unknown| equation_of[**unknown] == usize::MAX) {
+        if let Some(&free) = neighbours
+            .iter()
+            .find(|unknown| equation_of[**unknown] == usize::MAX)
+        {
             equation_of[free] = equation;
             unknown_of[equation] = free;
         }
@@ -18,7 +21,13 @@ pub fn perfect(incidence: &[Vec<usize>], unknowns: usize) -> Option<Vec<usize>> 
     let mut visited = vec![usize::MAX; unknowns];
     for equation in 0..incidence.len() {
         if unknown_of[equation] == usize::MAX
-            && !augment(incidence, equation, &mut equation_of, &mut unknown_of, &mut visited)
+            && !augment(
+                incidence,
+                equation,
+                &mut equation_of,
+                &mut unknown_of,
+                &mut visited,
+            )
         {
             return None;
         }
@@ -66,6 +75,9 @@ mod tests {
     fn finds_the_only_matching_and_refuses_a_deficient_one() {
         assert_eq!(perfect(&[vec![0, 1], vec![0]], 2), Some(vec![1, 0]));
         assert_eq!(perfect(&[vec![0], vec![0]], 2), None);
-        assert_eq!(perfect(&[vec![0, 1], vec![1, 2], vec![0]], 3), Some(vec![1, 2, 0]));
+        assert_eq!(
+            perfect(&[vec![0, 1], vec![1, 2], vec![0]], 3),
+            Some(vec![1, 2, 0])
+        );
     }
 }

@@ -47,13 +47,23 @@ pub enum Failure {
 
 /// Solves the equations.
 pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
-    let incidence: Vec<Vec<usize>> =
-        scalars.equations.iter().map(|equation| equation.terms.keys().copied().collect()).collect();
+    let incidence: Vec<Vec<usize>> = scalars
+        .equations
+        .iter()
+        .map(|equation| equation.terms.keys().copied().collect())
+        .collect();
     let matching = matching::perfect(&incidence, scalars.unknowns).ok_or(Failure::Singular)?;
     let all: Vec<Vec<usize>> = scalars
         .equations
         .iter()
-        .map(|equation| equation.terms.keys().chain(&equation.signals).copied().collect())
+        .map(|equation| {
+            equation
+                .terms
+                .keys()
+                .chain(&equation.signals)
+                .copied()
+                .collect()
+        })
         .collect();
     let order = blocks::ordered(&all, &matching);
     solve::blocks(scalars, &matching, &order, pool)
@@ -73,5 +83,9 @@ pub fn signal_values(scalars: &Scalars, solution: &Solution) -> BTreeMap<usize, 
 /// Names of the elements and junctions whose variables are in a block, for people.
 #[must_use]
 pub fn block_names(scalars: &Scalars, _model: &Elaborated, unknowns: &[usize]) -> Vec<String> {
-    unknowns.iter().map(|unknown| scalars.names[*unknown].clone()).filter(|name| !name.is_empty()).collect()
+    unknowns
+        .iter()
+        .map(|unknown| scalars.names[*unknown].clone())
+        .filter(|name| !name.is_empty())
+        .collect()
 }

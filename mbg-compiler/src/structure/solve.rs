@@ -57,8 +57,14 @@ struct Solver<'a> {
 impl Solver<'_> {
     fn block(&mut self, equations: &[usize], unknowns: &[usize]) -> Result<(), Failure> {
         let scalars = self.scalars;
-        let rows: Vec<&Equation> = equations.iter().map(|equation| &scalars.equations[*equation]).collect();
-        if rows.iter().any(|row| row.signals.iter().any(|signal| unknowns.contains(signal))) {
+        let rows: Vec<&Equation> = equations
+            .iter()
+            .map(|equation| &scalars.equations[*equation])
+            .collect();
+        if rows
+            .iter()
+            .any(|row| row.signals.iter().any(|signal| unknowns.contains(signal)))
+        {
             return Err(Failure::Nonlinear(unknowns.to_vec()));
         }
         let mut matrix = Vec::new();
@@ -81,7 +87,8 @@ impl Solver<'_> {
             self.solution.values[*unknown] = value;
             self.known[*unknown] = true;
             for (signal, reversed) in &self.signals_of[*unknown] {
-                self.substitution.set(Symbol::Signal(*signal), value.flipped(*reversed));
+                self.substitution
+                    .set(Symbol::Signal(*signal), value.flipped(*reversed));
             }
         }
         Ok(())
@@ -91,11 +98,17 @@ impl Solver<'_> {
         if self.scalars.signals.is_empty() {
             return Ok(expression);
         }
-        self.substitution.apply(self.pool, expression).ok_or(Failure::Singular)
+        self.substitution
+            .apply(self.pool, expression)
+            .ok_or(Failure::Singular)
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.
-    fn row(&mut self, row: &Equation, unknowns: &[usize]) -> Result<(Vec<Expression>, Expression), Failure> {
+    fn row(
+        &mut self,
+        row: &Equation,
+        unknowns: &[usize],
+    ) -> Result<(Vec<Expression>, Expression), Failure> {
         let mut coefficients = vec![Expression::ZERO; unknowns.len()];
         let mut rest = self.replaced(row.constant)?;
         for (unknown, coefficient) in &row.terms {
@@ -104,7 +117,9 @@ impl Solver<'_> {
                 Some(position) => coefficients[position] = coefficient,
                 None => {
                     debug_assert!(self.known[*unknown], "blocks come in order of need");
-                    let term = self.pool.multiply(coefficient, self.solution.values[*unknown]);
+                    let term = self
+                        .pool
+                        .multiply(coefficient, self.solution.values[*unknown]);
                     rest = self.pool.add(rest, term);
                 }
             }
@@ -138,7 +153,10 @@ impl Solver<'_> {
         let size = matrix.rows;
         if size == 1 {
             *divisor = self.pool.multiply(*divisor, matrix.at(0, 0));
-            let value = self.pool.divide(right[0], matrix.at(0, 0)).ok_or(Failure::Singular)?;
+            let value = self
+                .pool
+                .divide(right[0], matrix.at(0, 0))
+                .ok_or(Failure::Singular)?;
             return Ok(vec![value]);
         }
         if size <= ADJUGATE {
@@ -156,10 +174,16 @@ impl Solver<'_> {
         let determinant = matrix.determinant(self.pool);
         *divisor = self.pool.multiply(*divisor, determinant);
         let adjugate = matrix.adjugate(self.pool);
-        let numerators = adjugate.times(self.pool, &Matrix::column(right.to_vec())).entries;
+        let numerators = adjugate
+            .times(self.pool, &Matrix::column(right.to_vec()))
+            .entries;
         numerators
             .into_iter()
-            .map(|numerator| self.pool.divide(numerator, determinant).ok_or(Failure::Singular))
+            .map(|numerator| {
+                self.pool
+                    .divide(numerator, determinant)
+                    .ok_or(Failure::Singular)
+            })
             .collect()
     }
 
@@ -179,7 +203,10 @@ impl Solver<'_> {
         let mut entries = Vec::with_capacity(rows.len() * columns.len());
         let mut rest = Vec::with_capacity(rows.len());
         for other in &rows {
-            let factor = self.pool.divide(matrix.at(*other, column), pivot).ok_or(Failure::Singular)?;
+            let factor = self
+                .pool
+                .divide(matrix.at(*other, column), pivot)
+                .ok_or(Failure::Singular)?;
             for inner in &columns {
                 let product = self.pool.multiply(factor, matrix.at(row, *inner));
                 entries.push(self.pool.subtract(matrix.at(*other, *inner), product));
@@ -194,7 +221,12 @@ impl Solver<'_> {
             let product = self.pool.multiply(matrix.at(row, *inner), *value);
             numerator = self.pool.subtract(numerator, product);
         }
-        values.insert(column, self.pool.divide(numerator, pivot).ok_or(Failure::Singular)?);
+        values.insert(
+            column,
+            self.pool
+                .divide(numerator, pivot)
+                .ok_or(Failure::Singular)?,
+        );
         Ok(values)
     }
 
@@ -202,8 +234,12 @@ impl Solver<'_> {
     fn pivot(&self, matrix: &Matrix) -> Option<(usize, usize)> {
         let size = matrix.rows;
         let filled = |row: usize, column: usize| matrix.at(row, column) != Expression::ZERO;
-        let in_row: Vec<usize> = (0..size).map(|row| (0..size).filter(|c| filled(row, *c)).count()).collect();
-        let in_column: Vec<usize> = (0..size).map(|column| (0..size).filter(|r| filled(*r, column)).count()).collect();
+        let in_row: Vec<usize> = (0..size)
+            .map(|row| (0..size).filter(|c| filled(row, *c)).count())
+            .collect();
+        let in_column: Vec<usize> = (0..size)
+            .map(|column| (0..size).filter(|r| filled(*r, column)).count())
+            .collect();
         (0..size)
             .flat_map(|row| (0..size).map(move |column| (row, column)))
             .filter(|(row, column)| filled(*row, *column))
@@ -230,7 +266,9 @@ impl Solver<'_> {
                         normalised = quotient;
                     }
                 }
-                let inverted = Inverted { normalised: normalised.magnitude() };
+                let inverted = Inverted {
+                    normalised: normalised.magnitude(),
+                };
                 if !self.solution.conditioning.contains(&inverted) {
                     self.solution.conditioning.push(inverted);
                 }

@@ -5,12 +5,13 @@ use syn::Expr;
 use syn::parse::{ParseStream, Parser};
 
 use super::cursor::{Cursor, Parsed};
+use super::recovery::opens;
 use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
 
 /// Reads an expression up to `,`, `;`, the end, or the first token that cannot continue it; `what` names it in errors.
 pub(super) fn expression(cursor: &mut Cursor, what: &str) -> Parsed<Expr> {
-    let length = cursor
-        .length_until(|cursor, offset| cursor.punct(offset, ',') || cursor.punct(offset, ';'));
+    let length = cursor.length_until(ends);
     if length == 0 {
         return Err(cursor.expected(what));
     }
@@ -30,17 +31,24 @@ pub(super) fn expression(cursor: &mut Cursor, what: &str) -> Parsed<Expr> {
     };
     let parsed = parser.parse2(tokens);
     cursor.advance(length - unread.min(length));
-    parsed.map_err(|error| translated(cursor, &error, unread == 0))
+    parsed.map_err(|failure| translated(cursor, &failure, unread == 0))
+}
+
+/// Whether an expression cannot go past this offset.
+///
+/// Without the words that begin a statement or a field, each law of a body without separators would be handed the
+/// rest of the body.
+fn ends(cursor: &Cursor, offset: usize) -> bool {
+    let colon = |offset| cursor.punct(offset, ':');
+    let field =
+        offset > 0 && cursor.ident(offset).is_some() && colon(offset + 1) && !colon(offset + 2);
+    cursor.punct(offset, ',') || cursor.punct(offset, ';') || field || opens(cursor, offset)
 }
 
 /// Tells in our words, and at a token of the law, what `syn` could not read.
-fn translated(
-    cursor: &Cursor,
-    error: &syn::Error,
-    ended: bool,
-) -> Box<crate::diagnostics::Diagnostic> {
+fn translated(cursor: &Cursor, failure: &syn::Error, ended: bool) -> Box<Diagnostic> {
     const END: &str = "unexpected end of input";
-    let text = error.to_string();
+    let text = failure.to_string();
     let text = text
         .lines()
         .next()
@@ -53,34 +61,24 @@ fn translated(
     } else {
         wanted
     };
+    let inside = matches!(cursor.since(0).last(), Some(TokenTree::Group(_)));
     if cut && ended {
-        // `syn` would mark the whole macro call here.
-        let message = format!(
-            "{wanted} after {}, found {}",
-            cursor.previous(),
-            cursor.found()
-        );
-        return Box::new(crate::diagnostics::error(
-            codes::SYNTAX,
-            cursor.last_span(),
-            message,
-        ));
+        // `syn` may mark the whole macro call here. A law cut off after a group is cut off inside it.
+        let (previous, found) = (cursor.previous(), cursor.found());
+        let message = if inside {
+            format!("{wanted} before {previous}")
+        } else {
+            format!("{wanted} after {previous}, found {found}")
+        };
+        return Box::new(error(codes::SYNTAX, cursor.last_span(), message));
     }
     if cut {
-        return Box::new(crate::diagnostics::error(
-            codes::SYNTAX,
-            error.span(),
-            format!("{wanted} before the closing bracket"),
-        ));
+        let message = format!("{wanted} before the closing bracket");
+        return Box::new(error(codes::SYNTAX, failure.span(), message));
     }
     // After a group the mistake may lie inside it, and only `syn` knows where.
-    let inside = matches!(cursor.since(0).last(), Some(TokenTree::Group(_)));
     if ended || inside || !wanted.starts_with("expected") {
-        return Box::new(crate::diagnostics::error(
-            codes::SYNTAX,
-            error.span(),
-            wanted,
-        ));
+        return Box::new(error(codes::SYNTAX, failure.span(), wanted));
     }
     cursor.failure(codes::SYNTAX, format!("{wanted}, found {}", cursor.found()))
 }

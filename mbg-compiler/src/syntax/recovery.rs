@@ -134,11 +134,7 @@ fn declared(tokens: &[TokenTree], depth: usize, names: &mut Vec<Ident>) {
         let first = outermost && at == attributes;
         let name = match (token, tokens.get(at + 1), tokens.get(at + 2)) {
             (TokenTree::Ident(word), Some(TokenTree::Ident(name)), _) => {
-                let word = word.to_string();
-                let known =
-                    words::STATEMENTS.contains(&word.as_str()) || words::element(&word).is_some();
-                // The first word of a statement may be misspelt.
-                (first || known).then_some(name)
+                declares(&word.to_string(), first).then_some(name)
             }
             (TokenTree::Literal(literal), Some(TokenTree::Ident(name)), _) => {
                 matches!(literal.to_string().as_str(), "0" | "1").then_some(name)
@@ -159,6 +155,14 @@ fn declared(tokens: &[TokenTree], depth: usize, names: &mut Vec<Ident>) {
             declared(&inner, depth - 1, names);
         }
     }
+}
+
+/// Whether the word after this one is a name that a statement declares; the first word may be misspelt.
+fn declares(word: &str, first: bool) -> bool {
+    let nameless = word == "causality" || words::LATER.contains(&word);
+    let known = words::STATEMENTS.contains(&word) || words::element(word).is_some();
+    let near = || words::nearest(word, &words::element_names()).is_some();
+    !nameless && (first || known || near())
 }
 
 fn is_hash(token: &TokenTree) -> bool {

@@ -1,0 +1,423 @@
+//! One model through all stages.
+
+use std::collections::BTreeMap;
+
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error, listing};
+use crate::drawing::{self, Drawn};
+use crate::elaborate::{self, Condition, Elaborated, StateRate};
+use crate::equations::{self, Scalars};
+use crate::graph::{ElementId, ElementKind, Law};
+use crate::network::Network;
+use crate::program::{self, Program, Request};
+use crate::structure::{self, Failure, Solution};
+use crate::symbolic::print::Printer;
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Differentiator, Expression, Pool, Rate, Substitution, Symbol};
+use crate::syntax::ast;
+
+/// Everything that emission needs.
+pub struct Compiled {
+    /// The model in scalars.
+    pub model: Elaborated,
+    /// Candidate states that are states, in order.
+    pub states: Vec<usize>,
+    /// The program; its routines are numbered by [`Routines`].
+    pub program: Program,
+    /// Names of the inverted blocks.
+    pub conditioning: Vec<String>,
+    /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
+    pub checks: Vec<Check>,
+    /// Names of storages that the drawing puts into derivative causality.
+    pub dependent: Vec<String>,
+    /// Causal strokes by bond: true where the effort enters at `to`.
+    pub strokes: Vec<bool>,
+    /// Things worth knowing.
+    pub notes: Vec<String>,
+}
+
+/// A check that `new` makes.
+pub struct Check {
+    /// The parameter, or the expression of parameters.
+    pub name: String,
+    /// What must hold.
+    pub condition: Condition,
+    /// Why.
+    pub reason: String,
+}
+
+/// Numbers of the routines.
+pub struct Routines;
+
+#[allow(missing_docs)]
+impl Routines {
+    pub const DERIVATIVE: usize = 0;
+    pub const OUTPUT: usize = 1;
+    pub const JACOBIAN_STATE: usize = 2;
+    pub const JACOBIAN_INPUT: usize = 3;
+    pub const ENERGY: usize = 4;
+    pub const POWER: usize = 5;
+    pub const CONDITIONING: usize = 6;
+    pub const INITIAL: usize = 7;
+    pub const CHECKS: usize = 8;
+}
+
+/// Compiles one model; none if anything was reported.
+#[must_use]
+pub fn compile(
+    model: &ast::Model,
+    components: &BTreeMap<String, &ast::Component>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
+    let mut pool = Pool::new();
+    let elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
+    let verdict = drawing::judge(&elaborated.graph, diagnostics)?;
+    let network = Network::of(&elaborated.graph, &mut pool);
+    let scalars = equations::form(&elaborated, &network, &mut pool);
+    let solution = match structure::solve(&scalars, &mut pool) {
+        Ok(solution) => solution,
+        Err(failure) => {
+            report(&elaborated, &scalars, &pool, failure, diagnostics);
+            return None;
+        }
+    };
+    let answers = Answers::of(&elaborated, &scalars, &solution, &mut pool);
+    Some(finish(
+        elaborated, &scalars, &solution, answers, pool, verdict,
+    ))
+}
+
+fn report(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    failure: Failure,
+    diagnostics: &mut Diagnostics,
+) {
+    match failure {
+        Failure::Singular => structure::report_singular(model, scalars, pool, diagnostics),
+        Failure::Nonlinear(unknowns) => {
+            let names = listing(structure::block_names(scalars, model, &unknowns));
+            let message = format!(
+                "{} variables depend on each other nonlinearly",
+                unknowns.len()
+            );
+            let report = error(codes::NONLINEAR_LOOP, model.name.span(), message);
+            diagnostics.report(report.note(format!("the loop runs through {names}")).help(
+                "put a storage into the loop, or give the law so that it can be used in this direction",
+            ));
+        }
+    }
+}
+
+/// What the functions of the model return.
+struct Answers {
+    states: Vec<usize>,
+    rates: Vec<Expression>,
+    outputs: Vec<Expression>,
+    energy: Expression,
+    supplied: Expression,
+    dissipated: Expression,
+}
+
+impl Answers {
+    fn of(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool: &mut Pool) -> Self {
+        let mut substitution = Substitution::new();
+        for (signal, value) in structure::signal_values(scalars, solution) {
+            substitution.set(Symbol::Signal(signal), value);
+        }
+        let mut replaced = |pool: &mut Pool, expression| {
+            substitution
+                .apply(pool, expression)
+                .unwrap_or(Expression::ZERO)
+        };
+        let all: Vec<Expression> = model
+            .states
+            .iter()
+            .map(|state| match state.rate {
+                StateRate::Storage(id, component) => {
+                    storage_rate(model, scalars, solution, id, component)
+                }
+                StateRate::Expression(rate) => replaced(pool, rate),
+            })
+            .collect();
+        let outputs: Vec<Expression> = model
+            .outputs
+            .iter()
+            .map(|output| replaced(pool, output.value))
+            .collect();
+        let states = kept(model, pool, &all, &outputs);
+        let rates = states.iter().map(|state| all[*state]).collect();
+        let (supplied, dissipated) = powers(model, scalars, solution, pool);
+        let energies: Vec<Expression> = model
+            .graph
+            .elements
+            .iter()
+            .filter_map(|element| {
+                if let Law::Storage(storage) = &element.law {
+                    Some(storage.energy)
+                } else {
+                    None
+                }
+            })
+            .collect();
+        let energy = pool.sum(&energies);
+        Self {
+            states,
+            rates,
+            outputs,
+            energy,
+            supplied,
+            dissipated,
+        }
+    }
+}
+
+/// `ṗ = e` or `q̇ = f`, with power into the storage.
+fn storage_rate(
+    model: &Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    id: ElementId,
+    component: usize,
+) -> Expression {
+    let port = &scalars.ports[&id];
+    if model.graph.elements[id.0].kind == ElementKind::I {
+        solution.values[port.effort[component]].flipped(!port.inward)
+    } else {
+        solution.values[port.flow[component]].flipped(!port.inward)
+    }
+}
+
+/// Storages, and the integrals and attitudes that something reads.
+fn kept(
+    model: &Elaborated,
+    pool: &Pool,
+    rates: &[Expression],
+    outputs: &[Expression],
+) -> Vec<usize> {
+    let mut keep: Vec<bool> = model
+        .states
+        .iter()
+        .map(|state| matches!(state.rate, StateRate::Storage(..)))
+        .collect();
+    loop {
+        let mut roots: Vec<Expression> = outputs.to_vec();
+        roots.extend(
+            rates
+                .iter()
+                .zip(&keep)
+                .filter(|(_, keep)| **keep)
+                .map(|(rate, _)| *rate),
+        );
+        let read: Vec<usize> = symbols(pool, &roots)
+            .into_iter()
+            .filter_map(|symbol| {
+                if let Symbol::State(state) = symbol {
+                    Some(state)
+                } else {
+                    None
+                }
+            })
+            .filter(|state| !keep[*state])
+            .collect();
+        if read.is_empty() {
+            return (0..keep.len()).filter(|state| keep[*state]).collect();
+        }
+        read.into_iter().for_each(|state| keep[state] = true);
+    }
+}
+
+/// Power supplied by sources and dissipated in resistors.
+fn powers(
+    model: &Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    pool: &mut Pool,
+) -> (Expression, Expression) {
+    let (mut supplied, mut dissipated) = (Expression::ZERO, Expression::ZERO);
+    for (id, port) in &scalars.ports {
+        let kind = model.graph.elements[id.0].kind;
+        let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
+        if !source && kind != ElementKind::R {
+            continue;
+        }
+        for (effort, flow) in port.effort.iter().zip(&port.flow) {
+            let product = pool.multiply(solution.values[*effort], solution.values[*flow]);
+            if source {
+                supplied = pool.add(supplied, product.flipped(port.inward));
+            } else {
+                dissipated = pool.add(dissipated, product.flipped(!port.inward));
+            }
+        }
+    }
+    (supplied, dissipated)
+}
+
+fn jacobian(pool: &mut Pool, rates: &[Expression], symbols: &[Symbol]) -> Vec<Expression> {
+    let mut columns: Vec<Differentiator> = symbols
+        .iter()
+        .map(|symbol| Differentiator::new(*symbol))
+        .collect();
+    let mut entries = Vec::with_capacity(rates.len() * symbols.len());
+    for rate in rates {
+        for column in &mut columns {
+            entries.push(column.derivative(pool, *rate));
+        }
+    }
+    entries
+}
+
+fn finish(
+    model: Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    answers: Answers,
+    mut pool: Pool,
+    verdict: Drawn,
+) -> Compiled {
+    let by_state: Vec<Symbol> = answers
+        .states
+        .iter()
+        .map(|state| Symbol::State(*state))
+        .collect();
+    let by_input: Vec<Symbol> = (0..model.inputs.len()).map(Symbol::Input).collect();
+    let jacobian_state = jacobian(&mut pool, &answers.rates, &by_state);
+    let jacobian_input = jacobian(&mut pool, &answers.rates, &by_input);
+    let conditioning: Vec<Expression> = solution
+        .conditioning
+        .iter()
+        .map(|inverted| inverted.normalised)
+        .collect();
+    let initial: Vec<Expression> = answers
+        .states
+        .iter()
+        .map(|state| model.states[*state].initial)
+        .collect();
+    let (checks, checked) = checks(&model, solution, &pool);
+    let requests: Vec<Request> = [
+        answers.rates,
+        answers.outputs,
+        jacobian_state,
+        jacobian_input,
+        vec![answers.energy],
+        vec![answers.supplied, answers.dissipated],
+        conditioning.clone(),
+        initial,
+        checked,
+    ]
+    .into_iter()
+    .map(|results| Request { results })
+    .collect();
+    let places: BTreeMap<usize, usize> = answers
+        .states
+        .iter()
+        .enumerate()
+        .map(|(place, state)| (*state, place))
+        .collect();
+    let place = |state: usize| places.get(&state).copied().unwrap_or(0);
+    let mut names = BTreeMap::new();
+    for (unknown, value) in solution.values.iter().enumerate() {
+        if !scalars.names[unknown].is_empty() {
+            names
+                .entry(value.node())
+                .or_insert_with(|| scalars.names[unknown].clone());
+        }
+    }
+    let program = program::build(&pool, &requests, &[], &place, &names);
+    let conditioning = conditioning
+        .iter()
+        .map(|value| text(&model, &pool, *value))
+        .collect();
+    Compiled {
+        states: answers.states,
+        program,
+        conditioning,
+        checks,
+        dependent: verdict.dependent,
+        strokes: verdict.strokes,
+        notes: verdict.notes,
+        model,
+    }
+}
+
+/// An expression with the model's names.
+fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
+    let name = |symbol: Symbol| match symbol {
+        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
+        Symbol::State(index) => model.states[index].variable.name.clone(),
+        Symbol::Input(index) => model.inputs[index].name.clone(),
+        Symbol::Time => "t".to_owned(),
+        Symbol::Signal(index) => format!("signal {index}"),
+    };
+    Printer::new(pool, &name).text(expression)
+}
+
+/// What `new` checks beyond that every parameter is finite.
+fn checks(model: &Elaborated, solution: &Solution, pool: &Pool) -> (Vec<Check>, Vec<Expression>) {
+    let mut checks = Vec::new();
+    let mut checked: Vec<Expression> = Vec::new();
+    let mut add = |expression: Expression, condition: Condition, reason: String| {
+        if pool.rate(expression) == Rate::Parameter && !checked.contains(&expression) {
+            checks.push(Check {
+                name: text(model, pool, expression),
+                condition,
+                reason,
+            });
+            checked.push(expression);
+        }
+    };
+    for assumption in &model.assumptions {
+        add(
+            assumption.expression,
+            assumption.condition,
+            assumption.reason.clone(),
+        );
+    }
+    for (expression, condition) in &solution.assumptions {
+        add(
+            *expression,
+            *condition,
+            "the chosen causality divides by it".to_owned(),
+        );
+    }
+    for divisor in divisors(model, pool) {
+        add(
+            divisor,
+            Condition::NonZero,
+            "a law divides by it".to_owned(),
+        );
+    }
+    (checks, checked)
+}
+
+/// Divisors of parameters alone in the laws of storages.
+fn divisors(model: &Elaborated, pool: &Pool) -> Vec<Expression> {
+    let mut roots: Vec<Expression> = Vec::new();
+    for element in &model.graph.elements {
+        match &element.law {
+            Law::Storage(storage) => roots.extend(&storage.coenergy),
+            Law::Source(values) | Law::EffortLaw(values) | Law::FlowLaw(values) => {
+                roots.extend(values)
+            }
+            Law::Resistance(matrix) | Law::Conductance(matrix) => roots.extend(&matrix.entries),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    let mut seen = vec![false; pool.len()];
+    while let Some(current) = roots.pop() {
+        if std::mem::replace(&mut seen[current.node()], true) {
+            continue;
+        }
+        let operation = pool.operation(current);
+        if let crate::symbolic::Operation::Divide(_, divisor) = operation
+            && pool.rate(*divisor) == Rate::Parameter
+        {
+            found.push(divisor.magnitude());
+        }
+        roots.extend(operation.operands());
+    }
+    found.sort_unstable();
+    found
+}

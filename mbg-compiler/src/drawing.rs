@@ -1,0 +1,62 @@
+//! Stage 3, the drawing's verdict: accept it or reject it.
+//!
+//! Input: the [`BondGraph`]. Output: strokes and accepted dependences for the metadata. Under `causality
+//! componentwise;` only the equations can reject a model; strokes are then those of the best uniform drawing, if there
+//! is one. Errors: `MBG03xx`.
+
+use crate::causality::{report, uniform};
+use crate::diagnostics::Diagnostics;
+use crate::graph::{BondGraph, BondId, Causality};
+
+/// What the drawing says.
+pub struct Drawn {
+    /// True where the effort enters at a bond's `to`; empty if no uniform assignment exists.
+    pub strokes: Vec<bool>,
+    /// Storages in derivative causality, all of them accepted.
+    pub dependent: Vec<String>,
+    /// Things worth knowing.
+    pub notes: Vec<String>,
+}
+
+/// Judges the drawing; none if it is rejected.
+#[must_use]
+pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> {
+    let verdict = match uniform::verdict(graph) {
+        Ok(verdict) => verdict,
+        Err(_) if graph.causality == Causality::Componentwise => {
+            let notes = vec!["no assignment with one stroke per multibond exists".to_owned()];
+            return Some(Drawn {
+                strokes: Vec::new(),
+                dependent: Vec::new(),
+                notes,
+            });
+        }
+        Err(conflict) => {
+            report::conflict_diagnostics(graph, &conflict, diagnostics);
+            return None;
+        }
+    };
+    let name = |id: &crate::graph::ElementId| graph.elements[id.0].name.clone();
+    let rejected = verdict
+        .dependent
+        .iter()
+        .any(|id| !graph.elements[id.0].derivative);
+    if graph.causality == Causality::Uniform && rejected {
+        report::diagnose(graph, &verdict, diagnostics);
+        return None;
+    }
+    let marked = graph.elements.iter().any(|element| element.derivative);
+    let notes = if marked && verdict.dependent.is_empty() {
+        vec!["`#[derivative]` is not needed: every storage is in integral causality".to_owned()]
+    } else {
+        Vec::new()
+    };
+    let strokes = (0..graph.bonds.len())
+        .map(|bond| verdict.stroke_at_to(BondId(bond)))
+        .collect();
+    Some(Drawn {
+        strokes,
+        dependent: verdict.dependent.iter().map(name).collect(),
+        notes,
+    })
+}

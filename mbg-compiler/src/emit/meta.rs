@@ -1,0 +1,177 @@
+//! Metadata and documentation of a model.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use crate::compile::{Compiled, Routines};
+use crate::elaborate::{Condition, Variable};
+
+/// Lines of documentation that follow the user's own.
+pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
+    let mut lines = vec![
+        String::new(),
+        format!(
+            "{} states, {} inputs, {} outputs; {} operations per derivative.",
+            compiled.states.len(),
+            compiled.model.inputs.len(),
+            compiled.model.outputs.len(),
+            compiled.program.routines[Routines::DERIVATIVE].operations(),
+        ),
+    ];
+    if !compiled.conditioning.is_empty() {
+        lines.push(String::new());
+        lines.push(format!(
+            "Singular where one of these is zero: `{}`.",
+            compiled.conditioning.join("`, `")
+        ));
+    }
+    for assumption in assumptions(compiled) {
+        lines.push(String::new());
+        lines.push(assumption);
+    }
+    lines
+}
+
+fn assumptions(compiled: &Compiled) -> Vec<String> {
+    compiled
+        .checks
+        .iter()
+        .map(|check| {
+            let must = match check.condition {
+                Condition::NonZero => "not be zero",
+                Condition::Positive => "be positive",
+            };
+            format!("`{}` must {must}: {}.", check.name, check.reason)
+        })
+        .collect()
+}
+
+/// The constant `META`.
+pub(super) fn constant(compiled: &Compiled) -> TokenStream {
+    let model = &compiled.model;
+    let name = model.name.to_string();
+    let variable =
+        |name: &str, unit: &str| quote!(::mbg_runtime::Variable { name: #name, unit: #unit });
+    let variables = |list: &[&Variable]| -> Vec<TokenStream> {
+        list.iter()
+            .map(|entry| variable(&entry.name, &entry.unit))
+            .collect()
+    };
+    let parameters: Vec<_> = model
+        .parameters
+        .iter()
+        .map(|entry| variable(&entry.name.to_string(), &entry.unit))
+        .collect();
+    let states: Vec<_> = compiled
+        .states
+        .iter()
+        .map(|state| &model.states[*state].variable)
+        .collect();
+    let states = variables(&states);
+    let inputs = variables(&model.inputs.iter().collect::<Vec<_>>());
+    let outputs = variables(
+        &model
+            .outputs
+            .iter()
+            .map(|output| &output.variable)
+            .collect::<Vec<_>>(),
+    );
+    let bonds = bonds(compiled);
+    let (dependent, conditioning, notes) =
+        (&compiled.dependent, &compiled.conditioning, &compiled.notes);
+    let assumptions = assumptions(compiled);
+    let operations = operations(compiled);
+    let diagram = diagram(compiled);
+    quote! {
+        &::mbg_runtime::Meta {
+            name: #name,
+            parameters: &[#(#parameters),*],
+            states: &[#(#states),*],
+            inputs: &[#(#inputs),*],
+            outputs: &[#(#outputs),*],
+            bonds: &[#(#bonds),*],
+            dependent: &[#(#dependent),*],
+            conditioning: &[#(#conditioning),*],
+            assumptions: &[#(#assumptions),*],
+            notes: &[#(#notes),*],
+            operations: #operations,
+            diagram: #diagram,
+        }
+    }
+}
+
+fn operations(compiled: &Compiled) -> TokenStream {
+    let routines = &compiled.program.routines;
+    let count = |routine: usize| Literal::usize_suffixed(routines[routine].operations());
+    let [
+        derivative,
+        output,
+        jacobian_state,
+        jacobian_input,
+        energy,
+        power,
+    ] = [
+        Routines::DERIVATIVE,
+        Routines::OUTPUT,
+        Routines::JACOBIAN_STATE,
+        Routines::JACOBIAN_INPUT,
+        Routines::ENERGY,
+        Routines::POWER,
+    ]
+    .map(count);
+    let angles = Literal::usize_suffixed(routines[Routines::DERIVATIVE].angles());
+    quote! {
+        ::mbg_runtime::Operations {
+            derivative: #derivative, output: #output, jacobian_state: #jacobian_state,
+            jacobian_input: #jacobian_input, energy: #energy, power: #power, angles: #angles,
+        }
+    }
+}
+
+fn bonds(compiled: &Compiled) -> Vec<TokenStream> {
+    let graph = &compiled.model.graph;
+    graph
+        .bonds
+        .iter()
+        .enumerate()
+        .map(|(index, bond)| {
+            let (from, to) = (graph.end_name(&bond.from), graph.end_name(&bond.to));
+            let dimension = Literal::usize_suffixed(bond.dimension);
+            let strokes = compiled.strokes.get(index).map(|at_to| {
+                let stroke = if *at_to { quote!(::mbg_runtime::Stroke::To) } else { quote!(::mbg_runtime::Stroke::From) };
+                vec![stroke; bond.dimension]
+            });
+            let strokes = strokes.into_iter().flatten();
+            quote! {
+                ::mbg_runtime::Bond { from: #from, to: #to, dimension: #dimension, strokes: &[#(#strokes),*] }
+            }
+        })
+        .collect()
+}
+
+/// One bond a line: half arrow, dimension, and a bar at the end that receives the effort.
+fn diagram(compiled: &Compiled) -> String {
+    let graph = &compiled.model.graph;
+    let width = graph
+        .bonds
+        .iter()
+        .map(|bond| graph.end_name(&bond.from).len())
+        .max()
+        .unwrap_or(0);
+    let line = |(index, bond): (usize, &crate::graph::Bond)| {
+        let arrow = match compiled.strokes.get(index) {
+            Some(true) => " ──⇀│",
+            Some(false) => "│──⇀ ",
+            None => " ──⇀ ",
+        };
+        let (from, to) = (graph.end_name(&bond.from), graph.end_name(&bond.to));
+        format!("{from:width$} {arrow} {to} [{}]", bond.dimension)
+    };
+    graph
+        .bonds
+        .iter()
+        .enumerate()
+        .map(line)
+        .collect::<Vec<_>>()
+        .join("\n")
+}

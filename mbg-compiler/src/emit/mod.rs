@@ -1,0 +1,29 @@
+//! Stage 7, emission: programs to Rust.
+//!
+//! Input: a [`Compiled`] model. Output: tokens: the type of the parameters, the model's type, and its `System`. The
+//! code is flat, generic over the scalar, refers to everything by absolute path, and is the same for the same input.
+
+mod meta;
+mod parameters;
+mod routine;
+mod system;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::compile::Compiled;
+use crate::syntax::ast;
+
+/// All items of a model.
+#[must_use]
+pub fn model(compiled: &Compiled) -> TokenStream {
+    let parameters = parameters::items(compiled);
+    let system = system::items(compiled);
+    quote!(#parameters #system)
+}
+
+/// What is left of a model with a mistake: its types, so that their names still resolve.
+#[must_use]
+pub fn shell(model: &ast::Model) -> TokenStream {
+    parameters::shell(model)
+}

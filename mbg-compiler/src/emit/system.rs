@@ -1,0 +1,168 @@
+//! The model's type, `new`, and its `System`.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::meta;
+use super::routine::{Setting, lines};
+use crate::compile::{Compiled, Routines};
+use crate::elaborate::Condition;
+
+/// The type, its constructor and its behaviour.
+pub(super) fn items(compiled: &Compiled) -> TokenStream {
+    let structure = structure(compiled);
+    let constructor = constructor(compiled);
+    let system = system(compiled);
+    quote!(#structure #constructor #system)
+}
+
+fn structure(compiled: &Compiled) -> TokenStream {
+    let model = &compiled.model;
+    let (visibility, name, documentation) = (&model.visibility, &model.name, &model.documentation);
+    let parameters = format_ident!("{}Parameters", name);
+    let folded = Literal::usize_suffixed(compiled.program.folded.results.len());
+    let summary = meta::documentation(compiled);
+    quote! {
+        #(#documentation)*
+        #(#[doc = #summary])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #visibility struct #name<T = f64> { parameters: #parameters<T>, folded: [T; #folded] }
+    }
+}
+
+fn constructor(compiled: &Compiled) -> TokenStream {
+    let model = &compiled.model;
+    let name = &model.name;
+    let parameters = format_ident!("{}Parameters", name);
+    let finite = model.parameters.iter().map(|parameter| {
+        let (field, text) = (&parameter.name, parameter.name.to_string());
+        quote! {
+            ::mbg_runtime::__private::check(
+                #text, parameters.#field, ::mbg_runtime::__private::Condition::Finite, "it must be a finite number",
+            )?;
+        }
+    });
+    let (folding, folded) = lines(compiled, &compiled.program.folded, Setting::Constructor);
+    let (_, checked) = lines(
+        compiled,
+        &compiled.program.routines[Routines::CHECKS],
+        Setting::Folded,
+    );
+    let checks = compiled.checks.iter().zip(checked).map(|(check, value)| {
+        let (condition, must) = match check.condition {
+            Condition::NonZero => (quote!(NonZero), "not be zero"),
+            Condition::Positive => (quote!(Positive), "be positive"),
+        };
+        let (text, reason) = (&check.name, format!("it must {must}: {}", check.reason));
+        quote! {
+            ::mbg_runtime::__private::check(
+                #text, #value, ::mbg_runtime::__private::Condition::#condition, #reason,
+            )?;
+        }
+    });
+    quote! {
+        #[automatically_derived]
+        #[allow(clippy::all, unused_variables, unused_parens)]
+        impl<T: ::mbg_runtime::Real> #name<T> {
+            /// Checks the parameters and works out whatever depends on them alone.
+            ///
+            /// # Errors
+            /// A parameter that is no finite number, or that breaks an assumption listed above.
+            pub fn new(
+                parameters: #parameters<T>,
+            ) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> {
+                #(#finite)*
+                #folding
+                let folded = [#(#folded),*];
+                #(#checks)*
+                ::core::result::Result::Ok(Self { parameters, folded })
+            }
+
+            /// The parameters it was built with.
+            #[must_use]
+            pub fn parameters(&self) -> &#parameters<T> {
+                &self.parameters
+            }
+        }
+    }
+}
+
+fn system(compiled: &Compiled) -> TokenStream {
+    let name = &compiled.model.name;
+    let [n, m, p, k] = [
+        compiled.states.len(),
+        compiled.model.inputs.len(),
+        compiled.model.outputs.len(),
+        compiled.conditioning.len(),
+    ]
+    .map(Literal::usize_suffixed);
+    let meta = meta::constant(compiled);
+    let body = |routine: usize, build: &dyn Fn(Vec<TokenStream>) -> TokenStream| {
+        let (steps, results) = lines(
+            compiled,
+            &compiled.program.routines[routine],
+            Setting::Method,
+        );
+        let result = build(results);
+        quote!(#steps #result)
+    };
+    let vector = |results: Vec<TokenStream>| {
+        let size = Literal::usize_suffixed(results.len());
+        quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
+    };
+    let matrix = |columns: usize| {
+        let (rows, columns) = (n.clone(), Literal::usize_suffixed(columns));
+        move |results: Vec<TokenStream>| quote!(::mbg_runtime::__private::SMatrix::<T, #rows, #columns>::from_row_slice(&[#(#results),*]))
+    };
+    let initial = body(Routines::INITIAL, &vector);
+    let derivative = body(Routines::DERIVATIVE, &vector);
+    let output = body(Routines::OUTPUT, &vector);
+    let jacobian_state = body(Routines::JACOBIAN_STATE, &matrix(compiled.states.len()));
+    let jacobian_input = body(
+        Routines::JACOBIAN_INPUT,
+        &matrix(compiled.model.inputs.len()),
+    );
+    let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
+    let power = body(Routines::POWER, &|results| {
+        let (supplied, dissipated) = (&results[0], &results[1]);
+        quote!(::mbg_runtime::Power { supplied: #supplied, dissipated: #dissipated })
+    });
+    let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
+    let arguments = quote! {
+        t: T,
+        x: &::mbg_runtime::__private::SVector<T, #n>,
+        u: &::mbg_runtime::__private::SVector<T, #m>
+    };
+    quote! {
+        #[automatically_derived]
+        #[allow(clippy::all, unused_variables, unused_parens)]
+        impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
+            const META: &'static ::mbg_runtime::Meta = #meta;
+            type Memory = ();
+            type Conditioning = [T; #k];
+
+            #[inline]
+            fn initial_state(&self) -> ::mbg_runtime::__private::SVector<T, #n> { #initial }
+            #[inline]
+            fn derivative(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SVector<T, #n> {
+                #derivative
+            }
+            #[inline]
+            fn output(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
+            #[inline]
+            fn jacobian_state(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
+                #jacobian_state
+            }
+            #[inline]
+            fn jacobian_input(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
+                #jacobian_input
+            }
+            #[inline]
+            fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #energy }
+            #[inline]
+            fn power(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::Power<T> { #power }
+            #[inline]
+            fn conditioning(&self, #arguments) -> [T; #k] { #conditioning }
+        }
+    }
+}

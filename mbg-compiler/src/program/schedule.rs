@@ -1,0 +1,241 @@
+//! From the expression graph to steps in order.
+
+use std::collections::BTreeMap;
+
+use super::{Operand, Program, Routine, Source, Step};
+use crate::symbolic::{Expression, Operation, Pool, Rate, Symbol};
+
+/// Results that one function must give.
+pub struct Request {
+    /// In order.
+    pub results: Vec<Expression>,
+}
+
+/// Builds all functions. `state` gives the place in `x` of each candidate state; `names` names nodes.
+#[must_use]
+pub fn build(
+    pool: &Pool,
+    requests: &[Request],
+    also_folded: &[Expression],
+    state: &dyn Fn(usize) -> usize,
+    names: &BTreeMap<usize, String>,
+) -> Program {
+    let folded_nodes = folded_nodes(pool, requests, also_folded);
+    let numbers: BTreeMap<usize, usize> = folded_nodes
+        .iter()
+        .enumerate()
+        .map(|(number, node)| (node.node(), number))
+        .collect();
+    let context = Context {
+        pool,
+        folded: &numbers,
+        state,
+        names,
+    };
+    let folded = context.routine(&folded_nodes, true);
+    let routines = requests
+        .iter()
+        .map(|request| context.routine(&request.results, false))
+        .collect();
+    Program { folded, routines }
+}
+
+/// Expressions of parameters alone that something varying, or a result, is computed from.
+fn folded_nodes(pool: &Pool, requests: &[Request], also: &[Expression]) -> Vec<Expression> {
+    let mut seen = vec![false; pool.len()];
+    let mut found = Vec::new();
+    let roots = requests
+        .iter()
+        .flat_map(|request| &request.results)
+        .chain(also)
+        .copied();
+    for root in roots {
+        let mut pending = vec![root.magnitude()];
+        while let Some(current) = pending.pop() {
+            if std::mem::replace(&mut seen[current.node()], true) {
+                continue;
+            }
+            match (pool.rate(current), pool.operation(current)) {
+                (Rate::Varying, operation) => {
+                    pending.extend(
+                        operation
+                            .operands()
+                            .into_iter()
+                            .rev()
+                            .map(Expression::magnitude),
+                    );
+                }
+                (Rate::Parameter, Operation::Symbol(_)) | (Rate::Constant, _) => {}
+                (Rate::Parameter, _) => found.push(current),
+            }
+        }
+    }
+    found
+}
+
+struct Context<'a> {
+    pool: &'a Pool,
+    folded: &'a BTreeMap<usize, usize>,
+    state: &'a dyn Fn(usize) -> usize,
+    names: &'a BTreeMap<usize, String>,
+}
+
+/// A routine in the making.
+struct Draft {
+    routine: Routine,
+    values: BTreeMap<usize, usize>,
+    count: usize,
+}
+
+impl Context<'_> {
+    /// Steps for the roots, each node once, operands before what uses them. While folding, nothing is taken from the
+    /// folded values, since these are just being made.
+    fn routine(&self, roots: &[Expression], folding: bool) -> Routine {
+        let mut draft = Draft {
+            routine: Routine::default(),
+            values: BTreeMap::new(),
+            count: 0,
+        };
+        let paired = self.paired_angles(roots, folding);
+        for root in roots {
+            self.visit(&mut draft, root.magnitude(), folding, &paired);
+        }
+        draft.routine.results = roots
+            .iter()
+            .map(|root| self.operand(&draft, *root, folding))
+            .collect();
+        draft.routine
+    }
+
+    /// Whether a node needs no step here.
+    fn is_leaf(&self, expression: Expression, folding: bool) -> bool {
+        matches!(
+            self.pool.operation(expression),
+            Operation::Constant(_) | Operation::Symbol(_)
+        ) || (!folding && self.folded.contains_key(&expression.node()))
+    }
+
+    /// Angles of which both sine and cosine are needed, with the two nodes.
+    fn paired_angles(
+        &self,
+        roots: &[Expression],
+        folding: bool,
+    ) -> BTreeMap<usize, (usize, usize)> {
+        let mut sines = BTreeMap::new();
+        let mut cosines = BTreeMap::new();
+        let mut seen = vec![false; self.pool.len()];
+        let mut pending: Vec<Expression> = roots.to_vec();
+        while let Some(current) = pending.pop() {
+            if std::mem::replace(&mut seen[current.node()], true) || self.is_leaf(current, folding)
+            {
+                continue;
+            }
+            let operation = self.pool.operation(current);
+            match operation {
+                Operation::Sine(angle) => drop(sines.insert(angle.node(), current.node())),
+                Operation::Cosine(angle) => drop(cosines.insert(angle.node(), current.node())),
+                _ => {}
+            }
+            pending.extend(operation.operands());
+        }
+        sines
+            .into_iter()
+            .filter_map(|(angle, sine)| cosines.get(&angle).map(|cosine| (angle, (sine, *cosine))))
+            .collect()
+    }
+
+    fn visit(
+        &self,
+        draft: &mut Draft,
+        root: Expression,
+        folding: bool,
+        paired: &BTreeMap<usize, (usize, usize)>,
+    ) {
+        let mut pending = vec![(root, false)];
+        while let Some((current, ready)) = pending.pop() {
+            if draft.values.contains_key(&current.node()) || self.is_leaf(current, folding) {
+                continue;
+            }
+            let operation = self.pool.operation(current);
+            if !ready {
+                pending.push((current, true));
+                pending.extend(
+                    operation
+                        .operands()
+                        .into_iter()
+                        .rev()
+                        .map(|operand| (operand.magnitude(), false)),
+                );
+                continue;
+            }
+            self.step(draft, current, operation, folding, paired);
+        }
+    }
+
+    fn step(
+        &self,
+        draft: &mut Draft,
+        current: Expression,
+        operation: &Operation,
+        folding: bool,
+        paired: &BTreeMap<usize, (usize, usize)>,
+    ) {
+        let operand = |expression: &Expression| self.operand(draft, *expression, folding);
+        let step = match operation {
+            Operation::Constant(_) | Operation::Symbol(_) => return,
+            Operation::Add(a, b) => Step::Add(operand(a), operand(b)),
+            Operation::Multiply(a, b) => Step::Multiply(operand(a), operand(b)),
+            Operation::Divide(a, b) => Step::Divide(operand(a), operand(b)),
+            Operation::Sine(a) | Operation::Cosine(a) => {
+                let angle = operand(a);
+                if let Some((sine, cosine)) = paired.get(&a.node()) {
+                    draft.values.insert(*sine, draft.count);
+                    draft.values.insert(*cosine, draft.count + 1);
+                    draft
+                        .routine
+                        .names
+                        .extend([self.name(*sine), self.name(*cosine)]);
+                    draft.routine.steps.push(Step::SineCosine(angle));
+                    draft.count += 2;
+                    return;
+                }
+                if matches!(operation, Operation::Sine(_)) {
+                    Step::Sine(angle)
+                } else {
+                    Step::Cosine(angle)
+                }
+            }
+            Operation::Call(function, arguments) => {
+                Step::Call(*function, arguments.iter().map(operand).collect())
+            }
+        };
+        draft.values.insert(current.node(), draft.count);
+        draft.routine.names.push(self.name(current.node()));
+        draft.routine.steps.push(step);
+        draft.count += 1;
+    }
+
+    fn name(&self, node: usize) -> String {
+        self.names.get(&node).cloned().unwrap_or_default()
+    }
+
+    fn operand(&self, draft: &Draft, expression: Expression, folding: bool) -> Operand {
+        let node = expression.node();
+        let source = match self.pool.operation(expression) {
+            Operation::Constant(value) => Source::Constant(*value),
+            Operation::Symbol(Symbol::State(index)) => {
+                Source::Symbol(Symbol::State((self.state)(*index)))
+            }
+            Operation::Symbol(symbol) => Source::Symbol(*symbol),
+            _ => match (draft.values.get(&node), self.folded.get(&node)) {
+                (_, Some(number)) if !folding => Source::Folded(*number),
+                (Some(value), _) => Source::Value(*value),
+                _ => Source::Constant(f64::NAN),
+            },
+        };
+        Operand {
+            source,
+            negative: expression.is_negative(),
+        }
+    }
+}

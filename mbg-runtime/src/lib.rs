@@ -18,7 +18,7 @@ pub use dual::Dual;
 pub use input::{Constant, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Meta, Operations, Stroke, Variable};
 pub use real::Real;
-pub use step::{Cause, Rk4, Statistics, Stopped};
+pub use step::{Cause, Dense, DormandPrince, Rk4, Statistics, Stopped};
 pub use system::{ParameterError, Power, System, Trouble};
 
 #[cfg(feature = "macros")]

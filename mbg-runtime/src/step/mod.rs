@@ -1,5 +1,6 @@
 //! Integrators for initial value problems.
 
+mod adaptive;
 mod fixed;
 #[cfg(test)]
 mod models;
@@ -11,6 +12,7 @@ use nalgebra::SVector;
 
 use crate::{Input, Real, System, Trouble};
 
+pub use adaptive::{Dense, DormandPrince};
 pub use fixed::Rk4;
 
 /// What a simulation took.

@@ -1,0 +1,151 @@
+//! Rotation matrices from and to angles and quaternions.
+//!
+//! A rotation matrix `R` takes the components of a vector in a body's axes to its components in the axes that the
+//! body is seen from: `v = R v_body`. Elementary rotations are active: `Rx(a)` turns the y axis towards z.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::Real;
+
+/// `R = Rx(a) Ry(b) Rz(c)` of the angles `[a, b, c]` in rad: about x first, then about the new y, then the newest z.
+///
+/// The columns are the body's axes after the three turns, seen from the axes before them.
+pub fn rotation_xyz<T: Real>(angles: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+    let [[a, b, c]] = angles.data.0;
+    let (sa, ca) = a.sin_cos();
+    let (sb, cb) = b.sin_cos();
+    let (sc, cc) = c.sin_cos();
+    SMatrix::from([
+        [cb * cc, ca * sc + sa * sb * cc, sa * sc - ca * sb * cc],
+        [-(cb * sc), ca * cc - sa * sb * sc, sa * cc + ca * sb * sc],
+        [sb, -(sa * cb), ca * cb],
+    ])
+}
+
+/// The angles `[a, b, c]` in rad of `R = Rx(a) Ry(b) Rz(c)`, on the principal branch: `a` and `c` in (−π, π],
+/// `|b| ≤ π/2`.
+///
+/// ```text
+/// a = atan2(−R23, R33)
+/// b = atan2(R13, R33 cos a − R23 sin a)
+/// c = atan2(R21 cos a + R31 sin a, R22 cos a + R32 sin a)
+/// ```
+/// At `|b| = π/2` (gimbal lock) only `a ± c` is determined; the angles are then one of the triples that give `R`, in
+/// exact arithmetic the one with `a = 0`. Nothing is divided by and no accuracy is lost near it.
+///
+/// ```
+/// use mbg_runtime::attitude::{euler_xyz, rotation_xyz};
+/// use nalgebra::SVector;
+///
+/// let angles: SVector<f64, 3> = SVector::from([0.3, -1.2, 2.0]);
+/// assert!((euler_xyz(&rotation_xyz(&angles)) - angles).norm() < 1e-15);
+/// ```
+pub fn euler_xyz<T: Real>(rotation: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
+    let [[_, r21, r31], [_, r22, r32], [r13, r23, r33]] = rotation.data.0;
+    let a = (-r23).atan2(r33);
+    let (sine, cosine) = a.sin_cos();
+    let b = r13.atan2(r33 * cosine - r23 * sine);
+    let c = (r21 * cosine + r31 * sine).atan2(r22 * cosine + r32 * sine);
+    SVector::from([a, b, c])
+}
+
+/// The rotation matrix of the quaternion `[w, x, y, z]` that takes body axes to inertial ones:
+/// `R v = q ∘ (0, v) ∘ q⁻¹`.
+///
+/// The quaternion is divided by its length, so that a drift of the length turns nothing. A quaternion of zeros gives
+/// NaN.
+pub fn rotation_from_quaternion<T: Real>(quaternion: &SVector<T, 4>) -> SMatrix<T, 3, 3> {
+    let [[w, x, y, z]] = quaternion.data.0;
+    let one = T::from_f64(1.0);
+    let scale = T::from_f64(2.0) / (w * w + x * x + y * y + z * z);
+    SMatrix::from([
+        [
+            one - scale * (y * y + z * z),
+            scale * (x * y + w * z),
+            scale * (x * z - w * y),
+        ],
+        [
+            scale * (x * y - w * z),
+            one - scale * (x * x + z * z),
+            scale * (y * z + w * x),
+        ],
+        [
+            scale * (x * z + w * y),
+            scale * (y * z - w * x),
+            one - scale * (x * x + y * y),
+        ],
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+
+    fn about(axis: usize, angle: f64) -> SMatrix<f64, 3, 3> {
+        let half = 0.5 * angle;
+        let mut quaternion = SVector::from([half.cos(), 0.0, 0.0, 0.0]);
+        quaternion[axis + 1] = half.sin();
+        rotation_from_quaternion(&quaternion)
+    }
+
+    #[test]
+    fn elementary_rotations_are_active() {
+        let y = SVector::from([0.0, 1.0, 0.0]);
+        assert!((about(0, FRAC_PI_2) * y - SVector::from([0.0, 0.0, 1.0])).norm() < 1e-15);
+        let angle: f64 = 0.4;
+        let expected = SVector::from([-angle.sin(), angle.cos(), 0.0]);
+        assert!((about(2, angle) * y - expected).norm() < 1e-15);
+    }
+
+    #[test]
+    fn three_turns_multiply_in_the_documented_order() {
+        let (a, b, c) = (0.3, -0.7, 1.9);
+        let product = about(0, a) * about(1, b) * about(2, c);
+        assert!((rotation_xyz(&SVector::from([a, b, c])) - product).norm() < 1e-15);
+    }
+
+    #[test]
+    fn angles_come_back_on_the_principal_branch() {
+        for a in [-3.0, -0.5, 0.0, 2.0] {
+            for b in [-1.57, -0.3, 0.0, 1.5] {
+                for c in [-2.0, 0.0, 0.1, PI] {
+                    let angles = SVector::from([a, b, c]);
+                    let found = euler_xyz(&rotation_xyz(&angles));
+                    let error = found - angles;
+                    assert!(error[0].abs() + error[1].abs() < 1e-12, "{angles} {found}");
+                    assert!(
+                        ((error[2] / (2.0 * PI)).round() * 2.0 * PI - error[2]).abs() < 1e-12,
+                        "{angles} {found}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn gimbal_lock_still_gives_the_rotation() {
+        for b in [FRAC_PI_2, -FRAC_PI_2] {
+            let rotation = rotation_xyz(&SVector::from([0.4, b, 1.1]));
+            assert!((rotation_xyz(&euler_xyz(&rotation)) - rotation).norm() < 1e-15);
+        }
+        let exact = SMatrix::from([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+        assert_eq!(euler_xyz(&exact), SVector::from([0.0, FRAC_PI_2, 0.0]));
+    }
+
+    #[test]
+    fn length_of_a_quaternion_does_not_matter() {
+        let quaternion = SVector::from([0.5, -0.1, 0.7, 0.2]);
+        let rotation = rotation_from_quaternion(&quaternion);
+        assert!((rotation - rotation_from_quaternion(&(3.0 * quaternion))).norm() < 1e-15);
+        assert!((rotation * rotation.transpose() - SMatrix::identity()).norm() < 1e-15);
+        assert!((rotation.determinant() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn single_precision() {
+        let angles = SVector::from([0.3_f32, -1.2, 2.0]);
+        assert!((euler_xyz(&rotation_xyz(&angles)) - angles).norm() < 1e-6);
+    }
+}

@@ -22,11 +22,16 @@ mbg! {
 }
 
 fn main() {
-    let model = Oscillator::<f64>::new(OscillatorParameters::default()).expect("defaults are sound");
+    let model =
+        Oscillator::<f64>::new(OscillatorParameters::default()).expect("defaults are sound");
     let meta = <Oscillator<f64> as System<f64, 2, 1, 1>>::META;
     println!("{}\n{}", meta.name, meta.diagram);
     let x: SVector<f64, 2> = System::initial_state(&model);
-    println!("{:?} {:?}", x, System::derivative(&model, 0.0, &x, &SVector::<f64, 1>::zeros(), &mut ()));
+    println!(
+        "{:?} {:?}",
+        x,
+        System::derivative(&model, 0.0, &x, &SVector::<f64, 1>::zeros(), &mut ())
+    );
     println!("energy {}", System::<f64, 2, 1, 1>::energy(&model, 0.0, &x));
     println!("{meta:#?}");
 }

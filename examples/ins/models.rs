@@ -47,7 +47,7 @@ mbg! {
     }
 
     /// Rotorcraft fuselage and inertial platform with the gimbal joint of Tod et al. (2013), Fig. 13.
-    pub model Ins {
+    pub(crate) model Ins {
         /// Viscous friction between air and fuselage.
         param drag: N*m*s/rad = 1e3;
         /// Stiffness of each gimbal.
@@ -82,7 +82,7 @@ mbg! {
 
     /// The same with the three classic revolute joints of Fig. 12.
     #[derivative]
-    pub model InsClassic {
+    pub(crate) model InsClassic {
         /// Viscous friction between air and fuselage.
         param drag: N*m*s/rad = 1e3;
         /// Stiffness of each gimbal.
@@ -110,7 +110,7 @@ mbg! {
     }
 
     /// `Ins` with its attitude and the estimate of eq. (16).
-    pub model InsObserved {
+    pub(crate) model InsObserved {
         /// Viscous friction between air and fuselage.
         param drag: N*m*s/rad = 1e3;
         /// Stiffness of each gimbal.
@@ -141,6 +141,7 @@ mbg! {
         } -> platform;
 
         attitude q = quaternion(fuselage.f);
+        attitude r = quaternion(platform.f);
         integral estimate[3]: rad = -(transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z))
             * (jacobian_xyz(spring.q) * gimbals.f));
 
@@ -149,11 +150,12 @@ mbg! {
         output platform_rate[3]: rad/s = platform.f;
         output fuselage_attitude[4] = q;
         output estimated[3]: rad = estimate;
+        output platform_attitude[4] = r;
     }
 
     /// `InsClassic` with its attitude and the estimate of eq. (16).
     #[derivative]
-    pub model InsClassicObserved {
+    pub(crate) model InsClassicObserved {
         /// Viscous friction between air and fuselage.
         param drag: N*m*s/rad = 1e3;
         /// Stiffness of each gimbal.
@@ -178,6 +180,7 @@ mbg! {
         z: RevoluteZ { stiffness: stiffness, damping: damping } (frame2, platform);
 
         attitude q = quaternion(fuselage.f);
+        attitude r = quaternion(platform.f);
         integral estimate[3]: rad = -(transpose(rot_x(x.spring.q) * rot_y(y.spring.q) * rot_z(z.spring.q))
             * (jacobian_xyz([x.spring.q, y.spring.q, z.spring.q]) * [x.spring.f, y.spring.f, z.spring.f]));
 
@@ -186,5 +189,6 @@ mbg! {
         output platform_rate[3]: rad/s = platform.f;
         output fuselage_attitude[4] = q;
         output estimated[3]: rad = estimate;
+        output platform_attitude[4] = r;
     }
 }

@@ -108,6 +108,8 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
         "`=>`" | "`-`" => (*cursor.expected(&wanted)).help("a bond is written `a -> b`"),
         "`<-`" | "`<`" => (*cursor.expected(&wanted))
             .help("a bond points where its power is positive: write `b -> a`"),
+        "`=`" => (*cursor.expected(&wanted))
+            .help("a value has a word before its name: `param x = …;` or `output x = …;`"),
         "`{`" => match node {
             Some(ChainNode::Reference(reference)) => {
                 let name = reference.path.last()?;

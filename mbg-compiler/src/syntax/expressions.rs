@@ -1,10 +1,11 @@
 //! Laws: Rust expressions, read by `syn`.
 
-use proc_macro2::{TokenStream, TokenTree};
+use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::Expr;
 use syn::parse::{ParseStream, Parser};
 
 use super::cursor::{Cursor, Parsed};
+use super::depth::too_deep;
 use super::recovery::opens;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -42,7 +43,9 @@ fn ends(cursor: &Cursor, offset: usize) -> bool {
     let colon = |offset| cursor.punct(offset, ':');
     let field =
         offset > 0 && cursor.ident(offset).is_some() && colon(offset + 1) && !colon(offset + 2);
-    cursor.punct(offset, ',') || cursor.punct(offset, ';') || field || opens(cursor, offset)
+    // A digit in the first place is the value, whatever follows it.
+    let statement = (offset > 0 || cursor.ident(0).is_some()) && opens(cursor, offset);
+    cursor.punct(offset, ',') || cursor.punct(offset, ';') || field || statement
 }
 
 /// Tells in our words, and at a token of the law, what `syn` could not read.
@@ -61,15 +64,13 @@ fn translated(cursor: &Cursor, failure: &syn::Error, ended: bool) -> Box<Diagnos
     } else {
         wanted
     };
-    let inside = matches!(cursor.since(0).last(), Some(TokenTree::Group(_)));
-    if cut && ended {
-        // `syn` may mark the whole macro call here. A law cut off after a group is cut off inside it.
-        let (previous, found) = (cursor.previous(), cursor.found());
-        let message = if inside {
-            format!("{wanted} before {previous}")
-        } else {
-            format!("{wanted} after {previous}, found {found}")
-        };
+    // Past its last token `syn` marks the whole macro call, and only the text of a span tells that from a token.
+    if format!("{:?}", failure.span()) == format!("{:?}", Span::call_site()) {
+        let message = format!(
+            "{wanted} after {}, found {}",
+            cursor.previous(),
+            cursor.found()
+        );
         return Box::new(error(codes::SYNTAX, cursor.last_span(), message));
     }
     if cut {
@@ -77,44 +78,9 @@ fn translated(cursor: &Cursor, failure: &syn::Error, ended: bool) -> Box<Diagnos
         return Box::new(error(codes::SYNTAX, failure.span(), message));
     }
     // After a group the mistake may lie inside it, and only `syn` knows where.
+    let inside = matches!(cursor.since(0).last(), Some(TokenTree::Group(_)));
     if ended || inside || !wanted.starts_with("expected") {
         return Box::new(error(codes::SYNTAX, failure.span(), wanted));
     }
     cursor.failure(codes::SYNTAX, format!("{wanted}, found {}", cursor.found()))
-}
-
-/// Whether the tokens nest or run so far that the reader of laws, which recurses, could exhaust the stack.
-///
-/// A token weighs one and a nested group [`NESTING`]; a comma or a semicolon starts again.
-fn too_deep(tokens: &[TokenTree]) -> bool {
-    weight(tokens.iter().cloned(), HEAVIEST).is_none()
-}
-
-/// What may weigh on the stack.
-const HEAVIEST: usize = 4_000;
-
-/// What one more level of brackets weighs, in tokens.
-const NESTING: usize = 60;
-
-fn weight(tokens: impl Iterator<Item = TokenTree>, budget: usize) -> Option<usize> {
-    let (mut heaviest, mut run, mut nested) = (0, 0, 0);
-    for token in tokens {
-        match token {
-            TokenTree::Punct(punct) if matches!(punct.as_char(), ',' | ';') => {
-                (run, nested) = (0, 0)
-            }
-            TokenTree::Group(group) => {
-                run += 1;
-                let left = budget.checked_sub(NESTING)?;
-                nested =
-                    nested.max(NESTING + weight(TokenStream::into_iter(group.stream()), left)?);
-            }
-            _ => run += 1,
-        }
-        heaviest = heaviest.max(run + nested);
-        if heaviest > budget {
-            return None;
-        }
-    }
-    Some(heaviest)
 }

@@ -12,6 +12,7 @@ pub mod ast;
 mod attributes;
 mod chains;
 mod cursor;
+mod depth;
 pub mod dump;
 mod elements;
 mod expressions;

@@ -53,13 +53,23 @@ pub(super) fn opens(cursor: &Cursor, offset: usize) -> bool {
     let Some(next) = cursor.ident(offset + 1) else {
         return false;
     };
-    match cursor.ident(offset) {
-        Some(word) => {
-            let word = word.to_string();
-            words::STATEMENTS.contains(&word.as_str()) || words::LATER.contains(&word.as_str())
-        }
-        None => cursor.junction_digit(offset) && !words::is_reserved(&next.to_string()),
+    if cursor.ident(offset).is_some() {
+        return begins(cursor, offset);
     }
+    // In `1 param x` the digit ends a statement, and the word begins the next.
+    cursor.junction_digit(offset)
+        && !words::is_reserved(&next.to_string())
+        && !begins(cursor, offset + 1)
+}
+
+/// Whether one of the words that begin a statement, and a name, stand at this offset.
+fn begins(cursor: &Cursor, offset: usize) -> bool {
+    let word = cursor
+        .ident(offset)
+        .map(ToString::to_string)
+        .unwrap_or_default();
+    let known = words::STATEMENTS.contains(&word.as_str()) || words::LATER.contains(&word.as_str());
+    known && cursor.ident(offset + 1).is_some()
 }
 
 /// Whether a statement may begin here, given that the last one was complete.
@@ -123,28 +133,16 @@ fn continues(cursor: &Cursor) -> bool {
 
 /// Collects the names that tokens declare, as far as can be told without understanding them.
 fn declared(tokens: &[TokenTree], depth: usize, names: &mut Vec<Ident>) {
-    let outermost = depth == DEPTH;
-    let attributes = tokens
+    let attributes = 2 * tokens
         .iter()
         .step_by(2)
         .take_while(|token| is_hash(token))
-        .count()
-        * 2;
+        .count();
+    let outermost = depth == DEPTH;
+    let nameless = outermost
+        && matches!(tokens.get(attributes), Some(TokenTree::Ident(word)) if is_nameless(word));
     for (at, token) in tokens.iter().enumerate() {
-        let first = outermost && at == attributes;
-        let name = match (token, tokens.get(at + 1), tokens.get(at + 2)) {
-            (TokenTree::Ident(word), Some(TokenTree::Ident(name)), _) => {
-                declares(&word.to_string(), first).then_some(name)
-            }
-            (TokenTree::Literal(literal), Some(TokenTree::Ident(name)), _) => {
-                matches!(literal.to_string().as_str(), "0" | "1").then_some(name)
-            }
-            (TokenTree::Ident(name), Some(TokenTree::Punct(colon)), Some(TokenTree::Ident(_))) => {
-                (first && colon.as_char() == ':').then_some(name)
-            }
-            _ => None,
-        };
-        if let Some(name) = name.filter(|name| !words::is_reserved(&name.to_string())) {
+        if !nameless && let Some(name) = name_at(&tokens[at..], outermost && at == attributes) {
             names.push(name.clone());
         }
         let TokenTree::Group(group) = token else {
@@ -157,12 +155,33 @@ fn declared(tokens: &[TokenTree], depth: usize, names: &mut Vec<Ident>) {
     }
 }
 
-/// Whether the word after this one is a name that a statement declares; the first word may be misspelt.
-fn declares(word: &str, first: bool) -> bool {
-    let nameless = word == "causality" || words::LATER.contains(&word);
-    let known = words::STATEMENTS.contains(&word) || words::element(word).is_some();
-    let near = || words::nearest(word, &words::element_names()).is_some();
-    !nameless && (first || known || near())
+/// The name that the first of these tokens declares; the first word of a statement may be misspelt.
+fn name_at(tokens: &[TokenTree], first: bool) -> Option<&Ident> {
+    let name = match tokens {
+        [TokenTree::Ident(word), TokenTree::Ident(name), ..] => {
+            let word = word.to_string();
+            let known =
+                words::STATEMENTS.contains(&word.as_str()) || words::element(&word).is_some();
+            let near = || words::nearest(&word, &words::element_names()).is_some();
+            (first || known || near()).then_some(name)
+        }
+        [TokenTree::Literal(digit), TokenTree::Ident(name), ..] => {
+            matches!(digit.to_string().as_str(), "0" | "1").then_some(name)
+        }
+        [
+            TokenTree::Ident(name),
+            TokenTree::Punct(colon),
+            TokenTree::Ident(_),
+            ..,
+        ] => (first && colon.as_char() == ':').then_some(name),
+        _ => None,
+    };
+    name.filter(|name| !words::is_reserved(&name.to_string()))
+}
+
+/// Whether a statement that begins with this word declares no name of its own.
+fn is_nameless(word: &Ident) -> bool {
+    word == "causality" || words::LATER.iter().any(|later| word == later)
 }
 
 fn is_hash(token: &TokenTree) -> bool {

@@ -81,8 +81,8 @@ pub(super) fn alternatives(words: &[&str]) -> String {
     }
 }
 
-/// The word that was probably meant: two slips at most, fewer for a short word, since every word of two letters is
-/// two slips from every other.
+/// The word that was probably meant: two slips at most, fewer where either word is short, since every word of two
+/// letters is two slips from every other.
 pub(super) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
     // A word far longer than any of ours is none of ours, and measuring it would cost its length squared.
     if found.chars().count() > 16 {
@@ -93,7 +93,7 @@ pub(super) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
         .iter()
         .filter(|word| **word != found)
         .map(|word| (distance(&lower, &word.to_lowercase()), *word))
-        .filter(|(distance, word)| *distance <= (word.len() / 2).min(2))
+        .filter(|(distance, word)| *distance <= (word.len().min(found.len()) / 2).min(2))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, word)| word)
 }
@@ -133,6 +133,7 @@ mod tests {
         assert_eq!(nearest("mtf", &element_names()), Some("MTF"));
         assert_eq!(nearest("r", &element_names()), Some("R"));
         assert_eq!(nearest("x", &element_names()), None);
+        assert_eq!(nearest("s", &element_names()), None);
     }
 
     #[test]

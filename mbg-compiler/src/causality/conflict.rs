@@ -5,13 +5,17 @@
 //! on the way to it are the start; where only the search finds it, the classes of fixed ports are added one after the
 //! other (sources, gyroscopic multiports, two-ports without inverse, resistors) until they suffice.
 
-use super::propagation::Propagation;
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+use super::propagation::{Clash, Propagation};
 use super::search::{self, Found, Goal};
 use super::strokes::{Plan, Problem, Site};
+use super::uniform::{Step, cause_of};
 use super::words::{self, ChainStep};
 use crate::codes;
 use crate::diagnostics::Code;
-use crate::graph::{BondGraph, BondId, ElementId, JunctionId, Rule};
+use crate::graph::{BondGraph, BondId, ElementId, End, Rule};
 
 /// Searches while a set of rules is made smaller; then it is left as it is.
 const TRIALS: usize = 400;
@@ -24,10 +28,9 @@ const TRIAL_BUDGET: usize = 50_000;
 pub struct Conflict {
     /// What kind of contradiction.
     pub code: Code,
-    /// Fixed elements without which there would be no contradiction; the one to blame first.
-    pub elements: Vec<ElementId>,
-    /// The junction at which the rules fail.
-    pub junction: Option<JunctionId>,
+    /// A minimal set of rules in conflict: fixed elements first, the one to blame foremost, then junctions, the one
+    /// that fails foremost, then two-ports.
+    pub sites: Vec<Site>,
     /// A minimal set of bonds in conflict, in order of declaration.
     pub bonds: Vec<BondId>,
     /// From the first fixed causality to the contradiction.
@@ -40,11 +43,25 @@ impl Conflict {
     pub fn unproven() -> Self {
         Self {
             code: codes::NO_ASSIGNMENT,
-            elements: Vec::new(),
-            junction: None,
+            sites: Vec::new(),
             bonds: Vec::new(),
             chain: Vec::new(),
         }
+    }
+
+    /// Fixed elements without which there would be no contradiction; the one to blame foremost.
+    #[must_use]
+    pub fn elements(&self) -> Vec<ElementId> {
+        fixed_elements(&self.sites)
+    }
+
+    /// The components of a junction at which the rules fail.
+    #[must_use]
+    pub fn place(&self) -> Option<End> {
+        self.sites.iter().find_map(|site| match site {
+            Site::Junction(id, components) => Some(End::Junction(*id, components.clone())),
+            _ => None,
+        })
     }
 
     /// Whether the contradiction is certain; `false` only when the search ran out of its budget.
@@ -59,44 +76,40 @@ impl Conflict {
 pub fn explain(graph: &BondGraph, problem: &Problem, plan: &Plan) -> Conflict {
     let core = core(graph, problem, plan);
     let part = problem.restricted(&core);
-    let sites: Vec<&Site> = part
-        .constraints
-        .iter()
-        .map(|constraint| &constraint.site)
-        .collect();
-    let mut elements = fixed_elements(&sites);
-    elements.sort_by_key(|id| std::cmp::Reverse(class(graph.elements[id.0].rule)));
     let (chain, failing) = chain(graph, &part);
-    let met = sites.iter().find_map(|site| match site {
-        Site::Junction(id, _) => Some(*id),
-        _ => None,
-    });
-    let mut bonds: Vec<BondId> = part
-        .constraints
-        .iter()
-        .flat_map(|constraint| &constraint.literals)
-        .map(|literal| literal.bond)
-        .collect();
-    bonds.sort_unstable();
-    bonds.dedup();
+    let mut sites: Vec<(Reverse<usize>, Site)> = Vec::new();
+    let mut bonds = BTreeSet::new();
+    for (index, constraint) in part.constraints.iter().enumerate() {
+        let rank = match &constraint.site {
+            Site::Fixed(id) => 3 + class(graph.elements[id.0].rule),
+            Site::Junction(..) if failing == Some(index) => 2,
+            Site::Junction(..) => 1,
+            Site::TwoPort(_) | Site::Assumed(_) | Site::Supposed(_) => 0,
+        };
+        sites.push((Reverse(rank), constraint.site.clone()));
+        bonds.extend(constraint.literals.iter().map(|literal| literal.bond));
+    }
+    sites.sort_by_key(|(rank, _)| *rank);
+    let sites: Vec<Site> = sites.into_iter().map(|(_, site)| site).collect();
+    let code = code(graph, &fixed_elements(&sites));
     Conflict {
-        code: code(graph, &elements),
-        elements,
-        junction: failing.or(met),
-        bonds,
+        code,
+        sites,
+        bonds: bonds.into_iter().collect(),
         chain,
     }
 }
 
-fn fixed_elements(sites: &[&Site]) -> Vec<ElementId> {
-    let mut elements: Vec<ElementId> = sites
-        .iter()
-        .filter_map(|site| match site {
-            Site::Fixed(id) => Some(*id),
-            _ => None,
-        })
-        .collect();
-    elements.dedup();
+/// Each fixed element once, in the order given.
+fn fixed_elements(sites: &[Site]) -> Vec<ElementId> {
+    let mut elements = Vec::new();
+    for site in sites {
+        if let Site::Fixed(id) = site
+            && !elements.contains(id)
+        {
+            elements.push(*id);
+        }
+    }
     elements
 }
 
@@ -131,7 +144,7 @@ pub fn core(graph: &BondGraph, problem: &Problem, plan: &Plan) -> Vec<usize> {
                 .iter()
                 .filter_map(|bond| engine.constraint_of(*bond))
                 .collect();
-            start.extend(words::constraint_of(&clash));
+            start.extend(clash.constraint());
             start.sort_unstable();
             start.dedup();
             start
@@ -184,34 +197,41 @@ fn unsolvable(problem: &Problem, plan: &Plan, constraints: &[usize]) -> bool {
     )
 }
 
-/// The contradiction as sentences, and the junction at which it fails. If propagation does not see it, the rules
-/// themselves are listed.
+/// The contradiction as sentences, and the constraint that fails in the end. If propagation does not see it, the
+/// rules themselves are listed.
 #[must_use]
-pub fn chain(graph: &BondGraph, part: &Problem) -> (Vec<ChainStep>, Option<JunctionId>) {
+pub fn chain(graph: &BondGraph, part: &Problem) -> (Vec<ChainStep>, Option<usize>) {
     let mut engine = Propagation::new(part);
-    let failing = engine
-        .start()
-        .err()
-        .and_then(|clash| Some((words::constraint_of(&clash)?, clash)));
-    let Some((index, clash)) = failing else {
-        let rules = part
-            .constraints
-            .iter()
-            .map(|constraint| words::rule(graph, constraint));
-        return (rules.collect(), None);
+    let clash = match engine.start() {
+        Err(clash @ Clash::Constraint(_)) => clash,
+        _ => {
+            let rules = part.constraints.iter();
+            return (
+                rules
+                    .map(|constraint| words::rule(graph, constraint))
+                    .collect(),
+                None,
+            );
+        }
     };
     let mut steps = Vec::new();
     for bond in engine.closure(engine.clashing(&clash)) {
-        if let (Some(cause), Some(stroke)) = (engine.constraint_of(bond), engine.stroke(bond)) {
-            let cause = super::uniform::cause_of(&part.constraints[cause].site);
-            steps.push(words::step(graph, bond, stroke, &cause));
+        if let (Some(constraint), Some(stroke)) = (engine.constraint_of(bond), engine.stroke(bond))
+        {
+            let cause = cause_of(&part.constraints[constraint].site);
+            let because = engine.causes(bond);
+            steps.push(words::step(
+                graph,
+                &Step {
+                    bond,
+                    stroke,
+                    cause,
+                    because,
+                },
+            ));
         }
     }
-    let constraint = &part.constraints[index];
-    steps.push(words::clash(graph, &engine, constraint));
-    let junction = match constraint.site {
-        Site::Junction(id, _) => Some(id),
-        _ => None,
-    };
-    (steps, junction)
+    let failing = clash.constraint();
+    steps.extend(failing.map(|index| words::clash(graph, &engine, &part.constraints[index])));
+    (steps, failing)
 }

@@ -6,6 +6,7 @@
 //! component depends on, and never misses one.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use super::strokes::Stroke;
 use crate::graph::{BondGraph, BondId, ElementId, End, JunctionKind, Rule};
@@ -32,56 +33,114 @@ enum Variable {
 pub fn received(graph: &BondGraph, strokes: &[Stroke], element: ElementId) -> Dependence {
     let mut found = Dependence::default();
     let mut seen = BTreeSet::new();
-    let mut open = Vec::new();
     let ends = Ends::new(graph);
+    let mut open: Vec<Signal> = Vec::new();
     for &(bond, side) in &ends.elements[element.0] {
-        let variable = if strokes[bond.0] == side { Variable::Effort } else { Variable::Flow };
-        open.push((bond, variable));
+        let effort = strokes[bond.0] == side;
+        open.push((
+            bond,
+            if effort {
+                Variable::Effort
+            } else {
+                Variable::Flow
+            },
+        ));
     }
-    while let Some((bond, variable)) = open.pop() {
-        if !seen.insert((bond, variable)) {
+    while let Some(signal) = open.pop() {
+        if !seen.insert(signal) {
             continue;
         }
-        // Effort comes from the end without the stroke, flow from the end with it.
-        let stroke = strokes[bond.0];
-        let giver = if variable == Variable::Effort { stroke.opposite() } else { stroke };
-        let end = match giver {
-            Stroke::From => &graph.bonds[bond.0].from,
-            Stroke::To => &graph.bonds[bond.0].to,
-        };
-        match end {
+        let (bond, variable) = signal;
+        match giver(graph, strokes, signal) {
             End::Border => {}
-            End::OnePort(id) => match graph.elements[id.0].rule {
-                Rule::EffortOut | Rule::FlowOut => _ = found.sources.insert(*id),
-                Rule::PreferEffortOut | Rule::PreferFlowOut => {
-                    let integral = (graph.elements[id.0].rule == Rule::PreferFlowOut) == (variable == Variable::Flow);
-                    _ = if integral { found.states.insert(*id) } else { found.rates.insert(*id) };
-                }
-                _ => open.push((bond, opposite(variable))),
-            },
+            End::OnePort(id) => one_port(graph, *id, signal, &mut found, &mut open),
             End::In(id) | End::Out(id) => {
                 let gyrates = matches!(graph.elements[id.0].rule, Rule::Gyrator { .. });
-                let wanted = if gyrates { opposite(variable) } else { variable };
-                let others = ends.elements[id.0].iter().filter(|(other, _)| *other != bond);
+                let wanted = if gyrates {
+                    opposite(variable)
+                } else {
+                    variable
+                };
+                let others = ends.elements[id.0]
+                    .iter()
+                    .filter(|(other, _)| *other != bond);
                 open.extend(others.map(|(other, _)| (*other, wanted)));
             }
             End::Junction(id, range) => {
-                let common = match graph.junctions[id.0].kind {
-                    JunctionKind::Zero => Variable::Effort,
-                    JunctionKind::One => Variable::Flow,
-                };
-                for (other, side, other_range) in &ends.junctions[id.0] {
-                    let overlaps = other_range.start < range.end && range.start < other_range.end;
-                    // The common variable comes from the one bond that imposes it, the other is a sum.
-                    let imposes = (strokes[other.0] == *side) == (common == Variable::Effort);
-                    if *other != bond && overlaps && (variable != common || imposes) {
-                        open.push((*other, variable));
-                    }
-                }
+                let kind = graph.junctions[id.0].kind;
+                open.extend(junction(
+                    kind,
+                    range,
+                    signal,
+                    &ends.junctions[id.0],
+                    strokes,
+                ));
             }
         }
     }
     found
+}
+
+/// The end that imposes a variable: effort comes from the end without the stroke, flow from the end with it.
+fn giver<'a>(graph: &'a BondGraph, strokes: &[Stroke], (id, variable): Signal) -> &'a End {
+    let bond = &graph.bonds[id.0];
+    if (strokes[id.0] == Stroke::To) == (variable == Variable::Flow) {
+        &bond.to
+    } else {
+        &bond.from
+    }
+}
+
+/// Effort or flow of a bond.
+type Signal = (BondId, Variable);
+
+/// What a one-port computes the variable that it gives from: nothing but itself, or the variable that it receives.
+fn one_port(
+    graph: &BondGraph,
+    id: ElementId,
+    signal: Signal,
+    found: &mut Dependence,
+    open: &mut Vec<Signal>,
+) {
+    let (bond, variable) = signal;
+    match graph.elements[id.0].rule {
+        Rule::EffortOut | Rule::FlowOut => _ = found.sources.insert(id),
+        rule @ (Rule::PreferEffortOut | Rule::PreferFlowOut) => {
+            let integral = (rule == Rule::PreferFlowOut) == (variable == Variable::Flow);
+            let storages = if integral {
+                &mut found.states
+            } else {
+                &mut found.rates
+            };
+            storages.insert(id);
+        }
+        _ => open.push((bond, opposite(variable))),
+    }
+}
+
+/// What a junction computes a variable from: the common variable from the one bond that imposes it, the other from
+/// all other bonds.
+fn junction<'a>(
+    kind: JunctionKind,
+    range: &'a Range<usize>,
+    (bond, variable): Signal,
+    bonds: &'a [(BondId, Stroke, Range<usize>)],
+    strokes: &'a [Stroke],
+) -> impl Iterator<Item = Signal> + 'a {
+    let common = if kind == JunctionKind::Zero {
+        Variable::Effort
+    } else {
+        Variable::Flow
+    };
+    let needed = move |(other, side, other_range): &&(BondId, Stroke, Range<usize>)| {
+        let overlaps = other_range.start < range.end && range.start < other_range.end;
+        let imposes = (strokes[other.0] == *side) == (common == Variable::Effort);
+        *other != bond && overlaps && (variable != common || imposes)
+    };
+    bonds
+        .iter()
+        .filter(needed)
+        .map(move |(other, ..)| (*other, variable))
 }
 
 fn opposite(variable: Variable) -> Variable {
@@ -94,7 +153,7 @@ fn opposite(variable: Variable) -> Variable {
 /// The bonds at each element and junction, with the side at which they end there.
 struct Ends {
     elements: Vec<Vec<(BondId, Stroke)>>,
-    junctions: Vec<Vec<(BondId, Stroke, std::ops::Range<usize>)>>,
+    junctions: Vec<Vec<(BondId, Stroke, Range<usize>)>>,
 }
 
 impl Ends {

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::conflict;
 use super::search::{self, BUDGET, Best, Found, Goal};
-use super::strokes::{Literal, Plan, Problem, Site};
+use super::strokes::{Plan, Problem, Site};
 use super::uniform::{self, Cause, Step, Verdict};
 use super::words::{self, ChainStep};
 use crate::graph::{BondGraph, BondId, ElementId, ElementKind, JunctionKind};
@@ -95,10 +95,7 @@ fn by_propagation(graph: &BondGraph, verdict: &Verdict, storage: ElementId, bond
     }
     Chain {
         storage,
-        steps: needed
-            .iter()
-            .map(|step| words::step(graph, step.bond, step.stroke, &step.cause))
-            .collect(),
+        steps: needed.iter().map(|step| words::step(graph, step)).collect(),
         path: path(graph, storage, bond, &needed),
         fixed: fixed.into_iter().collect(),
         integral: integral.into_iter().collect(),
@@ -106,33 +103,39 @@ fn by_propagation(graph: &BondGraph, verdict: &Verdict, storage: ElementId, bond
     }
 }
 
-/// Follows the causes back from the storage, towards an integral storage where there is one.
+/// Follows the causes back from the storage: towards an integral storage where there is one, and else as far as the
+/// chain goes.
 fn path(graph: &BondGraph, storage: ElementId, bond: BondId, needed: &[&Step]) -> String {
-    let mut from_storage: BTreeSet<BondId> = BTreeSet::new();
-    for step in needed {
-        if matches!(step.cause, Cause::Integral(_))
-            || step.because.iter().any(|bond| from_storage.contains(bond))
-        {
-            from_storage.insert(step.bond);
-        }
-    }
     let by_bond: BTreeMap<BondId, &Step> = needed.iter().map(|step| (step.bond, *step)).collect();
+    // Whether a stroke follows from a storage, and how many steps stand behind it.
+    let mut reach: BTreeMap<BondId, (bool, usize)> = BTreeMap::new();
+    for step in needed {
+        let behind = step.because.iter().filter_map(|bond| reach.get(bond)).max();
+        let (from_storage, length) = behind.copied().unwrap_or_default();
+        let own = matches!(step.cause, Cause::Integral(_));
+        reach.insert(step.bond, (from_storage || own, length + 1));
+    }
     let element = |id: ElementId| words::symbol(graph.elements[id.0].kind);
     let mut stops = vec![element(storage)];
     let mut bond = Some(bond);
     while let Some(step) = bond.and_then(|bond| by_bond.get(&bond)) {
         match &step.cause {
-            Cause::Fixed(id) | Cause::Integral(id) | Cause::Yielded(id) | Cause::TwoPort(id) => {
-                stops.push(element(*id))
-            }
             Cause::Junction(id, _) => stops.push(match graph.junctions[id.0].kind {
                 JunctionKind::Zero => "0",
                 JunctionKind::One => "1",
             }),
+            Cause::Fixed(id)
+            | Cause::Integral(id)
+            | Cause::Supposed(id)
+            | Cause::Yielded(id)
+            | Cause::TwoPort(id) => stops.push(element(*id)),
             Cause::Free => {}
         }
-        let towards = step.because.iter().find(|bond| from_storage.contains(bond));
-        bond = towards.or(step.because.first()).copied();
+        bond = step
+            .because
+            .iter()
+            .max_by_key(|bond| reach.get(bond))
+            .copied();
     }
     stops.join(" <- ")
 }
@@ -142,19 +145,13 @@ fn path(graph: &BondGraph, storage: ElementId, bond: BondId, needed: &[&Step]) -
 fn by_search(graph: &BondGraph, verdict: &Verdict, plan: &Plan, storage: ElementId) -> Chain {
     let mut problem = Problem::new(graph);
     for candidate in &plan.storages {
-        let bond = candidate.integral.bond;
-        let last = candidate.element == storage;
-        let literal = if last {
-            candidate.integral
-        } else {
-            Literal {
-                bond,
-                stroke: verdict.strokes[bond.0],
-            }
-        };
-        problem.add(vec![literal], Site::Assumed(candidate.element));
-        if last {
+        let integral = candidate.integral;
+        if candidate.element == storage {
+            problem.add(vec![integral], Site::Supposed(storage));
             break;
+        }
+        if verdict.strokes[integral.bond.0] == integral.stroke {
+            problem.add(vec![integral], Site::Assumed(candidate.element));
         }
     }
     let none = Chain {
@@ -180,11 +177,10 @@ fn by_search(graph: &BondGraph, verdict: &Verdict, plan: &Plan, storage: Element
             for constraint in &part.constraints {
                 match constraint.site {
                     Site::Fixed(id) => chain.fixed.push(id),
-                    Site::Assumed(id) if id != storage => chain.integral.push(id),
+                    Site::Assumed(id) => chain.integral.push(id),
                     _ => {}
                 }
             }
-            chain.integral.retain(|id| !verdict.dependent.contains(id));
             chain.fixed.sort_unstable();
             chain.fixed.dedup();
             chain

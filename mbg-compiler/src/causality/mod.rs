@@ -1,9 +1,11 @@
 //! Stage 3, causality: who imposes what.
 pub mod conflict;
+pub mod dependence;
 pub mod enumerate;
 pub mod explain;
 pub mod propagation;
 pub mod report;
+pub mod report_conflict;
 pub mod search;
 pub mod strokes;
 pub mod uniform;
@@ -15,3 +17,5 @@ mod fixtures;
 mod property;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_report;

@@ -28,6 +28,17 @@ pub enum Clash {
     Strokes(Vec<BondId>),
 }
 
+impl Clash {
+    /// The constraint that cannot hold.
+    #[must_use]
+    pub fn constraint(&self) -> Option<usize> {
+        match self {
+            Self::Constraint(index) => Some(*index),
+            Self::Strokes(_) => None,
+        }
+    }
+}
+
 /// A stroke that has been assigned.
 #[derive(Clone, Debug)]
 struct Assigned {

@@ -15,7 +15,7 @@ use crate::graph::BondId;
 
 /// The search gives up after this many assignments of a stroke, those taken back included: about a second without
 /// the optimiser. The first descent, one per bond, is not counted.
-pub const BUDGET: usize = 1_000_000;
+pub const BUDGET: usize = 250_000;
 
 /// How many storages are dependent: all of them, then those without `#[derivative]`. Compared in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -67,8 +67,10 @@ pub enum Site {
     Junction(JunctionId, Range<usize>),
     /// A transformer or gyrator, which ties the strokes of its two bonds.
     TwoPort(ElementId),
-    /// An assumption about this storage.
+    /// This storage's causality is taken as decided, or admitted only so.
     Assumed(ElementId),
+    /// This storage is supposed to be integral, to see what follows.
+    Supposed(ElementId),
 }
 
 /// Exactly one of the literals holds.

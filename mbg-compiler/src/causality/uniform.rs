@@ -20,6 +20,8 @@ pub enum Cause {
     Fixed(ElementId),
     /// The storage was given its integral causality.
     Integral(ElementId),
+    /// The storage is supposed to be integral, to see what follows; never in a verdict.
+    Supposed(ElementId),
     /// The storage was put into derivative causality by choice: the search found that integral causality is either
     /// impossible or costs other storages theirs.
     Yielded(ElementId),
@@ -145,5 +147,6 @@ pub fn cause_of(site: &Site) -> Cause {
         Site::Junction(junction, components) => Cause::Junction(*junction, components.clone()),
         Site::TwoPort(element) => Cause::TwoPort(*element),
         Site::Assumed(element) => Cause::Integral(*element),
+        Site::Supposed(element) => Cause::Supposed(*element),
     }
 }

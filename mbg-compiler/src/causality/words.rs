@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::propagation::{Clash, Propagation};
+use super::propagation::Propagation;
 use super::strokes::{Constraint, Site, Stroke};
-use super::uniform::Cause;
+use super::uniform::{Cause, Step};
 use crate::graph::{
     BondGraph, BondId, ElementId, ElementKind, End, JunctionId, JunctionKind, OriginId, Rule,
 };
@@ -72,11 +72,17 @@ pub fn dimensions(rule: Rule) -> String {
 
 /// The sentence for one stroke and its cause.
 #[must_use]
-pub fn step(graph: &BondGraph, bond: BondId, stroke: Stroke, cause: &Cause) -> ChainStep {
+pub fn step(graph: &BondGraph, step: &Step) -> ChainStep {
+    let (bond, stroke) = (step.bond, step.stroke);
     let origin = graph.bonds[bond.0].origin;
-    match cause {
+    match &step.cause {
         Cause::Fixed(id) => at(graph, *id, fixed(graph, *id, bond)),
         Cause::Integral(id) => at(graph, *id, integral(graph, *id, bond)),
+        Cause::Supposed(id) => at(
+            graph,
+            *id,
+            format!("in integral causality {}", assumed(graph, *id, bond)),
+        ),
         Cause::Yielded(id) => at(
             graph,
             *id,
@@ -92,7 +98,7 @@ pub fn step(graph: &BondGraph, bond: BondId, stroke: Stroke, cause: &Cause) -> C
         }
         Cause::Junction(id, components) => ChainStep {
             origin,
-            text: junction_step(graph, (*id, components), bond, stroke),
+            text: junction_step(graph, (*id, components), step),
         },
         Cause::TwoPort(id) => at(graph, *id, two_port_step(graph, *id, bond, stroke)),
     }
@@ -175,24 +181,19 @@ fn shared(
     }
 }
 
-fn junction_step(
-    graph: &BondGraph,
-    junction: (JunctionId, &Range<usize>),
-    bond: BondId,
-    stroke: Stroke,
-) -> String {
+fn junction_step(graph: &BondGraph, junction: (JunctionId, &Range<usize>), step: &Step) -> String {
     let (id, components) = junction;
     let (name, variable, other_variable) = shared(graph, id, components);
-    let ends = &graph.bonds[bond.0];
+    let ends = &graph.bonds[step.bond.0];
     let here = |end: &End| matches!(end, End::Junction(other, range) if *other == id && range.contains(&components.start));
     let (own, far) = if here(&ends.from) {
         (Stroke::From, &ends.to)
     } else {
         (Stroke::To, &ends.from)
     };
-    let bond_name = graph.bond_name(bond);
-    let brings = (own == stroke) == (variable == "effort");
-    if brings && only_bond(graph, junction) {
+    let bond_name = graph.bond_name(step.bond);
+    let brings = (own == step.stroke) == (variable == "effort");
+    if brings && step.because.is_empty() {
         format!("`{bond_name}` is the only bond of `{name}`, so it must bring its {variable}")
     } else if brings {
         format!(
@@ -204,12 +205,6 @@ fn junction_step(
             graph.end_name(far)
         )
     }
-}
-
-fn only_bond(graph: &BondGraph, (id, components): (JunctionId, &Range<usize>)) -> bool {
-    let ends = graph.bonds.iter().flat_map(|bond| [&bond.from, &bond.to]);
-    let here = |end: &&End| matches!(end, End::Junction(other, range) if *other == id && range.contains(&components.start));
-    ends.filter(here).count() == 1
 }
 
 fn two_port_step(graph: &BondGraph, id: ElementId, bond: BondId, stroke: Stroke) -> String {
@@ -270,12 +265,17 @@ pub fn clash(graph: &BondGraph, engine: &Propagation<'_>, constraint: &Constrain
             *id,
             format!("but {}", fixed(graph, *id, literal.bond)),
         ),
-        (Site::Assumed(id), Some(literal)) => at(
+        (Site::Assumed(id) | Site::Supposed(id), Some(literal)) => at(
             graph,
             *id,
-            format!("but {}", assumed(graph, *id, literal.bond)),
+            format!(
+                "but in integral causality {}",
+                assumed(graph, *id, literal.bond)
+            ),
         ),
-        (Site::Fixed(id) | Site::Assumed(id), None) => at(graph, *id, rule(graph, constraint).text),
+        (Site::Fixed(id) | Site::Assumed(id) | Site::Supposed(id), None) => {
+            at(graph, *id, rule(graph, constraint).text)
+        }
     }
 }
 
@@ -287,7 +287,7 @@ fn assumed(graph: &BondGraph, id: ElementId, bond: BondId) -> String {
         "effort"
     };
     format!(
-        "`{}`, in integral causality, would give the {variable} of `{}`",
+        "`{}` would give the {variable} of `{}`",
         element.name,
         far(graph, id, bond)
     )
@@ -331,7 +331,7 @@ pub fn rule(graph: &BondGraph, constraint: &Constraint) -> ChainStep {
             };
             at(graph, *id, text)
         }
-        Site::Fixed(id) | Site::Assumed(id) => {
+        Site::Fixed(id) | Site::Assumed(id) | Site::Supposed(id) => {
             let bond = constraint
                 .literals
                 .first()
@@ -347,14 +347,5 @@ pub fn rule(graph: &BondGraph, constraint: &Constraint) -> ChainStep {
                 },
             )
         }
-    }
-}
-
-/// The constraint of a clash found by propagation.
-#[must_use]
-pub fn constraint_of(clash: &Clash) -> Option<usize> {
-    match clash {
-        Clash::Constraint(index) => Some(*index),
-        Clash::Strokes(_) => None,
     }
 }

@@ -1,6 +1,6 @@
 //! All admissible uniform assignments of a graph.
 //!
-//! Input: a [`BondGraph`], which may be part of a model with [`End::Border`](crate::graph::End::Border) where it was
+//! Input: a [`BondGraph`], which may be part of a model with [`End::Border`] where it was
 //! cut, and what is admitted. Output: every assignment that satisfies the rules, in the order in which SCAP prefers
 //! them. Counts of causal patterns, such as "two patterns at the relative bond, three at the 0-junction", come from
 //! here.

@@ -1,5 +1,8 @@
 //! A mass on a hardening spring: the smallest model, stepped at a fixed rate.
-use mbg_runtime::{System, mbg};
+
+use std::error::Error;
+
+use mbg_runtime::{Constant, Rk4, System, mbg};
 use nalgebra::SVector;
 
 mbg! {
@@ -21,17 +24,22 @@ mbg! {
     }
 }
 
-fn main() {
-    let model =
-        Oscillator::<f64>::new(OscillatorParameters::default()).expect("defaults are sound");
-    let meta = <Oscillator<f64> as System<f64, 2, 1, 1>>::META;
-    println!("{}\n{}", meta.name, meta.diagram);
-    let x: SVector<f64, 2> = System::initial_state(&model);
-    println!(
-        "{:?} {:?}",
-        x,
-        System::derivative(&model, 0.0, &x, &SVector::<f64, 1>::zeros(), &mut ())
-    );
-    println!("energy {}", System::<f64, 2, 1, 1>::energy(&model, 0.0, &x));
-    println!("{meta:#?}");
+fn main() -> Result<(), Box<dyn Error>> {
+    let model = Oscillator::new(OscillatorParameters::default())?;
+    println!("{}\n", <Oscillator as System<f64, 2, 1, 1>>::META.diagram);
+    println!("{:>6} {:>12} {:>12}", "t / s", "position / m", "energy / J");
+    let still = Constant(SVector::from([0.0]));
+    Rk4::fixed(
+        &model,
+        &still,
+        0.0,
+        1.0,
+        0.1,
+        model.initial_state(),
+        |t, x| {
+            let position = model.output(t, x, &SVector::zeros(), &mut ())[0];
+            println!("{t:>6.1} {position:>12.6} {:>12.6}", model.energy(t, x));
+        },
+    )?;
+    Ok(())
 }

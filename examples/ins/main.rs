@@ -3,7 +3,6 @@
 //!
 //! `cargo run --release --example ins -- --pulse 0.1 --step 1e-3 --method rk4 --out out/ins`
 
-mod angles;
 mod models;
 mod plots;
 mod reference;
@@ -95,7 +94,7 @@ fn print_programs() {
     line("angles under sine and cosine", |meta| {
         meta.operations.angles.to_string()
     });
-    line("storages the drawing makes dependent", |meta| {
+    line("storages drawn dependent", |meta| {
         meta.dependent.len().to_string()
     });
     println!(

@@ -87,7 +87,7 @@ pub(crate) fn draw(
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
+        .position(SeriesLabelPosition::UpperLeft)
         .border_style(BLACK.mix(0.4))
         .background_style(WHITE.mix(0.9))
         .label_font(("sans-serif", 13))

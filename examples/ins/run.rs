@@ -1,9 +1,9 @@
 //! Running one architecture and comparing it with the reference.
 
+use mbg_runtime::attitude::{euler_xyz, rotation_from_quaternion};
 use mbg_runtime::{Pulse, Rk4, Stopped, System};
 use nalgebra::{SVector, Vector3, Vector4};
 
-use crate::angles::{euler_xyz, rotation_of};
 use crate::reference::Instant;
 
 /// What is shown of one instant, in SI units.
@@ -59,7 +59,8 @@ pub(crate) fn run(
 }
 
 fn sample(time: f64, output: SVector<f64, 20>) -> Sample {
-    let attitude = |first: usize| rotation_of(&Vector4::from_fn(|row, _| output[first + row]));
+    let attitude =
+        |first: usize| rotation_from_quaternion(&Vector4::from_fn(|row, _| output[first + row]));
     let (fuselage, platform) = (attitude(9), attitude(16));
     Sample {
         time,

@@ -24,10 +24,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let components = elaborate::component_table(&source);
     for item in &source.items {
         let Item::Model(model) = item else { continue };
-        let Some(compiled) = compile(model, &components, &mut diagnostics) else { continue };
+        let Some(compiled) = compile(model, &components, &mut diagnostics) else {
+            continue;
+        };
         println!("model {}", model.name);
         println!("folded\n{}", program::dump(&compiled.program.folded));
-        println!("derivative\n{}", program::dump(&compiled.program.routines[0]));
+        println!(
+            "derivative\n{}",
+            program::dump(&compiled.program.routines[0])
+        );
         println!("conditioning {:?}\n", compiled.conditioning);
     }
     for diagnostic in diagnostics.list() {

@@ -97,9 +97,7 @@ impl Classes {
         let mut parent: Vec<usize> = (0..2 * total).collect();
         let mut live = vec![false; 2 * total];
         let mut mark = |wire: usize| {
-            for variable in 2 * first[wire]..2 * (first[wire] + network.wires[wire].dimension) {
-                live[variable] = true;
-            }
+            live[2 * first[wire]..2 * (first[wire] + network.wires[wire].dimension)].fill(true);
         };
         network.two_ports.iter().for_each(|two_port| {
             mark(two_port.input);

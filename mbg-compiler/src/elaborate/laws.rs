@@ -264,7 +264,7 @@ impl Reader<'_, '_> {
                 let energy = self.half_product(&states, &coenergy);
                 (coenergy, energy)
             }
-            "energy" => self.from_energy(value)?,
+            "energy" => self.by_energy(value)?,
             _ => {
                 let coenergy = self.by_component(value)?;
                 (
@@ -292,7 +292,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn from_energy(&mut self, value: &Expr) -> Result<(Vec<Expression>, Expression)> {
+    fn by_energy(&mut self, value: &Expr) -> Result<(Vec<Expression>, Expression)> {
         let terms = self.energy_terms(value)?;
         let energy = self.pool.sum(&terms);
         let states: Range<usize> = self.own.states.clone();

@@ -1,0 +1,16 @@
+//! The macro used for real: behaviour against references, closed forms and identities.
+
+#[path = "../examples/ins/models.rs"]
+#[allow(unreachable_pub)]
+mod ins;
+#[path = "../examples/ins/reference.rs"]
+#[allow(unreachable_pub)]
+mod reference;
+#[path = "../examples/ins/run.rs"]
+#[allow(unreachable_pub, dead_code)]
+mod run;
+
+mod models {
+    mod behaviour;
+    mod navigation;
+}

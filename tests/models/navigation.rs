@@ -1,0 +1,285 @@
+//! The inertial navigation system of the paper.
+
+use mbg_runtime::{DormandPrince, Dual, Pulse, Rk4, System};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use crate::ins::{
+    Ins, InsClassic, InsClassicObserved, InsClassicObservedParameters, InsClassicParameters,
+    InsObserved, InsObservedParameters, InsParameters,
+};
+use crate::reference::{self, Instant};
+use crate::run::{errors, run};
+
+fn proposed() -> Ins {
+    Ins::new(InsParameters::default()).unwrap()
+}
+
+fn classic() -> InsClassic {
+    InsClassic::new(InsClassicParameters::default()).unwrap()
+}
+
+/// A pseudo-random sequence in [-1, 1), the same every time.
+fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn random_state(next: &mut impl FnMut() -> f64) -> SVector<f64, 9> {
+    loop {
+        let x = SVector::from_fn(|row, _| match row {
+            0..3 => 1000.0 * next(),
+            3..6 => 10.0 * next(),
+            _ => std::f64::consts::PI * next(),
+        });
+        if f64::cos(x[7]).abs() > 0.1 {
+            return x;
+        }
+    }
+}
+
+#[test]
+fn both_architectures_meet_the_reference() {
+    for (width, reference) in [(0.1, &reference::PULSE[..]), (1.0, &reference::LONG[..])] {
+        let first = InsObserved::new(InsObservedParameters::default()).unwrap();
+        let second = InsClassicObserved::new(InsClassicObservedParameters::default()).unwrap();
+        let first = run(&first, width, 1e-3, 20.0).unwrap();
+        let second = run(&second, width, 1e-3, 20.0).unwrap();
+        for (name, error) in errors(&first, reference) {
+            assert!(error < 1e-10, "{name}: {error:e} for a gust of {width} s");
+        }
+        for (a, b) in first.iter().zip(&second) {
+            assert_eq!(a.output, b.output, "the architectures are one program");
+        }
+    }
+}
+
+#[test]
+fn the_adaptive_pair_meets_the_reference() {
+    let pair = DormandPrince::new(1e-10, 1e-14);
+    for (width, reference) in [(0.1, &reference::PULSE[..]), (1.0, &reference::LONG[..])] {
+        let model = proposed();
+        let gust = Pulse {
+            amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
+            start: 1.0,
+            end: 1.0 + width,
+        };
+        let times: Vec<f64> = reference.iter().map(|instant| instant.time).collect();
+        let mut found = Vec::new();
+        pair.sample(&model, &gust, 0.0, model.initial_state(), &times, |_, x| {
+            found.push(*x)
+        })
+        .unwrap();
+        let scale = |of: fn(&Instant) -> [f64; 3], k: usize| {
+            reference
+                .iter()
+                .map(|instant| of(instant)[k].abs())
+                .fold(0.0, f64::max)
+        };
+        for (instant, x) in reference.iter().zip(found) {
+            for k in 0..3 {
+                let error = (x[6 + k] - instant.alpha[k]).abs() / scale(|instant| instant.alpha, k);
+                assert!(error < 1e-8, "alpha {k} at {}: {error:e}", instant.time);
+            }
+        }
+    }
+}
+
+/// The equations by hand, in matrices: Newton and Euler, `α̇ = J⁻¹(C ω_p − ω_f)`, `τ = −J⁻ᵀ e`.
+fn by_hand(x: &SVector<f64, 9>, u: &SVector<f64, 3>) -> SVector<f64, 9> {
+    let part = |first: usize| Vector3::new(x[first], x[first + 1], x[first + 2]);
+    let (hull, body, alpha) = (part(0), part(3), part(6));
+    let (fuselage, platform) = (
+        hull.component_div(&Vector3::new(1e4, 1e4, 5e3)),
+        body / 10.0,
+    );
+    let turn = mbg_runtime::attitude::rotation_xyz(&alpha);
+    let ((s1, c1), (s2, c2)) = (alpha[0].sin_cos(), alpha[1].sin_cos());
+    let jacobian = Matrix3::new(1.0, 0.0, s2, 0.0, c1, -c2 * s1, 0.0, s1, c1 * c2);
+    let inverse = jacobian.try_inverse().unwrap();
+    let rate = inverse * (turn * platform - fuselage);
+    let torque = -(inverse.transpose() * (alpha * 1e-5 + rate * 1e-5));
+    let hull_rate = u - fuselage * 1e3 - torque - fuselage.cross(&hull);
+    let body_rate = turn.transpose() * torque - platform.cross(&body);
+    SVector::from_fn(|row, _| [hull_rate, body_rate, rate][row / 3][row % 3])
+}
+
+#[test]
+fn derivative_equals_an_independent_evaluation() {
+    let mut next = noise(1);
+    let (first, second) = (proposed(), classic());
+    for number in 0..10_000 {
+        let mut x = random_state(&mut next);
+        if number % 100 == 0 {
+            (x[6], x[8]) = (std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2);
+        }
+        let u = SVector::from_fn(|_, _| 100.0 * next());
+        let ours = first.derivative(0.0, &x, &u, &mut ());
+        assert_eq!(ours, second.derivative(0.0, &x, &u, &mut ()));
+        let theirs = by_hand(&x, &u);
+        for block in 0..3 {
+            let difference = (ours - theirs).fixed_rows::<3>(3 * block).amax();
+            let scale = theirs.fixed_rows::<3>(3 * block).amax().max(1e-9);
+            // The inverse of J in the comparison loses what |cos α₂| takes: up to a factor of 100.
+            assert!(
+                difference <= 1e-12 * scale.max(1.0),
+                "block {block}: {difference:e} of {scale:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_singular_set_is_the_cosine_of_the_second_angle() {
+    let mut next = noise(2);
+    for _ in 0..100 {
+        let x = random_state(&mut next);
+        let u = SVector::zeros();
+        assert_eq!(proposed().conditioning(0.0, &x, &u), [f64::cos(x[7])]);
+        assert_eq!(classic().conditioning(0.0, &x, &u), [f64::cos(x[7])]);
+    }
+    let mut locked = SVector::<f64, 9>::zeros();
+    locked[7] = std::f64::consts::FRAC_PI_2;
+    let trouble = proposed()
+        .trouble(0.0, &locked, &SVector::zeros(), &())
+        .unwrap();
+    assert_eq!(trouble.name, "cos(spring.q.y)");
+}
+
+#[test]
+fn the_program_is_small() {
+    for meta in [
+        <Ins as System<f64, 9, 3, 3>>::META,
+        <InsClassic as System<f64, 9, 3, 3>>::META,
+    ] {
+        assert!(
+            meta.operations.derivative <= 100,
+            "{}",
+            meta.operations.derivative
+        );
+        assert_eq!(meta.operations.angles, 3);
+    }
+    assert_eq!(<Ins as System<f64, 9, 3, 3>>::META.dependent.len(), 0);
+    assert_eq!(
+        <InsClassic as System<f64, 9, 3, 3>>::META.dependent,
+        ["body"]
+    );
+}
+
+#[test]
+fn jacobians_equal_dual_numbers() {
+    let mut next = noise(3);
+    let model = proposed();
+    let parameters = InsParameters {
+        drag: 1e3,
+        stiffness: 1e-5,
+        damping: 1e-5,
+    };
+    let dual = Ins::new(InsParameters {
+        drag: Dual::constant(parameters.drag),
+        stiffness: Dual::constant(parameters.stiffness),
+        damping: Dual::constant(parameters.damping),
+    })
+    .unwrap();
+    for _ in 0..100 {
+        let x = random_state(&mut next);
+        let u = SVector::<f64, 3>::from_fn(|_, _| 100.0 * next());
+        let state: SMatrix<f64, 9, 9> = model.jacobian_state(0.0, &x, &u, &mut ());
+        let input: SMatrix<f64, 9, 3> = model.jacobian_input(0.0, &x, &u, &mut ());
+        for column in 0..12 {
+            let seed = |value: f64, here: bool| {
+                if here {
+                    Dual::variable(value)
+                } else {
+                    Dual::constant(value)
+                }
+            };
+            let xs = SVector::<Dual<f64>, 9>::from_fn(|row, _| seed(x[row], row == column));
+            let us = SVector::<Dual<f64>, 3>::from_fn(|row, _| seed(u[row], row + 9 == column));
+            let slopes = dual.derivative(Dual::constant(0.0), &xs, &us, &mut ());
+            for row in 0..9 {
+                let ours = if column < 9 {
+                    state[(row, column)]
+                } else {
+                    input[(row, column - 9)]
+                };
+                let scale = slopes[row].slope.abs().max(1.0);
+                assert!(
+                    (ours - slopes[row].slope).abs() <= 1e-12 * scale,
+                    "({row}, {column})"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn no_damping_runs_and_bad_parameters_are_refused() {
+    let free = Ins::new(InsParameters {
+        damping: 0.0,
+        ..InsParameters::default()
+    })
+    .unwrap();
+    let gust = Pulse {
+        amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
+        start: 1.0,
+        end: 1.1,
+    };
+    Rk4::fixed(
+        &free,
+        &gust,
+        0.0,
+        5.0,
+        1e-2,
+        free.initial_state(),
+        |_, _| (),
+    )
+    .unwrap();
+    let error = Ins::new(InsParameters {
+        damping: f64::NAN,
+        ..InsParameters::default()
+    })
+    .unwrap_err();
+    assert_eq!(error.name, "damping");
+}
+
+/// The model with supplied and dissipated energy as two more states.
+#[test]
+fn energy_balances() {
+    let model = proposed();
+    let torque = Vector3::new(5000.0, 1000.0, 10000.0);
+    let (mut x, mut supplied, mut dissipated) = (model.initial_state(), 0.0, 0.0);
+    let h = 1e-3;
+    for step in 0..20_000 {
+        let u = if (1000..1100).contains(&step) {
+            torque
+        } else {
+            Vector3::zeros()
+        };
+        let rate = |x: &SVector<f64, 9>| {
+            let power = model.power(0.0, x, &u, &mut ());
+            (
+                model.derivative(0.0, x, &u, &mut ()),
+                power.supplied,
+                power.dissipated,
+            )
+        };
+        let k1 = rate(&x);
+        let k2 = rate(&(x + k1.0 * (h / 2.0)));
+        let k3 = rate(&(x + k2.0 * (h / 2.0)));
+        let k4 = rate(&(x + k3.0 * h));
+        let mean = |a: f64, b: f64, c: f64, d: f64| h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+        supplied += mean(k1.1, k2.1, k3.1, k4.1);
+        dissipated += mean(k1.2, k2.2, k3.2, k4.2);
+        x += (k1.0 + k2.0 * 2.0 + k3.0 * 2.0 + k4.0) * (h / 6.0);
+        let balance = model.energy(0.0, &x) - supplied + dissipated;
+        assert!(
+            balance.abs() <= 1e-12 * supplied.max(1.0),
+            "step {step}: {balance:e} of {supplied:e}"
+        );
+    }
+}

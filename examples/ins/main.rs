@@ -161,7 +161,7 @@ fn draw_figures(out: &Path, proposed: &[Sample], classic: &[Sample]) -> Result<(
     let names = ["pitch", "roll", "yaw"];
     let mut figure10 = Vec::new();
     let mut figure11 = Vec::new();
-    for axis in 0..3 {
+    for (axis, name) in names.into_iter().enumerate() {
         let curve = |name: String, samples, value: Box<dyn Fn(&Sample) -> f64>, dashed| Curve {
             name,
             samples,
@@ -169,7 +169,6 @@ fn draw_figures(out: &Path, proposed: &[Sample], classic: &[Sample]) -> Result<(
             color: axis,
             dashed,
         };
-        let name = names[axis];
         figure10.push(curve(
             format!("{name}, eq. (16), Fig. 13"),
             proposed,

@@ -70,9 +70,16 @@ fn sample(time: f64, output: SVector<f64, 20>) -> Sample {
     }
 }
 
+/// Name, value of a sample, value of the reference.
+type Quantity = (
+    &'static str,
+    fn(&Sample) -> Vec<f64>,
+    fn(&Instant) -> Vec<f64>,
+);
+
 /// Largest error of each quantity over the reference's instants, relative to the quantity's largest component value.
 pub(crate) fn errors(samples: &[Sample], reference: &[Instant]) -> Vec<(&'static str, f64)> {
-    let quantities: [(&str, fn(&Sample) -> Vec<f64>, fn(&Instant) -> Vec<f64>); 7] = [
+    let quantities: [Quantity; 7] = [
         (
             "gimbal angles",
             |s| s.output.as_slice()[0..3].to_vec(),

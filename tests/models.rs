@@ -10,6 +10,7 @@ mod reference;
 #[allow(unreachable_pub, dead_code)]
 mod run;
 
+#[allow(clippy::unwrap_used)]
 mod models {
     mod behaviour;
     mod navigation;

@@ -1,7 +1,7 @@
 //! Errors as values: collected, never thrown, and rendered at the edge.
 //!
 //! House style: the first line says what is wrong, in lower case, without a full stop, names in backticks; notes
-//! carry the causal chain; `help` says what to type. Every diagnostic has a code from [`codes`].
+//! carry the causal chain; `help` says what to type. Every diagnostic has a code from [`crate::codes`].
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;

@@ -1,4 +1,5 @@
 //! Mistakes in models: each is answered with its code, and the macro never panics.
+#![allow(clippy::unwrap_used)]
 
 use mbg_compiler::compile::compile;
 use mbg_compiler::diagnostics::Diagnostics;
@@ -76,7 +77,7 @@ fn each_mistake_has_its_code() {
         ),
         (
             "MBG0402",
-            "1 a { C c { stiffness: 1.0 } R r { effort: powi(f, 3) + f } }".to_owned(),
+            "1 a { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 } } integral x = a.f; output y = x;".to_owned(),
         ),
     ];
     for (code, body) in cases {

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
-use crate::elaborate::{self, Condition, Elaborated, StateRate};
+use crate::elaborate::{self, Condition, Elaborated, StateRate, Variable};
 use crate::equations::{self, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
-use crate::program::{self, Program, Request};
+use crate::program::{self, Program};
 use crate::structure::{self, Failure, Solution};
 use crate::symbolic::print::Printer;
 use crate::symbolic::substitute::symbols;
@@ -81,10 +81,16 @@ pub fn compile(
             return None;
         }
     };
-    let answers = Answers::of(&elaborated, &scalars, &solution, &mut pool);
-    Some(finish(
-        elaborated, &scalars, &solution, answers, pool, verdict,
-    ))
+    let answers = Answers::of(&elaborated, &scalars, &solution, &mut pool, diagnostics)?;
+    finish(
+        elaborated,
+        &scalars,
+        &solution,
+        answers,
+        pool,
+        verdict,
+        diagnostics,
+    )
 }
 
 fn report(
@@ -97,7 +103,7 @@ fn report(
     match failure {
         Failure::Singular => structure::report_singular(model, scalars, pool, diagnostics),
         Failure::Nonlinear(unknowns) => {
-            let names = listing(structure::block_names(scalars, model, &unknowns));
+            let names = listing(structure::block_names(scalars, &unknowns));
             let message = format!(
                 "{} variables depend on each other nonlinearly",
                 unknowns.len()
@@ -121,31 +127,42 @@ struct Answers {
 }
 
 impl Answers {
-    fn of(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool: &mut Pool) -> Self {
+    fn of(
+        model: &Elaborated,
+        scalars: &Scalars,
+        solution: &Solution,
+        pool: &mut Pool,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Self> {
         let mut substitution = Substitution::new();
         for (signal, value) in structure::signal_values(scalars, solution) {
             substitution.set(Symbol::Signal(signal), value);
         }
-        let mut replaced = |pool: &mut Pool, expression| {
-            substitution
-                .apply(pool, expression)
-                .unwrap_or(Expression::ZERO)
+        let mut replaced = |pool: &mut Pool, expression, variable: &Variable, span| {
+            let value = substitution.apply(pool, expression);
+            if value.is_none() {
+                let message = format!("`{}` divides by zero, whatever the state", variable.name);
+                diagnostics.error(codes::NOT_FINITE, span, message);
+            }
+            value
         };
-        let all: Vec<Expression> = model
+        let all: Vec<Option<Expression>> = model
             .states
             .iter()
             .map(|state| match state.rate {
                 StateRate::Storage(id, component) => {
-                    storage_rate(model, scalars, solution, id, component)
+                    Some(storage_rate(model, scalars, solution, id, component))
                 }
-                StateRate::Expression(rate) => replaced(pool, rate),
+                StateRate::Expression(rate) => replaced(pool, rate, &state.variable, state.span),
             })
             .collect();
-        let outputs: Vec<Expression> = model
+        let outputs: Vec<Option<Expression>> = model
             .outputs
             .iter()
-            .map(|output| replaced(pool, output.value))
+            .map(|output| replaced(pool, output.value, &output.variable, output.span))
             .collect();
+        let all: Vec<Expression> = all.into_iter().collect::<Option<_>>()?;
+        let outputs: Vec<Expression> = outputs.into_iter().collect::<Option<_>>()?;
         let states = kept(model, pool, &all, &outputs);
         let rates = states.iter().map(|state| all[*state]).collect();
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
@@ -162,14 +179,14 @@ impl Answers {
             })
             .collect();
         let energy = pool.sum(&energies);
-        Self {
+        Some(Self {
             states,
             rates,
             outputs,
             energy,
             supplied,
             dissipated,
-        }
+        })
     }
 }
 
@@ -275,7 +292,8 @@ fn finish(
     answers: Answers,
     mut pool: Pool,
     verdict: Drawn,
-) -> Compiled {
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
     let by_state: Vec<Symbol> = answers
         .states
         .iter()
@@ -295,7 +313,7 @@ fn finish(
         .map(|state| model.states[*state].initial)
         .collect();
     let (checks, checked) = checks(&model, solution, &pool);
-    let requests: Vec<Request> = [
+    let requests = [
         answers.rates,
         answers.outputs,
         jacobian_state,
@@ -305,10 +323,7 @@ fn finish(
         conditioning.clone(),
         initial,
         checked,
-    ]
-    .into_iter()
-    .map(|results| Request { results })
-    .collect();
+    ];
     let places: BTreeMap<usize, usize> = answers
         .states
         .iter()
@@ -324,12 +339,18 @@ fn finish(
                 .or_insert_with(|| scalars.names[unknown].clone());
         }
     }
-    let program = program::build(&pool, &requests, &[], &place, &names);
+    let program = program::build(&pool, &requests, &place, &names);
     let conditioning = conditioning
         .iter()
         .map(|value| text(&model, &pool, *value))
         .collect();
-    Compiled {
+    if !program.is_finite() {
+        let message = "numbers of the model multiply to one that is not finite";
+        let report = error(codes::NOT_FINITE, model.name.span(), message);
+        diagnostics.report(report.help("choose units in which the values are of moderate size"));
+        return None;
+    }
+    Some(Compiled {
         states: answers.states,
         program,
         conditioning,
@@ -338,7 +359,7 @@ fn finish(
         strokes: verdict.strokes,
         notes: verdict.notes,
         model,
-    }
+    })
 }
 
 /// An expression with the model's names.

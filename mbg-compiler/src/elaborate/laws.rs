@@ -267,10 +267,12 @@ impl Reader<'_, '_> {
             "energy" => self.by_energy(value)?,
             _ => {
                 let coenergy = self.by_component(value)?;
-                (
-                    coenergy.clone(),
-                    quadrature::energy(self.pool, &self.own.states, &coenergy),
-                )
+                let energy = quadrature::energy(self.pool, &self.own.states, &coenergy);
+                let Some(energy) = energy else {
+                    let message = format!("the law of `{}` divides by zero", self.element.name);
+                    return Err(Box::new(error(codes::NOT_FINITE, value.span(), message)));
+                };
+                (coenergy, energy)
             }
         };
         let rule = if self.element.kind == ElementKind::I {

@@ -59,6 +59,8 @@ pub struct Output {
     pub variable: Variable,
     /// What it shows.
     pub value: Expression,
+    /// Where it was written.
+    pub span: Span,
 }
 
 /// A candidate state.

@@ -12,7 +12,7 @@ mod solve;
 
 use std::collections::BTreeMap;
 
-use crate::elaborate::{Condition, Elaborated};
+use crate::elaborate::Condition;
 use crate::equations::Scalars;
 use crate::symbolic::{Expression, Pool};
 
@@ -82,7 +82,7 @@ pub fn signal_values(scalars: &Scalars, solution: &Solution) -> BTreeMap<usize, 
 
 /// Names of the elements and junctions whose variables are in a block, for people.
 #[must_use]
-pub fn block_names(scalars: &Scalars, _model: &Elaborated, unknowns: &[usize]) -> Vec<String> {
+pub fn block_names(scalars: &Scalars, unknowns: &[usize]) -> Vec<String> {
     unknowns
         .iter()
         .map(|unknown| scalars.names[*unknown].clone())

@@ -9,6 +9,7 @@ pub mod matrix;
 pub mod pool;
 pub mod print;
 pub mod substitute;
+mod walk;
 
 pub use differentiate::Differentiator;
 pub use matrix::{Factor, Matrix, Product};

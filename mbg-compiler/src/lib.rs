@@ -51,7 +51,7 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
         };
         output.extend(match &compiled {
             Some(compiled) => emit::model(compiled),
-            None => emit::shell(model),
+            None => emit::shell(model, elaborate::sizes(model, &components)),
         });
     }
     output.extend(diagnostics.to_tokens());

@@ -200,9 +200,9 @@ fn storage_rate(
 ) -> Expression {
     let port = &scalars.ports[&id];
     if model.graph.elements[id.0].kind == ElementKind::I {
-        solution.values[port.effort[component]].flipped(!port.inward)
+        solution.values[port.effort[component]].flipped(port.effort_reversed)
     } else {
-        solution.values[port.flow[component]].flipped(!port.inward)
+        solution.values[port.flow[component]].flipped(port.flow_reversed)
     }
 }
 

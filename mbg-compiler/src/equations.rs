@@ -58,6 +58,10 @@ pub struct Port {
     pub flow: Vec<usize>,
     /// Whether positive power goes into the element along the bond.
     pub inward: bool,
+    /// Whether the element's own effort is the negative of the bond's.
+    pub effort_reversed: bool,
+    /// Whether the element's own flow is the negative of the bond's.
+    pub flow_reversed: bool,
 }
 
 /// Forms the equations.
@@ -270,16 +274,12 @@ impl Former<'_> {
             }
             Law::Storage(storage) => {
                 for (component, value) in storage.coenergy.iter().enumerate() {
-                    if element.kind == ElementKind::I {
-                        let unknown = self.classes.flow(wire, component);
-                        self.add(&[(unknown, minus.flipped(reversed))], *value, owner);
+                    let unknown = if element.kind == ElementKind::I {
+                        self.classes.flow(wire, component)
                     } else {
-                        self.add(
-                            &[(self.classes.effort(wire, component), minus)],
-                            *value,
-                            owner,
-                        );
-                    }
+                        self.classes.effort(wire, component)
+                    };
+                    self.add(&[(unknown, minus)], *value, owner);
                 }
             }
             Law::Resistance(matrix) => self.linear(matrix, wire, false, reversed, owner),
@@ -378,14 +378,19 @@ impl Former<'_> {
             let flow = (0..size)
                 .map(|k| self.classes.flow(one_port.wire, k))
                 .collect();
-            (
-                one_port.element,
-                Port {
-                    effort,
-                    flow,
-                    inward: one_port.inward,
-                },
-            )
+            // An element that sends power along its bond keeps the variable that it imposes and turns the other round;
+            // a source states both along its bond.
+            let kind = self.model.graph.elements[one_port.element.0].kind;
+            let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
+            let reversed = !one_port.inward && !source;
+            let port = Port {
+                effort,
+                flow,
+                inward: one_port.inward,
+                effort_reversed: reversed && kind == ElementKind::I,
+                flow_reversed: reversed && kind != ElementKind::I,
+            };
+            (one_port.element, port)
         };
         self.network.one_ports.iter().flatten().map(port).collect()
     }
@@ -399,12 +404,8 @@ impl Former<'_> {
             Place::Port(id) => {
                 let port = &ports[&id];
                 match quantity {
-                    Quantity::Effort => (port.effort[component], false),
-                    Quantity::Flow => {
-                        let kind = self.model.graph.elements[id.0].kind;
-                        let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
-                        (port.flow[component], !port.inward && !source)
-                    }
+                    Quantity::Effort => (port.effort[component], port.effort_reversed),
+                    Quantity::Flow => (port.flow[component], port.flow_reversed),
                 }
             }
             Place::Junction(id) => {

@@ -130,3 +130,28 @@ fn ladder_solves_its_loop() {
     let rate = model.derivative(0.0, &charge, &SVector::from([]), &mut ());
     assert!(f64::abs(rate[0] - (node - 2.0)) < 1e-14);
 }
+
+mbg! {
+    /// The oscillator with every bond drawn away from its element.
+    pub(crate) model Outward {
+        1 velocity;
+        I body { inertia: 2.0, initial_flow: 0.5 } -> velocity;
+        C spring { stiffness: 50.0, initial: 0.1 } -> velocity;
+        R damper { resistance: 1.5 } -> velocity;
+        output speed = velocity.f;
+    }
+}
+
+#[test]
+fn bonds_out_of_elements_conserve_energy_too() {
+    let model = Outward::new(OutwardParameters::default()).unwrap();
+    let (x, u) = (SVector::from([1.2, -0.07]), SVector::from([]));
+    let rate = model.derivative(0.0, &x, &u, &mut ());
+    let power = model.power(0.0, &x, &u, &mut ());
+    // The common flow is that of the inertia; the spring, which sends power along its bond, is wound backwards.
+    assert_eq!(model.output(0.0, &x, &u, &mut ())[0], 0.6);
+    assert_eq!(rate[1], -0.6);
+    let change = rate[0] * x[0] / 2.0 + rate[1] * x[1] * 50.0;
+    assert!(f64::abs(change + power.dissipated) < 1e-14);
+    assert!(f64::abs(power.dissipated - 1.5 * 0.36) < 1e-15);
+}

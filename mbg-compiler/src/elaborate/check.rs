@@ -2,7 +2,7 @@
 
 use super::Builder;
 use crate::codes;
-use crate::graph::{ElementId, End, Rule};
+use crate::graph::{ElementId, End, Rule, component_name};
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
@@ -12,6 +12,7 @@ impl Builder<'_> {
         }
         self.check_bonds();
         self.check_ports();
+        self.check_junctions();
         if self.states.is_empty() {
             let span = proc_macro2::Span::call_site();
             let message =
@@ -58,6 +59,36 @@ impl Builder<'_> {
                 (rows, columns)
             }
             _ => (0, 0),
+        }
+    }
+
+    /// A component of a junction without a bond has neither effort nor flow.
+    fn check_junctions(&mut self) {
+        let mut bonded: Vec<Vec<bool>> = self
+            .graph
+            .junctions
+            .iter()
+            .map(|junction| vec![false; junction.dimension])
+            .collect();
+        for bond in &self.graph.bonds {
+            for end in [&bond.from, &bond.to] {
+                if let End::Junction(id, range) = end {
+                    bonded[id.0][range.clone()].fill(true);
+                }
+            }
+        }
+        for (junction, bonded) in self.graph.junctions.iter().zip(bonded) {
+            if let Some(component) = bonded.iter().position(|bonded| !bonded) {
+                let name = if junction.dimension == 1 {
+                    junction.name.clone()
+                } else {
+                    let component = component_name(component, junction.dimension);
+                    format!("{}.{component}", junction.name)
+                };
+                let span = self.graph.origins.span(junction.origin);
+                let message = format!("`{name}` has no bond");
+                self.diagnostics.error(codes::UNCONNECTED, span, message);
+            }
         }
     }
 

@@ -34,19 +34,19 @@ pub fn report_singular(
             .map(|(unknown, c)| (*unknown, pool.image(*c).0[0]))
             .collect();
         let causes = match equation.owner {
-            Owner::Element(id) if is_cause(model, id) => BTreeSet::from([id]),
+            Owner::Element(id, _) if is_cause(model, id) => BTreeSet::from([id]),
             _ => BTreeSet::new(),
         };
         if let Some(causes) = echelon.reduce(terms, causes) {
             match equation.owner {
-                Owner::Element(id) => {
+                Owner::Element(id, _) => {
                     let entry = lost.entry(id).or_default();
                     entry.0 += 1;
                     entry
                         .1
                         .extend(causes.into_iter().filter(|cause| *cause != id));
                 }
-                Owner::Structure => structure = true,
+                Owner::Structure | Owner::Coordinate(..) => structure = true,
             }
         }
     }
@@ -68,8 +68,8 @@ fn is_cause(model: &Elaborated, id: ElementId) -> bool {
 
 fn priority(model: &Elaborated, owner: Owner) -> usize {
     match owner {
-        Owner::Structure => 0,
-        Owner::Element(id) => {
+        Owner::Structure | Owner::Coordinate(..) => 0,
+        Owner::Element(id, _) => {
             let element = &model.graph.elements[id.0];
             match element.law {
                 Law::Storage(_) => 2 + usize::from(element.derivative),

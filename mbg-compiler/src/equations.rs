@@ -37,6 +37,8 @@ pub struct Equation {
     pub owner: Owner,
     /// The unknowns that it is about: effort and flow of a wire, or twice the common variable of a junction.
     pub about: [usize; 2],
+    /// In a reduced system, its place in the order of elimination.
+    pub level: Option<usize>,
 }
 
 /// The scalar equations of a model.
@@ -57,6 +59,34 @@ pub struct Scalars {
     pub coordinates: Vec<(JunctionId, usize, usize)>,
     /// For unknowns of a reduced system: the place of each in the order of elimination.
     pub levels: Vec<Option<usize>>,
+    /// The independent rate of each level of a reduced system.
+    pub independent: BTreeMap<usize, Independent>,
+}
+
+/// An independent rate of a reduced system.
+#[derive(Clone, Debug)]
+pub struct Independent {
+    /// The unknown.
+    pub unknown: usize,
+    /// Why what is divided by for its sake is positive.
+    pub inertia: Inertia,
+}
+
+/// What moves with an independent rate while all lower levels are held.
+#[derive(Clone, Debug)]
+pub enum Inertia {
+    /// Nothing is known.
+    Unknown,
+    /// A storage with a positive definite law, of which it is the rate.
+    Own,
+    /// Storages with positive definite laws, each by its co-energy variables, as far as these move with the state
+    /// given.
+    Moved {
+        /// The coordinate.
+        state: usize,
+        /// Co-energy variables of each storage.
+        storages: Vec<Vec<usize>>,
+    },
 }
 
 /// Efforts and flows at a one-port.
@@ -214,6 +244,7 @@ impl Former<'_> {
             signals: Vec::new(),
             owner,
             about,
+            level: None,
         });
     }
 
@@ -414,6 +445,7 @@ impl Former<'_> {
             pairs,
             coordinates,
             levels: vec![None; self.classes.count],
+            independent: BTreeMap::new(),
         }
     }
 

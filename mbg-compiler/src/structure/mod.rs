@@ -6,8 +6,11 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
-mod dependence;
+mod eliminate;
+mod levels;
 pub mod matching;
+mod reduction;
+mod selection;
 mod solve;
 
 use std::collections::BTreeMap;
@@ -16,7 +19,8 @@ use crate::elaborate::Condition;
 use crate::equations::Scalars;
 use crate::symbolic::{Expression, Pool};
 
-pub use dependence::report_singular;
+pub use reduction::{Reduction, reduce};
+pub use selection::{Lost, Selection, select};
 
 /// Unknowns as expressions.
 pub struct Solution {

@@ -130,8 +130,9 @@ fn print_programs() {
         meta.dependent.len().to_string()
     });
     println!(
-        "singular where                    {} = 0",
-        proposed.conditioning.join(" or ")
+        "{:<24}{:>34}",
+        "singular where",
+        format!("{} = 0", proposed.conditioning.join(" or "))
     );
 }
 

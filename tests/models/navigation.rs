@@ -126,7 +126,7 @@ fn the_singular_set_is_the_cosine_of_the_second_angle() {
     let trouble = proposed()
         .trouble(0.0, &locked, &SVector::zeros(), &())
         .unwrap();
-    assert_eq!(trouble.name, "cos(spring.q.y)");
+    assert_eq!(trouble.name, "cos(gimbals.spring.q.y)");
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn the_program_is_small() {
     assert_eq!(<Ins as System<f64, 9, 3, 3>>::META.dependent.len(), 0);
     assert_eq!(
         <InsClassic as System<f64, 9, 3, 3>>::META.dependent,
-        ["body"]
+        ["bodies.body"]
     );
 }
 

@@ -6,12 +6,10 @@
 use mbg_runtime::{Pulse, Rk4, System};
 use nalgebra::SVector;
 
-mod model {
-    //! The model of the INS.
-    #![allow(missing_docs)]
-    include!("ins.rs");
-}
-use model::{Ins, InsParameters};
+#[path = "../../../examples/ins/models.rs"]
+#[allow(dead_code)]
+mod models;
+use models::{Ins, InsParameters};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {

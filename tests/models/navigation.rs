@@ -1,6 +1,6 @@
 //! The inertial navigation system of the paper.
 
-use mbg_runtime::{Dual, Rk4, System};
+use mbg_runtime::{Dual, System};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::ins::{
@@ -8,7 +8,7 @@ use crate::ins::{
     InsObserved, InsObservedParameters, InsParameters,
 };
 use crate::reference;
-use crate::run::{Method, errors, gust, run};
+use crate::run::{Method, errors, run};
 
 fn proposed() -> Ins {
     Ins::new(InsParameters::default()).unwrap()
@@ -193,67 +193,5 @@ fn jacobians_equal_dual_numbers() {
                 );
             }
         }
-    }
-}
-
-#[test]
-fn no_damping_runs_and_bad_parameters_are_refused() {
-    let free = Ins::new(InsParameters {
-        damping: 0.0,
-        ..InsParameters::default()
-    })
-    .unwrap();
-    Rk4::fixed(
-        &free,
-        &gust(0.1),
-        0.0,
-        5.0,
-        1e-2,
-        free.initial_state(),
-        |_, _| (),
-    )
-    .unwrap();
-    let error = Ins::new(InsParameters {
-        damping: f64::NAN,
-        ..InsParameters::default()
-    })
-    .unwrap_err();
-    assert_eq!(error.name, "damping");
-}
-
-/// The model with supplied and dissipated energy as two more states.
-#[test]
-fn energy_balances() {
-    let model = proposed();
-    let torque = Vector3::new(5000.0, 1000.0, 10000.0);
-    let (mut x, mut supplied, mut dissipated) = (model.initial_state(), 0.0, 0.0);
-    let h = 1e-3;
-    for step in 0..20_000 {
-        let u = if (1000..1100).contains(&step) {
-            torque
-        } else {
-            Vector3::zeros()
-        };
-        let rate = |x: &SVector<f64, 9>| {
-            let power = model.power(0.0, x, &u, &mut ());
-            (
-                model.derivative(0.0, x, &u, &mut ()),
-                power.supplied,
-                power.dissipated,
-            )
-        };
-        let k1 = rate(&x);
-        let k2 = rate(&(x + k1.0 * (h / 2.0)));
-        let k3 = rate(&(x + k2.0 * (h / 2.0)));
-        let k4 = rate(&(x + k3.0 * h));
-        let mean = |a: f64, b: f64, c: f64, d: f64| h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-        supplied += mean(k1.1, k2.1, k3.1, k4.1);
-        dissipated += mean(k1.2, k2.2, k3.2, k4.2);
-        x += (k1.0 + k2.0 * 2.0 + k3.0 * 2.0 + k4.0) * (h / 6.0);
-        let balance = model.energy(0.0, &x) - supplied + dissipated;
-        assert!(
-            balance.abs() <= 1e-12 * supplied.max(1.0),
-            "step {step}: {balance:e} of {supplied:e}"
-        );
     }
 }

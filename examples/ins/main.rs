@@ -16,9 +16,9 @@ use std::process::ExitCode;
 use mbg_runtime::{Meta, System};
 use models::{
     Ins, InsClassic, InsClassicObserved, InsClassicObservedParameters, InsObserved,
-    InsObservedParameters,
+    InsObservedParameters, gust,
 };
-use plots::Curve;
+use plots::{Curve, Style};
 use run::{Method, Sample, errors};
 
 const HELP: &str = "\
@@ -99,8 +99,9 @@ fn simulate() -> Result<(), Box<dyn Error>> {
     let options = options()?;
     let proposed = InsObserved::new(InsObservedParameters::default())?;
     let classic = InsClassicObserved::new(InsClassicObservedParameters::default())?;
-    let proposed = run::run(&proposed, options.method, options.pulse, options.step, 20.0)?;
-    let classic = run::run(&classic, options.method, options.pulse, options.step, 20.0)?;
+    let wind = gust(options.pulse);
+    let proposed = run::run(&proposed, options.method, &wind, options.step, 20.0)?;
+    let classic = run::run(&classic, options.method, &wind, options.step, 20.0)?;
     print_programs();
     print_errors(&options, &proposed, &classic);
     std::fs::create_dir_all(&options.out)?;
@@ -196,48 +197,33 @@ fn draw_figures(out: &Path, proposed: &[Sample], classic: &[Sample]) -> Result<(
     let mut figure10 = Vec::new();
     let mut figure11 = Vec::new();
     for (axis, name) in names.into_iter().enumerate() {
-        let curve = |name: String, samples, value: Box<dyn Fn(&Sample) -> f64>, dashed| Curve {
+        let curve = |name: String, samples, value: Box<dyn Fn(&Sample) -> f64>, style| Curve {
             name,
             samples,
             value,
             color: axis,
-            dashed,
+            style,
         };
-        figure10.push(curve(
-            format!("{name}, eq. (16), Fig. 13"),
-            proposed,
-            Box::new(move |s| s.output[13 + axis]),
-            false,
-        ));
-        figure10.push(curve(
-            format!("{name}, eq. (16), Fig. 12"),
-            classic,
-            Box::new(move |s| s.output[13 + axis]),
-            false,
-        ));
+        for (figure, samples, style) in [
+            ("Fig. 13", proposed, Style::Line),
+            ("Fig. 12", classic, Style::Rings),
+        ] {
+            let estimate = Box::new(move |s: &Sample| s.output[13 + axis]);
+            figure10.push(curve(format!("{name}, {figure}"), samples, estimate, style));
+            let deviation = Box::new(move |s: &Sample| s.beta[axis]);
+            let label = format!("β{}, {figure}", ["₁", "₂", "₃"][axis]);
+            figure11.push(curve(label, samples, deviation, style));
+        }
         figure10.push(curve(
             format!("{name}, Euler angle"),
             proposed,
             Box::new(move |s| s.euler[axis]),
-            true,
-        ));
-        let label = format!("beta {}", axis + 1);
-        figure11.push(curve(
-            format!("{label}, Fig. 13"),
-            proposed,
-            Box::new(move |s| s.beta[axis]),
-            false,
-        ));
-        figure11.push(curve(
-            format!("{label}, Fig. 12"),
-            classic,
-            Box::new(move |s| s.beta[axis]),
-            true,
+            Style::Dashes,
         ));
     }
     plots::draw(
         &out.join("figure10.svg"),
-        "Rotorcraft orientation, both architectures",
+        "Rotorcraft orientation by eq. (16), both architectures",
         "angle in rad",
         1.0,
         &figure10,

@@ -1,6 +1,16 @@
 //! The inertial navigation system of Tod et al. (2013) in both architectures.
 
-use mbg_runtime::mbg;
+use mbg_runtime::{Pulse, mbg};
+use nalgebra::Vector3;
+
+/// The gust of the paper's Table I on [1, 1 + width) s.
+pub(crate) fn gust(width: f64) -> Pulse<f64, 3> {
+    Pulse {
+        amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
+        start: 1.0,
+        end: 1.0 + width,
+    }
+}
 
 mbg! {
     /// Fuselage in the wind, and the platform that is to stay where it is. Rates in own axes.

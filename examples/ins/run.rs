@@ -1,7 +1,7 @@
 //! Running one architecture and comparing it with the reference.
 
 use mbg_runtime::attitude::{euler_xyz, rotation_from_quaternion};
-use mbg_runtime::{DormandPrince, Pulse, Rk4, Stopped, System};
+use mbg_runtime::{DormandPrince, Input, Rk4, Stopped, System};
 use nalgebra::{SVector, Vector3, Vector4};
 
 use crate::reference::Instant;
@@ -20,15 +20,6 @@ pub(crate) struct Sample {
     pub beta: Vector3<f64>,
 }
 
-/// The gust of the paper's Table I on [1, 1 + width) s.
-pub(crate) fn gust(width: f64) -> Pulse<f64, 3> {
-    Pulse {
-        amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
-        start: 1.0,
-        end: 1.0 + width,
-    }
-}
-
 /// How to integrate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Method {
@@ -45,7 +36,7 @@ pub(crate) enum Method {
 pub(crate) fn run(
     model: &impl System<f64, 20, 3, 20>,
     method: Method,
-    width: f64,
+    wind: &impl Input<f64, 3>,
     step: f64,
     end: f64,
 ) -> Result<Vec<Sample>, Stopped> {
@@ -55,9 +46,9 @@ pub(crate) fn run(
         let output = model.output(t, x, &still, &mut Default::default());
         samples.push(sample(t, output));
     };
-    let (gust, start) = (gust(width), model.initial_state());
+    let start = model.initial_state();
     match method {
-        Method::Rk4 => Rk4::fixed(model, &gust, 0.0, end, step, start, observer)?,
+        Method::Rk4 => Rk4::fixed(model, wind, 0.0, end, step, start, observer)?,
         Method::DormandPrince(tolerance) => {
             // The platform turns by less than a millionth of what the fuselage does.
             let pair = DormandPrince::new(tolerance, tolerance * 1e-6);
@@ -66,7 +57,7 @@ pub(crate) fn run(
                 .take_while(|time| *time < end - 1e-9)
                 .chain([end])
                 .collect();
-            pair.sample(model, &gust, 0.0, start, &times, observer)?
+            pair.sample(model, wind, 0.0, start, &times, observer)?
         }
     };
     Ok(samples)

@@ -5,8 +5,7 @@ use nalgebra::SVector;
 
 use super::behaviour::{Ladder, LadderParameters, Oscillator, OscillatorParameters};
 use crate::dc_motor::{Motor, MotorParameters, brake};
-use crate::ins::{Ins, InsParameters};
-use crate::run::gust;
+use crate::ins::{Ins, InsParameters, gust};
 
 /// Runs RK4 with the energies supplied and dissipated as two more states; the input is constant in each step.
 /// Gives the largest imbalance as a part of the energy supplied.

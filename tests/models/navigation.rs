@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::ins::{
     Ins, InsClassic, InsClassicObserved, InsClassicObservedParameters, InsClassicParameters,
-    InsObserved, InsObservedParameters, InsParameters,
+    InsObserved, InsObservedParameters, InsParameters, gust,
 };
 use crate::reference;
 use crate::run::{Method, errors, run};
@@ -47,8 +47,8 @@ fn meet_the_reference(method: Method, step: f64, bound: f64) {
     let first = InsObserved::new(InsObservedParameters::default()).unwrap();
     let second = InsClassicObserved::new(InsClassicObservedParameters::default()).unwrap();
     for (width, reference) in [(0.1, &reference::PULSE[..]), (1.0, &reference::LONG[..])] {
-        let first = run(&first, method, width, step, 20.0).unwrap();
-        let second = run(&second, method, width, step, 20.0).unwrap();
+        let first = run(&first, method, &gust(width), step, 20.0).unwrap();
+        let second = run(&second, method, &gust(width), step, 20.0).unwrap();
         for (name, error) in errors(&first, reference) {
             assert!(error < bound, "{name}: {error:e} for a gust of {width} s");
         }

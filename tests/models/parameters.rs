@@ -3,8 +3,7 @@
 use mbg_runtime::{ParameterError, Rk4, System, mbg};
 
 use super::behaviour::{Ladder, LadderParameters, Oscillator, OscillatorParameters};
-use crate::ins::{Ins, InsClassic, InsClassicParameters, InsParameters};
-use crate::run::gust;
+use crate::ins::{Ins, InsClassic, InsClassicParameters, InsParameters, gust};
 
 mbg! {
     /// Resistors that must take the effort, or the flow, whatever their law is given as.

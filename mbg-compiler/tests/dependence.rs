@@ -38,6 +38,8 @@ struct Storage {
     rate: usize,
     /// What is fixed, over the state.
     factor: f64,
+    /// Of the state's rate, over the bond's variable.
+    sign: f64,
 }
 
 const fn effort(bond: usize) -> usize {
@@ -96,45 +98,49 @@ impl Graph {
         }
     }
 
-    fn port(&mut self, number: usize, at: usize, kind: usize, modulus: i64) {
-        let source = kind >= 5;
-        let bond = if source {
-            self.bond(None, Some(at))
+    /// A one-port whose bond leads away from the junction, or towards it.
+    fn port(&mut self, number: usize, at: usize, kind: usize, modulus: i64, outward: bool) {
+        let (bond, sign) = if outward {
+            (self.bond(None, Some(at)), -1)
         } else {
-            self.bond(Some(at), None)
+            (self.bond(Some(at), None), 1)
         };
-        let line = match kind {
+        let (e, f) = (effort(bond), flow(bond));
+        // Power into an element is the product of an effort and a flow, one of which turns with the bond.
+        let storage = |fixed, rate, factor| Storage {
+            fixed,
+            rate,
+            factor,
+            sign: f64::from(sign),
+        };
+        let element = match kind {
             0 | 1 => {
-                self.storages.push(Storage {
-                    fixed: flow(bond),
-                    rate: effort(bond),
-                    factor: 1.0 / modulus as f64,
-                });
-                format!("j{at} -> I p{number} {{ inertia: {modulus}.0 }};")
+                self.storages.push(storage(f, e, 1.0 / modulus as f64));
+                format!("I p{number} {{ inertia: {modulus}.0 }}")
             }
             2 | 3 => {
-                self.storages.push(Storage {
-                    fixed: effort(bond),
-                    rate: flow(bond),
-                    factor: modulus as f64,
-                });
-                format!("j{at} -> C p{number} {{ stiffness: {modulus}.0 }};")
+                self.storages.push(storage(e, f, modulus as f64));
+                format!("C p{number} {{ stiffness: {modulus}.0 }}")
             }
             4 => {
                 self.laws
-                    .push(vec![(effort(bond), 1), (flow(bond), -modulus)]);
-                format!("j{at} -> R p{number} {{ resistance: {modulus}.0 }};")
+                    .push(vec![(e, 1), (f, -modulus * i64::from(sign))]);
+                format!("R p{number} {{ resistance: {modulus}.0 }}")
             }
             5 => {
-                self.sources.push((effort(bond), modulus));
-                format!("Se p{number} {{ effort: {modulus}.0 }} -> j{at};")
+                self.sources.push((e, modulus));
+                format!("Se p{number} {{ effort: {modulus}.0 }}")
             }
             _ => {
-                self.sources.push((flow(bond), modulus));
-                format!("Sf p{number} {{ flow: {modulus}.0 }} -> j{at};")
+                self.sources.push((f, modulus));
+                format!("Sf p{number} {{ flow: {modulus}.0 }}")
             }
         };
-        self.write(&line);
+        self.write(&if outward {
+            format!("{element} -> j{at};")
+        } else {
+            format!("j{at} -> {element};")
+        });
     }
 
     /// Junctions, two-ports and resistors.
@@ -241,8 +247,10 @@ impl Graph {
             }
         }
         let solution = |unknown: usize| matrix[unknown][unknowns] / matrix[unknown][unknown];
-        let rates = self.storages.iter().map(|storage| solution(storage.rate));
-        rates.collect()
+        self.storages
+            .iter()
+            .map(|storage| storage.sign * solution(storage.rate))
+            .collect()
     }
 
     /// The program, or the mistakes.
@@ -279,8 +287,8 @@ fn graph() -> impl Strategy<Value = Graph> {
     let junctions = prop::collection::vec(any::<bool>(), 2..6);
     let links = prop::collection::vec((0..6_usize, 1..6_usize, 0..4_usize, 1..4_i64), 0..3);
     let tree = prop::collection::vec((0..6_usize, 0..4_usize, 1..4_i64), 5);
-    let ports = prop::collection::vec((0..6_usize, 0..7_usize, 1..4_i64), 1..7);
-    let storage = (0..6_usize, 0..4_usize, 1..4_i64);
+    let ports = prop::collection::vec((0..6_usize, 0..7_usize, 1..4_i64, any::<bool>()), 1..7);
+    let storage = (0..6_usize, 0..4_usize, 1..4_i64, any::<bool>());
     (junctions, tree, links, storage, ports).prop_map(|(junctions, tree, links, storage, ports)| {
         let mut graph = Graph::default();
         let count = junctions.len();
@@ -292,8 +300,10 @@ fn graph() -> impl Strategy<Value = Graph> {
             let (from, step) = (from % count, 1 + step % (count - 1));
             graph.link(count + number, from, (from + step) % count, kind, modulus);
         }
-        for (number, (at, kind, modulus)) in std::iter::once(storage).chain(ports).enumerate() {
-            graph.port(number, at % count, kind, modulus);
+        for (number, (at, kind, modulus, outward)) in
+            std::iter::once(storage).chain(ports).enumerate()
+        {
+            graph.port(number, at % count, kind, modulus, outward);
         }
         graph
     })

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use crate::elaborate::{Elaborated, Place, Quantity};
 use crate::graph::{ElementId, ElementKind, JunctionId, JunctionKind, Law};
-use crate::network::{Network, OnePort};
+use crate::network::{Network, OnePort, Wire};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Symbol};
 
@@ -39,6 +39,8 @@ pub struct Equation {
     pub about: [usize; 2],
     /// In a reduced system, its place in the order of elimination.
     pub level: Option<usize>,
+    /// In a reduced system, the rate that it gives, if it gives one.
+    pub rate: Option<usize>,
 }
 
 /// The scalar equations of a model.
@@ -53,8 +55,8 @@ pub struct Scalars {
     pub ports: BTreeMap<ElementId, Port>,
     /// Readable name of each unknown.
     pub names: Vec<String>,
-    /// Effort and flow of every component of every wire.
-    pub pairs: Vec<[usize; 2]>,
+    /// Effort and flow of every component of every wire, wire by wire.
+    pub wires: Vec<Vec<[usize; 2]>>,
     /// Flows of the junctions marked `coordinate`, by component.
     pub coordinates: Vec<(JunctionId, usize, usize)>,
     /// For unknowns of a reduced system: the place of each in the order of elimination.
@@ -245,6 +247,7 @@ impl Former<'_> {
             owner,
             about,
             level: None,
+            rate: None,
         });
     }
 
@@ -431,18 +434,20 @@ impl Former<'_> {
         let names = self.names(&ports);
         let coordinates = self.coordinates(&ports);
         let live = |pair: &[usize; 2]| pair.iter().all(|class| *class != usize::MAX);
-        let pairs = (0..self.network.wires.len())
-            .flat_map(|wire| (0..self.network.wires[wire].dimension).map(move |k| (wire, k)))
-            .map(|(wire, component)| self.classes.pair(wire, component))
-            .filter(live)
-            .collect();
+        let wire = |(wire, entry): (usize, &Wire)| -> Vec<[usize; 2]> {
+            (0..entry.dimension)
+                .map(|component| self.classes.pair(wire, component))
+                .filter(live)
+                .collect()
+        };
+        let wires = self.network.wires.iter().enumerate().map(wire).collect();
         Scalars {
             unknowns: self.classes.count,
             equations,
             signals,
             ports,
             names,
-            pairs,
+            wires,
             coordinates,
             levels: vec![None; self.classes.count],
             independent: BTreeMap::new(),

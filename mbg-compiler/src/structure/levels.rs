@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::blocks;
-use crate::equations::Scalars;
+use crate::equations::{Owner, Scalars};
 
 /// The level of every unknown; none for those that belong to the base.
 #[must_use]
@@ -17,24 +17,35 @@ pub(super) fn assign(
     scalars: &Scalars,
     matched: &BTreeMap<usize, usize>,
     rate_of: &BTreeMap<usize, usize>,
+    is_state: &dyn Fn(Owner) -> bool,
 ) -> Vec<Option<usize>> {
-    let dependence = Dependence::of(scalars, matched, rate_of);
+    let dependence = Dependence::of(scalars, matched, rate_of, is_state);
     let mut levels = vec![None; scalars.unknowns];
     for (unknown, rate) in rate_of {
         levels[*rate] = dependence.level(*unknown);
     }
-    for pair in &scalars.pairs {
-        for [own, other] in [*pair, [pair[1], pair[0]]] {
-            if rate_of.contains_key(&other) && !rate_of.contains_key(&own) {
-                let level = dependence.level(other);
-                levels[own] = match (levels[own], level) {
-                    (Some(a), Some(b)) => Some(a.min(b)),
-                    (a, b) => a.or(b),
-                };
+    // The components of a vector stay together, so that no more of a frame is left than it has.
+    for wire in &scalars.wires {
+        for side in [0, 1] {
+            let rates = wire.iter().filter_map(|pair| rate_of.get(&pair[side]));
+            let level = rates.clone().filter_map(|rate| levels[*rate]).min();
+            let Some(level) = level else { continue };
+            for rate in rates {
+                lower(&mut levels[*rate], level);
+            }
+            for pair in wire
+                .iter()
+                .filter(|pair| !rate_of.contains_key(&pair[1 - side]))
+            {
+                lower(&mut levels[pair[1 - side]], level);
             }
         }
     }
     levels
+}
+
+fn lower(level: &mut Option<usize>, to: usize) {
+    *level = Some(level.map_or(to, |level| level.min(to)));
 }
 
 /// Which independent rates each unknown's rate depends on, as sets of bits.
@@ -49,6 +60,7 @@ impl Dependence {
         scalars: &Scalars,
         matched: &BTreeMap<usize, usize>,
         rate_of: &BTreeMap<usize, usize>,
+        is_state: &dyn Fn(Owner) -> bool,
     ) -> Self {
         let unknowns: Vec<usize> = rate_of.keys().copied().collect();
         let place: BTreeMap<usize, usize> =
@@ -70,8 +82,8 @@ impl Dependence {
                     join(&mut set, &sets[*other]);
                 }
             }
-            // What follows from nothing else is independent, or constant, which does no harm.
-            if incidence[block[0]] == [block[0]] {
+            let equation = &scalars.equations[matched[&unknowns[block[0]]]];
+            if is_state(equation.owner) {
                 insert(&mut set, independent);
                 independent += 1;
             }

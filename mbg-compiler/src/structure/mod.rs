@@ -57,7 +57,7 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         .map(|equation| equation.terms.keys().copied().collect())
         .collect();
     let matching = matching::perfect(&incidence, scalars.unknowns).ok_or(Failure::Singular)?;
-    let all: Vec<Vec<usize>> = scalars
+    let mut all: Vec<Vec<usize>> = scalars
         .equations
         .iter()
         .map(|equation| {
@@ -69,6 +69,13 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
                 .collect()
         })
         .collect();
+    // What a reduced system eliminates level by level is one block, whatever could be split off.
+    let levelled: Vec<usize> = (0..all.len())
+        .filter(|row| scalars.levels[matching[*row]].is_some())
+        .collect();
+    for (row, next) in levelled.iter().zip(levelled.iter().cycle().skip(1)) {
+        all[*row].push(matching[*next]);
+    }
     let order = blocks::ordered(&all, &matching);
     solve::blocks(scalars, &matching, &order, pool)
 }

@@ -57,11 +57,11 @@ pub fn reduce(
         reducer.differentiate(model, *unknown, matched[unknown], diagnostics);
     }
     reducer.dynamics(model, &selection.lost, &inverses, diagnostics);
-    reducer.state_rates(model);
     if diagnostics.list().len() > before {
         return None;
     }
     reducer.order(model, &matched, &selection.lost, &inverses);
+    reducer.state_rates(model);
     Some(Reduction {
         scalars: reducer.scalars,
         momenta: reducer.momenta,
@@ -251,6 +251,7 @@ impl Reducer<'_> {
                 owner: Owner::Coordinate(*id, *component),
                 about: [*flow; 2],
                 level: None,
+                rate: None,
             });
         }
     }
@@ -354,22 +355,21 @@ impl Reducer<'_> {
         if let Owner::Coordinate(..) = equation.owner {
             return;
         }
-        let mut sum = Linear::default();
+        let mut left = equation.constant;
         for (term, coefficient) in &equation.terms {
-            sum.add(self.pool, self.rate_of[term], *coefficient);
-            let change = self.total(model, *coefficient);
             let own = self.signal(*term);
-            sum.add_scaled(self.pool, &change, own);
+            let product = self.pool.multiply(*coefficient, own);
+            left = self.pool.add(left, product);
         }
-        let change = self.total(model, equation.constant);
-        sum.add_scaled(self.pool, &change, Expression::ONE);
+        let sum = self.total(model, left);
         if let Some(input) = sum.input {
             report_input(model, equation.owner, input, diagnostics);
         }
-        self.push(sum, equation.owner, [unknown; 2]);
+        let rate = self.rate_of.get(&unknown).copied();
+        self.push(sum, equation.owner, [unknown; 2], rate);
     }
 
-    fn push(&mut self, sum: Linear, owner: Owner, about: [usize; 2]) {
+    fn push(&mut self, sum: Linear, owner: Owner, about: [usize; 2], rate: Option<usize>) {
         let mut equation = Equation {
             terms: sum.terms,
             constant: sum.constant,
@@ -377,6 +377,7 @@ impl Reducer<'_> {
             owner,
             about,
             level: None,
+            rate,
         };
         equation.terms.retain(|_, c| *c != Expression::ZERO);
         linearise(self.pool, &mut equation, &self.scalars.signals);
@@ -471,7 +472,7 @@ impl Reducer<'_> {
             }
             let port = &self.scalars.ports[&lost.element];
             let about = [port.effort[lost.component], port.flow[lost.component]];
-            self.push(sum, owner, about);
+            self.push(sum, owner, about, None);
         }
     }
 
@@ -483,7 +484,14 @@ impl Reducer<'_> {
         lost: &[Lost],
         inverses: &BTreeMap<ElementId, Inverse>,
     ) {
-        let levels = levels::assign(&self.scalars, matched, &self.rate_of);
+        let is_state = |owner| match owner {
+            Owner::Coordinate(..) => true,
+            Owner::Element(id, _) => {
+                matches!(model.graph.elements[id.0].law, Law::Storage(_))
+            }
+            Owner::Structure => false,
+        };
+        let levels = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
         for equation in &mut self.scalars.equations {
             let rate = equation
                 .about

@@ -120,6 +120,7 @@ fn coordinate_row((junction, component, flow): (JunctionId, usize, usize)) -> Eq
         owner: Owner::Coordinate(junction, component),
         about: [flow; 2],
         level: None,
+        rate: None,
     }
 }
 

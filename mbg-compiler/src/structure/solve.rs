@@ -144,6 +144,7 @@ impl Solver<'_> {
             rows.push(coefficients);
             right.push(rest.negated());
         }
+        let rates: BTreeSet<usize> = scalars.equations.iter().filter_map(|e| e.rate).collect();
         let mut system = System::new(rows, right);
         let mut levels: BTreeMap<usize, (BTreeSet<usize>, BTreeSet<usize>)> = BTreeMap::new();
         for (row, equation) in equations.iter().enumerate() {
@@ -161,8 +162,34 @@ impl Solver<'_> {
             let rate = scalars.independent.get(&level).map(|rate| rate.unknown);
             let rate = rate.and_then(|unknown| place.get(&unknown).copied());
             let held = rate.filter(|rate| columns.remove(rate));
-            let (rows, mut columns) = system.eliminate_constants(self.pool, rows, columns)?;
+            // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
+            let rate_of_row = |row: usize| scalars.equations[equations[row]].rate;
+            let admitted = |row: usize, column: usize| match rate_of_row(row) {
+                Some(rate) => rate == unknowns[column],
+                None => !rates.contains(&unknowns[column]),
+            };
+            let (rows, mut columns) =
+                system.eliminate_constants(self.pool, rows, columns, &admitted)?;
             columns.extend(held);
+                eprintln!(
+                    "level {level} block {} leftover {} {} held {:?} open {} fill {:?} cols {:?}",
+                    unknowns.len(),
+                    rows.len(),
+                    columns.len(),
+                    held.map(|h| scalars.names[unknowns[h]].clone()),
+                    system.open_rows.len(),
+                    rows.iter()
+                        .map(|r| system.rows[*r]
+                            .keys()
+                            .map(|k| scalars.names[unknowns[*k]].clone())
+                            .collect::<Vec<_>>())
+                        .collect::<Vec<_>>(),
+                    columns
+                        .iter()
+                        .map(|c| &scalars.names[unknowns[*c]])
+                        .collect::<Vec<_>>()
+                );
+            }
             if let (Some(row), Some(column), 1, 1) =
                 (rows.first(), columns.first(), rows.len(), columns.len())
                 && system.entry(*row, *column) != Expression::ZERO

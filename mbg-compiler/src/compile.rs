@@ -342,7 +342,7 @@ fn finish(
 }
 
 /// An expression with the model's names.
-fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
+pub(crate) fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
     let name = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => model.parameters[index].name.to_string(),
         Symbol::State(index) => model.states[index].variable.name.clone(),

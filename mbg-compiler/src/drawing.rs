@@ -6,7 +6,7 @@
 
 use crate::causality::{report, uniform};
 use crate::diagnostics::Diagnostics;
-use crate::graph::{BondGraph, BondId, Causality};
+use crate::graph::{Bond, BondGraph, BondId, Causality};
 
 /// What the drawing says.
 pub struct Drawn {
@@ -59,4 +59,23 @@ pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> 
         dependent: verdict.dependent.iter().map(name).collect(),
         notes,
     })
+}
+
+/// One bond a line: half arrow, dimension, and a bar at the end that receives the effort.
+#[must_use]
+pub fn diagram(graph: &BondGraph, strokes: &[bool]) -> String {
+    let names = |bond: &Bond| (graph.end_name(&bond.from), graph.end_name(&bond.to));
+    let widths = graph.bonds.iter().map(|bond| names(bond).0.len());
+    let width = widths.max().unwrap_or(0);
+    let line = |(index, bond): (usize, &Bond)| {
+        let arrow = match strokes.get(index) {
+            Some(true) => " ──⇀│",
+            Some(false) => "│──⇀ ",
+            None => " ──⇀ ",
+        };
+        let (from, to) = names(bond);
+        format!("{from:width$} {arrow} {to} [{}]", bond.dimension)
+    };
+    let lines: Vec<String> = graph.bonds.iter().enumerate().map(line).collect();
+    lines.join("\n")
 }

@@ -12,7 +12,7 @@
 //! | program | [`program`] | straight-line arithmetic |
 //! | emission | [`emit`] | Rust |
 //!
-//! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`.
+//! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`; [`explain`] prints them.
 
 pub mod causality;
 pub mod codes;
@@ -22,6 +22,7 @@ pub mod drawing;
 pub mod elaborate;
 pub mod emit;
 pub mod equations;
+pub mod explain;
 pub mod graph;
 pub mod network;
 pub mod program;

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use proc_macro2::Span;
+
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Condition, Elaborated, StateRate};
-use crate::equations::{self, Scalars};
+use crate::equations::{self, Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
 use crate::program::{self, Program, Request};
@@ -71,10 +73,12 @@ pub fn compile(
 ) -> Option<Compiled> {
     let mut pool = Pool::new();
     let elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
-    let verdict = drawing::judge(&elaborated.graph, diagnostics)?;
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
-    let solution = match structure::solve(&scalars, &mut pool) {
+    let solved = structure::solve(&scalars, &mut pool);
+    let soluble = !matches!(solved, Err(Failure::Singular));
+    let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
+    let solution = match solved {
         Ok(solution) => solution,
         Err(failure) => {
             report(&elaborated, &scalars, &pool, failure, diagnostics);
@@ -102,11 +106,23 @@ fn report(
                 "{} variables depend on each other nonlinearly",
                 unknowns.len()
             );
-            let report = error(codes::NONLINEAR_LOOP, model.name.span(), message);
+            let span = nonlinear_law(model, scalars, &unknowns);
+            let report = error(codes::NONLINEAR_LOOP, span, message);
             diagnostics.report(report.note(format!("the loop runs through {names}")).help(
-                "put a storage into the loop, or give the law so that it can be used in this direction",
+                "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
+                 `C spring { stiffness: … }` at a 0-junction",
             ));
         }
+    }
+}
+
+/// Where the law stands in which unknowns of a loop enter nonlinearly.
+fn nonlinear_law(model: &Elaborated, scalars: &Scalars, unknowns: &[usize]) -> Span {
+    let graph = &model.graph;
+    let nonlinear = |equation: &&Equation| equation.signals.iter().any(|it| unknowns.contains(it));
+    match scalars.equations.iter().find(nonlinear).map(|it| it.owner) {
+        Some(Owner::Element(id)) => graph.origins.span(graph.elements[id.0].origin),
+        _ => model.name.span(),
     }
 }
 

@@ -18,9 +18,10 @@ pub struct Drawn {
     pub notes: Vec<String>,
 }
 
-/// Judges the drawing; none if it is rejected.
+/// Judges the drawing; none if it is rejected. Whether the equations are `soluble`, component by component, decides
+/// which ways out are offered.
 #[must_use]
-pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> {
+pub fn judge(graph: &BondGraph, soluble: bool, diagnostics: &mut Diagnostics) -> Option<Drawn> {
     let verdict = match uniform::verdict(graph) {
         Ok(verdict) => verdict,
         Err(_) if graph.causality == Causality::Componentwise => {
@@ -32,7 +33,7 @@ pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> 
             });
         }
         Err(conflict) => {
-            report::conflict_diagnostics(graph, &conflict, diagnostics);
+            report::conflict_diagnostics(graph, &conflict, soluble, diagnostics);
             return None;
         }
     };
@@ -42,7 +43,7 @@ pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> 
         .iter()
         .any(|id| !graph.elements[id.0].derivative);
     if graph.causality == Causality::Uniform && rejected {
-        report::diagnose(graph, &verdict, diagnostics);
+        report::diagnose(graph, &verdict, soluble, diagnostics);
         return None;
     }
     let marked = graph.elements.iter().any(|element| element.derivative);

@@ -53,10 +53,9 @@ fn stages(model: &Model, components: &BTreeMap<String, &Component>) -> String {
         return text;
     };
     text += &section(&format!("graph of {}", model.name), &model.graph.dump());
-    let Some(drawn) = drawing::judge(&model.graph, &mut ignored) else {
-        return text;
-    };
-    text += &section("causality", &drawing::diagram(&model.graph, &drawn.strokes));
+    if let Some(drawn) = drawing::judge(&model.graph, true, &mut ignored) {
+        text += &section("causality", &drawing::diagram(&model.graph, &drawn.strokes));
+    }
     let network = Network::of(&model.graph, &mut pool);
     let scalars = equations::form(&model, &network, &mut pool);
     text += &section("equations", &equation_lines(&model, &scalars, &pool));

@@ -1,22 +1,26 @@
 //! What must hold of the finished graph: equal dimensions, one bond per port.
 
+use proc_macro2::Span;
+
 use super::Builder;
 use crate::codes;
+use crate::diagnostics::error;
 use crate::graph::{ElementId, End, Rule};
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
-    pub(super) fn check(&mut self) {
+    pub(super) fn check(&mut self, model: Span) {
         if self.diagnostics.any() {
             return;
         }
         self.check_bonds();
         self.check_ports();
         if self.states.is_empty() {
-            let span = proc_macro2::Span::call_site();
             let message =
                 "the model has no storage, integral or attitude: nothing changes with time";
-            self.diagnostics.error(codes::EMPTY_MODEL, span, message);
+            let help = "write `I body { inertia: … }` or `C spring { stiffness: … }` in the braces of a junction";
+            self.diagnostics
+                .report(error(codes::EMPTY_MODEL, model, message).help(help));
         }
     }
 
@@ -85,10 +89,19 @@ impl Builder<'_> {
                 .any(|(found, expected)| *found < expected)
             {
                 let message = format!("`{}` has a port without a bond", element.name);
-                self.diagnostics.error(codes::UNCONNECTED, span, message);
+                let help = if two_port {
+                    "write an arrow on either side of it: `a -> TF gear { … } -> b;`"
+                } else {
+                    "write an arrow to a junction"
+                };
+                self.diagnostics
+                    .report(error(codes::UNCONNECTED, span, message).help(help));
             } else if count != expected {
                 let message = format!("`{}` has a port with more than one bond", element.name);
-                self.diagnostics.error(codes::TOO_MANY_BONDS, span, message);
+                let help =
+                    "bonds meet at junctions: write the arrow to the element's junction instead";
+                self.diagnostics
+                    .report(error(codes::TOO_MANY_BONDS, span, message).help(help));
             }
         }
     }

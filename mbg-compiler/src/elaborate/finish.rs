@@ -320,7 +320,7 @@ fn law_field<'e>(
     for field in &element.fields {
         let word = field.name.to_string();
         if !words.contains(&word.as_str()) && !others.contains(&word.as_str()) {
-            let message = format!("a {:?} does not know `{word}`", element.kind);
+            let message = format!("`{:?}` does not know `{word}`", element.kind);
             let known: Vec<String> = words
                 .iter()
                 .chain(others)
@@ -354,11 +354,11 @@ fn law_field<'e>(
                 "`{}` has two laws, `{}` and `{}`",
                 element.name, first.name, second.name
             );
-            Err(Box::new(error(
-                codes::TWO_LAWS,
-                second.name.span(),
-                message,
-            )))
+            let report = error(codes::TWO_LAWS, second.name.span(), message);
+            Err(Box::new(report.help(format!(
+                "remove `{}` or `{}`",
+                first.name, second.name
+            ))))
         }
     }
 }

@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::causality::report::APART;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
@@ -110,13 +111,13 @@ fn report(
         );
         return;
     }
-    let components = if count == 1 {
-        "one component".to_owned()
+    let (components, follow) = if count == 1 {
+        ("one component".to_owned(), "follows")
     } else {
-        format!("{count} components")
+        (format!("{count} components"), "follow")
     };
     let message = format!(
-        "storage `{}` depends on others: {components} of its {imposed} follow from {others}",
+        "storage `{}` depends on others: {components} of its {imposed} {follow} from {others}",
         element.name
     );
     if element.derivative {
@@ -126,13 +127,15 @@ fn report(
                 .note(
                     "`#[derivative]` accepts this true loss of order, but it is not supported yet",
                 )
-                .help("put a spring and a damper between them, or merge the storages into one"),
+                .help("merge the storages into one")
+                .help(format!("or {APART}")),
         );
         return;
     }
     let report = error(codes::ORDER_LOST, span, message)
         .note("this is a true loss of order: no choice of strokes makes all of them states")
-        .help("put a spring and a damper between them, or merge the storages into one");
+        .help("merge the storages into one")
+        .help(format!("or {APART}"));
     diagnostics.report(report);
 }
 

@@ -451,10 +451,11 @@ impl<N: Names> Evaluator<'_, N> {
             Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => {
                 match self.pool.power(base, value as i32) {
                     Some(power) => Ok(Value::Scalar(power)),
-                    None => fail(
+                    None => Err(Box::new(error(
+                        codes::NOT_FINITE,
                         arguments[0].span(),
                         "this divides by zero, whatever the state",
-                    ),
+                    ))),
                 }
             }
             _ => fail(

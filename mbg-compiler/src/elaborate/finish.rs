@@ -284,6 +284,15 @@ impl<'a> Builder<'a> {
         let unit = output.unit.as_ref().map_or("", |unit| unit.text.as_str());
         let path = self.path(scope, &output.name);
         let variables = component_names(&path, output.dimension, unit);
+        let mut known = self.outputs.iter().map(|known| &known.variable.name);
+        if known.any(|known| variables.iter().any(|variable| variable.name == *known)) {
+            let message = format!("output `{}` is declared twice", output.name);
+            return Err(Box::new(error(
+                codes::DUPLICATE_NAME,
+                output.name.span(),
+                message,
+            )));
+        }
         self.outputs.extend(
             variables
                 .into_iter()

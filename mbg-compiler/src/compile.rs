@@ -102,10 +102,10 @@ fn report(
         Failure::Singular => structure::report_singular(model, scalars, pool, diagnostics),
         Failure::Nonlinear(unknowns) => {
             let names = listing(structure::block_names(scalars, model, &unknowns));
-            let message = format!(
-                "{} variables depend on each other nonlinearly",
-                unknowns.len()
-            );
+            let message = match unknowns.len() {
+                1 => "a variable depends on itself nonlinearly".to_owned(),
+                count => format!("{count} variables depend on each other nonlinearly"),
+            };
             let span = nonlinear_law(model, scalars, &unknowns);
             let report = error(codes::NONLINEAR_LOOP, span, message);
             diagnostics.report(report.note(format!("the loop runs through {names}")).help(

@@ -42,12 +42,12 @@ fn expansion_is_the_same_in_every_process() {
     for process in ["first", "second"] {
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("expansions_{process}"));
         let program = std::env::current_exe().expect("tests run from a file");
-        let status = Command::new(program)
+        let output = Command::new(program)
             .args(["--exact", "expansion_is_the_same_in_every_process"])
             .env(TARGET, &path)
-            .status()
+            .output()
             .expect("the test runs again");
-        assert!(status.success());
+        assert!(output.status.success());
         let other = std::fs::read_to_string(path).expect("the process has written");
         assert!(other == own, "the {process} process expands differently");
     }

@@ -166,7 +166,7 @@ fn a_model_without_a_state_is_answered_so() {
     let cases = [
         ("", vec![]),
         ("model M { }", vec!["MBG0201"]),
-        ("model M { 1 a; }", vec!["MBG0201"]),
+        ("model M { 1 a; }", vec!["MBG0208", "MBG0201"]),
     ];
     for (text, codes) in cases {
         assert_eq!(found(text), codes, "{text}");
@@ -175,7 +175,12 @@ fn a_model_without_a_state_is_answered_so() {
 
 /// Other ways into a mistake, each with all codes that it is answered with.
 const BESIDE_A_MASS: &[(&str, &[&str])] = &[
-    ("1 b;", &["MBG0303"]),
+    ("1 b;", &["MBG0208"]),
+    (
+        "causality componentwise; 1 b; output y = b.f;",
+        &["MBG0208"],
+    ),
+    ("1 b[2]; Se s { effort: 1.0 } -> b.y;", &["MBG0208"]),
     ("Sf s { flow: 1.0 } -> Sf t { flow: 2.0 };", &["MBG0210"]),
     (
         "I n { inertia: 1.0 } -> I o { inertia: 2.0 };",
@@ -210,6 +215,10 @@ const BESIDE_A_MASS: &[(&str, &[&str])] = &[
     ("a -> EJS g { momentum: [1.0, 2.0, 3.0] };", &["MBG0204"]),
     ("a -> I n { inertia: 1.0, gyroscopic };", &["MBG0204"]),
     ("a -> R r { resistance: diag(1.0, 2.0) };", &["MBG0204"]),
+    (
+        "a -> GY g { effort: e } -> b; 0 b { C c { stiffness: 1.0 } }",
+        &["MBG0213"],
+    ),
     ("a -> C c { stiffness: 0.0 };", &[]),
     ("a -> C c { compliance: 0.0 };", &["MBG0216"]),
     (

@@ -120,8 +120,12 @@ fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain, soluble: b
              which is not supported yet"
                 .to_owned(),
         );
-        helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
-        helps.push(APART.to_owned());
+        if !chain.integral.is_empty() {
+            helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
+        }
+        if !chain.integral.is_empty() || !chain.fixed.is_empty() {
+            helps.push(APART.to_owned());
+        }
     }
     let resistors = chain.fixed.iter();
     helps.extend(resistors.filter_map(|id| resistor_help(graph, *id)));

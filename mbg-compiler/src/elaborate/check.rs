@@ -5,7 +5,7 @@ use proc_macro2::Span;
 use super::Builder;
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{ElementId, End, Rule};
+use crate::graph::{ElementId, End, JunctionId, Rule};
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
@@ -15,6 +15,7 @@ impl Builder<'_> {
         }
         self.check_bonds();
         self.check_ports();
+        self.check_junctions();
         if self.states.is_empty() {
             let message =
                 "the model has no storage, integral or attitude: nothing changes with time";
@@ -62,6 +63,32 @@ impl Builder<'_> {
                 (rows, columns)
             }
             _ => (0, 0),
+        }
+    }
+
+    /// A junction without a bond would leave its common variable undetermined.
+    fn check_junctions(&mut self) {
+        let graph = &self.graph;
+        let components = graph.junctions.iter().map(|it| vec![false; it.dimension]);
+        let mut bonded: Vec<Vec<bool>> = components.collect();
+        for end in graph.bonds.iter().flat_map(|bond| [&bond.from, &bond.to]) {
+            if let End::Junction(id, range) = end {
+                bonded[id.0][range.clone()].fill(true);
+            }
+        }
+        for (index, bonded) in bonded.iter().enumerate() {
+            if let Some(component) = bonded.iter().position(|bonded| !bonded) {
+                let name =
+                    graph.end_name(&End::Junction(JunctionId(index), component..component + 1));
+                let span = graph.origins.span(graph.junctions[index].origin);
+                let report = error(
+                    codes::UNCONNECTED,
+                    span,
+                    format!("junction `{name}` has no bond"),
+                );
+                self.diagnostics
+                    .report(report.help(format!("write an arrow to it: `{name} -> …;`")));
+            }
         }
     }
 

@@ -6,6 +6,7 @@ use std::ops::Range;
 use proc_macro2::Ident;
 
 use super::expressions::{Names, Result, Value, fail};
+use super::is_two_port;
 use super::model::{Place, Quantity, Signals};
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Pool, Symbol};
@@ -93,6 +94,9 @@ impl Names for Lookup<'_> {
     }
 }
 
+/// Why `e` and `f` of a two-port mean nothing.
+const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
+
 impl Lookup<'_> {
     fn plain(&self, pool: &mut Pool, entity: &Entity, name: &Ident) -> Result<Value> {
         match entity {
@@ -119,6 +123,7 @@ impl Lookup<'_> {
         match name.to_string().as_str() {
             "q" if kind == ElementKind::C => Ok(states(pool, &own.states, components)),
             "p" if kind == ElementKind::I => Ok(states(pool, &own.states, components)),
+            "e" | "f" if is_two_port(kind) => fail(name.span(), TWO_PORT_VARIABLE),
             "e" => Ok(self.signals(pool, Quantity::Effort, Place::Port(own.element), components)),
             "f" => Ok(self.signals(pool, Quantity::Flow, Place::Port(own.element), components)),
             _ => fail(name.span(), format!("a {kind:?} has no `{name}`")),
@@ -137,13 +142,7 @@ impl Lookup<'_> {
             ("q", ElementKind::C) | ("p", ElementKind::I) => {
                 Some(Ok(states(pool, &range, 0..dimension)))
             }
-            (
-                "e" | "f",
-                ElementKind::TF | ElementKind::MTF | ElementKind::GY | ElementKind::MGY,
-            ) => Some(fail(
-                name.span(),
-                "a two-port has two efforts and two flows; read them at a junction",
-            )),
+            ("e" | "f", kind) if is_two_port(kind) => Some(fail(name.span(), TWO_PORT_VARIABLE)),
             ("e", _) => Some(Ok(self.signals(
                 pool,
                 Quantity::Effort,

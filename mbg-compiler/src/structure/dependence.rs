@@ -106,9 +106,12 @@ fn report(
             "source `{}` imposes {imposed} that is imposed already",
             element.name
         );
-        diagnostics.report(
-            error(codes::SOURCES_CONFLICT, span, message).note(format!("it is fixed by {others}")),
-        );
+        let report = error(codes::SOURCES_CONFLICT, span, message);
+        diagnostics.report(if causes.is_empty() {
+            report.note("its law follows from the equations without it")
+        } else {
+            report.note(format!("it is fixed by {others}"))
+        });
         return;
     }
     let (components, follow) = if count == 1 {

@@ -8,6 +8,8 @@ use proc_macro2::Ident;
 use super::expressions::{Names, Result, Value, fail};
 use super::is_two_port;
 use super::model::{Place, Quantity, Signals};
+use crate::codes;
+use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Pool, Symbol};
 
@@ -92,6 +94,11 @@ impl Names for Lookup<'_> {
         }
         None
     }
+
+    fn all(&self) -> Vec<&str> {
+        let names = &self.scopes[self.scope].names;
+        names.keys().map(String::as_str).collect()
+    }
 }
 
 /// Why `e` and `f` of a two-port mean nothing.
@@ -155,7 +162,14 @@ impl Lookup<'_> {
                 Place::Port(id),
                 0..dimension,
             ))),
-            _ => None,
+            _ => {
+                let known = match kind {
+                    ElementKind::I => "`p`, `e` and `f`",
+                    ElementKind::C => "`q`, `e` and `f`",
+                    _ => "`e` and `f`",
+                };
+                Some(no_variable(&self.graph.elements[id.0].name, name, known))
+            }
         }
     }
 
@@ -187,7 +201,13 @@ impl Lookup<'_> {
                 name.span(),
                 "a 0-junction has no common flow; read it at an element",
             )),
-            _ => None,
+            (_, kind) => {
+                let known = match kind {
+                    JunctionKind::Zero => "`e`",
+                    JunctionKind::One => "`f`",
+                };
+                Some(no_variable(&self.graph.junctions[id.0].name, name, known))
+            }
         }
     }
 
@@ -203,6 +223,12 @@ impl Lookup<'_> {
             .collect();
         symbols(pool, numbers.into_iter().map(Symbol::Signal))
     }
+}
+
+/// A variable that the element or junction does not have.
+fn no_variable<T>(owner: &str, name: &Ident, known: &str) -> Result<T> {
+    let message = format!("`{owner}` has no `{name}`, it has {known}");
+    Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)))
 }
 
 fn states(pool: &mut Pool, range: &Range<usize>, components: Range<usize>) -> Value {

@@ -21,8 +21,8 @@ pub const JACOBIAN: &str = "replace the joints between `a` and `b` by one with a
     `1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
     gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
     joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
-/// What to do about storages that depend on each other by the physics.
-pub const APART: &str = "give each storage a junction of its own and put a spring between them: \
+/// What to do about inertias that depend on each other by the physics.
+pub const APART: &str = "give each inertia a junction of its own and put a spring between them: \
     `a -> between; between -> b; 0 between { C shaft { stiffness: … } }`";
 
 /// Longer chains are shortened.
@@ -116,14 +116,15 @@ fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain, soluble: b
         ));
     } else {
         report.notes.push(
-            "the equations depend on each other as well: a true loss of order, which no choice of strokes mends and \
-             which is not supported yet"
+            "component by component the equations have no solution either, so no choice of strokes mends it; a true \
+             loss of order is not supported yet"
                 .to_owned(),
         );
         if !chain.integral.is_empty() {
             helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
         }
-        if !chain.integral.is_empty() || !chain.fixed.is_empty() {
+        let imposed_on = !chain.integral.is_empty() || !chain.fixed.is_empty();
+        if imposed_on && element.rule == Rule::PreferFlowOut {
             helps.push(APART.to_owned());
         }
     }

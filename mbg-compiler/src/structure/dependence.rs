@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::causality::report::APART;
+use crate::causality::report::{APART, alternatives};
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
@@ -123,22 +123,23 @@ fn report(
         "storage `{}` depends on others: {components} of its {imposed} {follow} from {others}",
         element.name
     );
-    if element.derivative {
-        let report = error(codes::ORDER_LOST_UNSUPPORTED, span, message);
-        diagnostics.report(
-            report
-                .note(
-                    "`#[derivative]` accepts this true loss of order, but it is not supported yet",
-                )
-                .help("merge the storages into one")
-                .help(format!("or {APART}")),
-        );
-        return;
+    let (code, note) = if element.derivative {
+        let note = "`#[derivative]` accepts this true loss of order, but it is not supported yet";
+        (codes::ORDER_LOST_UNSUPPORTED, note)
+    } else {
+        let note = "this is a true loss of order: no choice of strokes makes all of them states";
+        (codes::ORDER_LOST, note)
+    };
+    let mut helps = Vec::new();
+    let is_storage = |cause: &ElementId| matches!(graph.elements[cause.0].law, Law::Storage(_));
+    if causes.iter().any(is_storage) {
+        helps.push("merge the storages into one".to_owned());
     }
-    let report = error(codes::ORDER_LOST, span, message)
-        .note("this is a true loss of order: no choice of strokes makes all of them states")
-        .help("merge the storages into one")
-        .help(format!("or {APART}"));
+    if element.kind == ElementKind::I {
+        helps.push(APART.to_owned());
+    }
+    let mut report = error(code, span, message).note(note);
+    report.helps = alternatives(helps);
     diagnostics.report(report);
 }
 

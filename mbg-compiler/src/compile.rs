@@ -7,11 +7,11 @@ use proc_macro2::Span;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
-use crate::elaborate::{self, Condition, Elaborated, StateRate};
+use crate::elaborate::{self, Condition, Elaborated, StateRate, Variable};
 use crate::equations::{self, Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
-use crate::program::{self, Program, Request};
+use crate::program::{self, Program};
 use crate::structure::{self, Failure, Solution};
 use crate::symbolic::print::Printer;
 use crate::symbolic::substitute::symbols;
@@ -72,48 +72,95 @@ pub fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
     let mut pool = Pool::new();
-    let elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
+    let mut elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
-    let solved = structure::solve(&scalars, &mut pool);
-    let soluble = !matches!(solved, Err(Failure::Singular));
+    let first = structure::solve(&scalars, &mut pool);
+    let soluble = !matches!(first, Err(Failure::Singular));
     let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
-    let solution = match solved {
-        Ok(solution) => solution,
-        Err(failure) => {
-            report(&elaborated, &scalars, &pool, failure, diagnostics);
-            return None;
-        }
-    };
-    let answers = Answers::of(&elaborated, &scalars, &solution, &mut pool);
-    Some(finish(
-        elaborated, &scalars, &solution, answers, pool, verdict,
-    ))
+    let solved = solve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
+    let (scalars, solution) = (&solved.scalars, &solved.solution);
+    let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;
+    finish(
+        elaborated,
+        scalars,
+        solution,
+        answers,
+        pool,
+        verdict,
+        diagnostics,
+    )
 }
 
-fn report(
-    model: &Elaborated,
-    scalars: &Scalars,
-    pool: &Pool,
-    failure: Failure,
+/// Equations with their solution.
+struct Solved {
+    scalars: Scalars,
+    solution: Solution,
+    /// Momentum or displacement of every state that was lost, in signals.
+    momenta: BTreeMap<usize, Expression>,
+}
+
+/// The solution of the equations, with an index reduction where storages depend on each other and the `first` attempt
+/// failed.
+fn solve(
+    model: &mut Elaborated,
+    scalars: Scalars,
+    first: Result<Solution, Failure>,
+    pool: &mut Pool,
     diagnostics: &mut Diagnostics,
-) {
-    match failure {
-        Failure::Singular => structure::report_singular(model, scalars, pool, diagnostics),
-        Failure::Nonlinear(unknowns) => {
-            let names = listing(structure::block_names(scalars, model, &unknowns));
-            let message = match unknowns.len() {
-                1 => "a variable depends on itself nonlinearly".to_owned(),
-                count => format!("{count} variables depend on each other nonlinearly"),
-            };
-            let span = nonlinear_law(model, scalars, &unknowns);
-            let report = error(codes::NONLINEAR_LOOP, span, message);
-            diagnostics.report(report.note(format!("the loop runs through {names}")).help(
-                "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
-                 `C spring { stiffness: … }` at a 0-junction",
-            ));
+) -> Option<Solved> {
+    match first {
+        Ok(solution) => {
+            return Some(Solved {
+                scalars,
+                solution,
+                momenta: BTreeMap::new(),
+            });
+        }
+        Err(Failure::Nonlinear(unknowns)) => {
+            report_nonlinear(model, &scalars, &unknowns, diagnostics);
+            return None;
+        }
+        Err(Failure::Singular) => {}
+    }
+    let selection = structure::select(model, &scalars, pool, diagnostics)?;
+    let reduction = structure::reduce(model, scalars, &selection, pool, diagnostics)?;
+    let scalars = reduction.scalars;
+    match structure::solve(&scalars, pool) {
+        Ok(solution) => Some(Solved {
+            scalars,
+            solution,
+            momenta: reduction.momenta,
+        }),
+        Err(Failure::Nonlinear(unknowns)) => {
+            report_nonlinear(model, &scalars, &unknowns, diagnostics);
+            None
+        }
+        Err(Failure::Singular) => {
+            let message = "the efforts between dependent storages are undetermined";
+            diagnostics.error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
+            None
         }
     }
+}
+
+fn report_nonlinear(
+    model: &Elaborated,
+    scalars: &Scalars,
+    unknowns: &[usize],
+    diagnostics: &mut Diagnostics,
+) {
+    let names = listing(structure::block_names(scalars, unknowns));
+    let message = match unknowns.len() {
+        1 => "a variable depends on itself nonlinearly".to_owned(),
+        count => format!("{count} variables depend on each other nonlinearly"),
+    };
+    let span = nonlinear_law(model, scalars, unknowns);
+    let report = error(codes::NONLINEAR_LOOP, span, message);
+    diagnostics.report(report.note(format!("the loop runs through {names}")).help(
+        "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
+         `C spring { stiffness: … }` at a 0-junction",
+    ));
 }
 
 /// Where the law stands in which unknowns of a loop enter nonlinearly.
@@ -121,7 +168,7 @@ fn nonlinear_law(model: &Elaborated, scalars: &Scalars, unknowns: &[usize]) -> S
     let graph = &model.graph;
     let nonlinear = |equation: &&Equation| equation.signals.iter().any(|it| unknowns.contains(it));
     match scalars.equations.iter().find(nonlinear).map(|it| it.owner) {
-        Some(Owner::Element(id)) => graph.origins.span(graph.elements[id.0].origin),
+        Some(Owner::Element(id, _)) => graph.origins.span(graph.elements[id.0].origin),
         _ => model.name.span(),
     }
 }
@@ -137,32 +184,42 @@ struct Answers {
 }
 
 impl Answers {
-    fn of(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool: &mut Pool) -> Self {
-        let mut substitution = Substitution::new();
-        for (signal, value) in structure::signal_values(scalars, solution) {
-            substitution.set(Symbol::Signal(signal), value);
-        }
-        let mut replaced = |pool: &mut Pool, expression| {
-            substitution
-                .apply(pool, expression)
-                .unwrap_or(Expression::ZERO)
+    fn of(
+        model: &Elaborated,
+        solved: &Solved,
+        pool: &mut Pool,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Self> {
+        let (scalars, solution) = (&solved.scalars, &solved.solution);
+        let mut substitution = substitution(solved, pool)?;
+        let mut replaced = |pool: &mut Pool, expression, variable: &Variable, span| {
+            let value = substitution.apply(pool, expression);
+            if value.is_none() {
+                let message = format!("`{}` divides by zero, whatever the state", variable.name);
+                diagnostics.error(codes::NOT_FINITE, span, message);
+            }
+            value
         };
-        let all: Vec<Expression> = model
+        let all: Vec<Option<Expression>> = model
             .states
             .iter()
             .map(|state| match state.rate {
                 StateRate::Storage(id, component) => {
-                    storage_rate(model, scalars, solution, id, component)
+                    Some(storage_rate(model, scalars, solution, id, component))
                 }
-                StateRate::Expression(rate) => replaced(pool, rate),
+                StateRate::Expression(rate) => replaced(pool, rate, &state.variable, state.span),
+                StateRate::Unknown(rate) => Some(solution.values[rate]),
             })
             .collect();
-        let outputs: Vec<Expression> = model
+        let outputs: Vec<Option<Expression>> = model
             .outputs
             .iter()
-            .map(|output| replaced(pool, output.value))
+            .map(|output| replaced(pool, output.value, &output.variable, output.span))
             .collect();
-        let states = kept(model, pool, &all, &outputs);
+        let all: Vec<Expression> = all.into_iter().collect::<Option<_>>()?;
+        let outputs: Vec<Expression> = outputs.into_iter().collect::<Option<_>>()?;
+        let lost = |state: &usize| solved.momenta.contains_key(state);
+        let states = kept(model, pool, &all, &outputs, &lost);
         let rates = states.iter().map(|state| all[*state]).collect();
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
         let energies: Vec<Expression> = model
@@ -177,16 +234,37 @@ impl Answers {
                 }
             })
             .collect();
+        let energies: Vec<Expression> = energies
+            .into_iter()
+            .map(|energy| substitution.apply(pool, energy))
+            .collect::<Option<_>>()?;
         let energy = pool.sum(&energies);
-        Self {
+        Some(Self {
             states,
             rates,
             outputs,
             energy,
             supplied,
             dissipated,
-        }
+        })
     }
+}
+
+/// What signals and lost states are, in terms of the states that are left.
+fn substitution(solved: &Solved, pool: &mut Pool) -> Option<Substitution> {
+    let mut substitution = Substitution::new();
+    for (signal, value) in structure::signal_values(&solved.scalars, &solved.solution) {
+        substitution.set(Symbol::Signal(signal), value);
+    }
+    let momenta: Vec<(usize, Expression)> = solved
+        .momenta
+        .iter()
+        .map(|(state, momentum)| Some((*state, substitution.apply(pool, *momentum)?)))
+        .collect::<Option<_>>()?;
+    for (state, momentum) in momenta {
+        substitution.set(Symbol::State(state), momentum);
+    }
+    Some(substitution)
 }
 
 /// `ṗ = e` or `q̇ = f`, with power into the storage.
@@ -199,9 +277,9 @@ fn storage_rate(
 ) -> Expression {
     let port = &scalars.ports[&id];
     if model.graph.elements[id.0].kind == ElementKind::I {
-        solution.values[port.effort[component]].flipped(!port.inward)
+        solution.values[port.effort[component]].flipped(port.effort_reversed)
     } else {
-        solution.values[port.flow[component]].flipped(!port.inward)
+        solution.values[port.flow[component]].flipped(port.flow_reversed)
     }
 }
 
@@ -211,11 +289,13 @@ fn kept(
     pool: &Pool,
     rates: &[Expression],
     outputs: &[Expression],
+    lost: &dyn Fn(&usize) -> bool,
 ) -> Vec<usize> {
     let mut keep: Vec<bool> = model
         .states
         .iter()
-        .map(|state| matches!(state.rate, StateRate::Storage(..)))
+        .enumerate()
+        .map(|(state, entry)| !lost(&state) && !matches!(entry.rate, StateRate::Expression(_)))
         .collect();
     loop {
         let mut roots: Vec<Expression> = outputs.to_vec();
@@ -291,7 +371,8 @@ fn finish(
     answers: Answers,
     mut pool: Pool,
     verdict: Drawn,
-) -> Compiled {
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
     let by_state: Vec<Symbol> = answers
         .states
         .iter()
@@ -311,7 +392,7 @@ fn finish(
         .map(|state| model.states[*state].initial)
         .collect();
     let (checks, checked) = checks(&model, solution, &pool);
-    let requests: Vec<Request> = [
+    let requests = [
         answers.rates,
         answers.outputs,
         jacobian_state,
@@ -321,10 +402,7 @@ fn finish(
         conditioning.clone(),
         initial,
         checked,
-    ]
-    .into_iter()
-    .map(|results| Request { results })
-    .collect();
+    ];
     let places: BTreeMap<usize, usize> = answers
         .states
         .iter()
@@ -340,12 +418,18 @@ fn finish(
                 .or_insert_with(|| scalars.names[unknown].clone());
         }
     }
-    let program = program::build(&pool, &requests, &[], &place, &names);
+    let program = program::build(&pool, &requests, &place, &names);
     let conditioning = conditioning
         .iter()
         .map(|value| text(&model, &pool, *value))
         .collect();
-    Compiled {
+    if !program.is_finite() {
+        let message = "numbers of the model multiply to one that is not finite";
+        let report = error(codes::NOT_FINITE, model.name.span(), message);
+        diagnostics.report(report.help("choose units in which the values are of moderate size"));
+        return None;
+    }
+    Some(Compiled {
         states: answers.states,
         program,
         conditioning,
@@ -354,7 +438,7 @@ fn finish(
         strokes: verdict.strokes,
         notes: verdict.notes,
         model,
-    }
+    })
 }
 
 /// An expression with the model's names.

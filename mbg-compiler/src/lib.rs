@@ -59,7 +59,7 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
         };
         output.extend(match &compiled {
             Some(compiled) => emit::model(compiled),
-            None => emit::shell(model),
+            None => emit::shell(model, elaborate::sizes(model, &components)),
         });
     }
     output

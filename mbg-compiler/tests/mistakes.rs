@@ -132,7 +132,7 @@ const FIXTURES: &[(Code, &str)] = &[
     ),
     (
         codes::ORDER_LOST_UNSUPPORTED,
-        beside_a_mass!("a -> #[derivative] I n { inertia: 2.0 };"),
+        beside_a_mass!("input u; 1 b { Sf s { flow: u } #[derivative] I n { inertia: 2.0 } }"),
     ),
 ];
 

@@ -1,14 +1,17 @@
-//! Accepted, but not supported yet.
+//! A dependent storage that needs the rate of an input, which is not supported yet.
 
 use mbg_runtime::mbg;
 
 mbg! {
-    model Rigid {
+    model Driven {
+        input speed: rad/s;
         1 shaft {
-            I rotor { inertia: 1.0 }
+            Sf drive { flow: speed }
             #[derivative]
             I load { inertia: 2.0 }
         }
+        integral angle = shaft.f;
+        output turned = angle;
     }
 }
 

@@ -111,22 +111,22 @@ fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain, soluble: b
     let mut helps = Vec::new();
     if soluble {
         helps.push(COMPONENTWISE.to_owned());
-        helps.push(format!(
-            "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
-        ));
     } else {
         report.notes.push(
-            "component by component the equations have no solution either, so no choice of strokes mends it; a true \
-             loss of order is not supported yet"
+            "component by component the equations have no solution either: a true loss of order, which no choice of \
+             strokes mends"
                 .to_owned(),
         );
-        if !chain.integral.is_empty() {
-            helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
-        }
-        let imposed_on = !chain.integral.is_empty() || !chain.fixed.is_empty();
-        if imposed_on && element.rule == Rule::PreferFlowOut {
-            helps.push(APART.to_owned());
-        }
+    }
+    helps.push(format!(
+        "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
+    ));
+    if !soluble && !chain.integral.is_empty() {
+        helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
+    }
+    let imposed_on = !chain.integral.is_empty() || !chain.fixed.is_empty();
+    if !soluble && imposed_on && element.rule == Rule::PreferFlowOut {
+        helps.push(APART.to_owned());
     }
     let resistors = chain.fixed.iter();
     helps.extend(resistors.filter_map(|id| resistor_help(graph, *id)));

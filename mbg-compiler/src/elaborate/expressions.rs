@@ -6,7 +6,7 @@ use syn::{BinOp, Expr, Lit, Member, UnOp};
 
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product};
+use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product, Rate};
 
 /// What an expression stands for.
 #[derive(Clone, Debug)]
@@ -84,6 +84,27 @@ pub struct Evaluator<'a, N: Names> {
 impl<N: Names> Evaluator<'_, N> {
     /// The value of an expression.
     pub fn evaluate(&mut self, expression: &Expr) -> Result<Value> {
+        let value = self.any_value(expression)?;
+        match &value {
+            Value::Scalar(scalar)
+                if self.pool.rate(*scalar) == Rate::Constant
+                    && !self
+                        .pool
+                        .constant_value(*scalar)
+                        .is_some_and(f64::is_finite) =>
+            {
+                let message = "the value of this is not a finite number";
+                Err(Box::new(error(
+                    codes::NOT_FINITE,
+                    expression.span(),
+                    message,
+                )))
+            }
+            _ => Ok(value),
+        }
+    }
+
+    fn any_value(&mut self, expression: &Expr) -> Result<Value> {
         match expression {
             Expr::Lit(literal) => self.literal(&literal.lit),
             Expr::Paren(inner) => self.evaluate(&inner.expr),
@@ -92,7 +113,7 @@ impl<N: Names> Evaluator<'_, N> {
             Expr::Index(index) => self.index(index),
             Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
                 let value = self.evaluate(&unary.expr)?;
-                self.scale(Expression::ONE.negated(), value, unary.span())
+                Ok(self.scale(Expression::ONE.negated(), value))
             }
             Expr::Binary(binary) => self.binary(binary),
             Expr::Call(call) => self.call(call),
@@ -270,7 +291,7 @@ impl<N: Names> Evaluator<'_, N> {
                     }
                     matrix @ Value::Matrix(_) => {
                         let reciprocal = self.quotient(Expression::ONE, divisor, span)?;
-                        self.scale(reciprocal, matrix, span)
+                        Ok(self.scale(reciprocal, matrix))
                     }
                 }
             }
@@ -325,7 +346,7 @@ impl<N: Names> Evaluator<'_, N> {
     fn product(&mut self, left: Value, right: Value, span: Span) -> Result<Value> {
         match (left, right) {
             (Value::Scalar(a), Value::Scalar(b)) => Ok(Value::Scalar(self.pool.multiply(a, b))),
-            (Value::Scalar(a), matrix) | (matrix, Value::Scalar(a)) => self.scale(a, matrix, span),
+            (Value::Scalar(a), matrix) | (matrix, Value::Scalar(a)) => Ok(self.scale(a, matrix)),
             (Value::Matrix(a), Value::Matrix(b)) if a.columns() != b.rows() => {
                 let (a, b) = (Value::Matrix(a).shape(), Value::Matrix(b).shape());
                 mismatch(span, format!("a product of {a} with {b} does not exist"))
@@ -339,8 +360,8 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    fn scale(&mut self, factor: Expression, value: Value, _span: Span) -> Result<Value> {
-        Ok(match value {
+    fn scale(&mut self, factor: Expression, value: Value) -> Value {
+        match value {
             Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
             Value::Matrix(product) => {
                 let matrix = product
@@ -348,7 +369,7 @@ impl<N: Names> Evaluator<'_, N> {
                     .map(|entry| self.pool.multiply(factor, entry));
                 Value::Matrix(Product::of(Factor::Dense(matrix)))
             }
-        })
+        }
     }
 
     fn call(&mut self, call: &syn::ExprCall) -> Result<Value> {

@@ -297,7 +297,11 @@ impl<'a> Builder<'a> {
             variables
                 .into_iter()
                 .zip(values)
-                .map(|(variable, value)| Output { variable, value }),
+                .map(|(variable, value)| Output {
+                    variable,
+                    value,
+                    span: output.name.span(),
+                }),
         );
         Ok(())
     }

@@ -267,10 +267,12 @@ impl Reader<'_, '_> {
             "energy" => self.by_energy(value)?,
             _ => {
                 let coenergy = self.by_component(value)?;
-                (
-                    coenergy.clone(),
-                    quadrature::energy(self.pool, &self.own.states, &coenergy),
-                )
+                let energy = quadrature::energy(self.pool, &self.own.states, &coenergy);
+                let Some(energy) = energy else {
+                    let message = format!("the law of `{}` divides by zero", self.element.name);
+                    return Err(Box::new(error(codes::NOT_FINITE, value.span(), message)));
+                };
+                (coenergy, energy)
             }
         };
         let rule = if self.element.kind == ElementKind::I {
@@ -370,10 +372,7 @@ impl Reader<'_, '_> {
             let expression = if matrix.is_diagonal() {
                 matrix.at(size - 1, size - 1)
             } else {
-                let entries = (0..size)
-                    .flat_map(|r| (0..size).map(move |c| matrix.at(r, c)))
-                    .collect();
-                Matrix::new(size, size, entries).determinant(self.pool)
+                matrix.leading(size).determinant(self.pool)
             };
             match self.pool.constant_value(expression) {
                 Some(value) if value > 0.0 => {}

@@ -59,6 +59,8 @@ pub struct Output {
     pub variable: Variable,
     /// What it shows.
     pub value: Expression,
+    /// Where it was written.
+    pub span: Span,
 }
 
 /// A candidate state.
@@ -80,6 +82,8 @@ pub enum StateRate {
     Storage(ElementId, usize),
     /// An expression: an integral or an attitude.
     Expression(Expression),
+    /// An unknown of the reduced equations: the rate of a coordinate's flow.
+    Unknown(usize),
 }
 
 /// What an assumption says of an expression.

@@ -7,8 +7,13 @@ use crate::symbolic::{Expression, Operation, Pool, Substitution, Symbol};
 /// Nodes for laws that are no polynomials; exact to degree 31, and to round-off for smooth laws in a moderate range.
 const NODES: usize = 16;
 
-/// The energy by Gauss–Legendre quadrature; exact when the law is a polynomial, with just as many nodes as it needs.
-pub(super) fn energy(pool: &mut Pool, states: &Range<usize>, law: &[Expression]) -> Expression {
+/// The energy by Gauss–Legendre quadrature; exact when the law is a polynomial, with just as many nodes as it needs; none if the law
+/// divides by zero on the ray.
+pub(super) fn energy(
+    pool: &mut Pool,
+    states: &Range<usize>,
+    law: &[Expression],
+) -> Option<Expression> {
     let degree = law
         .iter()
         .map(|row| degree(pool, *row, states))
@@ -16,7 +21,7 @@ pub(super) fn energy(pool: &mut Pool, states: &Range<usize>, law: &[Expression])
     let count = degree.map_or(NODES, |degree| (degree as usize / 2 + 1).min(NODES));
     let mut total = Expression::ZERO;
     for (node, weight) in gauss_legendre(count) {
-        let (node, weight) = (exact(pool, node), exact(pool, weight));
+        let (node, weight) = (exact(pool, node)?, exact(pool, weight)?);
         let mut substitution = Substitution::new();
         for state in states.clone() {
             let symbol = pool.symbol(Symbol::State(state));
@@ -24,23 +29,23 @@ pub(super) fn energy(pool: &mut Pool, states: &Range<usize>, law: &[Expression])
             substitution.set(Symbol::State(state), scaled);
         }
         for (row, state) in law.iter().zip(states.clone()) {
-            let value = substitution.apply(pool, *row).unwrap_or(Expression::ZERO);
+            let value = substitution.apply(pool, *row)?;
             let symbol = pool.symbol(Symbol::State(state));
             let product = pool.multiply(value, symbol);
             let term = pool.multiply(weight, product);
             total = pool.add(total, term);
         }
     }
-    total
+    Some(total)
 }
 
-fn exact(pool: &mut Pool, value: f64) -> Expression {
+fn exact(pool: &mut Pool, value: f64) -> Option<Expression> {
     let doubled = value * 2.0;
     if doubled.fract() == 0.0 {
         let (numerator, two) = (pool.integer(doubled as i64), pool.integer(2));
-        return pool.divide(numerator, two).unwrap_or(Expression::ZERO);
+        return pool.divide(numerator, two);
     }
-    pool.irrational(value)
+    Some(pool.irrational(value))
 }
 
 /// Degree as a polynomial in the states, if it is one.

@@ -6,12 +6,14 @@
 mod meta;
 mod parameters;
 mod routine;
+mod shell;
 mod system;
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::compile::Compiled;
+use crate::elaborate::Sizes;
 use crate::syntax::ast;
 
 /// All items of a model.
@@ -22,8 +24,8 @@ pub fn model(compiled: &Compiled) -> TokenStream {
     quote!(#parameters #system)
 }
 
-/// What is left of a model with a mistake: its types, so that their names still resolve.
+/// What is left of a model with a mistake: its types and their methods, so that whatever uses them still resolves.
 #[must_use]
-pub fn shell(model: &ast::Model) -> TokenStream {
-    parameters::shell(model)
+pub fn shell(model: &ast::Model, sizes: Sizes) -> TokenStream {
+    shell::items(model, sizes)
 }

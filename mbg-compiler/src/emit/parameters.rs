@@ -1,10 +1,9 @@
-//! The parameters' type, and the shell of a broken model.
+//! The parameters' type.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::compile::Compiled;
-use crate::syntax::ast::{self, Statement};
 
 /// `NameParameters` with its `Default`.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
@@ -57,38 +56,5 @@ fn number(value: f64) -> TokenStream {
         quote!(-#positive)
     } else {
         positive
-    }
-}
-
-/// Types without behaviour.
-pub(super) fn shell(model: &ast::Model) -> TokenStream {
-    let (visibility, name, documentation) = (&model.visibility, &model.name, &model.documentation);
-    let parameters = format_ident!("{}Parameters", name);
-    let fields: Vec<_> = model
-        .statements
-        .iter()
-        .filter_map(|statement| {
-            if let Statement::Parameter(parameter) = statement {
-                Some(&parameter.name)
-            } else {
-                None
-            }
-        })
-        .collect();
-    quote! {
-        #(#documentation)*
-        #visibility struct #name<T = f64> { scalar: ::core::marker::PhantomData<T> }
-        #[allow(missing_docs)]
-        #visibility struct #parameters<T = f64> {
-            #(pub #fields: T,)*
-            #[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>,
-        }
-        impl<T> ::core::default::Default for #parameters<T> {
-            fn default() -> Self { loop {} }
-        }
-        #[allow(missing_docs)]
-        impl<T> #name<T> {
-            pub fn new(_: #parameters<T>) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> { loop {} }
-        }
     }
 }

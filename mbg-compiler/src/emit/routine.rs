@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 
 use crate::compile::Compiled;
 use crate::program::{Operand, Routine, Source, Step};
-use crate::symbolic::{Function, Symbol};
+use crate::symbolic::Symbol;
 
 /// Where a routine finds what it reads.
 #[derive(Clone, Copy, PartialEq)]
@@ -106,7 +106,7 @@ impl Writer<'_> {
             }
             Step::Sine(a) => self.call("sin", &[*a]),
             Step::Cosine(a) => self.call("cos", &[*a]),
-            Step::Call(function, arguments) => self.call(function_name(*function), arguments),
+            Step::Call(function, arguments) => self.call(function.name(), arguments),
         };
         quote!(let #name = #expression;)
     }
@@ -120,7 +120,7 @@ impl Writer<'_> {
     fn operand(&self, operand: Operand) -> TokenStream {
         let value = match operand.source {
             Source::Constant(value) => {
-                let literal = Literal::f64_suffixed(if value.is_finite() { value } else { 0.0 });
+                let literal = Literal::f64_suffixed(value);
                 quote!(<T as ::mbg_runtime::Real>::from_f64(#literal))
             }
             Source::Symbol(Symbol::Parameter(index)) => {
@@ -158,8 +158,4 @@ impl Writer<'_> {
 fn element(array: &str, index: usize) -> TokenStream {
     let (array, index) = (format_ident!("{}", array), Literal::usize_suffixed(index));
     quote!(#array[#index])
-}
-
-fn function_name(function: Function) -> &'static str {
-    function.name()
 }

@@ -9,7 +9,7 @@ mod schedule;
 use crate::symbolic::{Function, Symbol};
 
 pub use interpret::{Arguments, evaluate};
-pub use schedule::{Request, build};
+pub use schedule::build;
 
 /// Where an operand's value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +63,16 @@ impl Step {
         }
     }
 
+    /// What it reads.
+    #[must_use]
+    pub fn operands(&self) -> Vec<Operand> {
+        match self {
+            Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => vec![*a, *b],
+            Self::SineCosine(a) | Self::Sine(a) | Self::Cosine(a) => vec![*a],
+            Self::Call(_, operands) => operands.clone(),
+        }
+    }
+
     /// How many operations it counts: sine and cosine of one angle two, anything else one.
     #[must_use]
     pub fn operations(&self) -> usize {
@@ -105,6 +115,21 @@ pub struct Program {
     pub folded: Routine,
     /// Functions in the order of the requests.
     pub routines: Vec<Routine>,
+}
+
+impl Program {
+    /// Whether every number in it is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let finite = |operand: &Operand| !matches!(operand.source, Source::Constant(value) if !value.is_finite());
+        self.routines.iter().chain([&self.folded]).all(|routine| {
+            routine.results.iter().all(finite)
+                && routine
+                    .steps
+                    .iter()
+                    .all(|step| step.operands().iter().all(finite))
+        })
+    }
 }
 
 impl Operand {

@@ -5,22 +5,15 @@ use std::collections::BTreeMap;
 use super::{Operand, Program, Routine, Source, Step};
 use crate::symbolic::{Expression, Operation, Pool, Rate, Symbol};
 
-/// Results that one function must give.
-pub struct Request {
-    /// In order.
-    pub results: Vec<Expression>,
-}
-
-/// Builds all functions. `state` gives the place in `x` of each candidate state; `names` names nodes.
+/// Builds one function for each list of results. `state` gives the place in `x` of each candidate state; `names` names nodes.
 #[must_use]
 pub fn build(
     pool: &Pool,
-    requests: &[Request],
-    also_folded: &[Expression],
+    requests: &[Vec<Expression>],
     state: &dyn Fn(usize) -> usize,
     names: &BTreeMap<usize, String>,
 ) -> Program {
-    let folded_nodes = folded_nodes(pool, requests, also_folded);
+    let folded_nodes = folded_nodes(pool, requests);
     let numbers: BTreeMap<usize, usize> = folded_nodes
         .iter()
         .enumerate()
@@ -35,21 +28,16 @@ pub fn build(
     let folded = context.routine(&folded_nodes, true);
     let routines = requests
         .iter()
-        .map(|request| context.routine(&request.results, false))
+        .map(|results| context.routine(results, false))
         .collect();
     Program { folded, routines }
 }
 
 /// Expressions of parameters alone that something varying, or a result, is computed from.
-fn folded_nodes(pool: &Pool, requests: &[Request], also: &[Expression]) -> Vec<Expression> {
+fn folded_nodes(pool: &Pool, requests: &[Vec<Expression>]) -> Vec<Expression> {
     let mut seen = vec![false; pool.len()];
     let mut found = Vec::new();
-    let roots = requests
-        .iter()
-        .flat_map(|request| &request.results)
-        .chain(also)
-        .copied();
-    for root in roots {
+    for root in requests.iter().flatten() {
         let mut pending = vec![root.magnitude()];
         while let Some(current) = pending.pop() {
             if std::mem::replace(&mut seen[current.node()], true) {
@@ -230,6 +218,7 @@ impl Context<'_> {
             _ => match (draft.values.get(&node), self.folded.get(&node)) {
                 (_, Some(number)) if !folding => Source::Folded(*number),
                 (Some(value), _) => Source::Value(*value),
+                // No node is read before it is made; if one were, the check for finite numbers would refuse the program.
                 _ => Source::Constant(f64::NAN),
             },
         };

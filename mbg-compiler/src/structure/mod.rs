@@ -6,17 +6,21 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
-mod dependence;
+mod eliminate;
+mod levels;
 pub mod matching;
+mod reduction;
+mod selection;
 mod solve;
 
 use std::collections::BTreeMap;
 
-use crate::elaborate::{Condition, Elaborated};
+use crate::elaborate::Condition;
 use crate::equations::Scalars;
 use crate::symbolic::{Expression, Pool};
 
-pub use dependence::report_singular;
+pub use reduction::{Reduction, reduce};
+pub use selection::{Lost, Selection, select};
 
 /// Unknowns as expressions.
 pub struct Solution {
@@ -82,7 +86,7 @@ pub fn signal_values(scalars: &Scalars, solution: &Solution) -> BTreeMap<usize, 
 
 /// Names of the elements and junctions whose variables are in a block, for people.
 #[must_use]
-pub fn block_names(scalars: &Scalars, _model: &Elaborated, unknowns: &[usize]) -> Vec<String> {
+pub fn block_names(scalars: &Scalars, unknowns: &[usize]) -> Vec<String> {
     unknowns
         .iter()
         .map(|unknown| scalars.names[*unknown].clone())

@@ -1,13 +1,12 @@
 //! Derivatives, taken on the graph: each node once, never on an expanded tree.
 
-use std::collections::HashMap;
-
 use super::pool::{Expression, Function, Operation, Pool, Symbol};
+use super::walk::Rewritten;
 
 /// Differentiates with respect to one symbol and remembers what it has done.
 pub struct Differentiator {
     symbol: Symbol,
-    known: HashMap<usize, Expression>,
+    known: Rewritten,
 }
 
 impl Differentiator {
@@ -16,161 +15,145 @@ impl Differentiator {
     pub fn new(symbol: Symbol) -> Self {
         Self {
             symbol,
-            known: HashMap::new(),
+            known: Rewritten::default(),
         }
     }
 
-    /// The derivative. Walks with a stack of its own, so that depth is no limit.
+    /// The derivative.
     pub fn derivative(&mut self, pool: &mut Pool, expression: Expression) -> Expression {
-        let mut pending = vec![expression.magnitude()];
-        while let Some(&current) = pending.last() {
-            if self.known.contains_key(&current.node()) {
-                pending.pop();
-                continue;
-            }
-            let operation = pool.operation(current).clone();
-            let before = pending.len();
-            let missing = operation
-                .operands()
-                .into_iter()
-                .filter(|part| !self.known.contains_key(&part.node()));
-            pending.extend(missing.map(Expression::magnitude));
-            if pending.len() == before {
-                let derivative = self.rule(pool, current, &operation);
-                self.known.insert(current.node(), derivative);
-                pending.pop();
-            }
+        let symbol = self.symbol;
+        self.known
+            .rewrite(pool, expression, |pool, known, whole, operation| {
+                Some(rule(pool, symbol, known, whole, operation))
+            })
+            .unwrap_or(Expression::ZERO)
+    }
+}
+
+fn rule(
+    pool: &mut Pool,
+    wrt: Symbol,
+    known: &Rewritten,
+    whole: Expression,
+    operation: &Operation,
+) -> Expression {
+    match operation {
+        Operation::Constant(_) => Expression::ZERO,
+        Operation::Symbol(symbol) if *symbol == wrt => Expression::ONE,
+        Operation::Symbol(_) => Expression::ZERO,
+        Operation::Add(a, b) => pool.add(known.of(*a), known.of(*b)),
+        Operation::Multiply(a, b) => {
+            let first = pool.multiply(known.of(*a), *b);
+            let second = pool.multiply(*a, known.of(*b));
+            pool.add(first, second)
         }
-        self.of(expression)
-    }
-
-    fn of(&self, expression: Expression) -> Expression {
-        self.known[&expression.node()].flipped(expression.is_negative())
-    }
-
-    fn rule(&self, pool: &mut Pool, whole: Expression, operation: &Operation) -> Expression {
-        match operation {
-            Operation::Constant(_) => Expression::ZERO,
-            Operation::Symbol(symbol) if *symbol == self.symbol => Expression::ONE,
-            Operation::Symbol(_) => Expression::ZERO,
-            Operation::Add(a, b) => pool.add(self.of(*a), self.of(*b)),
-            Operation::Multiply(a, b) => {
-                let first = pool.multiply(self.of(*a), *b);
-                let second = pool.multiply(*a, self.of(*b));
-                pool.add(first, second)
-            }
-            Operation::Divide(a, b) => {
-                // (a/b)' = (a' − (a/b) b') / b shares the quotient itself.
-                let shrink = pool.multiply(whole, self.of(*b));
-                let numerator = pool.subtract(self.of(*a), shrink);
-                pool.divide(numerator, *b).unwrap_or(Expression::ZERO)
-            }
-            Operation::Sine(a) => {
-                let cosine = pool.cosine(*a);
-                pool.multiply(cosine, self.of(*a))
-            }
-            Operation::Cosine(a) => {
-                let sine = pool.sine(*a);
-                pool.multiply(sine, self.of(*a)).negated()
-            }
-            Operation::Call(function, arguments) => {
-                self.call_rule(pool, whole, *function, arguments)
-            }
+        Operation::Divide(a, b) => {
+            // (a/b)' = (a' − (a/b) b') / b shares the quotient itself.
+            let shrink = pool.multiply(whole, known.of(*b));
+            let numerator = pool.subtract(known.of(*a), shrink);
+            pool.divide(numerator, *b).unwrap_or(Expression::ZERO)
         }
+        Operation::Sine(a) => {
+            let cosine = pool.cosine(*a);
+            pool.multiply(cosine, known.of(*a))
+        }
+        Operation::Cosine(a) => {
+            let sine = pool.sine(*a);
+            pool.multiply(sine, known.of(*a)).negated()
+        }
+        Operation::Call(function, arguments) => call_rule(pool, known, whole, *function, arguments),
     }
+}
 
-    fn call_rule(
-        &self,
-        pool: &mut Pool,
-        whole: Expression,
-        function: Function,
-        arguments: &[Expression],
-    ) -> Expression {
-        let inner = self.of(arguments[0]);
-        match function {
-            Function::SelectLess => {
-                let (yes, no) = (self.of(arguments[2]), self.of(arguments[3]));
-                Self::select(pool, arguments[0], arguments[1], yes, no)
-            }
-            Function::Min => Self::select(
-                pool,
-                arguments[0],
-                arguments[1],
-                inner,
-                self.of(arguments[1]),
-            ),
-            Function::Max => Self::select(
-                pool,
-                arguments[1],
-                arguments[0],
-                inner,
-                self.of(arguments[1]),
-            ),
-            Function::Atan2 => self.atan2_rule(pool, arguments[0], arguments[1]),
-            _ if inner == Expression::ZERO => Expression::ZERO,
-            _ => {
-                let outer = Self::outer(pool, whole, function, arguments[0]);
-                pool.multiply(outer, inner)
-            }
+fn call_rule(
+    pool: &mut Pool,
+    known: &Rewritten,
+    whole: Expression,
+    function: Function,
+    arguments: &[Expression],
+) -> Expression {
+    let inner = known.of(arguments[0]);
+    match function {
+        Function::SelectLess => {
+            let (yes, no) = (known.of(arguments[2]), known.of(arguments[3]));
+            select(pool, arguments[0], arguments[1], yes, no)
+        }
+        Function::Min => select(
+            pool,
+            arguments[0],
+            arguments[1],
+            inner,
+            known.of(arguments[1]),
+        ),
+        Function::Max => select(
+            pool,
+            arguments[1],
+            arguments[0],
+            inner,
+            known.of(arguments[1]),
+        ),
+        Function::Atan2 => atan2_rule(pool, known, arguments[0], arguments[1]),
+        _ if inner == Expression::ZERO => Expression::ZERO,
+        _ => {
+            let outer = outer(pool, whole, function, arguments[0]);
+            pool.multiply(outer, inner)
         }
     }
+}
 
-    fn select(
-        pool: &mut Pool,
-        a: Expression,
-        b: Expression,
-        yes: Expression,
-        no: Expression,
-    ) -> Expression {
-        if yes == no {
-            yes
-        } else {
-            pool.call(Function::SelectLess, &[a, b, yes, no])
+fn select(
+    pool: &mut Pool,
+    a: Expression,
+    b: Expression,
+    yes: Expression,
+    no: Expression,
+) -> Expression {
+    if yes == no {
+        yes
+    } else {
+        pool.call(Function::SelectLess, &[a, b, yes, no])
+    }
+}
+
+fn atan2_rule(pool: &mut Pool, known: &Rewritten, y: Expression, x: Expression) -> Expression {
+    let first = pool.multiply(x, known.of(y));
+    let second = pool.multiply(y, known.of(x));
+    let numerator = pool.subtract(first, second);
+    let (xx, yy) = (pool.multiply(x, x), pool.multiply(y, y));
+    let radius = pool.add(xx, yy);
+    pool.divide(numerator, radius).unwrap_or(Expression::ZERO)
+}
+
+/// Derivative of a function of one argument with respect to it, in terms of the value `whole` where that is
+/// cheapest.
+fn outer(pool: &mut Pool, whole: Expression, function: Function, a: Expression) -> Expression {
+    let one = Expression::ONE;
+    let quotient = |pool: &mut Pool, n, d| pool.divide(n, d).unwrap_or(Expression::ZERO);
+    match function {
+        Function::Exp => whole,
+        Function::Ln => quotient(pool, one, a),
+        Function::Abs => pool.call(Function::Sign, &[a]),
+        Function::Sqrt => {
+            let double = pool.add(whole, whole);
+            quotient(pool, one, double)
         }
-    }
-
-    fn atan2_rule(&self, pool: &mut Pool, y: Expression, x: Expression) -> Expression {
-        let first = pool.multiply(x, self.of(y));
-        let second = pool.multiply(y, self.of(x));
-        let numerator = pool.subtract(first, second);
-        let (xx, yy) = (pool.multiply(x, x), pool.multiply(y, y));
-        let radius = pool.add(xx, yy);
-        pool.divide(numerator, radius).unwrap_or(Expression::ZERO)
-    }
-
-    /// Derivative of a function of one argument with respect to it, in terms of the value `whole` where that is
-    /// cheapest.
-    fn outer(pool: &mut Pool, whole: Expression, function: Function, a: Expression) -> Expression {
-        let one = Expression::ONE;
-        let quotient = |pool: &mut Pool, n, d| pool.divide(n, d).unwrap_or(Expression::ZERO);
-        match function {
-            Function::Exp => whole,
-            Function::Ln => quotient(pool, one, a),
-            Function::Abs => pool.call(Function::Sign, &[a]),
-            Function::Sqrt => {
-                let double = pool.add(whole, whole);
-                quotient(pool, one, double)
-            }
-            Function::Tan => {
-                let square = pool.multiply(whole, whole);
-                pool.add(one, square)
-            }
-            Function::Tanh => {
-                let square = pool.multiply(whole, whole);
-                pool.subtract(one, square)
-            }
-            Function::Asin | Function::Acos => {
-                let square = pool.multiply(a, a);
-                let rest = pool.subtract(one, square);
-                let root = pool.call(Function::Sqrt, &[rest]);
-                quotient(pool, one, root).flipped(function == Function::Acos)
-            }
-            // The derivative of a step is zero wherever it exists; the others are handled by their own rules.
-            Function::Sign
-            | Function::Min
-            | Function::Max
-            | Function::Atan2
-            | Function::SelectLess => Expression::ZERO,
+        Function::Tan => {
+            let square = pool.multiply(whole, whole);
+            pool.add(one, square)
+        }
+        Function::Tanh => {
+            let square = pool.multiply(whole, whole);
+            pool.subtract(one, square)
+        }
+        Function::Asin | Function::Acos => {
+            let square = pool.multiply(a, a);
+            let rest = pool.subtract(one, square);
+            let root = pool.call(Function::Sqrt, &[rest]);
+            quotient(pool, one, root).flipped(function == Function::Acos)
+        }
+        // The derivative of a step is zero wherever it exists; the others are handled by their own rules.
+        Function::Sign | Function::Min | Function::Max | Function::Atan2 | Function::SelectLess => {
+            Expression::ZERO
         }
     }
 }

@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 
 use super::pool::{Expression, Operation, Pool, Symbol};
+use super::walk::Rewritten;
 
 /// Replaces symbols; what it does not know stays.
 #[derive(Default)]
 pub struct Substitution {
     values: HashMap<Symbol, Expression>,
-    known: HashMap<usize, Expression>,
+    known: Rewritten,
 }
 
 impl Substitution {
@@ -33,55 +34,37 @@ impl Substitution {
     /// The expression with every known symbol replaced; none if that divides by zero.
     #[must_use]
     pub fn apply(&mut self, pool: &mut Pool, expression: Expression) -> Option<Expression> {
-        let mut pending = vec![expression.magnitude()];
-        while let Some(&current) = pending.last() {
-            if self.known.contains_key(&current.node()) {
-                pending.pop();
-                continue;
-            }
-            let operation = pool.operation(current).clone();
-            let before = pending.len();
-            let missing = operation
-                .operands()
-                .into_iter()
-                .filter(|part| !self.known.contains_key(&part.node()));
-            pending.extend(missing.map(Expression::magnitude));
-            if pending.len() == before {
-                let replaced = self.rebuild(pool, current, &operation)?;
-                self.known.insert(current.node(), replaced);
-                pending.pop();
-            }
+        let values = &self.values;
+        self.known
+            .rewrite(pool, expression, |pool, known, whole, operation| {
+                rebuild(pool, values, known, whole, operation)
+            })
+    }
+}
+
+fn rebuild(
+    pool: &mut Pool,
+    values: &HashMap<Symbol, Expression>,
+    known: &Rewritten,
+    whole: Expression,
+    operation: &Operation,
+) -> Option<Expression> {
+    Some(match operation {
+        Operation::Constant(_) => whole,
+        Operation::Symbol(symbol) => values.get(symbol).copied().unwrap_or(whole),
+        Operation::Add(a, b) => pool.add(known.of(*a), known.of(*b)),
+        Operation::Multiply(a, b) => pool.multiply(known.of(*a), known.of(*b)),
+        Operation::Divide(a, b) => pool.divide(known.of(*a), known.of(*b))?,
+        Operation::Sine(a) => pool.sine(known.of(*a)),
+        Operation::Cosine(a) => pool.cosine(known.of(*a)),
+        Operation::Call(function, arguments) => {
+            let arguments: Vec<_> = arguments
+                .iter()
+                .map(|argument| known.of(*argument))
+                .collect();
+            pool.call(*function, &arguments)
         }
-        Some(self.of(expression))
-    }
-
-    fn of(&self, expression: Expression) -> Expression {
-        self.known[&expression.node()].flipped(expression.is_negative())
-    }
-
-    fn rebuild(
-        &self,
-        pool: &mut Pool,
-        whole: Expression,
-        operation: &Operation,
-    ) -> Option<Expression> {
-        Some(match operation {
-            Operation::Constant(_) => whole,
-            Operation::Symbol(symbol) => self.get(*symbol).unwrap_or(whole),
-            Operation::Add(a, b) => pool.add(self.of(*a), self.of(*b)),
-            Operation::Multiply(a, b) => pool.multiply(self.of(*a), self.of(*b)),
-            Operation::Divide(a, b) => pool.divide(self.of(*a), self.of(*b))?,
-            Operation::Sine(a) => pool.sine(self.of(*a)),
-            Operation::Cosine(a) => pool.cosine(self.of(*a)),
-            Operation::Call(function, arguments) => {
-                let arguments: Vec<_> = arguments
-                    .iter()
-                    .map(|argument| self.of(*argument))
-                    .collect();
-                pool.call(*function, &arguments)
-            }
-        })
-    }
+    })
 }
 
 /// The symbols that an expression holds, in order of first sight by depth.

@@ -1,0 +1,51 @@
+//! The walk that every rewriting of the graph shares.
+
+use std::collections::HashMap;
+
+use super::pool::{Expression, Operation, Pool};
+
+/// What nodes were rewritten to.
+#[derive(Default)]
+pub(super) struct Rewritten(HashMap<usize, Expression>);
+
+impl Rewritten {
+    /// What an expression was rewritten to, with its sign.
+    pub(super) fn of(&self, expression: Expression) -> Expression {
+        self.0[&expression.node()].flipped(expression.is_negative())
+    }
+
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Rewrites `root` by `rule`, each node once and operands first, with a stack of its own, so that depth is no
+    /// limit; none if the rule has no answer for a node.
+    pub(super) fn rewrite(
+        &mut self,
+        pool: &mut Pool,
+        root: Expression,
+        rule: impl Fn(&mut Pool, &Self, Expression, &Operation) -> Option<Expression>,
+    ) -> Option<Expression> {
+        let mut pending = vec![root.magnitude()];
+        while let Some(&current) = pending.last() {
+            if self.0.contains_key(&current.node()) {
+                pending.pop();
+                continue;
+            }
+            let operation = pool.operation(current).clone();
+            let before = pending.len();
+            let missing = operation
+                .operands()
+                .into_iter()
+                .filter(|part| !self.0.contains_key(&part.node()));
+            pending.extend(missing.map(Expression::magnitude));
+            if pending.len() == before {
+                let rewritten = rule(pool, self, current, &operation)?;
+                self.0.insert(current.node(), rewritten);
+                pending.pop();
+            }
+        }
+        Some(self.of(root))
+    }
+}

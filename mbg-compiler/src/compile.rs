@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use proc_macro2::Span;
+
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Condition, Elaborated, StateRate, Variable};
-use crate::equations::{self, Scalars};
+use crate::equations::{self, Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
 use crate::program::{self, Program};
@@ -71,10 +73,12 @@ pub fn compile(
 ) -> Option<Compiled> {
     let mut pool = Pool::new();
     let mut elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
-    let verdict = drawing::judge(&elaborated.graph, diagnostics)?;
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
-    let solved = solve(&mut elaborated, scalars, &mut pool, diagnostics)?;
+    let first = structure::solve(&scalars, &mut pool);
+    let soluble = !matches!(first, Err(Failure::Singular));
+    let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
+    let solved = solve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
     let (scalars, solution) = (&solved.scalars, &solved.solution);
     let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;
     finish(
@@ -96,14 +100,16 @@ struct Solved {
     momenta: BTreeMap<usize, Expression>,
 }
 
-/// Solves the equations, with an index reduction where storages depend on each other.
+/// The solution of the equations, with an index reduction where storages depend on each other and the `first` attempt
+/// failed.
 fn solve(
     model: &mut Elaborated,
     scalars: Scalars,
+    first: Result<Solution, Failure>,
     pool: &mut Pool,
     diagnostics: &mut Diagnostics,
 ) -> Option<Solved> {
-    match structure::solve(&scalars, pool) {
+    match first {
         Ok(solution) => {
             return Some(Solved {
                 scalars,
@@ -145,14 +151,26 @@ fn report_nonlinear(
     diagnostics: &mut Diagnostics,
 ) {
     let names = listing(structure::block_names(scalars, unknowns));
-    let message = format!(
-        "{} variables depend on each other nonlinearly",
-        unknowns.len()
-    );
-    let report = error(codes::NONLINEAR_LOOP, model.name.span(), message);
+    let message = match unknowns.len() {
+        1 => "a variable depends on itself nonlinearly".to_owned(),
+        count => format!("{count} variables depend on each other nonlinearly"),
+    };
+    let span = nonlinear_law(model, scalars, unknowns);
+    let report = error(codes::NONLINEAR_LOOP, span, message);
     diagnostics.report(report.note(format!("the loop runs through {names}")).help(
-        "put a storage into the loop, or give the law so that it can be used in this direction",
+        "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
+         `C spring { stiffness: … }` at a 0-junction",
     ));
+}
+
+/// Where the law stands in which unknowns of a loop enter nonlinearly.
+fn nonlinear_law(model: &Elaborated, scalars: &Scalars, unknowns: &[usize]) -> Span {
+    let graph = &model.graph;
+    let nonlinear = |equation: &&Equation| equation.signals.iter().any(|it| unknowns.contains(it));
+    match scalars.equations.iter().find(nonlinear).map(|it| it.owner) {
+        Some(Owner::Element(id, _)) => graph.origins.span(graph.elements[id.0].origin),
+        _ => model.name.span(),
+    }
 }
 
 /// What the functions of the model return.
@@ -424,7 +442,7 @@ fn finish(
 }
 
 /// An expression with the model's names.
-fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
+pub(crate) fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
     let name = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => model.parameters[index].name.to_string(),
         Symbol::State(index) => model.states[index].variable.name.clone(),

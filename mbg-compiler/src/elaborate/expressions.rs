@@ -24,6 +24,9 @@ pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 pub trait Names {
     /// The value of a dotted path such as `spring.q`; none if the name is unknown.
     fn value(&mut self, pool: &mut Pool, path: &[Ident]) -> Option<Result<Value>>;
+
+    /// Every plain name.
+    fn all(&self) -> Vec<&str>;
 }
 
 impl Value {
@@ -208,11 +211,13 @@ impl<N: Names> Evaluator<'_, N> {
         let name = members
             .last()
             .map_or_else(|| expression.span(), Ident::span);
-        Err(Box::new(error(
+        let report = error(
             codes::UNKNOWN_NAME,
             name,
             format!("`{text}` is not declared"),
-        )))
+        );
+        let known = self.names.all();
+        Err(Box::new(report.did_you_mean(&text, &known)))
     }
 
     fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
@@ -472,10 +477,11 @@ impl<N: Names> Evaluator<'_, N> {
             Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => {
                 match self.pool.power(base, value as i32) {
                     Some(power) => Ok(Value::Scalar(power)),
-                    None => fail(
+                    None => Err(Box::new(error(
+                        codes::NOT_FINITE,
                         arguments[0].span(),
                         "this divides by zero, whatever the state",
-                    ),
+                    ))),
                 }
             }
             _ => fail(

@@ -284,6 +284,15 @@ impl<'a> Builder<'a> {
         let unit = output.unit.as_ref().map_or("", |unit| unit.text.as_str());
         let path = self.path(scope, &output.name);
         let variables = component_names(&path, output.dimension, unit);
+        let mut known = self.outputs.iter().map(|known| &known.variable.name);
+        if known.any(|known| variables.iter().any(|variable| variable.name == *known)) {
+            let message = format!("output `{}` is declared twice", output.name);
+            return Err(Box::new(error(
+                codes::DUPLICATE_NAME,
+                output.name.span(),
+                message,
+            )));
+        }
         self.outputs.extend(
             variables
                 .into_iter()
@@ -324,7 +333,7 @@ fn law_field<'e>(
     for field in &element.fields {
         let word = field.name.to_string();
         if !words.contains(&word.as_str()) && !others.contains(&word.as_str()) {
-            let message = format!("a {:?} does not know `{word}`", element.kind);
+            let message = format!("`{:?}` does not know `{word}`", element.kind);
             let known: Vec<String> = words
                 .iter()
                 .chain(others)
@@ -358,11 +367,11 @@ fn law_field<'e>(
                 "`{}` has two laws, `{}` and `{}`",
                 element.name, first.name, second.name
             );
-            Err(Box::new(error(
-                codes::TWO_LAWS,
-                second.name.span(),
-                message,
-            )))
+            let report = error(codes::TWO_LAWS, second.name.span(), message);
+            Err(Box::new(report.help(format!(
+                "remove `{}` or `{}`",
+                first.name, second.name
+            ))))
         }
     }
 }

@@ -51,7 +51,7 @@ pub fn elaborate(
     builder.declare(0, &model.statements);
     builder.declare_integrals();
     builder.resolve_laws();
-    builder.check();
+    builder.check(model.name.span());
     (builder.diagnostics.list().len() == before).then(|| builder.finish(model))
 }
 
@@ -524,11 +524,11 @@ impl<'a> Builder<'a> {
                     component = expressions::component_index(name);
                     continue;
                 }
-                Some(_) => return self.unknown(reference),
+                Some(_) => return self.unknown(current, reference),
             }
             found = self.scopes[current].names.get(&name.to_string()).cloned();
             if found.is_none() {
-                return self.unknown(reference);
+                return self.unknown(current, reference);
             }
         }
         match found? {
@@ -575,19 +575,23 @@ impl<'a> Builder<'a> {
         Some((End::Junction(id, shifted), size))
     }
 
-    fn unknown<T>(&mut self, reference: &Reference) -> Option<T> {
+    /// Reports a name that this scope does not know.
+    fn unknown<T>(&mut self, scope: usize, reference: &Reference) -> Option<T> {
         let message = format!("`{}` is not declared", text(reference));
-        let names: Vec<String> = self.scopes[0]
-            .names
+        let names = &self.scopes[scope].names;
+        let junctions: Vec<String> = names
             .iter()
             .filter(|(_, entity)| matches!(entity, Entity::Junction(..)))
             .map(|(name, _)| name.clone())
             .collect();
-        let mut report = error(codes::UNKNOWN_NAME, reference.span, message);
-        if !names.is_empty() {
+        let known: Vec<&str> = names.keys().map(String::as_str).collect();
+        let last = reference.path.last().map(ToString::to_string);
+        let mut report = error(codes::UNKNOWN_NAME, reference.span, message)
+            .did_you_mean(&last.unwrap_or_default(), &known);
+        if report.helps.is_empty() && !junctions.is_empty() {
             report = report.help(format!(
                 "junctions here are {}",
-                crate::diagnostics::listing(names)
+                crate::diagnostics::listing(junctions)
             ));
         }
         self.diagnostics.report(report);
@@ -598,8 +602,10 @@ impl<'a> Builder<'a> {
         let components = self.components;
         let Some(component) = components.get(&instance.component.to_string()) else {
             let message = format!("component `{}` is not declared", instance.component);
+            let known: Vec<&str> = components.keys().map(String::as_str).collect();
+            let report = error(codes::UNKNOWN_NAME, instance.component.span(), message);
             self.diagnostics
-                .error(codes::UNKNOWN_NAME, instance.component.span(), message);
+                .report(report.did_you_mean(&instance.component.to_string(), &known));
             self.name(scope, &instance.name, Entity::Opaque);
             return;
         };

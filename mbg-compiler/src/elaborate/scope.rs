@@ -6,7 +6,10 @@ use std::ops::Range;
 use proc_macro2::Ident;
 
 use super::expressions::{Names, Result, Value, fail};
+use super::is_two_port;
 use super::model::{Place, Quantity, Signals};
+use crate::codes;
+use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Pool, Symbol};
 
@@ -91,7 +94,15 @@ impl Names for Lookup<'_> {
         }
         None
     }
+
+    fn all(&self) -> Vec<&str> {
+        let names = &self.scopes[self.scope].names;
+        names.keys().map(String::as_str).collect()
+    }
 }
+
+/// Why `e` and `f` of a two-port mean nothing.
+const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
 
 impl Lookup<'_> {
     fn plain(&self, pool: &mut Pool, entity: &Entity, name: &Ident) -> Result<Value> {
@@ -119,6 +130,7 @@ impl Lookup<'_> {
         match name.to_string().as_str() {
             "q" if kind == ElementKind::C => Ok(states(pool, &own.states, components)),
             "p" if kind == ElementKind::I => Ok(states(pool, &own.states, components)),
+            "e" | "f" if is_two_port(kind) => fail(name.span(), TWO_PORT_VARIABLE),
             "e" => Ok(self.signals(pool, Quantity::Effort, Place::Port(own.element), components)),
             "f" => Ok(self.signals(pool, Quantity::Flow, Place::Port(own.element), components)),
             _ => fail(name.span(), format!("a {kind:?} has no `{name}`")),
@@ -137,13 +149,7 @@ impl Lookup<'_> {
             ("q", ElementKind::C) | ("p", ElementKind::I) => {
                 Some(Ok(states(pool, &range, 0..dimension)))
             }
-            (
-                "e" | "f",
-                ElementKind::TF | ElementKind::MTF | ElementKind::GY | ElementKind::MGY,
-            ) => Some(fail(
-                name.span(),
-                "a two-port has two efforts and two flows; read them at a junction",
-            )),
+            ("e" | "f", kind) if is_two_port(kind) => Some(fail(name.span(), TWO_PORT_VARIABLE)),
             ("e", _) => Some(Ok(self.signals(
                 pool,
                 Quantity::Effort,
@@ -156,7 +162,14 @@ impl Lookup<'_> {
                 Place::Port(id),
                 0..dimension,
             ))),
-            _ => None,
+            _ => {
+                let known = match kind {
+                    ElementKind::I => "`p`, `e` and `f`",
+                    ElementKind::C => "`q`, `e` and `f`",
+                    _ => "`e` and `f`",
+                };
+                Some(no_variable(&self.graph.elements[id.0].name, name, known))
+            }
         }
     }
 
@@ -188,7 +201,13 @@ impl Lookup<'_> {
                 name.span(),
                 "a 0-junction has no common flow; read it at an element",
             )),
-            _ => None,
+            (_, kind) => {
+                let known = match kind {
+                    JunctionKind::Zero => "`e`",
+                    JunctionKind::One => "`f`",
+                };
+                Some(no_variable(&self.graph.junctions[id.0].name, name, known))
+            }
         }
     }
 
@@ -204,6 +223,12 @@ impl Lookup<'_> {
             .collect();
         symbols(pool, numbers.into_iter().map(Symbol::Signal))
     }
+}
+
+/// A variable that the element or junction does not have.
+fn no_variable<T>(owner: &str, name: &Ident, known: &str) -> Result<T> {
+    let message = format!("`{owner}` has no `{name}`, it has {known}");
+    Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)))
 }
 
 fn states(pool: &mut Pool, range: &Range<usize>, components: Range<usize>) -> Value {

@@ -308,8 +308,9 @@ impl<'a> Selector<'a> {
         } else {
             format!("{count} components")
         };
+        let follow = if count == 1 { "follows" } else { "follow" };
         let message = format!(
-            "storage `{}` depends on others: {components} of its {} follow from {}",
+            "storage `{}` depends on others: {components} of its {} {follow} from {}",
             element.name,
             imposed(element.kind),
             self.names(id, causes),

@@ -20,7 +20,7 @@ mod items;
 mod recovery;
 mod statements;
 mod units;
-mod words;
+pub(crate) mod words;
 
 pub use dump::dump;
 

@@ -40,15 +40,16 @@ impl System {
         }
     }
 
-    /// Eliminates, among the rows and columns given, whatever a constant pivot can: the one that fills in least first
-    /// (Markowitz 1957). Gives the rows and columns that are left of them.
+    /// Eliminates, among the rows and columns given, whatever an admitted constant pivot can: the one that fills in
+    /// least first (Markowitz 1957). Gives the rows and columns that are left of them.
     pub(super) fn eliminate_constants(
         &mut self,
         pool: &mut Pool,
         mut rows: BTreeSet<usize>,
         mut columns: BTreeSet<usize>,
+        admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Result<(BTreeSet<usize>, BTreeSet<usize>), Vanished> {
-        while let Some((row, column)) = self.constant_pivot(pool, &rows, &columns) {
+        while let Some((row, column)) = self.constant_pivot(pool, &rows, &columns, admitted) {
             self.eliminate(pool, row, column)?;
             rows.remove(&row);
             columns.remove(&column);
@@ -61,6 +62,7 @@ impl System {
         pool: &Pool,
         rows: &BTreeSet<usize>,
         columns: &BTreeSet<usize>,
+        admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
         rows.iter()
             .flat_map(|row| {
@@ -71,6 +73,7 @@ impl System {
             .filter(|(_, column, value)| {
                 columns.contains(column) && pool.rate(*value) == Rate::Constant
             })
+            .filter(|(row, column, _)| admitted(*row, *column))
             .map(|(row, column, _)| (row, column))
             .min_by_key(|(row, column)| {
                 let (across, down) = (self.rows[*row].len() - 1, self.columns[*column].len() - 1);

@@ -171,25 +171,6 @@ impl Solver<'_> {
             let (rows, mut columns) =
                 system.eliminate_constants(self.pool, rows, columns, &admitted)?;
             columns.extend(held);
-                eprintln!(
-                    "level {level} block {} leftover {} {} held {:?} open {} fill {:?} cols {:?}",
-                    unknowns.len(),
-                    rows.len(),
-                    columns.len(),
-                    held.map(|h| scalars.names[unknowns[h]].clone()),
-                    system.open_rows.len(),
-                    rows.iter()
-                        .map(|r| system.rows[*r]
-                            .keys()
-                            .map(|k| scalars.names[unknowns[*k]].clone())
-                            .collect::<Vec<_>>())
-                        .collect::<Vec<_>>(),
-                    columns
-                        .iter()
-                        .map(|c| &scalars.names[unknowns[*c]])
-                        .collect::<Vec<_>>()
-                );
-            }
             if let (Some(row), Some(column), 1, 1) =
                 (rows.first(), columns.first(), rows.len(), columns.len())
                 && system.entry(*row, *column) != Expression::ZERO

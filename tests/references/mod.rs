@@ -1,0 +1,12 @@
+//! Models written from first principles, independent of the compiler: what it generates is compared with them.
+//!
+//! A test file includes this tree with `#[path = "references/mod.rs"] mod references;`.
+#![allow(dead_code, clippy::unwrap_used)]
+
+pub(crate) mod cart;
+pub(crate) mod chain;
+pub(crate) mod crane;
+pub(crate) mod dense;
+pub(crate) mod double_pendulum;
+pub(crate) mod flywheels;
+pub(crate) mod integrate;

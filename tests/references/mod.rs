@@ -3,10 +3,13 @@
 //! A test file includes this tree with `#[path = "references/mod.rs"] mod references;`.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub(crate) mod andrews;
 pub(crate) mod cart;
 pub(crate) mod chain;
 pub(crate) mod crane;
 pub(crate) mod dense;
 pub(crate) mod double_pendulum;
 pub(crate) mod flywheels;
+pub(crate) mod four_bar;
 pub(crate) mod integrate;
+pub(crate) mod planar;

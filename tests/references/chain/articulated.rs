@@ -231,12 +231,12 @@ impl<T: Scalar> Inertia<T> {
             }
             force.angular[i] = force.angular[i] + column[i] * free;
         }
-        for i in 0..3 {
+        for (i, element) in row.into_iter().enumerate() {
             for j in 0..=i {
-                self.linear[i][j] = self.linear[i][j] - row[i] * resisting.linear[j];
+                self.linear[i][j] = self.linear[i][j] - element * resisting.linear[j];
             }
             self.angular[i.max(k)][i.min(k)] = zero;
-            force.linear[i] = force.linear[i] + row[i] * free;
+            force.linear[i] = force.linear[i] + element * free;
         }
         self.coupling[k] = [zero; 3];
         force.angular[k] = driving;
@@ -253,7 +253,7 @@ impl<T: Scalar> Inertia<T> {
         let length = T::constant(length);
         let before = self.coupling;
         let m = |i: usize, j: usize| self.linear[i.max(j)][i.min(j)];
-        for j in 0..3 {
+        for j in [0, 1, 2] {
             self.coupling[0][j] = before[0][j] + length * m(1, j);
             self.coupling[1][j] = before[1][j] - length * m(0, j);
         }

@@ -61,6 +61,26 @@ fn midpoint<const N: usize>(
     here
 }
 
+/// The same by the classical method of Runge and Kutta, of order 4: for stiff problems, where extrapolation is unstable.
+pub(crate) fn runge_kutta<const N: usize>(
+    mut derivative: impl FnMut(f64, &[f64; N]) -> [f64; N],
+    (start, end): (f64, f64),
+    steps: usize,
+    mut x: [f64; N],
+) -> [f64; N] {
+    let h = (end - start) / steps as f64;
+    for step in 0..steps {
+        let t = start + h * step as f64;
+        let advance = |h: f64, slope: &[f64; N]| std::array::from_fn(|i| x[i] + h * slope[i]);
+        let k1 = derivative(t, &x);
+        let k2 = derivative(t + 0.5 * h, &advance(0.5 * h, &k1));
+        let k3 = derivative(t + 0.5 * h, &advance(0.5 * h, &k2));
+        let k4 = derivative(t + h, &advance(h, &k3));
+        x = std::array::from_fn(|i| x[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
+    }
+    x
+}
+
 #[test]
 fn oscillation() {
     let [x, v] = integrate(|_, [x, v]| [*v, -x], (0.0, 10.0), 20, [1.0, 0.0]);

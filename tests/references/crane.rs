@@ -43,3 +43,18 @@ impl Crane {
             - self.load * self.gravity * self.cable * cosine
     }
 }
+
+#[test]
+fn force_does_the_work() {
+    let crane = Crane {
+        trolley: 3.0,
+        load: 1.2,
+        cable: 2.0,
+        gravity: 9.81,
+    };
+    let start = [0.0, 0.8, -0.5, 1.0];
+    let end = super::integrate::integrate(|_, x| crane.derivative(x, 4.0), (0.0, 3.0), 60, start);
+    let work = 4.0 * (end[0] - start[0]);
+    let gained = crane.energy(&end) - crane.energy(&start);
+    assert!((gained - work).abs() < 1e-11, "{gained} {work}");
+}

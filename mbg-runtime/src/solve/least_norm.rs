@@ -134,8 +134,10 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
             for i in k + 1..K {
                 column[i] = kept * self.lower[i][k] / root;
                 self.lower[i][k] = column[i];
-                for j in k + 1..=i {
-                    self.lower[i][j] -= column[i] * column[j];
+                let factor = column[i];
+                let row = self.lower[i][k + 1..=i].iter_mut();
+                for (element, other) in row.zip(&column[k + 1..=i]) {
+                    *element -= factor * *other;
                 }
             }
         }
@@ -143,8 +145,10 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
 
     /// Exchanges rows and columns so that the largest remaining diagonal element is number `k`.
     fn bring_largest(&mut self, k: usize) {
+        let top = (k..K).fold(self.lower[k][k], |top, i| top.max(self.lower[i][i]));
         for i in k + 1..K {
-            let sizes = (self.lower[k][k], self.lower[i][i]);
+            let (here, there) = (self.lower[k][k], self.lower[i][i]);
+            let sizes = (here, there.select_less(top, here, there));
             if everywhere(sizes.0 - sizes.1, |difference| difference >= 0.0) {
                 continue;
             }

@@ -26,11 +26,11 @@ pub(crate) const MASS: [f64; 7] = [
 pub(crate) const INERTIA: [f64; 7] = [
     2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5,
 ];
-/// Fixed points in m.
+/// Where bodies 4 to 7 hang on the ground, in m.
 pub(crate) const A: [f64; 2] = [-0.06934, -0.00227];
-/// Fixed points in m.
+/// Where the third body hangs on the ground, in m.
 pub(crate) const B: [f64; 2] = [-0.03635, 0.03273];
-/// Fixed points in m.
+/// Where the spring hangs on the ground, in m.
 pub(crate) const C: [f64; 2] = [0.014, 0.072];
 /// Lengths in m, named as in the problem.
 pub(crate) const D: f64 = 28e-3;

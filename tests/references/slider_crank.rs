@@ -18,7 +18,7 @@
 //! | 0.24076 | 0.25179 | 0.26101 | 0.27900 |
 //!
 //! Taken here: centres of mass in the middle of the links, the small inertias along them, the universal joint's fixed
-//! axis along the slide. That gives 0.24076 at 5 s.
+//! axis along the slide. That gives 0.24072 at 5 s and stays within 4.3e-5 m of the run of Gonzalez.
 //!
 //! # Reference
 //!
@@ -129,7 +129,10 @@ mod tests {
         ] {
             worst = worst.max((slider(angle(t)) - expected).abs());
         }
-        println!("slider-crank against Gonzalez: {worst:e} m");
+        println!(
+            "slider-crank: {} m at the end, against Gonzalez {worst:e} m",
+            slider(angle(DURATION))
+        );
         assert!(worst < 1e-4, "{worst:e}");
     }
 

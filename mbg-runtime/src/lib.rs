@@ -12,6 +12,7 @@ mod meta;
 mod polynomial;
 mod real;
 mod scalar;
+pub mod solve;
 mod step;
 mod system;
 

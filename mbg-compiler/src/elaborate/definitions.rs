@@ -39,6 +39,15 @@ pub(super) enum Progress {
     Failed,
 }
 
+/// Why an expression has no value yet.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Missing {
+    /// It needs a definition that has not been read.
+    Definition(usize),
+    /// It needs something that is broken, which has been told.
+    Broken,
+}
+
 /// All of them by number.
 pub(super) type Definitions<'a> = Vec<Definition<'a>>;
 
@@ -71,7 +80,7 @@ impl<'a> Builder<'a> {
         loop {
             let result = attempt(self);
             match self.missing.take() {
-                Some(missing) if self.define(missing) => {}
+                Some(Missing::Definition(missing)) if self.define(missing) => {}
                 // The reason has been told where it lies.
                 Some(_) => return,
                 None => {
@@ -98,11 +107,12 @@ impl<'a> Builder<'a> {
             }
             let result = self.read(current);
             match (self.missing.take(), result) {
-                (Some(needed), _) if open.contains(&needed) => {
+                (Some(Missing::Definition(needed)), _) if open.contains(&needed) => {
                     self.report_cycle(&open, needed);
                     break;
                 }
-                (Some(needed), _) => open.push(needed),
+                (Some(Missing::Definition(needed)), _) => open.push(needed),
+                (Some(Missing::Broken), _) => break,
                 (None, Ok(value)) => self.definitions[current].progress = Progress::Known(value),
                 (None, Err(report)) => {
                     self.tell(self.definitions[current].scope, *report);

@@ -474,9 +474,31 @@ impl<N: Names> Evaluator<'_, N> {
                     &entries?,
                 )))))
             }
+            "skew" => {
+                count(1)?;
+                let [x, y, z] = self.triple(&arguments[0])?;
+                let zero = Expression::ZERO;
+                let rows = [
+                    zero,
+                    z.negated(),
+                    y,
+                    z,
+                    zero,
+                    x.negated(),
+                    y.negated(),
+                    x,
+                    zero,
+                ];
+                let matrix = Matrix::new(3, 3, rows.to_vec());
+                Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+            }
             "jacobian_xyz" => {
                 count(1)?;
-                self.jacobian(&arguments[0])
+                let factor = Factor::GimbalJacobian {
+                    angles: self.triple(&arguments[0])?,
+                    transposed: false,
+                };
+                Ok(Value::Matrix(Product::of(factor)))
             }
             _ => self.elementary(name, arguments),
         }
@@ -494,7 +516,7 @@ impl<N: Names> Evaluator<'_, N> {
             );
             return Err(Box::new(report.help(
                 "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
-                 diag, transpose, rot_x, rot_y, rot_z, jacobian_xyz",
+                 diag, transpose, skew, rot_x, rot_y, rot_z, jacobian_xyz",
             )));
         };
         if arguments.len() != function.arity() {
@@ -530,17 +552,14 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    fn jacobian(&mut self, argument: &Expr) -> Result<Value> {
+    fn triple(&mut self, argument: &Expr) -> Result<[Expression; 3]> {
         let value = self.evaluate(argument)?;
         let shape = value.shape();
         match value.entries(self.pool).as_deref() {
-            Some(&[a, b, c]) => Ok(Value::Matrix(Product::of(Factor::GimbalJacobian {
-                angles: [a, b, c],
-                transposed: false,
-            }))),
+            Some(&[a, b, c]) => Ok([a, b, c]),
             _ => mismatch(
                 argument.span(),
-                format!("expected a vector of 3 angles, found {shape}"),
+                format!("expected a vector of 3, found {shape}"),
             ),
         }
     }

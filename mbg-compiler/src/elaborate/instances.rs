@@ -123,7 +123,13 @@ impl<'a> Builder<'a> {
     fn unknown_component(&mut self, scope: usize, name: &Ident) {
         let message = format!("component `{name}` is not declared");
         let report = error(codes::UNKNOWN_NAME, name.span(), message);
-        let library = listing(library::names().map(str::to_owned));
-        self.tell(scope, report.help(format!("the library has {library}")));
+        let help = match library::nearest(&name.to_string()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!(
+                "the library has {}",
+                listing(library::names().map(str::to_owned))
+            ),
+        };
+        self.tell(scope, report.help(help));
     }
 }

@@ -32,7 +32,7 @@ pub use model::{
 };
 pub use size::LIMIT;
 
-use self::definitions::Definitions;
+use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use self::wholes::Wholes;
@@ -144,7 +144,7 @@ struct Builder<'a> {
     scopes: Scopes,
     definitions: Definitions<'a>,
     /// What the law just read could not be read without.
-    missing: Option<usize>,
+    missing: Option<Missing>,
     graph: BondGraph,
     /// States and dimension by element.
     ports: Vec<(Range<usize>, usize)>,

@@ -6,7 +6,7 @@ use std::ops::Range;
 use proc_macro2::{Ident, Span};
 use syn::Expr;
 
-use super::definitions::{Definitions, Progress};
+use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Place, Quantity, Signals};
 use super::wholes::Wholes;
@@ -169,8 +169,8 @@ pub(super) struct Lookup<'a, 'm> {
     /// States and dimension of one-ports by element.
     pub(super) ports: &'a [(Range<usize>, usize)],
     pub(super) definitions: &'a Definitions<'m>,
-    /// Set to a definition that must be known before the law can be read.
-    pub(super) missing: &'a mut Option<usize>,
+    /// Set where the law cannot be read, at least not yet.
+    pub(super) missing: &'a mut Option<Missing>,
     pub(super) signals: &'a mut Signals,
     pub(super) own: Option<Own>,
 }
@@ -197,6 +197,10 @@ impl Names for Lookup<'_, '_> {
             return None;
         }
         match (entity, rest) {
+            (Entity::Opaque, _) => {
+                *self.missing = Some(Missing::Broken);
+                Some(fail(last.name.span(), "this is broken"))
+            }
             (Entity::Element(id), [variable]) => self.element_variable(pool, *id, &variable.name),
             (Entity::Junction(id, range), [variable]) => {
                 self.junction_variable(pool, *id, range.clone(), &variable.name)
@@ -218,7 +222,7 @@ impl Lookup<'_, '_> {
             Entity::Definition(id) => match &self.definitions[*id].progress {
                 Progress::Known(value) => Ok(value.clone()),
                 _ => {
-                    *self.missing = Some(*id);
+                    *self.missing = Some(Missing::Definition(*id));
                     fail(name.span(), format!("`{name}` has no value here"))
                 }
             },

@@ -12,8 +12,8 @@ mod reference;
 use std::error::Error;
 use std::time::Instant;
 
-use mbg_runtime::{DormandPrince, Pulse, Rk4, Statistics, Stopped, System};
-use models::{Ins, InsParameters};
+use mbg_runtime::{DormandPrince, Rk4, Statistics, Stopped, System};
+use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
 use plotters::prelude::*;
 
@@ -74,11 +74,7 @@ fn measure(
 
 fn main() -> Result<(), Box<dyn Error>> {
     let model = Ins::new(InsParameters::default())?;
-    let gust = Pulse {
-        amplitude: SVector::from([5000.0, 1000.0, 10000.0]),
-        start: 1.0,
-        end: 1.1,
-    };
+    let gust = gust(0.1);
     let start = model.initial_state();
     let times: Vec<f64> = reference::PULSE
         .iter()

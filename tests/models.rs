@@ -1,5 +1,8 @@
 //! The macro used for real: behaviour against references, closed forms and identities.
 
+#[path = "../examples/dc_motor/model.rs"]
+#[allow(unreachable_pub)]
+mod dc_motor;
 #[path = "../examples/ins/models.rs"]
 #[allow(unreachable_pub)]
 mod ins;
@@ -13,5 +16,7 @@ mod run;
 #[allow(clippy::unwrap_used)]
 mod models {
     mod behaviour;
+    mod energy;
     mod navigation;
+    mod parameters;
 }

@@ -11,37 +11,41 @@ mod run;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use mbg_runtime::{Meta, System};
 use models::{
     Ins, InsClassic, InsClassicObserved, InsClassicObservedParameters, InsObserved,
-    InsObservedParameters,
+    InsObservedParameters, gust,
 };
-use plots::Curve;
-use run::{Sample, errors};
+use plots::{Curve, Style};
+use run::{Method, Sample, errors};
 
 const HELP: &str = "\
 usage: cargo run --release --example ins -- [options]
 
-  --pulse SECONDS   width of the gust            (0.1)
-  --step SECONDS    step of the integrator       (1e-3)
-  --method NAME     rk4                          (rk4)
-  --out DIR         where CSV and figures go     (out/ins)
+  --pulse SECONDS     width of the gust; there is a reference for 0.1 and for 1   (0.1)
+  --method NAME       rk4: steps of constant length                               (rk4)
+                      dp54: the adaptive pair of Dormand and Prince
+  --step SECONDS      rk4: length of a step; dp54: time between two samples       (1e-3)
+  --tolerance NUMBER  dp54: relative error of a step                              (1e-10)
+  --out DIR           where CSV and figures go                                    (out/ins)
+  --help              this text
 
-example: cargo run --release --example ins -- --pulse 1 --step 2e-3 --out out/hard";
+examples:
+  cargo run --release --example ins -- --pulse 1 --step 2e-3 --out out/hard
+  cargo run --release --example ins -- --method dp54 --tolerance 1e-8 --step 1e-2";
 
 struct Options {
     pulse: f64,
+    method: Method,
     step: f64,
     out: PathBuf,
 }
 
 fn options() -> Result<Options, Box<dyn Error>> {
-    let mut options = Options {
-        pulse: 0.1,
-        step: 1e-3,
-        out: PathBuf::from("out/ins"),
-    };
+    let (mut pulse, mut step, mut tolerance) = (0.1, 1e-3, None);
+    let (mut method, mut out) = ("rk4".to_owned(), PathBuf::from("out/ins"));
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         if word == "--help" {
@@ -52,23 +56,52 @@ fn options() -> Result<Options, Box<dyn Error>> {
             .next()
             .ok_or_else(|| format!("{word} needs a value\n\n{HELP}"))?;
         match word.as_str() {
-            "--pulse" => options.pulse = value.parse()?,
-            "--step" => options.step = value.parse()?,
-            "--method" if value == "rk4" => {}
-            "--method" => return Err(format!("method `{value}` is not known\n\n{HELP}").into()),
-            "--out" => options.out = value.into(),
+            "--pulse" => pulse = number(&word, &value)?,
+            "--step" => step = number(&word, &value)?,
+            "--tolerance" => tolerance = Some(number(&word, &value)?),
+            "--method" => method = value,
+            "--out" => out = value.into(),
             _ => return Err(format!("option `{word}` is not known\n\n{HELP}").into()),
         }
     }
-    Ok(options)
+    let method = match (method.as_str(), tolerance) {
+        ("rk4", None) => Method::Rk4,
+        ("rk4", Some(_)) => return Err("--tolerance goes with --method dp54".into()),
+        ("dp54", tolerance) => Method::DormandPrince(tolerance.unwrap_or(1e-10)),
+        _ => return Err(format!("method `{method}` is not known\n\n{HELP}").into()),
+    };
+    Ok(Options {
+        pulse,
+        method,
+        step,
+        out,
+    })
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn number(option: &str, text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        _ => Err(format!("{option} takes a number above 0, not `{text}`")),
+    }
+}
+
+fn main() -> ExitCode {
+    match simulate() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn simulate() -> Result<(), Box<dyn Error>> {
     let options = options()?;
     let proposed = InsObserved::new(InsObservedParameters::default())?;
     let classic = InsClassicObserved::new(InsClassicObservedParameters::default())?;
-    let proposed = run::run(&proposed, options.pulse, options.step, 20.0)?;
-    let classic = run::run(&classic, options.pulse, options.step, 20.0)?;
+    let wind = gust(options.pulse);
+    let proposed = run::run(&proposed, options.method, &wind, options.step, 20.0)?;
+    let classic = run::run(&classic, options.method, &wind, options.step, 20.0)?;
     print_programs();
     print_errors(&options, &proposed, &classic);
     std::fs::create_dir_all(&options.out)?;
@@ -98,8 +131,9 @@ fn print_programs() {
         meta.dependent.len().to_string()
     });
     println!(
-        "singular where                    {} = 0",
-        proposed.conditioning.join(" or ")
+        "{:<24}{:>34}",
+        "singular where",
+        format!("{} = 0", proposed.conditioning.join(" or "))
     );
 }
 
@@ -115,10 +149,11 @@ fn print_errors(options: &Options, proposed: &[Sample], classic: &[Sample]) {
         );
         return;
     };
-    println!(
-        "\nlargest error from 0 to 20 s, relative to the largest value; rk4, h = {} s",
-        options.step
-    );
+    let method = match options.method {
+        Method::Rk4 => format!("rk4, h = {} s", options.step),
+        Method::DormandPrince(tolerance) => format!("dp54, tolerance {tolerance:e}"),
+    };
+    println!("\nlargest error from 0 to 20 s, relative to the largest value; {method}");
     println!("{:<34}{:>12}{:>12}", "quantity", "Fig. 13", "Fig. 12");
     for ((name, first), (_, second)) in errors(proposed, reference)
         .into_iter()
@@ -162,48 +197,33 @@ fn draw_figures(out: &Path, proposed: &[Sample], classic: &[Sample]) -> Result<(
     let mut figure10 = Vec::new();
     let mut figure11 = Vec::new();
     for (axis, name) in names.into_iter().enumerate() {
-        let curve = |name: String, samples, value: Box<dyn Fn(&Sample) -> f64>, dashed| Curve {
+        let curve = |name: String, samples, value: Box<dyn Fn(&Sample) -> f64>, style| Curve {
             name,
             samples,
             value,
             color: axis,
-            dashed,
+            style,
         };
-        figure10.push(curve(
-            format!("{name}, eq. (16), Fig. 13"),
-            proposed,
-            Box::new(move |s| s.output[13 + axis]),
-            false,
-        ));
-        figure10.push(curve(
-            format!("{name}, eq. (16), Fig. 12"),
-            classic,
-            Box::new(move |s| s.output[13 + axis]),
-            false,
-        ));
+        for (figure, samples, style) in [
+            ("Fig. 13", proposed, Style::Line),
+            ("Fig. 12", classic, Style::Rings),
+        ] {
+            let estimate = Box::new(move |s: &Sample| s.output[13 + axis]);
+            figure10.push(curve(format!("{name}, {figure}"), samples, estimate, style));
+            let deviation = Box::new(move |s: &Sample| s.beta[axis]);
+            let label = format!("β{}, {figure}", ["₁", "₂", "₃"][axis]);
+            figure11.push(curve(label, samples, deviation, style));
+        }
         figure10.push(curve(
             format!("{name}, Euler angle"),
             proposed,
             Box::new(move |s| s.euler[axis]),
-            true,
-        ));
-        let label = format!("beta {}", axis + 1);
-        figure11.push(curve(
-            format!("{label}, Fig. 13"),
-            proposed,
-            Box::new(move |s| s.beta[axis]),
-            false,
-        ));
-        figure11.push(curve(
-            format!("{label}, Fig. 12"),
-            classic,
-            Box::new(move |s| s.beta[axis]),
-            true,
+            Style::Dashes,
         ));
     }
     plots::draw(
         &out.join("figure10.svg"),
-        "Rotorcraft orientation, both architectures",
+        "Rotorcraft orientation by eq. (16), both architectures",
         "angle in rad",
         1.0,
         &figure10,

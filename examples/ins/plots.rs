@@ -17,8 +17,19 @@ pub(crate) struct Curve<'a> {
     pub value: Box<dyn Fn(&Sample) -> f64>,
     /// Colour by number.
     pub color: usize,
-    /// Dashes instead of a line.
-    pub dashed: bool,
+    /// How it is drawn.
+    pub style: Style,
+}
+
+/// How a curve is drawn, such that one is seen on top of another.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Style {
+    /// A line.
+    Line,
+    /// A line with gaps.
+    Dashes,
+    /// A ring at every twentieth of the time.
+    Rings,
 }
 
 /// Three colours that stay apart for colour-blind readers and in grey.
@@ -40,7 +51,8 @@ pub(crate) fn draw(
     curves: &[Curve],
 ) -> Result<(), Box<dyn Error>> {
     let points = |curve: &Curve| -> Vec<(f64, f64)> {
-        let stride = (curve.samples.len() / 800).max(1);
+        let shown = if curve.style == Style::Rings { 20 } else { 800 };
+        let stride = (curve.samples.len() / shown).max(1);
         curve
             .samples
             .iter()
@@ -55,9 +67,11 @@ pub(crate) fn draw(
     });
     let end = data.iter().flatten().map(|(t, _)| *t).fold(0.0, f64::max);
     let margin = 0.05 * (high - low).max(f64::MIN_POSITIVE);
-    let root = SVGBackend::new(path, (860, 480)).into_drawing_area();
+    let root = SVGBackend::new(path, (950, 480)).into_drawing_area();
     root.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(&root)
+    // The legend stands beside the curves, where it covers none.
+    let (plot, legend) = root.split_horizontally(790);
+    let mut chart = ChartBuilder::on(&plot)
         .caption(title, ("sans-serif", 20))
         .margin(14)
         .x_label_area_size(42)
@@ -71,27 +85,32 @@ pub(crate) fn draw(
         .label_style(("sans-serif", 13))
         .axis_desc_style(("sans-serif", 15))
         .draw()?;
-    for (curve, points) in curves.iter().zip(data) {
+    for (number, (curve, points)) in curves.iter().zip(data).enumerate() {
         let color = COLORS[curve.color % COLORS.len()];
-        let style = color.stroke_width(if curve.dashed { 3 } else { 2 });
-        let series = if curve.dashed {
-            chart.draw_series(DashedLineSeries::new(points, 7, 7, style))?
-        } else {
-            chart.draw_series(LineSeries::new(points, style))?
-        };
-        let dashed = curve.dashed;
-        series.label(curve.name.clone()).legend(move |(x, y)| {
-            let end = if dashed { x + 8 } else { x + 22 };
-            PathElement::new(vec![(x, y), (end, y)], style)
-        });
+        let y = 60 + 22 * number as i32;
+        let sample = vec![(0, y), (26, y)];
+        match curve.style {
+            Style::Line => {
+                let style = color.stroke_width(2);
+                chart.draw_series(LineSeries::new(points, style))?;
+                legend.draw(&PathElement::new(sample, style))?;
+            }
+            Style::Dashes => {
+                let style = color.stroke_width(2);
+                chart.draw_series(DashedLineSeries::new(points, 7, 5, style))?;
+                for start in [0, 10, 20] {
+                    legend.draw(&PathElement::new(vec![(start, y), (start + 6, y)], style))?;
+                }
+            }
+            Style::Rings => {
+                let ring = |at| Circle::new(at, 4, color.stroke_width(2));
+                chart.draw_series(points.into_iter().map(ring))?;
+                legend.draw(&Circle::new((13, y), 4, color.stroke_width(2)))?;
+            }
+        }
+        let font = ("sans-serif", 14);
+        legend.draw(&Text::new(curve.name.clone(), (34, y - 7), font))?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .border_style(BLACK.mix(0.4))
-        .background_style(WHITE.mix(0.9))
-        .label_font(("sans-serif", 13))
-        .draw()?;
     root.present()?;
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Running one architecture and comparing it with the reference.
 
 use mbg_runtime::attitude::{euler_xyz, rotation_from_quaternion};
-use mbg_runtime::{Pulse, Rk4, Stopped, System};
+use mbg_runtime::{DormandPrince, Input, Rk4, Stopped, System};
 use nalgebra::{SVector, Vector3, Vector4};
 
 use crate::reference::Instant;
@@ -20,41 +20,46 @@ pub(crate) struct Sample {
     pub beta: Vector3<f64>,
 }
 
-/// The gust of the paper's Table I on [1, 1 + width) s.
-pub(crate) fn gust(width: f64) -> Pulse<f64, 3> {
-    Pulse {
-        amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
-        start: 1.0,
-        end: 1.0 + width,
-    }
+/// How to integrate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Method {
+    /// The classical method of Runge and Kutta, one step from sample to sample.
+    Rk4,
+    /// The adaptive pair of Dormand and Prince at this relative tolerance, samples interpolated.
+    DormandPrince(f64),
 }
 
-/// Runs an observed model from rest with RK4 and keeps every state.
+/// Runs an observed model from rest and keeps what it shows every `step`.
 ///
 /// # Errors
 /// As the stepper.
 pub(crate) fn run(
     model: &impl System<f64, 20, 3, 20>,
-    width: f64,
+    method: Method,
+    wind: &impl Input<f64, 3>,
     step: f64,
     end: f64,
 ) -> Result<Vec<Sample>, Stopped> {
     let mut samples = Vec::new();
     let still = SVector::<f64, 3>::zeros();
-    Rk4::fixed(
-        model,
-        &gust(width),
-        0.0,
-        end,
-        step,
-        model.initial_state(),
-        |t, x| {
-            samples.push(sample(
-                t,
-                model.output(t, x, &still, &mut Default::default()),
-            ));
-        },
-    )?;
+    let observer = |t: f64, x: &SVector<f64, 20>| {
+        let output = model.output(t, x, &still, &mut Default::default());
+        samples.push(sample(t, output));
+    };
+    let start = model.initial_state();
+    match method {
+        Method::Rk4 => Rk4::fixed(model, wind, 0.0, end, step, start, observer)?,
+        Method::DormandPrince(tolerance) => {
+            // The platform turns by less than a millionth of what the fuselage does.
+            let pair = DormandPrince::new(tolerance, tolerance * 1e-6);
+            let times: Vec<f64> = (0..)
+                .map(|number| f64::from(number) * step)
+                .take_while(|time| *time < end - 1e-9)
+                .chain([end])
+                .collect();
+            pair.sample(model, wind, 0.0, start, &times, observer)?
+        }
+    };
     Ok(samples)
 }
 

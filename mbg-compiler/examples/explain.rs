@@ -4,39 +4,27 @@
 
 use std::error::Error;
 
-use mbg_compiler::compile::compile;
-use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::syntax::ast::Item;
-use mbg_compiler::{elaborate, program, syntax};
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: explain FILE")?;
-    let text = std::fs::read_to_string(path)?;
-    let inner = match text.find("mbg! {") {
-        Some(start) => &text[start + 6..text.rfind('}').ok_or("no closing brace")?],
-        None => &text,
-    };
-    // With a `main` behind the call, only the part up to the call's own brace counts.
-    let tokens = inner.parse()?;
-    let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(tokens, &mut diagnostics);
-    println!("{}", syntax::dump(&source));
-    let components = elaborate::component_table(&source);
-    for item in &source.items {
-        let Item::Model(model) = item else { continue };
-        let Some(compiled) = compile(model, &components, &mut diagnostics) else {
-            continue;
-        };
-        println!("model {}", model.name);
-        println!("folded\n{}", program::dump(&compiled.program.folded));
-        println!(
-            "derivative\n{}",
-            program::dump(&compiled.program.routines[0])
-        );
-        println!("conditioning {:?}\n", compiled.conditioning);
-    }
-    for diagnostic in diagnostics.list() {
-        println!("{}", diagnostic.text());
-    }
+    let tokens: TokenStream = std::fs::read_to_string(path)?.parse()?;
+    let inner = between_braces(tokens.clone()).unwrap_or(tokens);
+    print!("{}", mbg_compiler::explain::explain(inner));
     Ok(())
+}
+
+/// What stands in the first `mbg! { … }` outside other brackets.
+fn between_braces(tokens: TokenStream) -> Option<TokenStream> {
+    let trees: Vec<TokenTree> = tokens.into_iter().collect();
+    trees.windows(3).find_map(|window| match window {
+        [
+            TokenTree::Ident(name),
+            TokenTree::Punct(mark),
+            TokenTree::Group(group),
+        ] if name == "mbg" && mark.as_char() == '!' && group.delimiter() == Delimiter::Brace => {
+            Some(group.stream())
+        }
+        _ => None,
+    })
 }

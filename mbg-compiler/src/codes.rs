@@ -22,7 +22,7 @@ codes! {
     MISSING_LAW = "MBG0205", "an element without a law";
     TWO_LAWS = "MBG0206", "an element with two laws";
     UNKNOWN_FIELD = "MBG0207", "a word that the element does not know";
-    UNCONNECTED = "MBG0208", "a port without a bond";
+    UNCONNECTED = "MBG0208", "a port or a junction without a bond";
     TOO_MANY_BONDS = "MBG0209", "a port with more than one bond";
     EQUAL_ONE_PORTS = "MBG0210", "a bond between two one-ports that fix the same variable";
     LITERAL = "MBG0211", "a literal that is not a finite number";

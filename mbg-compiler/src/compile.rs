@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use proc_macro2::Span;
+
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Condition, Elaborated, StateRate, Variable};
-use crate::equations::{self, Scalars};
+use crate::equations::{self, Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
 use crate::program::{self, Program};
@@ -70,22 +72,19 @@ pub fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
     let mut pool = Pool::new();
-    let elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
-    let verdict = drawing::judge(&elaborated.graph, diagnostics)?;
+    let mut elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
-    let solution = match structure::solve(&scalars, &mut pool) {
-        Ok(solution) => solution,
-        Err(failure) => {
-            report(&elaborated, &scalars, &pool, failure, diagnostics);
-            return None;
-        }
-    };
-    let answers = Answers::of(&elaborated, &scalars, &solution, &mut pool, diagnostics)?;
+    let first = structure::solve(&scalars, &mut pool);
+    let soluble = !matches!(first, Err(Failure::Singular));
+    let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
+    let solved = solve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
+    let (scalars, solution) = (&solved.scalars, &solved.solution);
+    let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;
     finish(
         elaborated,
-        &scalars,
-        &solution,
+        scalars,
+        solution,
         answers,
         pool,
         verdict,
@@ -93,26 +92,84 @@ pub fn compile(
     )
 }
 
-fn report(
+/// Equations with their solution.
+struct Solved {
+    scalars: Scalars,
+    solution: Solution,
+    /// Momentum or displacement of every state that was lost, in signals.
+    momenta: BTreeMap<usize, Expression>,
+}
+
+/// The solution of the equations, with an index reduction where storages depend on each other and the `first` attempt
+/// failed.
+fn solve(
+    model: &mut Elaborated,
+    scalars: Scalars,
+    first: Result<Solution, Failure>,
+    pool: &mut Pool,
+    diagnostics: &mut Diagnostics,
+) -> Option<Solved> {
+    match first {
+        Ok(solution) => {
+            return Some(Solved {
+                scalars,
+                solution,
+                momenta: BTreeMap::new(),
+            });
+        }
+        Err(Failure::Nonlinear(unknowns)) => {
+            report_nonlinear(model, &scalars, &unknowns, diagnostics);
+            return None;
+        }
+        Err(Failure::Singular) => {}
+    }
+    let selection = structure::select(model, &scalars, pool, diagnostics)?;
+    let reduction = structure::reduce(model, scalars, &selection, pool, diagnostics)?;
+    let scalars = reduction.scalars;
+    match structure::solve(&scalars, pool) {
+        Ok(solution) => Some(Solved {
+            scalars,
+            solution,
+            momenta: reduction.momenta,
+        }),
+        Err(Failure::Nonlinear(unknowns)) => {
+            report_nonlinear(model, &scalars, &unknowns, diagnostics);
+            None
+        }
+        Err(Failure::Singular) => {
+            let message = "the efforts between dependent storages are undetermined";
+            diagnostics.error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
+            None
+        }
+    }
+}
+
+fn report_nonlinear(
     model: &Elaborated,
     scalars: &Scalars,
-    pool: &Pool,
-    failure: Failure,
+    unknowns: &[usize],
     diagnostics: &mut Diagnostics,
 ) {
-    match failure {
-        Failure::Singular => structure::report_singular(model, scalars, pool, diagnostics),
-        Failure::Nonlinear(unknowns) => {
-            let names = listing(structure::block_names(scalars, &unknowns));
-            let message = format!(
-                "{} variables depend on each other nonlinearly",
-                unknowns.len()
-            );
-            let report = error(codes::NONLINEAR_LOOP, model.name.span(), message);
-            diagnostics.report(report.note(format!("the loop runs through {names}")).help(
-                "put a storage into the loop, or give the law so that it can be used in this direction",
-            ));
-        }
+    let names = listing(structure::block_names(scalars, unknowns));
+    let message = match unknowns.len() {
+        1 => "a variable depends on itself nonlinearly".to_owned(),
+        count => format!("{count} variables depend on each other nonlinearly"),
+    };
+    let span = nonlinear_law(model, scalars, unknowns);
+    let report = error(codes::NONLINEAR_LOOP, span, message);
+    diagnostics.report(report.note(format!("the loop runs through {names}")).help(
+        "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
+         `C spring { stiffness: … }` at a 0-junction",
+    ));
+}
+
+/// Where the law stands in which unknowns of a loop enter nonlinearly.
+fn nonlinear_law(model: &Elaborated, scalars: &Scalars, unknowns: &[usize]) -> Span {
+    let graph = &model.graph;
+    let nonlinear = |equation: &&Equation| equation.signals.iter().any(|it| unknowns.contains(it));
+    match scalars.equations.iter().find(nonlinear).map(|it| it.owner) {
+        Some(Owner::Element(id, _)) => graph.origins.span(graph.elements[id.0].origin),
+        _ => model.name.span(),
     }
 }
 
@@ -129,15 +186,12 @@ struct Answers {
 impl Answers {
     fn of(
         model: &Elaborated,
-        scalars: &Scalars,
-        solution: &Solution,
+        solved: &Solved,
         pool: &mut Pool,
         diagnostics: &mut Diagnostics,
     ) -> Option<Self> {
-        let mut substitution = Substitution::new();
-        for (signal, value) in structure::signal_values(scalars, solution) {
-            substitution.set(Symbol::Signal(signal), value);
-        }
+        let (scalars, solution) = (&solved.scalars, &solved.solution);
+        let mut substitution = substitution(solved, pool)?;
         let mut replaced = |pool: &mut Pool, expression, variable: &Variable, span| {
             let value = substitution.apply(pool, expression);
             if value.is_none() {
@@ -154,6 +208,7 @@ impl Answers {
                     Some(storage_rate(model, scalars, solution, id, component))
                 }
                 StateRate::Expression(rate) => replaced(pool, rate, &state.variable, state.span),
+                StateRate::Unknown(rate) => Some(solution.values[rate]),
             })
             .collect();
         let outputs: Vec<Option<Expression>> = model
@@ -163,7 +218,8 @@ impl Answers {
             .collect();
         let all: Vec<Expression> = all.into_iter().collect::<Option<_>>()?;
         let outputs: Vec<Expression> = outputs.into_iter().collect::<Option<_>>()?;
-        let states = kept(model, pool, &all, &outputs);
+        let lost = |state: &usize| solved.momenta.contains_key(state);
+        let states = kept(model, pool, &all, &outputs, &lost);
         let rates = states.iter().map(|state| all[*state]).collect();
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
         let energies: Vec<Expression> = model
@@ -178,6 +234,10 @@ impl Answers {
                 }
             })
             .collect();
+        let energies: Vec<Expression> = energies
+            .into_iter()
+            .map(|energy| substitution.apply(pool, energy))
+            .collect::<Option<_>>()?;
         let energy = pool.sum(&energies);
         Some(Self {
             states,
@@ -190,6 +250,23 @@ impl Answers {
     }
 }
 
+/// What signals and lost states are, in terms of the states that are left.
+fn substitution(solved: &Solved, pool: &mut Pool) -> Option<Substitution> {
+    let mut substitution = Substitution::new();
+    for (signal, value) in structure::signal_values(&solved.scalars, &solved.solution) {
+        substitution.set(Symbol::Signal(signal), value);
+    }
+    let momenta: Vec<(usize, Expression)> = solved
+        .momenta
+        .iter()
+        .map(|(state, momentum)| Some((*state, substitution.apply(pool, *momentum)?)))
+        .collect::<Option<_>>()?;
+    for (state, momentum) in momenta {
+        substitution.set(Symbol::State(state), momentum);
+    }
+    Some(substitution)
+}
+
 /// `ṗ = e` or `q̇ = f`, with power into the storage.
 fn storage_rate(
     model: &Elaborated,
@@ -200,9 +277,9 @@ fn storage_rate(
 ) -> Expression {
     let port = &scalars.ports[&id];
     if model.graph.elements[id.0].kind == ElementKind::I {
-        solution.values[port.effort[component]].flipped(!port.inward)
+        solution.values[port.effort[component]].flipped(port.effort_reversed)
     } else {
-        solution.values[port.flow[component]].flipped(!port.inward)
+        solution.values[port.flow[component]].flipped(port.flow_reversed)
     }
 }
 
@@ -212,11 +289,13 @@ fn kept(
     pool: &Pool,
     rates: &[Expression],
     outputs: &[Expression],
+    lost: &dyn Fn(&usize) -> bool,
 ) -> Vec<usize> {
     let mut keep: Vec<bool> = model
         .states
         .iter()
-        .map(|state| matches!(state.rate, StateRate::Storage(..)))
+        .enumerate()
+        .map(|(state, entry)| !lost(&state) && !matches!(entry.rate, StateRate::Expression(_)))
         .collect();
     loop {
         let mut roots: Vec<Expression> = outputs.to_vec();
@@ -363,7 +442,7 @@ fn finish(
 }
 
 /// An expression with the model's names.
-fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
+pub(crate) fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
     let name = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => model.parameters[index].name.to_string(),
         Symbol::State(index) => model.states[index].variable.name.clone(),

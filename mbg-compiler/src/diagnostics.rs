@@ -6,6 +6,8 @@
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
+use crate::syntax::words::nearest;
+
 /// A code such as `MBG0301`; the first two digits name the stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Code {
@@ -43,6 +45,15 @@ impl Diagnostic {
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.helps.push(help.into());
         self
+    }
+
+    /// Adds the name that was probably meant, if one is near.
+    #[must_use]
+    pub fn did_you_mean(self, found: &str, names: &[&str]) -> Self {
+        match nearest(found, names) {
+            Some(near) => self.help(format!("did you mean `{near}`?")),
+            None => self,
+        }
     }
 
     /// The text that the user reads.

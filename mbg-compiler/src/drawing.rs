@@ -6,7 +6,7 @@
 
 use crate::causality::{report, uniform};
 use crate::diagnostics::Diagnostics;
-use crate::graph::{BondGraph, BondId, Causality};
+use crate::graph::{Bond, BondGraph, BondId, Causality};
 
 /// What the drawing says.
 pub struct Drawn {
@@ -18,9 +18,10 @@ pub struct Drawn {
     pub notes: Vec<String>,
 }
 
-/// Judges the drawing; none if it is rejected.
+/// Judges the drawing; none if it is rejected. Whether the equations are `soluble`, component by component, decides
+/// which ways out are offered.
 #[must_use]
-pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> {
+pub fn judge(graph: &BondGraph, soluble: bool, diagnostics: &mut Diagnostics) -> Option<Drawn> {
     let verdict = match uniform::verdict(graph) {
         Ok(verdict) => verdict,
         Err(_) if graph.causality == Causality::Componentwise => {
@@ -32,7 +33,7 @@ pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> 
             });
         }
         Err(conflict) => {
-            report::conflict_diagnostics(graph, &conflict, diagnostics);
+            report::conflict_diagnostics(graph, &conflict, soluble, diagnostics);
             return None;
         }
     };
@@ -42,7 +43,7 @@ pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> 
         .iter()
         .any(|id| !graph.elements[id.0].derivative);
     if graph.causality == Causality::Uniform && rejected {
-        report::diagnose(graph, &verdict, diagnostics);
+        report::diagnose(graph, &verdict, soluble, diagnostics);
         return None;
     }
     let marked = graph.elements.iter().any(|element| element.derivative);
@@ -59,4 +60,23 @@ pub fn judge(graph: &BondGraph, diagnostics: &mut Diagnostics) -> Option<Drawn> 
         dependent: verdict.dependent.iter().map(name).collect(),
         notes,
     })
+}
+
+/// One bond a line: half arrow, dimension, and a bar at the end that receives the effort.
+#[must_use]
+pub fn diagram(graph: &BondGraph, strokes: &[bool]) -> String {
+    let names = |bond: &Bond| (graph.end_name(&bond.from), graph.end_name(&bond.to));
+    let widths = graph.bonds.iter().map(|bond| names(bond).0.len());
+    let width = widths.max().unwrap_or(0);
+    let line = |(index, bond): (usize, &Bond)| {
+        let arrow = match strokes.get(index) {
+            Some(true) => " ──⇀│",
+            Some(false) => "│──⇀ ",
+            None => " ──⇀ ",
+        };
+        let (from, to) = names(bond);
+        format!("{from:width$} {arrow} {to} [{}]", bond.dimension)
+    };
+    let lines: Vec<String> = graph.bonds.iter().enumerate().map(line).collect();
+    lines.join("\n")
 }

@@ -8,8 +8,8 @@
 use std::collections::BTreeMap;
 
 use crate::elaborate::{Elaborated, Place, Quantity};
-use crate::graph::{ElementId, ElementKind, JunctionKind, Law};
-use crate::network::{Network, OnePort};
+use crate::graph::{ElementId, ElementKind, JunctionId, JunctionKind, Law};
+use crate::network::{Network, OnePort, Wire};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Symbol};
 
@@ -18,8 +18,10 @@ use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Sy
 pub enum Owner {
     /// Junctions and two-ports.
     Structure,
-    /// A one-port.
-    Element(ElementId),
+    /// A one-port, by component.
+    Element(ElementId, usize),
+    /// The junction whose flow is a coordinate, by component.
+    Coordinate(JunctionId, usize),
 }
 
 /// `Σ coefficient · unknown + constant = 0`.
@@ -33,6 +35,12 @@ pub struct Equation {
     pub signals: Vec<usize>,
     /// Who states it.
     pub owner: Owner,
+    /// The unknowns that it is about: effort and flow of a wire, or twice the common variable of a junction.
+    pub about: [usize; 2],
+    /// In a reduced system, its place in the order of elimination.
+    pub level: Option<usize>,
+    /// In a reduced system, the rate that it gives, if it gives one.
+    pub rate: Option<usize>,
 }
 
 /// The scalar equations of a model.
@@ -47,6 +55,40 @@ pub struct Scalars {
     pub ports: BTreeMap<ElementId, Port>,
     /// Readable name of each unknown.
     pub names: Vec<String>,
+    /// Effort and flow of every component of every wire, wire by wire.
+    pub wires: Vec<Vec<[usize; 2]>>,
+    /// Flows of the junctions marked `coordinate`, by component.
+    pub coordinates: Vec<(JunctionId, usize, usize)>,
+    /// For unknowns of a reduced system: the place of each in the order of elimination.
+    pub levels: Vec<Option<usize>>,
+    /// The independent rate of each level of a reduced system.
+    pub independent: BTreeMap<usize, Independent>,
+}
+
+/// An independent rate of a reduced system.
+#[derive(Clone, Debug)]
+pub struct Independent {
+    /// The unknown.
+    pub unknown: usize,
+    /// Why what is divided by for its sake is positive.
+    pub inertia: Inertia,
+}
+
+/// What moves with an independent rate while all lower levels are held.
+#[derive(Clone, Debug)]
+pub enum Inertia {
+    /// Nothing is known.
+    Unknown,
+    /// A storage with a positive definite law, of which it is the rate.
+    Own,
+    /// Storages with positive definite laws, each by its co-energy variables, as far as these move with the state
+    /// given.
+    Moved {
+        /// The coordinate.
+        state: usize,
+        /// Co-energy variables of each storage.
+        storages: Vec<Vec<usize>>,
+    },
 }
 
 /// Efforts and flows at a one-port.
@@ -58,6 +100,10 @@ pub struct Port {
     pub flow: Vec<usize>,
     /// Whether positive power goes into the element along the bond.
     pub inward: bool,
+    /// Whether the element's own effort is the negative of the bond's.
+    pub effort_reversed: bool,
+    /// Whether the element's own flow is the negative of the bond's.
+    pub flow_reversed: bool,
 }
 
 /// Forms the equations.
@@ -151,6 +197,10 @@ impl Classes {
         }
     }
 
+    fn pair(&self, wire: usize, component: usize) -> [usize; 2] {
+        [self.effort(wire, component), self.flow(wire, component)]
+    }
+
     fn effort(&self, wire: usize, component: usize) -> usize {
         self.class[2 * (self.first[wire] + component)]
     }
@@ -177,7 +227,13 @@ struct Former<'a> {
 }
 
 impl Former<'_> {
-    fn add(&mut self, terms: &[(usize, Expression)], constant: Expression, owner: Owner) {
+    fn add(
+        &mut self,
+        terms: &[(usize, Expression)],
+        constant: Expression,
+        owner: Owner,
+        about: [usize; 2],
+    ) {
         let mut sum: BTreeMap<usize, Expression> = BTreeMap::new();
         for (unknown, coefficient) in terms {
             let known = sum.get(unknown).copied().unwrap_or(Expression::ZERO);
@@ -189,6 +245,9 @@ impl Former<'_> {
             constant,
             signals: Vec::new(),
             owner,
+            about,
+            level: None,
+            rate: None,
         });
     }
 
@@ -209,8 +268,19 @@ impl Former<'_> {
                         (unknown, Expression::ONE.flipped(!branch.inward))
                     })
                     .collect();
-                if !terms.is_empty() {
-                    self.add(&terms, Expression::ZERO, Owner::Structure);
+                let common = junction
+                    .branches
+                    .iter()
+                    .find(|branch| branch.range.contains(&component))
+                    .map(|branch| {
+                        let inner = component - branch.range.start;
+                        match junction.kind {
+                            JunctionKind::Zero => self.classes.effort(branch.wire, inner),
+                            JunctionKind::One => self.classes.flow(branch.wire, inner),
+                        }
+                    });
+                if let Some(common) = common {
+                    self.add(&terms, Expression::ZERO, Owner::Structure, [common; 2]);
                 }
             }
         }
@@ -231,7 +301,8 @@ impl Former<'_> {
                 terms.extend(
                     (0..matrix.columns).map(|k| (self.classes.flow(input, k), matrix.at(row, k))),
                 );
-                self.add(&terms, Expression::ZERO, Owner::Structure);
+                let about = self.classes.pair(output, row);
+                self.add(&terms, Expression::ZERO, Owner::Structure, about);
             }
             for column in 0..matrix.columns {
                 let mut terms = vec![(
@@ -246,14 +317,15 @@ impl Former<'_> {
                     };
                     (unknown, matrix.at(k, column))
                 }));
-                self.add(&terms, Expression::ZERO, Owner::Structure);
+                let about = self.classes.pair(input, column);
+                self.add(&terms, Expression::ZERO, Owner::Structure, about);
             }
         }
     }
 
     fn one_port(&mut self, one_port: &OnePort) {
         let element = &self.model.graph.elements[one_port.element.0];
-        let owner = Owner::Element(one_port.element);
+        let id = one_port.element;
         let wire = one_port.wire;
         let reversed = !one_port.inward;
         let minus = Expression::ONE.negated();
@@ -265,38 +337,32 @@ impl Former<'_> {
                         ElementKind::Se => self.classes.effort(wire, component),
                         _ => self.classes.flow(wire, component),
                     };
-                    self.add(&[(unknown, minus)], *value, owner);
+                    self.one_port_row(id, wire, component, &[(unknown, minus)], *value);
                 }
             }
             Law::Storage(storage) => {
                 for (component, value) in storage.coenergy.iter().enumerate() {
-                    if element.kind == ElementKind::I {
-                        let unknown = self.classes.flow(wire, component);
-                        self.add(&[(unknown, minus.flipped(reversed))], *value, owner);
+                    let unknown = if element.kind == ElementKind::I {
+                        self.classes.flow(wire, component)
                     } else {
-                        self.add(
-                            &[(self.classes.effort(wire, component), minus)],
-                            *value,
-                            owner,
-                        );
-                    }
+                        self.classes.effort(wire, component)
+                    };
+                    self.one_port_row(id, wire, component, &[(unknown, minus)], *value);
                 }
             }
-            Law::Resistance(matrix) => self.linear(matrix, wire, false, reversed, owner),
-            Law::Conductance(matrix) => self.linear(matrix, wire, true, reversed, owner),
+            Law::Resistance(matrix) => self.linear(matrix, one_port, false),
+            Law::Conductance(matrix) => self.linear(matrix, one_port, true),
             Law::EffortLaw(values) => {
                 for (component, value) in values.iter().enumerate() {
-                    self.add(
-                        &[(self.classes.effort(wire, component), minus)],
-                        *value,
-                        owner,
-                    );
+                    let unknown = self.classes.effort(wire, component);
+                    self.one_port_row(id, wire, component, &[(unknown, minus)], *value);
                 }
             }
             Law::FlowLaw(values) => {
                 for (component, value) in values.iter().enumerate() {
                     let unknown = self.classes.flow(wire, component);
-                    self.add(&[(unknown, minus.flipped(reversed))], *value, owner);
+                    let terms = [(unknown, minus.flipped(reversed))];
+                    self.one_port_row(id, wire, component, &terms, *value);
                 }
             }
             Law::EulerJunction(momentum) => {
@@ -314,7 +380,7 @@ impl Former<'_> {
                             momentum[next].negated().flipped(reversed),
                         ),
                     ];
-                    self.add(&terms, Expression::ZERO, owner);
+                    self.one_port_row(id, wire, row, &terms, Expression::ZERO);
                 }
             }
             Law::Transformer(_) | Law::Gyrator(_) => {}
@@ -322,14 +388,8 @@ impl Former<'_> {
     }
 
     /// `e = R f`, or `f = G e`.
-    fn linear(
-        &mut self,
-        matrix: &Matrix,
-        wire: usize,
-        conductance: bool,
-        reversed: bool,
-        owner: Owner,
-    ) {
+    fn linear(&mut self, matrix: &Matrix, one_port: &OnePort, conductance: bool) {
+        let (wire, reversed) = (one_port.wire, !one_port.inward);
         for row in 0..matrix.rows {
             let (effort, flow) = (self.classes.effort(wire, row), self.classes.flow(wire, row));
             let result = if conductance { flow } else { effort };
@@ -342,8 +402,20 @@ impl Former<'_> {
                 };
                 terms.push((cause, matrix.at(row, column).flipped(reversed)));
             }
-            self.add(&terms, Expression::ZERO, owner);
+            self.one_port_row(one_port.element, wire, row, &terms, Expression::ZERO);
         }
+    }
+
+    fn one_port_row(
+        &mut self,
+        element: ElementId,
+        wire: usize,
+        component: usize,
+        terms: &[(usize, Expression)],
+        constant: Expression,
+    ) {
+        let about = self.classes.pair(wire, component);
+        self.add(terms, constant, Owner::Element(element, component), about);
     }
 
     fn finish(mut self) -> Scalars {
@@ -360,13 +432,38 @@ impl Former<'_> {
             linearise(self.pool, equation, &signals);
         }
         let names = self.names(&ports);
+        let coordinates = self.coordinates(&ports);
+        let live = |pair: &[usize; 2]| pair.iter().all(|class| *class != usize::MAX);
+        let wire = |(wire, entry): (usize, &Wire)| -> Vec<[usize; 2]> {
+            (0..entry.dimension)
+                .map(|component| self.classes.pair(wire, component))
+                .filter(live)
+                .collect()
+        };
+        let wires = self.network.wires.iter().enumerate().map(wire).collect();
         Scalars {
             unknowns: self.classes.count,
             equations,
             signals,
             ports,
             names,
+            wires,
+            coordinates,
+            levels: vec![None; self.classes.count],
+            independent: BTreeMap::new(),
         }
+    }
+
+    fn coordinates(&self, ports: &BTreeMap<ElementId, Port>) -> Vec<(JunctionId, usize, usize)> {
+        let marked = self.model.graph.junctions.iter().enumerate();
+        marked
+            .filter(|(_, junction)| junction.coordinate && junction.kind == JunctionKind::One)
+            .flat_map(|(id, junction)| (0..junction.dimension).map(move |k| (JunctionId(id), k)))
+            .map(|(id, component)| {
+                let signal = (Quantity::Flow, Place::Junction(id), component);
+                (id, component, self.signal(signal, ports).0)
+            })
+            .collect()
     }
 
     fn ports(&self) -> BTreeMap<ElementId, Port> {
@@ -378,14 +475,19 @@ impl Former<'_> {
             let flow = (0..size)
                 .map(|k| self.classes.flow(one_port.wire, k))
                 .collect();
-            (
-                one_port.element,
-                Port {
-                    effort,
-                    flow,
-                    inward: one_port.inward,
-                },
-            )
+            // An element that sends power along its bond keeps the variable that it imposes and turns the other round;
+            // a source states both along its bond.
+            let kind = self.model.graph.elements[one_port.element.0].kind;
+            let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
+            let reversed = !one_port.inward && !source;
+            let port = Port {
+                effort,
+                flow,
+                inward: one_port.inward,
+                effort_reversed: reversed && kind == ElementKind::I,
+                flow_reversed: reversed && kind != ElementKind::I,
+            };
+            (one_port.element, port)
         };
         self.network.one_ports.iter().flatten().map(port).collect()
     }
@@ -399,12 +501,8 @@ impl Former<'_> {
             Place::Port(id) => {
                 let port = &ports[&id];
                 match quantity {
-                    Quantity::Effort => (port.effort[component], false),
-                    Quantity::Flow => {
-                        let kind = self.model.graph.elements[id.0].kind;
-                        let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
-                        (port.flow[component], !port.inward && !source)
-                    }
+                    Quantity::Effort => (port.effort[component], port.effort_reversed),
+                    Quantity::Flow => (port.flow[component], port.flow_reversed),
                 }
             }
             Place::Junction(id) => {
@@ -481,7 +579,7 @@ fn put(slot: &mut String, name: &str, letter: &str, component: usize, dimension:
 }
 
 /// Turns signals that enter linearly into terms; lists those that do not.
-fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bool)]) {
+pub fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bool)]) {
     for symbol in symbols(pool, &[equation.constant]) {
         let Symbol::Signal(number) = symbol else {
             continue;
@@ -512,6 +610,7 @@ fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bool)]
         }
         equation.constant = rest;
     }
+    equation.signals.clear();
     let mut held: Vec<Expression> = equation.terms.values().copied().collect();
     held.push(equation.constant);
     for symbol in symbols(pool, &held) {

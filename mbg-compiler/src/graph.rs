@@ -246,6 +246,30 @@ impl BondGraph {
             self.end_name(&bond.to)
         )
     }
+
+    /// One junction or element a line.
+    #[must_use]
+    pub fn dump(&self) -> String {
+        let junctions = self.junctions.iter().map(|junction| {
+            let kind = match junction.kind {
+                JunctionKind::Zero => 0,
+                JunctionKind::One => 1,
+            };
+            format!("{kind} {}[{}]", junction.name, junction.dimension)
+        });
+        let elements = self.elements.iter().map(|element| {
+            let mark = if element.derivative {
+                " #[derivative]"
+            } else {
+                ""
+            };
+            format!(
+                "{:?} {} {:?}{mark}",
+                element.kind, element.name, element.rule
+            )
+        });
+        junctions.chain(elements).collect::<Vec<_>>().join("\n")
+    }
 }
 
 /// `x`, `y`, `z` up to dimension 3, else the number.

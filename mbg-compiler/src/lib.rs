@@ -12,7 +12,7 @@
 //! | program | [`program`] | straight-line arithmetic |
 //! | emission | [`emit`] | Rust |
 //!
-//! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`.
+//! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`; [`explain`] prints them.
 
 pub mod causality;
 pub mod codes;
@@ -22,6 +22,7 @@ pub mod drawing;
 pub mod elaborate;
 pub mod emit;
 pub mod equations;
+pub mod explain;
 pub mod graph;
 pub mod network;
 pub mod program;
@@ -38,14 +39,21 @@ use syntax::ast::Item;
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
     let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(tokens, &mut diagnostics);
+    let mut output = items(tokens, &mut diagnostics);
+    output.extend(diagnostics.to_tokens());
+    output
+}
+
+/// As [`expand`], with the errors apart.
+pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream {
+    let source = syntax::parse(tokens, diagnostics);
     let sound = !diagnostics.any();
     let components = elaborate::component_table(&source);
     let mut output = TokenStream::new();
     for item in &source.items {
         let Item::Model(model) = item else { continue };
         let compiled = if sound {
-            compile::compile(model, &components, &mut diagnostics)
+            compile::compile(model, &components, diagnostics)
         } else {
             None
         };
@@ -54,6 +62,5 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
             None => emit::shell(model, elaborate::sizes(model, &components)),
         });
     }
-    output.extend(diagnostics.to_tokens());
     output
 }

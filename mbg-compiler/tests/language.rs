@@ -332,7 +332,7 @@ fn mistakes_in_loops_are_told() {
       help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
       help: a `param` of a model is no such number, because it can change after the model is compiled
     ");
-    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a[k]` is outside of the junction, which has 3 components [MBG0204]");
+    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]");
     insta::assert_snapshot!(mistake("a[2..1] -> R r { resistance: 1.0 };"), @"2:1 `a[2..1]` selects no component [MBG0204]");
     insta::assert_snapshot!(mistake("output y = a.f[3];"), @"2:16 component 3 of a vector of 3 does not exist [MBG0204]");
     insta::assert_snapshot!(mistake("output y[2] = a.f[2..4];"), @"2:19 components 2..4 of a vector of 3 do not exist [MBG0204]");

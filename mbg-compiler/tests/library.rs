@@ -325,7 +325,7 @@ fn what_is_not_given_costs_nothing() {
             "model M {{
                 {gravity}
                 1 a[6];
-                1 b[6] {{ R air {{ resistance: 0.7 }} }}
+                1 b[6] {{ R air {{ resistance: diag(0.7, 0.8, 0.9, 1.0, 1.1, 1.2) }} }}
                 body: Body {{ mass: 2.0, inertia: 3.0 }} (a);
                 hinge: Revolute {{ axis: 2 }} (a, b);
             }}"
@@ -339,7 +339,7 @@ fn what_is_not_given_costs_nothing() {
     let drawn = "model M {
         causality componentwise;
         1 a[6];
-        1 b[6] { R air { resistance: 0.7 } }
+        1 b[6] { R air { resistance: diag(0.7, 0.8, 0.9, 1.0, 1.1, 1.2) } }
         1 velocity[3] { I body { inertia: 2.0 } }
         a[0..3] -> I spin { inertia: 3.0, gyroscopic };
         a[3..6] -> velocity;
@@ -444,7 +444,7 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     let axis = "model M { 1 a[6]; 1 b[6];
         hinge: Revolute { axis: 3 } (a, b); }";
     insta::assert_snapshot!(elaborated(axis).err().unwrap(), @"
-    2:9 `moment[axis]` is outside of the junction, which has 3 components [MBG0204]
+    2:9 `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
       this is inside `Revolute`, a component of the library
     ");
     let shape = "model M { 1 a[6]; 1 b[6];

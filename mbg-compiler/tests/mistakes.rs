@@ -1,128 +1,334 @@
-//! Mistakes in models: each is answered with its code, and the macro never panics.
+//! Mistakes in models: each is answered with its code at a token, and the macro never panics.
 #![allow(clippy::unwrap_used)]
 
-use mbg_compiler::compile::compile;
-use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::syntax::ast::Item;
-use mbg_compiler::{elaborate, expand, syntax};
+mod tokens;
 
-/// Codes reported for the text between the braces.
-fn codes(text: &str) -> Vec<&'static str> {
+use mbg_compiler::codes::{self, ALL};
+use mbg_compiler::diagnostics::{Code, Diagnostics};
+use mbg_compiler::items;
+use proptest::prelude::*;
+use tokens::{SOUP, flat, matched};
+
+/// What is reported for the text between the braces.
+fn diagnose(text: &str) -> Diagnostics {
     let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(text.parse().unwrap(), &mut diagnostics);
-    let components = elaborate::component_table(&source);
-    for item in &source.items {
-        if let Item::Model(model) = item
-            && !diagnostics.any()
-        {
-            let _ = compile(model, &components, &mut diagnostics);
-        }
-    }
+    let _ = items(text.parse().unwrap(), &mut diagnostics);
     diagnostics
-        .list()
-        .iter()
-        .map(|diagnostic| diagnostic.code.text)
-        .collect()
 }
 
-fn model(body: &str) -> String {
-    format!("model M {{ {body} }}")
+fn found(text: &str) -> Vec<&'static str> {
+    let diagnostics = diagnose(text);
+    let list = diagnostics.list().iter();
+    list.map(|diagnostic| diagnostic.code.text).collect()
+}
+
+/// A model with one inertia beside the mistake.
+macro_rules! beside_a_mass {
+    ($body:literal) => {
+        concat!("model M { 1 a { I m { inertia: 1.0 } } ", $body, " }")
+    };
+}
+
+fn beside_a_mass(body: &str) -> String {
+    beside_a_mass!("BODY").replace("BODY", body)
+}
+
+/// The smallest text for each code, in order of the codes; the last is [`too_large`].
+const FIXTURES: &[(Code, &str)] = &[
+    (codes::SYNTAX, beside_a_mass!("a => a;")),
+    (codes::UNIT, beside_a_mass!("param x: N^x = 1.0;")),
+    (codes::DIMENSION_LITERAL, beside_a_mass!("1 b[0];")),
+    (
+        codes::FIELD_REPEATED,
+        "model M { 1 a { I m { inertia: 1.0, inertia: 1.0 } } }",
+    ),
+    (
+        codes::EMPTY_MODEL,
+        "model M { 1 a { R r { resistance: 1.0 } } }",
+    ),
+    (codes::DUPLICATE_NAME, beside_a_mass!("1 a { }")),
+    (codes::UNKNOWN_NAME, beside_a_mass!("a -> b;")),
+    (
+        codes::WRONG_DIMENSION,
+        beside_a_mass!("1 b[2] { I n { inertia: 1.0 } } a -> b;"),
+    ),
+    (codes::MISSING_LAW, "model M { 1 a { I m { } } }"),
+    (
+        codes::TWO_LAWS,
+        beside_a_mass!("a -> R r { resistance: 1.0, conductance: 1.0 };"),
+    ),
+    (
+        codes::UNKNOWN_FIELD,
+        beside_a_mass!("a -> R r { resistance: 1.0, stiffness: 1.0 };"),
+    ),
+    (
+        codes::UNCONNECTED,
+        beside_a_mass!("a -> TF t { flow: 2.0 };"),
+    ),
+    (codes::TOO_MANY_BONDS, beside_a_mass!("a -> m;")),
+    (
+        codes::EQUAL_ONE_PORTS,
+        beside_a_mass!("Se s { effort: 1.0 } -> Se t { effort: 2.0 };"),
+    ),
+    (
+        codes::LITERAL,
+        beside_a_mass!("a -> R r { resistance: 1e999 };"),
+    ),
+    (
+        codes::POWER_OPERATOR,
+        beside_a_mass!("a -> R r { effort: f ^ 2 };"),
+    ),
+    (
+        codes::EXPRESSION,
+        beside_a_mass!("a -> R r { resistance: \"x\" };"),
+    ),
+    (codes::MISSING_DEFAULT, beside_a_mass!("param x: N;")),
+    (
+        codes::RECURSION,
+        "component C() { c: C (); } model M { c: C (); }",
+    ),
+    (
+        codes::NOT_FINITE,
+        "model M { 1 a { I m { inertia: -1.0 } } }",
+    ),
+    (
+        codes::WHOLE_NUMBER,
+        beside_a_mass!("for k in 0..2.5 { 1 b; }"),
+    ),
+    (codes::CYCLE, beside_a_mass!("let x = y; let y = x;")),
+    (
+        codes::STORAGE_DERIVATIVE,
+        beside_a_mass!("a -> I n { inertia: 2.0 };"),
+    ),
+    (
+        codes::SOURCES_CONFLICT,
+        beside_a_mass!("Sf s { flow: 1.0 } -> a; Sf t { flow: 2.0 } -> a;"),
+    ),
+    (
+        codes::NO_ASSIGNMENT,
+        beside_a_mass!("1 b { Se s { effort: 1.0 } }"),
+    ),
+    (
+        codes::GYROSCOPIC_INVERSE,
+        beside_a_mass!("1 b[3] { EJS g { momentum: [0.0, 0.0, 1.0] } Se s { effort: 0.0 } }"),
+    ),
+    (
+        codes::RECTANGULAR_INVERSE,
+        "model M { 1 w[3] { I m { inertia: 1.0 } } 1 r { Se s { effort: 1.0 } }
+                 r -> MTF t { flow: [[1.0], [0.0], [0.0]] } -> w; }",
+    ),
+    (
+        codes::ORDER_LOST,
+        beside_a_mass!("causality componentwise; a -> I n { inertia: 2.0 };"),
+    ),
+    (
+        codes::FIXED_RESISTOR,
+        beside_a_mass!("1 b { Se s { effort: 1.0 } R r { effort: abs(f) * f } }"),
+    ),
+    (
+        codes::SINGULAR_JUNCTIONS,
+        beside_a_mass!("1 b; 0 c; b -> c; c -> b;"),
+    ),
+    (
+        codes::NONLINEAR_LOOP,
+        beside_a_mass!(
+            "1 b { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 } }"
+        ),
+    ),
+    (
+        codes::ORDER_LOST_UNSUPPORTED,
+        beside_a_mass!("input u; 1 b { Sf s { flow: u } #[derivative] I n { inertia: 2.0 } }"),
+    ),
+];
+
+/// More bonds than a model may have.
+fn too_large() -> String {
+    beside_a_mass(&format!("0 b; {}", "a -> b;".repeat(5000)))
+}
+
+fn fixtures() -> impl Iterator<Item = (Code, String)> {
+    let short = FIXTURES
+        .iter()
+        .map(|(code, text)| (*code, (*text).to_owned()));
+    short.chain([(codes::TOO_LARGE, too_large())])
 }
 
 #[test]
-fn each_mistake_has_its_code() {
-    let mass = "1 a { I m { inertia: 1.0 } }";
-    let cases = [
-        ("MBG0203", format!("{mass} a -> b;")),
-        (
-            "MBG0204",
-            format!("{mass} 1 w[2] {{ I n {{ inertia: 1.0 }} }} a -> w;"),
-        ),
-        ("MBG0205", "1 a { I m { } }".to_owned()),
-        (
-            "MBG0208",
-            format!("{mass} a -> TF t {{ flow: 2.0 }};")
-                .replace("a -> TF t { flow: 2.0 };", "TF t { flow: 2.0 } -> a;"),
-        ),
-        (
-            "MBG0206",
-            "1 a { R r { resistance: 1.0, conductance: 1.0 } I m { inertia: 1.0 } }".to_owned(),
-        ),
-        (
-            "MBG0213",
-            "1 a { R r { resistance: \"x\" } I m { inertia: 1.0 } }".to_owned(),
-        ),
-        (
-            "MBG0211",
-            "1 a { R r { resistance: 1e999 } I m { inertia: 1.0 } }".to_owned(),
-        ),
-        (
-            "MBG0212",
-            "1 a { R r { effort: f ^ 2 } I m { inertia: 1.0 } }".to_owned(),
-        ),
-        ("MBG0202", format!("{mass} 1 a {{ }}")),
-        ("MBG0201", String::new()),
-        ("MBG0216", "1 a { I m { inertia: -1.0 } }".to_owned()),
-        (
-            "MBG0306",
-            "causality componentwise; 1 a { I m { inertia: 1.0 } I n { inertia: 2.0 } }".to_owned(),
-        ),
-        (
-            "MBG0301",
-            "1 a { I m { inertia: 1.0 } I n { inertia: 2.0 } }".to_owned(),
-        ),
-        (
-            "MBG0403",
-            "1 a { I m { inertia: 1.0 } #[derivative] I n { inertia: 2.0 } }".to_owned(),
-        ),
-        (
-            "MBG0402",
-            "1 a { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 } } integral x = a.f; output y = x;".to_owned(),
-        ),
-    ];
-    for (code, body) in cases {
-        let found = codes(&model(&body));
+fn every_code_has_a_fixture_that_produces_it() {
+    let covered: Vec<Code> = fixtures().map(|(code, _)| code).collect();
+    assert_eq!(covered, ALL);
+    for (code, text) in fixtures() {
+        let found = found(&text);
         assert!(
-            found.contains(&code),
-            "{code} expected for `{body}`, found {found:?}"
+            found.contains(&code.text),
+            "{code:?} for `{text:.200}`, found {found:?}"
         );
     }
-    assert_eq!(
-        codes("component C() { c: C (); } model M { c: C (); }"),
-        ["MBG0215"]
-    );
+}
+
+#[test]
+fn a_model_without_a_state_is_answered_so() {
+    let cases = [
+        ("", vec![]),
+        ("model M { }", vec!["MBG0201"]),
+        ("model M { 1 a; }", vec!["MBG0208", "MBG0201"]),
+    ];
+    for (text, codes) in cases {
+        assert_eq!(found(text), codes, "{text}");
+    }
+}
+
+/// Other ways into a mistake, each with all codes that it is answered with.
+const BESIDE_A_MASS: &[(&str, &[&str])] = &[
+    ("1 b;", &["MBG0208"]),
+    (
+        "causality componentwise; 1 b; output y = b.f;",
+        &["MBG0208"],
+    ),
+    ("1 b[2]; Se s { effort: 1.0 } -> b.y;", &["MBG0208"]),
+    ("Sf s { flow: 1.0 } -> Sf t { flow: 2.0 };", &["MBG0210"]),
+    (
+        "I n { inertia: 1.0 } -> I o { inertia: 2.0 };",
+        &["MBG0210"],
+    ),
+    (
+        "C c { stiffness: 1.0 } -> C d { stiffness: 2.0 };",
+        &["MBG0210"],
+    ),
+    (
+        "R r { resistance: 1.0 } -> R s { resistance: 2.0 };",
+        &["MBG0210"],
+    ),
+    ("I n { inertia: 1.0 } -> a; a -> n;", &["MBG0209"]),
+    ("x: Gear (a);", &["MBG0203"]),
+    ("output y = a;", &["MBG0213"]),
+    ("output y = b.f;", &["MBG0203"]),
+    ("output y = a.f.y;", &["MBG0204"]),
+    ("output y = 1.0 / 0.0;", &["MBG0216"]),
+    ("output y = sin();", &["MBG0213"]),
+    ("output y = sine(1.0);", &["MBG0203"]),
+    ("output y = [];", &["MBG0204"]),
+    ("output y = a.f ^ 2;", &["MBG0212"]),
+    ("output y = 1e400;", &["MBG0211"]),
+    ("output y = powi(0.0, -1);", &["MBG0216"]),
+    ("param x = y;", &["MBG0203"]),
+    ("param x = 1.0; param x = 1.0;", &["MBG0202"]),
+    ("input u; input u;", &["MBG0202"]),
+    ("output y = 1.0; output y = 2.0;", &["MBG0202"]),
+    ("a[1] -> R r { resistance: 1.0 };", &["MBG0204"]),
+    ("MTF t { flow: [[1.0, 2.0]] } -> a;", &["MBG0208"]),
+    ("a -> EJS g { momentum: [1.0, 2.0, 3.0] };", &["MBG0204"]),
+    ("a -> I n { inertia: 1.0, gyroscopic };", &["MBG0204"]),
+    ("a -> R r { resistance: diag(1.0, 2.0) };", &["MBG0204"]),
+    (
+        "a -> GY g { effort: e } -> b; 0 b { C c { stiffness: 1.0 } }",
+        &["MBG0213"],
+    ),
+    ("a -> C c { stiffness: 0.0 };", &[]),
+    ("a -> C c { compliance: 0.0 };", &["MBG0216"]),
+    (
+        "1 b[2] { I n { inertia: [[1.0, 2.0], [3.0, 4.0]] } }",
+        &["MBG0213"],
+    ),
+    (
+        "1 b[2] { I n { inertia: [[1.0, 1.0], [1.0, 1.0]] } }",
+        &["MBG0216"],
+    ),
+    ("a -> R r { effort: q };", &["MBG0213"]),
+    ("a -> C c { stiffness: 1.0, initial: a.f };", &["MBG0213"]),
+    ("integral x = x, initial: x;", &["MBG0213"]),
+    ("attitude q = quaternion(a.f);", &["MBG0204"]),
+];
+
+#[test]
+fn mistakes_are_answered_with_their_codes_alone() {
+    for (body, codes) in BESIDE_A_MASS {
+        assert_eq!(found(&beside_a_mass(body)), *codes, "{body}");
+    }
+}
+
+#[test]
+fn every_error_of_a_fixture_is_at_a_token() {
+    for (_, text) in fixtures() {
+        for diagnostic in diagnose(&text).list() {
+            assert_ne!(
+                diagnostic.span.start(),
+                diagnostic.span.end(),
+                "{}",
+                diagnostic.text()
+            );
+        }
+    }
 }
 
 #[test]
 fn a_model_over_the_limit_is_answered_with_limit_and_count() {
-    let mut body = String::from("1 a { I m { inertia: 1.0 } } 0 b;");
-    for _ in 0..5000 {
-        body.push_str("a -> b;");
-    }
-    let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(model(&body).parse().unwrap(), &mut diagnostics);
-    let Item::Model(model) = &source.items[0] else {
-        panic!("a model was written")
-    };
-    assert!(
-        compile(
-            model,
-            &elaborate::component_table(&source),
-            &mut diagnostics
-        )
-        .is_none()
-    );
-    assert!(
-        diagnostics.list()[0]
-            .message
-            .contains("5001 vector bonds, the limit is 4096")
+    let diagnostics = diagnose(&too_large());
+    assert_eq!(
+        diagnostics.list()[0].message,
+        "`M` has 5001 vector bonds, the limit is 4096"
     );
 }
 
+/// Models without a mistake.
+const SOUND: [&str; 6] = [
+    include_str!("syntax/oscillator.mbg"),
+    include_str!("syntax/ins.mbg"),
+    include_str!("stages/rotor.mbg"),
+    include_str!("stages/slide.mbg"),
+    include_str!("stages/classic_joints.mbg"),
+    "component Slope(port a) { a -> R r { flow: abs(e) * e }; }
+     model Small {
+        causality componentwise; param k = 2.0; input u[2];
+        1 a[2] { C c { stiffness: [[k, 0.0], [0.0, 1.0]] } R l { resistance: k } }
+        Se push { effort: u } -> a;
+        a.x -> GY g { effort: k } -> b;
+        0 b { C d { effort: tanh(q) } I m { energy: if p < 0.0 { p * p } else { powi(p, 4) } } }
+        s: Slope (b);
+        integral x = m.f, initial: 1.0;
+        output y = x * c.q.y;
+     }",
+];
+
 #[test]
-fn expansion_is_the_same_every_time() {
-    let text = model("1 a { I m { inertia: 2.0 } C c { stiffness: 3.0 } R r { resistance: 0.1 } }");
-    let once = expand(text.parse().unwrap()).to_string();
-    assert_eq!(once, expand(text.parse().unwrap()).to_string());
-    assert!(syn::parse_str::<syn::File>(&once).is_ok());
+fn sound_models_have_no_errors() {
+    for text in SOUND {
+        assert_eq!(found(text), [""; 0], "{text}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_changed_model_never_panics_and_its_errors_are_at_tokens(
+        text in prop::sample::select(&SOUND[..]),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..5_usize), 1..4),
+    ) {
+        let mut words = Vec::new();
+        flat(text.parse().expect("tokens"), &mut words);
+        for (at, other, change) in changes {
+            let (at, word) = (at.index(words.len()), words[other.index(words.len())].clone());
+            match change {
+                0 => drop(words.remove(at)),
+                1 => words.insert(at, words[at].clone()),
+                2 => words[at] = word,
+                3 => words[at] = other.get(SOUP).to_string(),
+                _ => {
+                    let other = other.index(words.len());
+                    words.swap(at, other);
+                }
+            }
+        }
+        let text = matched(words.iter().map(String::as_str));
+        if let Ok(tokens) = text.parse() {
+            let mut diagnostics = Diagnostics::new();
+            let expansion = items(tokens, &mut diagnostics);
+            for diagnostic in diagnostics.list() {
+                let (start, end) = (diagnostic.span.start(), diagnostic.span.end());
+                prop_assert!(start != end, "{} has no place in {text}", diagnostic.text());
+            }
+            prop_assert!(syn::parse2::<syn::File>(expansion).is_ok(), "the expansion is no Rust: {text}");
+        }
+    }
 }

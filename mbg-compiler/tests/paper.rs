@@ -1,4 +1,11 @@
-//! The paper's theorem by the compiler's identity test: eq. (5) equals eq. (11), and no mutation of either does.
+//! The paper's theorem by the compiler's identity test: eq. (5) equals eq. (11), and no mutation of either does. Its
+//! figures as models: the ground, which drawings are accepted, and that all of them are one program.
+
+mod paper {
+    mod grounded;
+    mod language;
+    mod verdicts;
+}
 
 use mbg_compiler::symbolic::identity::identical;
 use mbg_compiler::symbolic::{Expression, Factor, Matrix, Pool, Product, Symbol};

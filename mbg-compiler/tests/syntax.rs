@@ -1,5 +1,7 @@
 //! Stage 1, syntax, from the outside: trees, errors with their places, recovery, and any tokens at all.
 
+mod tokens;
+
 use std::fmt::Write;
 
 use mbg_compiler::diagnostics::{Diagnostic, Diagnostics};
@@ -7,6 +9,8 @@ use mbg_compiler::syntax::ast::{Item, Source, Statement};
 use mbg_compiler::syntax::{dump, parse};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use proptest::prelude::*;
+
+use tokens::{SOUP, flat, matched};
 
 const OSCILLATOR: &str = include_str!("syntax/oscillator.mbg");
 const INS: &str = include_str!("syntax/ins.mbg");
@@ -330,68 +334,6 @@ fn deep_laws_do_not_exhaust_the_stack() {
     read(&format!("{}x{}", "{".repeat(10_000), "}".repeat(10_000)));
 }
 
-/// Words that tend to meet the grammar half way.
-const SOUP: &[&str] = &[
-    "model",
-    "component",
-    "pub",
-    "port",
-    "param",
-    "input",
-    "output",
-    "integral",
-    "attitude",
-    "causality",
-    "uniform",
-    "quaternion",
-    "initial",
-    "coordinate",
-    "for",
-    "in",
-    "let",
-    "gravity",
-    "close",
-    "R",
-    "Se",
-    "MTF",
-    "I",
-    "a",
-    "b",
-    "q",
-    "x",
-    "0",
-    "1",
-    "2",
-    "3.5",
-    "1.",
-    "\"s\"",
-    "->",
-    "-",
-    ">",
-    ":",
-    "::",
-    ";",
-    ",",
-    "=",
-    "^",
-    "*",
-    "/",
-    ".",
-    "..",
-    "..=",
-    "#",
-    "!",
-    "'a",
-    "#[derivative]",
-    "/// d\n",
-    "if",
-    "else",
-    "_",
-    "r#type",
-    "m2",
-    "99999999999999999999",
-];
-
 /// Random tokens in random brackets.
 fn soup() -> impl Strategy<Value = String> {
     let word = prop::sample::select(SOUP).prop_map(str::to_owned);
@@ -400,51 +342,6 @@ fn soup() -> impl Strategy<Value = String> {
         (prop::collection::vec(inner, 0..12), brackets)
             .prop_map(|(words, (open, close))| format!("{open} {} {close}", words.join(" ")))
     })
-}
-
-/// All tokens of the valid models with their brackets flat.
-fn flat(tokens: TokenStream, into: &mut Vec<String>) {
-    for token in tokens {
-        match token {
-            TokenTree::Group(group) => {
-                let (open, close) = match group.delimiter() {
-                    Delimiter::Brace => ("{", "}"),
-                    Delimiter::Parenthesis => ("(", ")"),
-                    Delimiter::Bracket => ("[", "]"),
-                    Delimiter::None => ("", ""),
-                };
-                into.push(open.to_owned());
-                flat(group.stream(), into);
-                into.push(close.to_owned());
-            }
-            other => into.push(other.to_string()),
-        }
-    }
-}
-
-/// The text with brackets made to match: what closes nothing goes, what stays open is closed.
-fn matched<'a>(words: impl Iterator<Item = &'a str>) -> String {
-    let (mut text, mut open) = (String::new(), Vec::new());
-    for word in words {
-        let close = match word {
-            "{" => Some("}"),
-            "(" => Some(")"),
-            "[" => Some("]"),
-            _ => None,
-        };
-        if let Some(close) = close {
-            open.push(close);
-        } else if matches!(word, "}" | ")" | "]") && open.pop_if(|last| *last == word).is_none() {
-            continue;
-        }
-        // A minus and a bracket stand together as they stood, and an arrow is two characters.
-        text.push_str(word);
-        if !matches!(word, "-" | "." | "=") {
-            text.push(' ');
-        }
-    }
-    open.iter().rev().for_each(|close| text.push_str(close));
-    text
 }
 
 /// Parses if the text consists of tokens, and prints the tree: neither may panic.

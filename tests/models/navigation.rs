@@ -1,14 +1,14 @@
 //! The inertial navigation system of the paper.
 
-use mbg_runtime::{DormandPrince, Dual, Pulse, Rk4, System};
+use mbg_runtime::{Dual, System};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::ins::{
     Ins, InsClassic, InsClassicObserved, InsClassicObservedParameters, InsClassicParameters,
-    InsObserved, InsObservedParameters, InsParameters,
+    InsObserved, InsObservedParameters, InsParameters, gust,
 };
-use crate::reference::{self, Instant};
-use crate::run::{errors, run};
+use crate::reference;
+use crate::run::{Method, errors, run};
 
 fn proposed() -> Ins {
     Ins::new(InsParameters::default()).unwrap()
@@ -42,15 +42,15 @@ fn random_state(next: &mut impl FnMut() -> f64) -> SVector<f64, 9> {
     }
 }
 
-#[test]
-fn both_architectures_meet_the_reference() {
+/// Both architectures against the reference, all quantities, both gusts; the architectures are one program.
+fn meet_the_reference(method: Method, step: f64, bound: f64) {
+    let first = InsObserved::new(InsObservedParameters::default()).unwrap();
+    let second = InsClassicObserved::new(InsClassicObservedParameters::default()).unwrap();
     for (width, reference) in [(0.1, &reference::PULSE[..]), (1.0, &reference::LONG[..])] {
-        let first = InsObserved::new(InsObservedParameters::default()).unwrap();
-        let second = InsClassicObserved::new(InsClassicObservedParameters::default()).unwrap();
-        let first = run(&first, width, 1e-3, 20.0).unwrap();
-        let second = run(&second, width, 1e-3, 20.0).unwrap();
+        let first = run(&first, method, &gust(width), step, 20.0).unwrap();
+        let second = run(&second, method, &gust(width), step, 20.0).unwrap();
         for (name, error) in errors(&first, reference) {
-            assert!(error < 1e-10, "{name}: {error:e} for a gust of {width} s");
+            assert!(error < bound, "{name}: {error:e} for a gust of {width} s");
         }
         for (a, b) in first.iter().zip(&second) {
             assert_eq!(a.output, b.output, "the architectures are one program");
@@ -59,34 +59,13 @@ fn both_architectures_meet_the_reference() {
 }
 
 #[test]
+fn rk4_meets_the_reference() {
+    meet_the_reference(Method::Rk4, 1e-3, 1e-10);
+}
+
+#[test]
 fn the_adaptive_pair_meets_the_reference() {
-    let pair = DormandPrince::new(1e-10, 1e-14);
-    for (width, reference) in [(0.1, &reference::PULSE[..]), (1.0, &reference::LONG[..])] {
-        let model = proposed();
-        let gust = Pulse {
-            amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
-            start: 1.0,
-            end: 1.0 + width,
-        };
-        let times: Vec<f64> = reference.iter().map(|instant| instant.time).collect();
-        let mut found = Vec::new();
-        pair.sample(&model, &gust, 0.0, model.initial_state(), &times, |_, x| {
-            found.push(*x)
-        })
-        .unwrap();
-        let scale = |of: fn(&Instant) -> [f64; 3], k: usize| {
-            reference
-                .iter()
-                .map(|instant| of(instant)[k].abs())
-                .fold(0.0, f64::max)
-        };
-        for (instant, x) in reference.iter().zip(found) {
-            for k in 0..3 {
-                let error = (x[6 + k] - instant.alpha[k]).abs() / scale(|instant| instant.alpha, k);
-                assert!(error < 1e-8, "alpha {k} at {}: {error:e}", instant.time);
-            }
-        }
-    }
+    meet_the_reference(Method::DormandPrince(1e-10), 1e-2, 1e-8);
 }
 
 /// The equations by hand, in matrices: Newton and Euler, `α̇ = J⁻¹(C ω_p − ω_f)`, `τ = −J⁻ᵀ e`.
@@ -104,7 +83,8 @@ fn by_hand(x: &SVector<f64, 9>, u: &SVector<f64, 3>) -> SVector<f64, 9> {
     let rate = inverse * (turn * platform - fuselage);
     let torque = -(inverse.transpose() * (alpha * 1e-5 + rate * 1e-5));
     let hull_rate = u - fuselage * 1e3 - torque - fuselage.cross(&hull);
-    let body_rate = turn.transpose() * torque - platform.cross(&body);
+    // The platform is isotropic: ω × Jω is zero, but would be rounding of Jω far above its torque.
+    let body_rate = turn.transpose() * torque;
     SVector::from_fn(|row, _| [hull_rate, body_rate, rate][row / 3][row % 3])
 }
 
@@ -123,10 +103,9 @@ fn derivative_equals_an_independent_evaluation() {
         let theirs = by_hand(&x, &u);
         for block in 0..3 {
             let difference = (ours - theirs).fixed_rows::<3>(3 * block).amax();
-            let scale = theirs.fixed_rows::<3>(3 * block).amax().max(1e-9);
-            // The inverse of J in the comparison loses what |cos α₂| takes: up to a factor of 100.
+            let scale = theirs.fixed_rows::<3>(3 * block).amax();
             assert!(
-                difference <= 1e-12 * scale.max(1.0),
+                difference <= 1e-13 * scale,
                 "block {block}: {difference:e} of {scale:e}"
             );
         }
@@ -147,7 +126,7 @@ fn the_singular_set_is_the_cosine_of_the_second_angle() {
     let trouble = proposed()
         .trouble(0.0, &locked, &SVector::zeros(), &())
         .unwrap();
-    assert_eq!(trouble.name, "cos(spring.q.y)");
+    assert_eq!(trouble.name, "cos(gimbals.spring.q.y)");
 }
 
 #[test]
@@ -166,7 +145,7 @@ fn the_program_is_small() {
     assert_eq!(<Ins as System<f64, 9, 3, 3>>::META.dependent.len(), 0);
     assert_eq!(
         <InsClassic as System<f64, 9, 3, 3>>::META.dependent,
-        ["body"]
+        ["bodies.body"]
     );
 }
 
@@ -214,72 +193,5 @@ fn jacobians_equal_dual_numbers() {
                 );
             }
         }
-    }
-}
-
-#[test]
-fn no_damping_runs_and_bad_parameters_are_refused() {
-    let free = Ins::new(InsParameters {
-        damping: 0.0,
-        ..InsParameters::default()
-    })
-    .unwrap();
-    let gust = Pulse {
-        amplitude: Vector3::new(5000.0, 1000.0, 10000.0),
-        start: 1.0,
-        end: 1.1,
-    };
-    Rk4::fixed(
-        &free,
-        &gust,
-        0.0,
-        5.0,
-        1e-2,
-        free.initial_state(),
-        |_, _| (),
-    )
-    .unwrap();
-    let error = Ins::new(InsParameters {
-        damping: f64::NAN,
-        ..InsParameters::default()
-    })
-    .unwrap_err();
-    assert_eq!(error.name, "damping");
-}
-
-/// The model with supplied and dissipated energy as two more states.
-#[test]
-fn energy_balances() {
-    let model = proposed();
-    let torque = Vector3::new(5000.0, 1000.0, 10000.0);
-    let (mut x, mut supplied, mut dissipated) = (model.initial_state(), 0.0, 0.0);
-    let h = 1e-3;
-    for step in 0..20_000 {
-        let u = if (1000..1100).contains(&step) {
-            torque
-        } else {
-            Vector3::zeros()
-        };
-        let rate = |x: &SVector<f64, 9>| {
-            let power = model.power(0.0, x, &u, &mut ());
-            (
-                model.derivative(0.0, x, &u, &mut ()),
-                power.supplied,
-                power.dissipated,
-            )
-        };
-        let k1 = rate(&x);
-        let k2 = rate(&(x + k1.0 * (h / 2.0)));
-        let k3 = rate(&(x + k2.0 * (h / 2.0)));
-        let k4 = rate(&(x + k3.0 * h));
-        let mean = |a: f64, b: f64, c: f64, d: f64| h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-        supplied += mean(k1.1, k2.1, k3.1, k4.1);
-        dissipated += mean(k1.2, k2.2, k3.2, k4.2);
-        x += (k1.0 + k2.0 * 2.0 + k3.0 * 2.0 + k4.0) * (h / 6.0);
-        let balance = model.energy(0.0, &x) - supplied + dissipated;
-        assert!(
-            balance.abs() <= 1e-12 * supplied.max(1.0),
-            "step {step}: {balance:e} of {supplied:e}"
-        );
     }
 }

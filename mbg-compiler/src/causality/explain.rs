@@ -14,7 +14,7 @@ use super::search::{self, BUDGET, Best, Found, Goal};
 use super::strokes::{Plan, Problem, Site};
 use super::uniform::{self, Cause, Step, Verdict};
 use super::words::{self, ChainStep};
-use crate::graph::{BondGraph, BondId, ElementId, ElementKind, JunctionKind};
+use crate::graph::{BondGraph, BondId, ElementId, End, JunctionKind, Rule};
 
 /// At most so many alternatives are asked for.
 const ALTERNATIVES: usize = 8;
@@ -232,14 +232,23 @@ pub fn alternatives(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Vec<
     candidates.copied().filter(would_do).collect()
 }
 
-/// Whether the chain holds a source of flow, or a two-port that runs forward only: a joint that blocks some axes.
+/// Whether the chain holds a source that blocks some axes of a joint in space, or a transformer that spans some.
 #[must_use]
 pub fn blocks_axes(graph: &BondGraph, fixed: &[ElementId]) -> bool {
     let blocks = |id: &ElementId| {
-        matches!(
-            graph.elements[id.0].kind,
-            ElementKind::Sf | ElementKind::MTF | ElementKind::TF
-        )
+        let element = &graph.elements[id.0];
+        match element.rule {
+            Rule::FlowOut => graph
+                .bonds
+                .iter()
+                .any(|bond| bond.from == End::OnePort(*id) && is_part_of_three(graph, &bond.to)),
+            Rule::Transformer { rows, columns, .. } => rows == 3 && columns < 3,
+            _ => false,
+        }
     };
     fixed.iter().any(blocks)
+}
+
+fn is_part_of_three(graph: &BondGraph, end: &End) -> bool {
+    matches!(end, End::Junction(id, range) if graph.junctions[id.0].dimension == 3 && range.len() < 3)
 }

@@ -238,13 +238,13 @@ proptest! {
         let mut diagnostics = crate::diagnostics::Diagnostics::new();
         match verdict(&graph) {
             Ok(verdict) => {
-                super::report::diagnose(&graph, &verdict, &mut diagnostics);
+                super::report::diagnose(&graph, &verdict, true, &mut diagnostics);
                 let rejected = verdict.dependent.iter().filter(|id| !graph.elements[id.0].derivative).count();
                 prop_assert_eq!(rejected > 0, diagnostics.any());
                 prop_assert!(diagnostics.list().len() <= graph.elements.len());
             }
             Err(conflict) => {
-                super::report::conflict_diagnostics(&graph, &conflict, &mut diagnostics);
+                super::report::conflict_diagnostics(&graph, &conflict, true, &mut diagnostics);
                 prop_assert!(diagnostics.any());
             }
         }

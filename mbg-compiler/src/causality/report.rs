@@ -1,7 +1,7 @@
 //! The verdict as diagnostics.
 //!
-//! Stable macros cannot attach notes to other places, so every element that takes part gets an error of its own with
-//! the same chain; each element gets at most one.
+//! Stable macros cannot attach notes to other places, so every element that takes part gets an error of its own: the
+//! dependent storage the whole chain and the ways out, the others their own steps of it. Each element gets at most one.
 
 use std::collections::BTreeSet;
 
@@ -9,22 +9,33 @@ use super::dependence;
 use super::explain::{self, Chain};
 pub use super::report_conflict::conflict_diagnostics;
 use super::uniform::Verdict;
-use super::words;
+use super::words::{self, ChainStep};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::graph::{Bond, BondGraph, ElementId, End, Rule};
 
-/// The first way out.
-pub const COMPONENTWISE: &str = "`causality componentwise;` in the model, for one stroke per component instead of one per multibond";
+/// The first way out, where the drawing alone is at fault.
+pub const COMPONENTWISE: &str = "write `causality componentwise;` in the model: one stroke per component instead of one per multibond";
 /// The way out for joints that block some axes.
-pub const JACOBIAN: &str = "give the joint one square Jacobian: `gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint;`";
+pub const JACOBIAN: &str = "replace the joints between `a` and `b` by one with a square Jacobian: \
+    `1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
+    gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
+    joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
+/// What to do about inertias that depend on each other by the physics.
+pub const APART: &str = "give each inertia a junction of its own and put a spring between them: \
+    `a -> between; between -> b; 0 between { C shaft { stiffness: … } }`";
 
 /// Longer chains are shortened.
 const LONGEST_CHAIN: usize = 40;
 
 /// Reports every storage that is forced into derivative causality and not marked `#[derivative]`, then the elements
-/// that force it.
-pub fn diagnose(graph: &BondGraph, verdict: &Verdict, diagnostics: &mut Diagnostics) {
+/// that force it. `soluble` says whether the equations, component by component, keep every storage as a state.
+pub fn diagnose(
+    graph: &BondGraph,
+    verdict: &Verdict,
+    soluble: bool,
+    diagnostics: &mut Diagnostics,
+) {
     let rejected = verdict
         .dependent
         .iter()
@@ -34,12 +45,12 @@ pub fn diagnose(graph: &BondGraph, verdict: &Verdict, diagnostics: &mut Diagnost
         .collect();
     let mut reported: BTreeSet<ElementId> = chains.iter().map(|chain| chain.storage).collect();
     for chain in &chains {
-        diagnostics.report(storage_error(graph, verdict, chain));
+        diagnostics.report(storage_error(graph, verdict, chain, soluble));
     }
     for chain in chains.iter().filter(|chain| !chain.integral.is_empty()) {
         for id in chain.integral.iter().chain(&chain.fixed) {
             if reported.insert(*id) {
-                diagnostics.report(involved_error(graph, verdict, chain, *id));
+                diagnostics.report(involved_error(graph, chain, *id));
             }
         }
     }
@@ -85,7 +96,7 @@ fn headline(graph: &BondGraph, id: ElementId) -> String {
     )
 }
 
-fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Diagnostic {
+fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain, soluble: bool) -> Diagnostic {
     let id = chain.storage;
     let mut report = error(
         codes::STORAGE_DERIVATIVE,
@@ -95,18 +106,30 @@ fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Diagnos
     report.notes = chain_notes(graph, verdict, chain);
     report.notes.extend(choice(graph, verdict, chain));
     let element = &graph.elements[id.0];
-    let mark = format!(
-        "`#[derivative]` before the element, `#[derivative] {} {} {{ … }}`, to accept it",
-        words::symbol(element.kind),
-        element.name.rsplit('.').next().unwrap_or_default(),
-    );
-    let mut helps = vec![COMPONENTWISE.to_owned(), mark];
-    helps.extend(
-        chain
-            .fixed
-            .iter()
-            .filter_map(|id| resistor_help(graph, *id)),
-    );
+    let written = element.name.rsplit('.').next().unwrap_or_default();
+    let written = format!("{} {written}", words::symbol(element.kind));
+    let mut helps = Vec::new();
+    if soluble {
+        helps.push(COMPONENTWISE.to_owned());
+    } else {
+        report.notes.push(
+            "component by component the equations have no solution either: a true loss of order, which no choice of \
+             strokes mends"
+                .to_owned(),
+        );
+    }
+    helps.push(format!(
+        "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
+    ));
+    if !soluble && !chain.integral.is_empty() {
+        helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
+    }
+    let imposed_on = !chain.integral.is_empty() || !chain.fixed.is_empty();
+    if !soluble && imposed_on && element.rule == Rule::PreferFlowOut {
+        helps.push(APART.to_owned());
+    }
+    let resistors = chain.fixed.iter();
+    helps.extend(resistors.filter_map(|id| resistor_help(graph, *id)));
     if explain::blocks_axes(graph, &chain.fixed) {
         helps.push(JACOBIAN.to_owned());
     }
@@ -123,14 +146,17 @@ fn chain_notes(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Vec<Strin
     let variable = imposed(graph, chain.storage);
     let own = format!("the {variable} of `{}`", name(graph, chain.storage));
     let parts = [
-        ("the state of", found.states),
-        ("the source", found.sources),
-        ("the rate of change of", found.rates),
+        (["the state of", "the states of"], found.states),
+        (["the source", "the sources"], found.sources),
+        (
+            ["the rate of change of", "the rates of change of"],
+            found.rates,
+        ),
     ];
     let parts: Vec<String> = parts
         .iter()
         .filter(|(_, ids)| !ids.is_empty())
-        .map(|(what, ids)| format!("{what} {}", names(graph, ids)))
+        .map(|(what, ids)| format!("{} {}", what[usize::from(ids.len() > 1)], names(graph, ids)))
         .collect();
     if !parts.is_empty() {
         notes.push(format!("{own} is computed from {}", parts.join("; ")));
@@ -182,12 +208,7 @@ fn choice(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Vec<String> {
     notes
 }
 
-fn involved_error(
-    graph: &BondGraph,
-    verdict: &Verdict,
-    chain: &Chain,
-    id: ElementId,
-) -> Diagnostic {
+fn involved_error(graph: &BondGraph, chain: &Chain, id: ElementId) -> Diagnostic {
     let element = &graph.elements[id.0];
     let message = format!(
         "{} `{}` takes part in forcing {} `{}` into derivative causality",
@@ -201,8 +222,18 @@ fn involved_error(
         graph.origins.span(element.origin),
         message,
     );
-    report.notes = chain_notes(graph, verdict, chain);
+    report.notes = own_steps(graph, id, &chain.steps, &name(graph, chain.storage));
     report
+}
+
+/// The steps of a chain that an element brings in, and where the whole chain is told.
+#[must_use]
+pub fn own_steps(graph: &BondGraph, id: ElementId, steps: &[ChainStep], told: &str) -> Vec<String> {
+    let origin = graph.elements[id.0].origin;
+    let own = steps.iter().filter(|step| step.origin == origin);
+    let whole = format!("the error at `{told}` tells the whole chain");
+    let alone = |step: &ChainStep| step.text.trim_start_matches("but ").to_owned();
+    own.map(alone).chain([whole]).collect()
 }
 
 /// The other law of a resistor that fits one causality only.

@@ -1,68 +1,78 @@
 //! A conflict as diagnostics.
 //!
-//! As with [dependent storages](super::report), each element that takes part gets one error with the same chain.
-
-use std::collections::BTreeSet;
+//! As with [dependent storages](super::report), the element to blame gets the whole chain and the ways out, and each
+//! other element that takes part its own steps.
 
 use super::conflict::Conflict;
 use super::explain;
-use super::report::{COMPONENTWISE, JACOBIAN, alternatives, resistor_help};
+use super::report::{COMPONENTWISE, JACOBIAN, alternatives, own_steps, resistor_help};
 use super::words;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::graph::{BondGraph, ElementId, End, JunctionKind, OriginId, Rule};
 
-/// Reports a conflict at each fixed element that takes part, or where the rules fail.
-pub fn conflict_diagnostics(graph: &BondGraph, conflict: &Conflict, diagnostics: &mut Diagnostics) {
-    let mut reported = BTreeSet::new();
-    for origin in origins(graph, conflict) {
-        if reported.insert(origin) {
-            let message = message(graph, conflict);
-            let mut report = error(conflict.code, graph.origins.span(origin), message);
-            report.notes = conflict
-                .chain
-                .iter()
-                .map(|step| step.text.clone())
-                .collect();
-            if reported.len() == 1 {
-                report.helps = alternatives(helps(graph, conflict));
-            }
+/// Reports a conflict where the rules fail or at the element to blame, then at each fixed element that takes part.
+/// `soluble` says whether the equations, component by component, have a solution.
+pub fn conflict_diagnostics(
+    graph: &BondGraph,
+    conflict: &Conflict,
+    soluble: bool,
+    diagnostics: &mut Diagnostics,
+) {
+    let Some(first) = origin(graph, conflict) else {
+        return;
+    };
+    let mut report = error(
+        conflict.code,
+        graph.origins.span(first),
+        message(graph, conflict),
+    );
+    let steps = conflict.chain.iter();
+    report.notes = steps.map(|step| step.text.clone()).collect();
+    report.helps = alternatives(helps(graph, conflict, soluble));
+    diagnostics.report(report);
+    for id in conflict.elements() {
+        let element = &graph.elements[id.0];
+        if element.origin != first {
+            let kind = words::kind_name(graph, id);
+            let message = format!(
+                "{kind} `{}` takes part in the conflict{}",
+                element.name,
+                place(graph, conflict)
+            );
+            let mut report = error(conflict.code, graph.origins.span(element.origin), message);
+            report.notes = own_steps(graph, id, &conflict.chain, graph.origins.path(first));
             diagnostics.report(report);
         }
     }
 }
 
-fn origins(graph: &BondGraph, conflict: &Conflict) -> Vec<OriginId> {
-    let mut origins = Vec::new();
+/// Where the whole chain is told.
+fn origin(graph: &BondGraph, conflict: &Conflict) -> Option<OriginId> {
     if let (Some(End::Junction(id, _)), codes::NO_ASSIGNMENT) = (conflict.place(), conflict.code) {
-        origins.push(graph.junctions[id.0].origin);
+        return Some(graph.junctions[id.0].origin);
     }
-    origins.extend(
-        conflict
-            .elements()
-            .iter()
-            .map(|id| graph.elements[id.0].origin),
-    );
-    if origins.is_empty() {
-        // No fixed element and no junction: two-ports in a ring, or a search that gave up.
-        let bonds = conflict.bonds.iter().map(|id| graph.bonds[id.0].origin);
-        let anything = bonds.chain(graph.junctions.iter().map(|junction| junction.origin));
-        origins.extend(
-            anything
-                .chain(graph.bonds.iter().map(|bond| bond.origin))
-                .next(),
-        );
+    if let Some(id) = conflict.elements().first() {
+        return Some(graph.elements[id.0].origin);
     }
-    origins
+    // No fixed element and no junction: two-ports in a ring, or a search that gave up.
+    let bonds = conflict.bonds.iter().map(|id| graph.bonds[id.0].origin);
+    let junctions = graph.junctions.iter().map(|junction| junction.origin);
+    let all = graph.bonds.iter().map(|bond| bond.origin);
+    bonds.chain(junctions).chain(all).next()
+}
+
+/// ` at `joint``, where there is a place.
+fn place(graph: &BondGraph, conflict: &Conflict) -> String {
+    let at = |end: End| format!(" at `{}`", graph.end_name(&end));
+    conflict.place().map_or_else(String::new, at)
 }
 
 fn message(graph: &BondGraph, conflict: &Conflict) -> String {
     if !conflict.proven() {
         return "no assignment of strokes was found before the search reached its limit".to_owned();
     }
-    let place = conflict
-        .place()
-        .map_or_else(String::new, |end| format!(" at `{}`", graph.end_name(&end)));
+    let place = place(graph, conflict);
     match conflict.elements().first() {
         Some(id) if conflict.code != codes::NO_ASSIGNMENT => fixed_message(graph, *id)
             .unwrap_or_else(|| {
@@ -102,7 +112,7 @@ fn fixed_message(graph: &BondGraph, id: ElementId) -> Option<String> {
     ))
 }
 
-fn helps(graph: &BondGraph, conflict: &Conflict) -> Vec<String> {
+fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
     if !conflict.proven() {
         return vec![COMPONENTWISE.to_owned()];
     }
@@ -118,14 +128,16 @@ fn helps(graph: &BondGraph, conflict: &Conflict) -> Vec<String> {
     helps.push(match (conflict.code, end) {
         (codes::SOURCES_CONFLICT, _) => format!("remove one of {}", names(graph, &elements)),
         (codes::GYROSCOPIC_INVERSE, _) => {
-            format!("give `{place}` its flow from an inertia: `I body {{ inertia: …, gyroscopic }}`")
+            format!("give `{place}` its flow from an inertia: `{place} -> I rotor {{ inertia: … }};`")
         }
         (_, Some(End::Junction(id, _))) if graph.junctions[id.0].kind == JunctionKind::Zero => {
             format!("attach a resistor that can give the effort: `{place} -> R damper {{ resistance: … }};`")
         }
         _ => format!("attach a resistor that can give the flow: `{place} -> R damper {{ conductance: … }};`"),
     });
-    helps.push(COMPONENTWISE.to_owned());
+    if soluble {
+        helps.push(COMPONENTWISE.to_owned());
+    }
     if explain::blocks_axes(graph, &elements) {
         helps.push(JACOBIAN.to_owned());
     }

@@ -11,8 +11,8 @@ use crate::graph::{BondGraph, ElementId, End, Rule};
 fn reports(graph: &BondGraph) -> Diagnostics {
     let mut diagnostics = Diagnostics::new();
     match verdict(graph) {
-        Ok(verdict) => diagnose(graph, &verdict, &mut diagnostics),
-        Err(conflict) => conflict_diagnostics(graph, &conflict, &mut diagnostics),
+        Ok(verdict) => diagnose(graph, &verdict, true, &mut diagnostics),
+        Err(conflict) => conflict_diagnostics(graph, &conflict, true, &mut diagnostics),
     }
     diagnostics
 }
@@ -43,13 +43,16 @@ inertia `body` is forced into derivative causality: all 3 components of its flow
   so `hinge.turn` passes the flow on to `platform`
   so `platform -> body` carries the flow of `platform` to `body`
   path: I <- 1 <- MTF <- 0 <- 1 <- I
-  the flow of `body` is computed from the state of `hull`, `hinge.spring`; the source `hinge.blocked`; the rate of \
+  the flow of `body` is computed from the states of `hull`, `hinge.spring`; the source `hinge.blocked`; the rate of \
 change of `body`
   `hull` could be dependent in the place of `body`, at the same number of dependent storages; storages keep integral \
 causality in order of declaration, those under `#[derivative]` last
-  help: `causality componentwise;` in the model, for one stroke per component instead of one per multibond
-  help: or `#[derivative]` before the element, `#[derivative] I body { … }`, to accept it
-  help: or give the joint one square Jacobian: `gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint;`";
+  help: write `causality componentwise;` in the model: one stroke per component instead of one per multibond
+  help: or write `#[derivative]` before `I body` to accept it: `#[derivative] I body { … }`
+  help: or replace the joints between `a` and `b` by one with a square Jacobian: \
+`1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
+gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
+joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
     assert_eq!(text, expected);
     let others: Vec<&str> = diagnostics.list()[1..]
         .iter()
@@ -175,8 +178,11 @@ no assignment of strokes satisfies the rules at `hinge.rel.x` [MBG0303]
   so `hinge.rel -> hinge.sum` carries the flow of `hinge.rel[1..3]` to `hinge.sum`
   but then no bond gives `hinge.rel.x` its flow
   help: attach a resistor that can give the flow: `hinge.rel.x -> R damper { conductance: … };`
-  help: or `causality componentwise;` in the model, for one stroke per component instead of one per multibond
-  help: or give the joint one square Jacobian: `gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint;`";
+  help: or write `causality componentwise;` in the model: one stroke per component instead of one per multibond
+  help: or replace the joints between `a` and `b` by one with a square Jacobian: \
+`1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
+gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
+joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
     assert_eq!(diagnostics.list()[0].text(), expected);
     let mut builder = Builder::new();
     builder.one_joint(

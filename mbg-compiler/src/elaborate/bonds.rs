@@ -137,7 +137,6 @@ impl<'a> Builder<'a> {
             origin,
         });
         self.ports.push((start..self.states.len(), dimension));
-        self.check_words(scope, element);
         self.name(scope, &element.name, Entity::Element(id));
         self.pending.push(Pending::Law { scope, element, id });
         id
@@ -221,7 +220,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn is_two_port(kind: ElementKind) -> bool {
+/// Whether an element has two ports.
+pub(super) fn is_two_port(kind: ElementKind) -> bool {
     matches!(
         kind,
         ElementKind::TF | ElementKind::GY | ElementKind::MTF | ElementKind::MGY

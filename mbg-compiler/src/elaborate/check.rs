@@ -1,22 +1,27 @@
 //! What must hold of the finished graph: equal dimensions, one bond per port.
 
+use proc_macro2::Span;
+
 use super::Builder;
 use crate::codes;
-use crate::graph::{ElementId, End, Rule};
+use crate::diagnostics::error;
+use crate::graph::{ElementId, End, JunctionId, Rule};
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
-    pub(super) fn check(&mut self) {
+    pub(super) fn check(&mut self, model: Span) {
         if self.diagnostics.any() {
             return;
         }
         self.check_bonds();
         self.check_ports();
+        self.check_junctions();
         if self.states.is_empty() {
-            let span = proc_macro2::Span::call_site();
             let message =
                 "the model has no storage, integral or attitude: nothing changes with time";
-            self.diagnostics.error(codes::EMPTY_MODEL, span, message);
+            let help = "write `I body { inertia: … }` or `C spring { stiffness: … }` in the braces of a junction";
+            self.diagnostics
+                .report(error(codes::EMPTY_MODEL, model, message).help(help));
         }
     }
 
@@ -61,6 +66,32 @@ impl Builder<'_> {
         }
     }
 
+    /// A junction without a bond would leave its common variable undetermined.
+    fn check_junctions(&mut self) {
+        let graph = &self.graph;
+        let components = graph.junctions.iter().map(|it| vec![false; it.dimension]);
+        let mut bonded: Vec<Vec<bool>> = components.collect();
+        for end in graph.bonds.iter().flat_map(|bond| [&bond.from, &bond.to]) {
+            if let End::Junction(id, range) = end {
+                bonded[id.0][range.clone()].fill(true);
+            }
+        }
+        for (index, bonded) in bonded.iter().enumerate() {
+            if let Some(component) = bonded.iter().position(|bonded| !bonded) {
+                let name =
+                    graph.end_name(&End::Junction(JunctionId(index), component..component + 1));
+                let span = graph.origins.span(graph.junctions[index].origin);
+                let report = error(
+                    codes::UNCONNECTED,
+                    span,
+                    format!("junction `{name}` has no bond"),
+                );
+                self.diagnostics
+                    .report(report.help(format!("write an arrow to it: `{name} -> …;`")));
+            }
+        }
+    }
+
     fn check_ports(&mut self) {
         let mut counts = vec![[0usize; 2]; self.graph.elements.len()];
         for bond in &self.graph.bonds {
@@ -85,10 +116,19 @@ impl Builder<'_> {
                 .any(|(found, expected)| *found < expected)
             {
                 let message = format!("`{}` has a port without a bond", element.name);
-                self.diagnostics.error(codes::UNCONNECTED, span, message);
+                let help = if two_port {
+                    "write an arrow on either side of it: `a -> TF gear { … } -> b;`"
+                } else {
+                    "write an arrow to a junction"
+                };
+                self.diagnostics
+                    .report(error(codes::UNCONNECTED, span, message).help(help));
             } else if count != expected {
                 let message = format!("`{}` has a port with more than one bond", element.name);
-                self.diagnostics.error(codes::TOO_MANY_BONDS, span, message);
+                let help =
+                    "bonds meet at junctions: write the arrow to the element's junction instead";
+                self.diagnostics
+                    .report(error(codes::TOO_MANY_BONDS, span, message).help(help));
             }
         }
     }

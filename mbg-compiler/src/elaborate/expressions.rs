@@ -37,6 +37,9 @@ pub trait Names {
 
     /// The number that an expression stands for while the model is compiled.
     fn whole(&self, expression: &Expr) -> Result<i64>;
+
+    /// Every plain name.
+    fn all(&self) -> Vec<&str>;
 }
 
 impl Value {
@@ -196,11 +199,13 @@ impl<N: Names> Evaluator<'_, N> {
             .last()
             .map_or_else(|| expression.span(), |step| step.name.span());
         let text = dump::expression(expression);
-        Err(Box::new(error(
+        let report = error(
             codes::UNKNOWN_NAME,
             name,
             format!("`{text}` is not declared"),
-        )))
+        );
+        let known = self.names.all();
+        Err(Box::new(report.did_you_mean(&text, &known)))
     }
 
     /// The steps of a dotted path; none if it does not begin with a name.
@@ -539,10 +544,11 @@ impl<N: Names> Evaluator<'_, N> {
             Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => {
                 match self.pool.power(base, value as i32) {
                     Some(power) => Ok(Value::Scalar(power)),
-                    None => fail(
+                    None => Err(Box::new(error(
+                        codes::NOT_FINITE,
                         arguments[0].span(),
                         "this divides by zero, whatever the state",
-                    ),
+                    ))),
                 }
             }
             _ => fail(

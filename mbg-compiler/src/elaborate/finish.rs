@@ -93,6 +93,9 @@ impl<'a> Builder<'a> {
     /// Reads everything that was put off.
     pub(super) fn resolve_laws(&mut self) {
         for pending in std::mem::take(&mut self.pending) {
+            if let Pending::Law { scope, element, .. } = pending {
+                self.check_words(scope, element);
+            }
             self.settle(pending.scope(), |builder| {
                 builder.resolve_law(pending.clone())
             });
@@ -188,7 +191,7 @@ impl<'a> Builder<'a> {
             if words.iter().any(|word| field.name == word) {
                 continue;
             }
-            let message = format!("a {:?} does not know `{}`", element.kind, field.name);
+            let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
             let known = words.iter().map(|word| (*word).to_owned());
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
             self.tell(
@@ -302,6 +305,15 @@ impl<'a> Builder<'a> {
         let unit = output.unit.as_ref().map_or("", |unit| unit.text.as_str());
         let path = self.path(scope, &output.name);
         let variables = component_names(&path, output.dimension, unit);
+        let mut known = self.outputs.iter().map(|known| &known.variable.name);
+        if known.any(|known| variables.iter().any(|variable| variable.name == *known)) {
+            let message = format!("output `{}` is declared twice", output.name);
+            return Err(Box::new(error(
+                codes::DUPLICATE_NAME,
+                output.name.span(),
+                message,
+            )));
+        }
         let span = self.place(scope, output.name.span());
         self.outputs.extend(
             variables
@@ -357,11 +369,11 @@ fn law_field(element: &ast::Element) -> Result<&ast::Field> {
                 "`{}` has two laws, `{}` and `{}`",
                 element.name, first.name, second.name
             );
-            Err(Box::new(error(
-                codes::TWO_LAWS,
-                second.name.span(),
-                message,
-            )))
+            let report = error(codes::TWO_LAWS, second.name.span(), message);
+            Err(Box::new(report.help(format!(
+                "remove `{}` or `{}`",
+                first.name, second.name
+            ))))
         }
     }
 }

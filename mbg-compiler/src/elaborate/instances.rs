@@ -122,14 +122,15 @@ impl<'a> Builder<'a> {
 
     fn unknown_component(&mut self, scope: usize, name: &Ident) {
         let message = format!("component `{name}` is not declared");
-        let report = error(codes::UNKNOWN_NAME, name.span(), message);
-        let help = match library::nearest(&name.to_string()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!(
-                "the library has {}",
-                listing(library::names().map(str::to_owned))
-            ),
-        };
-        self.tell(scope, report.help(help));
+        let components = self.components;
+        let mut known: Vec<&str> = library::names().collect();
+        known.extend(components.keys().map(String::as_str));
+        let mut report = error(codes::UNKNOWN_NAME, name.span(), message)
+            .did_you_mean(&name.to_string(), &known);
+        if report.helps.is_empty() {
+            let names = listing(library::names().map(str::to_owned));
+            report = report.help(format!("the library has {names}"));
+        }
+        self.tell(scope, report);
     }
 }

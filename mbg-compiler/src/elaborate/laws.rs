@@ -372,10 +372,7 @@ impl Reader<'_, '_, '_> {
             let expression = if matrix.is_diagonal() {
                 matrix.at(size - 1, size - 1)
             } else {
-                let entries = (0..size)
-                    .flat_map(|r| (0..size).map(move |c| matrix.at(r, c)))
-                    .collect();
-                Matrix::new(size, size, entries).determinant(self.pool)
+                matrix.leading(size).determinant(self.pool)
             };
             match self.pool.constant_value(expression) {
                 Some(value) if value > 0.0 => {}

@@ -57,7 +57,7 @@ pub fn elaborate(
     builder.declare(0, &model.statements);
     builder.declare_integrals();
     builder.resolve_laws();
-    builder.check();
+    builder.check(model.name.span());
     (builder.diagnostics.list().len() == builder.before).then(|| builder.finish(model))
 }
 

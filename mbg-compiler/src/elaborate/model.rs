@@ -82,6 +82,8 @@ pub enum StateRate {
     Storage(ElementId, usize),
     /// An expression: an integral or an attitude.
     Expression(Expression),
+    /// An unknown of the reduced equations: the rate of a coordinate's flow.
+    Unknown(usize),
 }
 
 /// What an assumption says of an expression.

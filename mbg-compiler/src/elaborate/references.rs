@@ -43,7 +43,8 @@ impl Builder<'_> {
                 Ok(Some((End::Junction(*id, range.clone()), range.len())))
             }
             (Entity::Junction(id, range), Some(selection), []) => {
-                let picked = self.select(scope, reference, selection, range)?;
+                let picked = self.range(scope, selection)?;
+                let picked = pick(reference, count, picked, range)?;
                 let size = picked.len();
                 Ok(Some((End::Junction(*id, picked), size)))
             }
@@ -59,7 +60,8 @@ impl Builder<'_> {
             ) => {
                 let index =
                     component_index(name).ok_or_else(|| self.undeclared(scope, reference))?;
-                let picked = self.pick(reference, index as i64..index as i64 + 1, range)?;
+                let index = index as i64;
+                let picked = pick(reference, count, index..index + 1, range)?;
                 Ok(Some((End::Junction(*id, picked), 1)))
             }
             (Entity::Element(id), None, []) => Ok(Some((End::OnePort(*id), self.ports[id.0].1))),
@@ -93,59 +95,57 @@ impl Builder<'_> {
         Ok(Step { name, index })
     }
 
-    /// The components that a selection picks out of those in `range`.
-    fn select(
-        &self,
-        scope: usize,
-        reference: &Reference,
-        selection: &Selection,
-        range: &Range<usize>,
-    ) -> Result<Range<usize>> {
+    /// The numbers that a selection gives.
+    fn range(&self, scope: usize, selection: &Selection) -> Result<Range<i64>> {
         let wholes = &self.scopes[scope].wholes;
         let start = wholes.evaluate(&selection.start)?;
         let end = match &selection.end {
             Some(end) => wholes.evaluate(end)?,
             None => start.saturating_add(1),
         };
-        self.pick(reference, start..end, range)
-    }
-
-    fn pick(
-        &self,
-        reference: &Reference,
-        picked: Range<i64>,
-        range: &Range<usize>,
-    ) -> Result<Range<usize>> {
-        let text = dump::reference(reference);
-        let message = match (usize::try_from(picked.start), usize::try_from(picked.end)) {
-            (Ok(start), Ok(end)) if start < end && end <= range.len() => {
-                return Ok(range.start + start..range.start + end);
-            }
-            _ if picked.is_empty() => format!("`{text}` selects no component"),
-            _ => format!(
-                "`{text}` is outside of the junction, which has {} components",
-                range.len()
-            ),
-        };
-        Err(Box::new(error(
-            codes::WRONG_DIMENSION,
-            reference.span,
-            message,
-        )))
+        Ok(start..end)
     }
 
     fn undeclared(&self, scope: usize, reference: &Reference) -> Box<Diagnostic> {
         let message = format!("`{}` is not declared", dump::reference(reference));
-        let names: Vec<String> = self.scopes[scope]
-            .names
+        let known = self.scopes.visible(scope);
+        let last = reference.path.last().map(|last| last.name.to_string());
+        let report = error(codes::UNKNOWN_NAME, reference.span, message)
+            .did_you_mean(&last.unwrap_or_default(), &known);
+        let junctions: Vec<String> = known
             .iter()
-            .filter(|(_, entity)| matches!(entity, Entity::Junction(..)))
-            .map(|(name, _)| name.clone())
+            .filter(|name| matches!(self.scopes.find(scope, name), Some(Entity::Junction(..))))
+            .map(|name| (*name).to_owned())
             .collect();
-        let report = error(codes::UNKNOWN_NAME, reference.span, message);
-        Box::new(match names.is_empty() {
-            true => report,
-            false => report.help(format!("junctions here are {}", listing(names))),
+        Box::new(if report.helps.is_empty() && !junctions.is_empty() {
+            report.help(format!("junctions here are {}", listing(junctions)))
+        } else {
+            report
         })
     }
+}
+
+/// The components picked out of those in `range`, the junction having been found after `count` steps.
+fn pick(
+    reference: &Reference,
+    count: usize,
+    picked: Range<i64>,
+    range: &Range<usize>,
+) -> Result<Range<usize>> {
+    let (text, junction) = (dump::reference(reference), &reference.path[count - 1].name);
+    let message = match (usize::try_from(picked.start), usize::try_from(picked.end)) {
+        (Ok(start), Ok(end)) if start < end && end <= range.len() => {
+            return Ok(range.start + start..range.start + end);
+        }
+        _ if picked.is_empty() => format!("`{text}` selects no component"),
+        _ => format!(
+            "`{junction}` has {} components, `{text}` asks for more",
+            range.len()
+        ),
+    };
+    Err(Box::new(error(
+        codes::WRONG_DIMENSION,
+        reference.span,
+        message,
+    )))
 }

@@ -6,6 +6,7 @@ use std::ops::Range;
 use proc_macro2::{Ident, Span};
 use syn::Expr;
 
+use super::bonds::is_two_port;
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Place, Quantity, Signals};
@@ -98,6 +99,17 @@ impl Scopes {
             current = self.0[scope].around;
         }
         None
+    }
+
+    /// Every plain name that a scope sees.
+    pub(super) fn visible(&self, scope: usize) -> Vec<&str> {
+        let mut names = Vec::new();
+        let mut current = Some(scope);
+        while let Some(scope) = current {
+            names.extend(self.0[scope].names.keys().map(String::as_str));
+            current = self.0[scope].around;
+        }
+        names
     }
 
     /// Follows instances and iterations as far as the path leads through them: what is found there, and the number of
@@ -213,7 +225,14 @@ impl Names for Lookup<'_, '_> {
     fn whole(&self, expression: &Expr) -> Result<i64> {
         self.scopes[self.scope].wholes.evaluate(expression)
     }
+
+    fn all(&self) -> Vec<&str> {
+        self.scopes.visible(self.scope)
+    }
 }
+
+/// Why `e` and `f` of a two-port mean nothing.
+const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
 
 impl Lookup<'_, '_> {
     fn plain(&mut self, pool: &mut Pool, entity: &Entity, name: &Ident) -> Result<Value> {
@@ -248,6 +267,7 @@ impl Lookup<'_, '_> {
         match name.to_string().as_str() {
             "q" if kind == ElementKind::C => Ok(states(pool, &own.states, components)),
             "p" if kind == ElementKind::I => Ok(states(pool, &own.states, components)),
+            "e" | "f" if is_two_port(kind) => fail(name.span(), TWO_PORT_VARIABLE),
             "e" => Ok(self.signals(pool, Quantity::Effort, Place::Port(own.element), components)),
             "f" => Ok(self.signals(pool, Quantity::Flow, Place::Port(own.element), components)),
             _ => fail(name.span(), format!("a {kind:?} has no `{name}`")),
@@ -266,13 +286,7 @@ impl Lookup<'_, '_> {
             ("q", ElementKind::C) | ("p", ElementKind::I) => {
                 Some(Ok(states(pool, &range, 0..dimension)))
             }
-            (
-                "e" | "f",
-                ElementKind::TF | ElementKind::MTF | ElementKind::GY | ElementKind::MGY,
-            ) => Some(fail(
-                name.span(),
-                "a two-port has two efforts and two flows; read them at a junction",
-            )),
+            ("e" | "f", kind) if is_two_port(kind) => Some(fail(name.span(), TWO_PORT_VARIABLE)),
             ("e", _) => Some(Ok(self.signals(
                 pool,
                 Quantity::Effort,
@@ -285,7 +299,14 @@ impl Lookup<'_, '_> {
                 Place::Port(id),
                 0..dimension,
             ))),
-            _ => None,
+            _ => {
+                let known = match kind {
+                    ElementKind::I => "`p`, `e` and `f`",
+                    ElementKind::C => "`q`, `e` and `f`",
+                    _ => "`e` and `f`",
+                };
+                Some(no_variable(&self.graph.elements[id.0].name, name, known))
+            }
         }
     }
 
@@ -317,7 +338,13 @@ impl Lookup<'_, '_> {
                 name.span(),
                 "a 0-junction has no common flow; read it at an element",
             )),
-            _ => None,
+            (_, kind) => {
+                let known = match kind {
+                    JunctionKind::Zero => "`e`",
+                    JunctionKind::One => "`f`",
+                };
+                Some(no_variable(&self.graph.junctions[id.0].name, name, known))
+            }
         }
     }
 
@@ -333,6 +360,12 @@ impl Lookup<'_, '_> {
             .collect();
         symbols(pool, numbers.into_iter().map(Symbol::Signal))
     }
+}
+
+/// A variable that the element or junction does not have.
+fn no_variable<T>(owner: &str, name: &Ident, known: &str) -> Result<T> {
+    let message = format!("`{owner}` has no `{name}`, it has {known}");
+    Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)))
 }
 
 fn states(pool: &mut Pool, range: &Range<usize>, components: Range<usize>) -> Value {

@@ -4,6 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::compile::{Compiled, Routines};
+use crate::drawing;
 use crate::elaborate::{Condition, Variable};
 
 /// Lines of documentation that follow the user's own.
@@ -81,7 +82,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
         (&compiled.dependent, &compiled.conditioning, &compiled.notes);
     let assumptions = assumptions(compiled);
     let operations = operations(compiled);
-    let diagram = diagram(compiled);
+    let diagram = drawing::diagram(&model.graph, &compiled.strokes);
     quote! {
         &::mbg_runtime::Meta {
             name: #name,
@@ -147,31 +148,4 @@ fn bonds(compiled: &Compiled) -> Vec<TokenStream> {
             }
         })
         .collect()
-}
-
-/// One bond a line: half arrow, dimension, and a bar at the end that receives the effort.
-fn diagram(compiled: &Compiled) -> String {
-    let graph = &compiled.model.graph;
-    let width = graph
-        .bonds
-        .iter()
-        .map(|bond| graph.end_name(&bond.from).len())
-        .max()
-        .unwrap_or(0);
-    let line = |(index, bond): (usize, &crate::graph::Bond)| {
-        let arrow = match compiled.strokes.get(index) {
-            Some(true) => " ──⇀│",
-            Some(false) => "│──⇀ ",
-            None => " ──⇀ ",
-        };
-        let (from, to) = (graph.end_name(&bond.from), graph.end_name(&bond.to));
-        format!("{from:width$} {arrow} {to} [{}]", bond.dimension)
-    };
-    graph
-        .bonds
-        .iter()
-        .enumerate()
-        .map(line)
-        .collect::<Vec<_>>()
-        .join("\n")
 }

@@ -1,12 +1,19 @@
 //! Maximum matching of equations with unknowns, by augmenting paths (Kuhn 1955), with neighbours in ascending order,
 //! so that equal choices fall the same way every time.
 
-/// The unknown of each equation; none if some equation has no unknown of its own.
+/// The unknown of each equation, as many as there are; none if some equation has no unknown of its own.
 #[must_use]
 pub fn perfect(incidence: &[Vec<usize>], unknowns: usize) -> Option<Vec<usize>> {
-    if incidence.len() != unknowns {
-        return None;
+    if incidence.len() == unknowns {
+        of_all_equations(incidence, unknowns)
+    } else {
+        None
     }
+}
+
+/// An unknown for each equation, of which there may be fewer; none if some equation has no unknown of its own.
+#[must_use]
+pub fn of_all_equations(incidence: &[Vec<usize>], unknowns: usize) -> Option<Vec<usize>> {
     let mut equation_of = vec![usize::MAX; unknowns];
     let mut unknown_of = vec![usize::MAX; incidence.len()];
     for (equation, neighbours) in incidence.iter().enumerate() {

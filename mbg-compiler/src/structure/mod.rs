@@ -6,8 +6,11 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
-mod dependence;
+mod eliminate;
+mod levels;
 pub mod matching;
+mod reduction;
+mod selection;
 mod solve;
 
 use std::collections::BTreeMap;
@@ -16,7 +19,8 @@ use crate::elaborate::Condition;
 use crate::equations::Scalars;
 use crate::symbolic::{Expression, Pool};
 
-pub use dependence::report_singular;
+pub use reduction::{Reduction, reduce};
+pub use selection::{Lost, Selection, select};
 
 /// Unknowns as expressions.
 pub struct Solution {
@@ -53,7 +57,7 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         .map(|equation| equation.terms.keys().copied().collect())
         .collect();
     let matching = matching::perfect(&incidence, scalars.unknowns).ok_or(Failure::Singular)?;
-    let all: Vec<Vec<usize>> = scalars
+    let mut all: Vec<Vec<usize>> = scalars
         .equations
         .iter()
         .map(|equation| {
@@ -65,6 +69,13 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
                 .collect()
         })
         .collect();
+    // What a reduced system eliminates level by level is one block, whatever could be split off.
+    let levelled: Vec<usize> = (0..all.len())
+        .filter(|row| scalars.levels[matching[*row]].is_some())
+        .collect();
+    for (row, next) in levelled.iter().zip(levelled.iter().cycle().skip(1)) {
+        all[*row].push(matching[*next]);
+    }
     let order = blocks::ordered(&all, &matching);
     solve::blocks(scalars, &matching, &order, pool)
 }

@@ -1,12 +1,23 @@
 //! Solving the blocks one after another.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::eliminate::{System, Vanished};
 use super::{Failure, Inverted, Solution};
 use crate::elaborate::Condition;
-use crate::equations::{Equation, Scalars};
-use crate::symbolic::{Expression, Function, Matrix, Pool, Rate, Substitution, Symbol};
+use crate::equations::{Equation, Inertia, Scalars};
+use crate::symbolic::{
+    Differentiator, Expression, Function, Matrix, Pool, Rate, Substitution, Symbol,
+};
 
 /// Up to this size a block is solved by its adjugate; larger ones are made smaller by pivots that never vanish.
 const ADJUGATE: usize = 3;
+
+impl From<Vanished> for Failure {
+    fn from(_: Vanished) -> Self {
+        Self::Singular
+    }
+}
 
 /// Solves blocks in the order given.
 pub(super) fn blocks(
@@ -45,6 +56,15 @@ fn signals_of(scalars: &Scalars) -> Vec<Vec<(usize, bool)>> {
     readers
 }
 
+/// Where each unknown stands in its block.
+fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
+    unknowns
+        .iter()
+        .enumerate()
+        .map(|(place, unknown)| (*unknown, place))
+        .collect()
+}
+
 struct Solver<'a> {
     scalars: &'a Scalars,
     pool: &'a mut Pool,
@@ -67,13 +87,26 @@ impl Solver<'_> {
         {
             return Err(Failure::Nonlinear(unknowns.to_vec()));
         }
+        if unknowns
+            .iter()
+            .any(|unknown| scalars.levels[*unknown].is_some())
+        {
+            return self.by_levels(equations, unknowns);
+        }
+        let place = places(unknowns);
         let mut matrix = Vec::new();
         let mut right = Vec::new();
         let mut norms = Vec::new();
         for row in rows {
-            let (coefficients, rest) = self.row(row, unknowns)?;
+            let (coefficients, rest) = self.sparse_row(row, &place)?;
             norms.push(self.norm(row)?);
-            matrix.extend(coefficients);
+            let entry = |column| {
+                coefficients
+                    .get(&column)
+                    .copied()
+                    .unwrap_or(Expression::ZERO)
+            };
+            matrix.extend((0..unknowns.len()).map(entry));
             right.push(rest.negated());
         }
         let matrix = Matrix::new(unknowns.len(), unknowns.len(), matrix);
@@ -83,6 +116,11 @@ impl Solver<'_> {
         if unknowns.len() > 1 && self.pool.rate(divisor) != Rate::Constant {
             self.solution.loops.push(unknowns.to_vec());
         }
+        self.store(unknowns, values);
+        Ok(())
+    }
+
+    fn store(&mut self, unknowns: &[usize], values: Vec<Expression>) {
         for (unknown, value) in unknowns.iter().zip(values) {
             self.solution.values[*unknown] = value;
             self.known[*unknown] = true;
@@ -91,7 +129,119 @@ impl Solver<'_> {
                     .set(Symbol::Signal(*signal), value.flipped(*reversed));
             }
         }
+    }
+
+    /// Solves a block of a reduced system from the leaves to the base. What belongs to one level is eliminated by
+    /// constant pivots, and then by the inertia of its independent rate, if that is proven positive. The rest is
+    /// solved as a whole.
+    fn by_levels(&mut self, equations: &[usize], unknowns: &[usize]) -> Result<(), Failure> {
+        let scalars = self.scalars;
+        let place = places(unknowns);
+        let mut rows = Vec::with_capacity(equations.len());
+        let mut right = Vec::with_capacity(equations.len());
+        for equation in equations {
+            let (coefficients, rest) = self.sparse_row(&scalars.equations[*equation], &place)?;
+            rows.push(coefficients);
+            right.push(rest.negated());
+        }
+        let rates: BTreeSet<usize> = scalars.equations.iter().filter_map(|e| e.rate).collect();
+        let mut system = System::new(rows, right);
+        let mut levels: BTreeMap<usize, (BTreeSet<usize>, BTreeSet<usize>)> = BTreeMap::new();
+        for (row, equation) in equations.iter().enumerate() {
+            if let Some(level) = scalars.equations[*equation].level {
+                levels.entry(level).or_default().0.insert(row);
+            }
+        }
+        for (column, unknown) in unknowns.iter().enumerate() {
+            if let Some(level) = scalars.levels[*unknown] {
+                levels.entry(level).or_default().1.insert(column);
+            }
+        }
+        for (level, (rows, mut columns)) in levels {
+            // The independent rate itself comes last, by its inertia.
+            let rate = scalars.independent.get(&level).map(|rate| rate.unknown);
+            let rate = rate.and_then(|unknown| place.get(&unknown).copied());
+            let held = rate.filter(|rate| columns.remove(rate));
+            // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
+            let rate_of_row = |row: usize| scalars.equations[equations[row]].rate;
+            let admitted = |row: usize, column: usize| match rate_of_row(row) {
+                Some(rate) => rate == unknowns[column],
+                None => !rates.contains(&unknowns[column]),
+            };
+            let (rows, mut columns) =
+                system.eliminate_constants(self.pool, rows, columns, &admitted)?;
+            columns.extend(held);
+            if let (Some(row), Some(column), 1, 1) =
+                (rows.first(), columns.first(), rows.len(), columns.len())
+                && system.entry(*row, *column) != Expression::ZERO
+                && self.is_positive(level)
+            {
+                system.eliminate(self.pool, *row, *column)?;
+            }
+        }
+        let (columns, matrix, right) = system.rest();
+        let mut values = Vec::new();
+        if !columns.is_empty() {
+            let mut divisor = Expression::ONE;
+            values = self.dense(&matrix, &right, &mut divisor)?;
+            self.note(divisor, &[]);
+        }
+        let values = system.back_substitute(self.pool, &columns, &values)?;
+        self.store(unknowns, values);
         Ok(())
+    }
+
+    /// Whether what a level divides by is positive at every state: some storage with a positive definite law moves
+    /// with the level's own rate, however the state, while all levels below are held.
+    fn is_positive(&mut self, level: usize) -> bool {
+        let inertia = self
+            .scalars
+            .independent
+            .get(&level)
+            .map(|rate| &rate.inertia);
+        let Some(Inertia::Moved { state, storages }) = inertia else {
+            return matches!(inertia, Some(Inertia::Own));
+        };
+        let mut slope = Differentiator::new(Symbol::State(*state));
+        storages.iter().any(|unknowns| {
+            let squares: Vec<Expression> = unknowns
+                .iter()
+                .map(|unknown| {
+                    let column = slope.derivative(self.pool, self.solution.values[*unknown]);
+                    self.pool.multiply(column, column)
+                })
+                .collect();
+            let sum = self.pool.sum(&squares);
+            self.pool
+                .constant_value(sum)
+                .is_some_and(|value| value > 0.0)
+        })
+    }
+
+    /// Coefficients of the block's unknowns, and the sum of what is known.
+    fn sparse_row(
+        &mut self,
+        row: &Equation,
+        place: &BTreeMap<usize, usize>,
+    ) -> Result<(BTreeMap<usize, Expression>, Expression), Failure> {
+        let mut coefficients = BTreeMap::new();
+        let mut rest = self.replaced(row.constant)?;
+        for (unknown, coefficient) in &row.terms {
+            let coefficient = self.replaced(*coefficient)?;
+            match place.get(unknown) {
+                Some(position) if coefficient != Expression::ZERO => {
+                    coefficients.insert(*position, coefficient);
+                }
+                Some(_) => {}
+                None => {
+                    debug_assert!(self.known[*unknown], "blocks come in order of need");
+                    let value = self.solution.values[*unknown];
+                    let term = self.pool.multiply(coefficient, value);
+                    rest = self.pool.add(rest, term);
+                }
+            }
+        }
+        Ok((coefficients, rest))
     }
 
     fn replaced(&mut self, expression: Expression) -> Result<Expression, Failure> {
@@ -101,30 +251,6 @@ impl Solver<'_> {
         self.substitution
             .apply(self.pool, expression)
             .ok_or(Failure::Singular)
-    }
-
-    /// Coefficients of the block's unknowns, and the sum of what is known.
-    fn row(
-        &mut self,
-        row: &Equation,
-        unknowns: &[usize],
-    ) -> Result<(Vec<Expression>, Expression), Failure> {
-        let mut coefficients = vec![Expression::ZERO; unknowns.len()];
-        let mut rest = self.replaced(row.constant)?;
-        for (unknown, coefficient) in &row.terms {
-            let coefficient = self.replaced(*coefficient)?;
-            match unknowns.iter().position(|own| own == unknown) {
-                Some(position) => coefficients[position] = coefficient,
-                None => {
-                    debug_assert!(self.known[*unknown], "blocks come in order of need");
-                    let term = self
-                        .pool
-                        .multiply(coefficient, self.solution.values[*unknown]);
-                    rest = self.pool.add(rest, term);
-                }
-            }
-        }
-        Ok((coefficients, rest))
     }
 
     /// Euclidean norm of the coefficients that vary; 1 if there are fewer than two of them.

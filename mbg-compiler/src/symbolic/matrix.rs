@@ -106,6 +106,15 @@ impl Matrix {
         Minors::new(self).minor(pool, &all, &all)
     }
 
+    /// The upper left part of a given size.
+    #[must_use]
+    pub fn leading(&self, size: usize) -> Self {
+        let entries = (0..size)
+            .flat_map(|row| (0..size).map(move |column| self.at(row, column)))
+            .collect();
+        Self::new(size, size, entries)
+    }
+
     /// Adjugate: `A · adj A = det A · 1`.
     #[must_use]
     pub fn adjugate(&self, pool: &mut Pool) -> Self {

@@ -3,6 +3,7 @@
 //! This is the ground on which the stages from elaboration to the program stand. Nothing in it knows of bond graphs.
 
 pub mod differentiate;
+pub mod evaluate;
 pub mod field;
 pub mod identity;
 pub mod matrix;
@@ -12,6 +13,7 @@ pub mod substitute;
 mod walk;
 
 pub use differentiate::Differentiator;
+pub use evaluate::Evaluation;
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::{Expression, Function, Operation, Pool, Rate, Symbol};
 pub use substitute::Substitution;

@@ -411,6 +411,9 @@ impl Pool {
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
             return self.constant(x + y, image);
         }
+        if let Some(collected) = self.collect(a, b) {
+            return collected;
+        }
         match (a.is_negative(), b.is_negative()) {
             (true, true) => self
                 .intern(Operation::Add(a.negated(), b.negated()), image.negated())
@@ -418,6 +421,56 @@ impl Pool {
             (true, false) => self.intern(Operation::Add(b, a), image),
             _ => self.intern(Operation::Add(a, b), image),
         }
+    }
+
+    /// The sum with a common factor taken out, where what remains in the brackets is known already: that is how
+    /// `m cos² + m sin²` becomes `m`.
+    fn collect(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        let left = self.factors(a);
+        let mut right = self.factors(b);
+        let mut common = Vec::new();
+        let mut rest = Vec::new();
+        for factor in left {
+            match right.iter().position(|other| *other == factor) {
+                Some(position) => common.push(right.swap_remove(position)),
+                None => rest.push(factor),
+            }
+        }
+        if common.is_empty() {
+            return None;
+        }
+        let product = |pool: &Self, factors: &[Expression], negative: bool| {
+            let start = if negative {
+                Image::ONE.negated()
+            } else {
+                Image::ONE
+            };
+            factors
+                .iter()
+                .fold(start, |image, factor| image.times(pool.image(*factor)))
+        };
+        let left = product(self, &rest, a.is_negative());
+        let right = product(self, &right, b.is_negative());
+        let mut whole = self.look_up(left.plus(right))?;
+        for factor in common {
+            whole = self.multiply(whole, factor);
+        }
+        Some(whole)
+    }
+
+    /// Factors of a product, without their signs.
+    fn factors(&self, product: Expression) -> Vec<Expression> {
+        let mut factors = Vec::new();
+        let mut pending = vec![product.magnitude()];
+        while let Some(current) = pending.pop() {
+            match self.operation(current) {
+                Operation::Multiply(a, b) if factors.len() + pending.len() < 16 => {
+                    pending.extend([*a, *b]);
+                }
+                _ => factors.push(current),
+            }
+        }
+        factors
     }
 
     /// Difference.

@@ -5,8 +5,8 @@
 use std::collections::BTreeSet;
 
 use super::ast::{Component, Item, Source, Statement};
+use super::items;
 use super::recovery::Sink;
-use super::{items, words};
 use crate::diagnostics::Diagnostics;
 
 macro_rules! files {
@@ -31,12 +31,6 @@ files! {
 /// The names of all components of the library.
 pub fn names() -> impl Iterator<Item = &'static str> {
     FILES.iter().map(|(name, _)| *name)
-}
-
-/// The component whose name was probably meant.
-#[must_use]
-pub fn nearest(name: &str) -> Option<&'static str> {
-    words::nearest(name, &names().collect::<Vec<_>>())
 }
 
 /// The text of a component.

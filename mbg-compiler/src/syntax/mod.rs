@@ -22,7 +22,7 @@ mod loops;
 mod recovery;
 mod statements;
 mod units;
-mod words;
+pub(crate) mod words;
 
 pub use dump::dump;
 

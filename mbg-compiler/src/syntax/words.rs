@@ -86,7 +86,7 @@ pub(super) fn alternatives(words: &[&str]) -> String {
 
 /// The word that was probably meant: two slips at most, fewer where either word is short, since every word of two
 /// letters is two slips from every other.
-pub(super) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
     // A word far longer than any of ours is none of ours, and measuring it would cost its length squared.
     if found.chars().count() > 16 {
         return None;

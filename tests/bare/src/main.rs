@@ -3,15 +3,13 @@
 #![no_std]
 #![no_main]
 
-use mbg_runtime::{Pulse, Rk4, System};
+use mbg_runtime::{Rk4, System};
 use nalgebra::SVector;
 
-mod model {
-    //! The model of the INS.
-    #![allow(missing_docs)]
-    include!("ins.rs");
-}
-use model::{Ins, InsParameters};
+#[path = "../../../examples/ins/models.rs"]
+#[allow(dead_code)]
+mod models;
+use models::{Ins, InsParameters, gust};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -21,9 +19,8 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 #[unsafe(no_mangle)]
 extern "C" fn main(_: i32, _: *const *const u8) -> i32 {
     let Ok(model) = Ins::<f64>::new(InsParameters::default()) else { return 1 };
-    let gust = Pulse { amplitude: SVector::from([5000.0, 1000.0, 10000.0]), start: 1.0, end: 1.1 };
     let mut last = SVector::<f64, 9>::zeros();
-    match Rk4::fixed(&model, &gust, 0.0, 10.0, 1e-2, model.initial_state(), |_, x| last = *x) {
+    match Rk4::fixed(&model, &gust(0.1), 0.0, 10.0, 1e-2, model.initial_state(), |_, x| last = *x) {
         Ok(_) if last[6] < -0.1 && last[6] > -1.0 => 0,
         _ => 2,
     }

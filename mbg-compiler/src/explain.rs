@@ -1,0 +1,127 @@
+//! Every stage of a text as plain text, for people and for snapshots.
+//!
+//! Nothing is decided here: the stages are run one after the other, and each result is printed by its own `dump`.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::TokenStream;
+
+use crate::compile::{self, Compiled, Routines};
+use crate::diagnostics::Diagnostics;
+use crate::elaborate::{self, Elaborated};
+use crate::equations::{self, Scalars};
+use crate::network::Network;
+use crate::structure::{self, Solution};
+use crate::symbolic::{Expression, Pool};
+use crate::syntax::ast::{Component, Item, Model};
+use crate::{drawing, program, syntax};
+
+/// Prints what each stage makes of the tokens between the braces of `mbg! { … }`, and at the end what is wrong.
+#[must_use]
+pub fn explain(tokens: TokenStream) -> String {
+    let mut diagnostics = Diagnostics::new();
+    let source = syntax::parse(tokens, &mut diagnostics);
+    let mut text = section("syntax", &syntax::dump(&source));
+    let components = elaborate::component_table(&source);
+    let sound = !diagnostics.any();
+    for item in &source.items {
+        let Item::Model(model) = item else { continue };
+        if !sound {
+            continue;
+        }
+        text += &stages(model, &components);
+        if let Some(compiled) = compile::compile(model, &components, &mut diagnostics) {
+            text += &programs(&compiled);
+        }
+    }
+    for diagnostic in diagnostics.list() {
+        text += &section("error", &diagnostic.text());
+    }
+    text
+}
+
+fn section(title: &str, body: &str) -> String {
+    format!("==== {title}\n{}\n\n", body.trim_end())
+}
+
+/// The stages up to the first that fails; what is wrong is reported when the model is compiled as a whole.
+fn stages(model: &Model, components: &BTreeMap<String, &Component>) -> String {
+    let mut ignored = Diagnostics::new();
+    let mut pool = Pool::new();
+    let mut text = String::new();
+    let Some(model) = elaborate::elaborate(model, components, &mut pool, &mut ignored) else {
+        return text;
+    };
+    text += &section(&format!("graph of {}", model.name), &model.graph.dump());
+    if let Some(drawn) = drawing::judge(&model.graph, true, &mut ignored) {
+        text += &section("causality", &drawing::diagram(&model.graph, &drawn.strokes));
+    }
+    let network = Network::of(&model.graph, &mut pool);
+    let scalars = equations::form(&model, &network, &mut pool);
+    text += &section("equations", &equation_lines(&model, &scalars, &pool));
+    if let Ok(solution) = structure::solve(&scalars, &mut pool) {
+        text += &section(
+            "structure",
+            &value_lines(&model, &scalars, &solution, &pool),
+        );
+    }
+    text
+}
+
+/// One equation a line: what is summed to zero.
+fn equation_lines(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> String {
+    let mut text = String::new();
+    for equation in &scalars.equations {
+        let mut terms: Vec<String> = equation
+            .terms
+            .iter()
+            .map(|(unknown, coefficient)| {
+                let unknown = unknown_name(scalars, *unknown);
+                match *coefficient {
+                    Expression::ONE => unknown,
+                    other if other == Expression::ONE.negated() => format!("-{unknown}"),
+                    other => match compile::text(model, pool, other) {
+                        sum if sum.contains(' ') => format!("({sum}) {unknown}"),
+                        atom => format!("{atom} {unknown}"),
+                    },
+                }
+            })
+            .collect();
+        if equation.constant != Expression::ZERO {
+            terms.push(compile::text(model, pool, equation.constant));
+        }
+        text += &format!("0 = {}\n", terms.join(" + ").replace("+ -", "- "));
+    }
+    text
+}
+
+/// One unknown a line, then what is divided by.
+fn value_lines(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool: &Pool) -> String {
+    let mut text = String::new();
+    for (unknown, value) in solution.values.iter().enumerate() {
+        let value = compile::text(model, pool, *value);
+        text += &format!("{} = {value}\n", unknown_name(scalars, unknown));
+    }
+    for inverted in &solution.conditioning {
+        let divisor = compile::text(model, pool, inverted.normalised);
+        text += &format!("inverted: {divisor}\n");
+    }
+    text
+}
+
+fn unknown_name(scalars: &Scalars, unknown: usize) -> String {
+    match scalars.names[unknown].as_str() {
+        "" => format!("unknown {unknown}"),
+        name => name.to_owned(),
+    }
+}
+
+fn programs(compiled: &Compiled) -> String {
+    let routines = &compiled.program.routines;
+    section("folded", &program::dump(&compiled.program.folded))
+        + &section(
+            "derivative",
+            &program::dump(&routines[Routines::DERIVATIVE]),
+        )
+        + &section("output", &program::dump(&routines[Routines::OUTPUT]))
+}

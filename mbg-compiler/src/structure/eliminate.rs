@@ -1,0 +1,164 @@
+//! Sparse elimination of a block, level by level.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::symbolic::{Expression, Matrix, Pool, Rate};
+
+/// Linear equations by rows, which shrink as unknowns are eliminated.
+pub(super) struct System {
+    rows: Vec<BTreeMap<usize, Expression>>,
+    right: Vec<Expression>,
+    /// Rows that hold each column.
+    columns: Vec<BTreeSet<usize>>,
+    /// Rows and columns that are left.
+    open_rows: BTreeSet<usize>,
+    open_columns: BTreeSet<usize>,
+    /// Row and column of each pivot in order.
+    pivots: Vec<(usize, usize)>,
+}
+
+/// Why a pivot was not taken: it is identically zero.
+pub(super) struct Vanished;
+
+impl System {
+    /// `Σ rows · x = right`.
+    pub(super) fn new(rows: Vec<BTreeMap<usize, Expression>>, right: Vec<Expression>) -> Self {
+        let size = rows.len();
+        let mut columns = vec![BTreeSet::new(); size];
+        for (row, entries) in rows.iter().enumerate() {
+            for column in entries.keys() {
+                columns[*column].insert(row);
+            }
+        }
+        Self {
+            rows,
+            right,
+            columns,
+            open_rows: (0..size).collect(),
+            open_columns: (0..size).collect(),
+            pivots: Vec::new(),
+        }
+    }
+
+    /// Eliminates, among the rows and columns given, whatever an admitted constant pivot can: the one that fills in
+    /// least first (Markowitz 1957). Gives the rows and columns that are left of them.
+    pub(super) fn eliminate_constants(
+        &mut self,
+        pool: &mut Pool,
+        mut rows: BTreeSet<usize>,
+        mut columns: BTreeSet<usize>,
+        admitted: &dyn Fn(usize, usize) -> bool,
+    ) -> Result<(BTreeSet<usize>, BTreeSet<usize>), Vanished> {
+        while let Some((row, column)) = self.constant_pivot(pool, &rows, &columns, admitted) {
+            self.eliminate(pool, row, column)?;
+            rows.remove(&row);
+            columns.remove(&column);
+        }
+        Ok((rows, columns))
+    }
+
+    fn constant_pivot(
+        &self,
+        pool: &Pool,
+        rows: &BTreeSet<usize>,
+        columns: &BTreeSet<usize>,
+        admitted: &dyn Fn(usize, usize) -> bool,
+    ) -> Option<(usize, usize)> {
+        rows.iter()
+            .flat_map(|row| {
+                self.rows[*row]
+                    .iter()
+                    .map(move |(c, value)| (*row, *c, *value))
+            })
+            .filter(|(_, column, value)| {
+                columns.contains(column) && pool.rate(*value) == Rate::Constant
+            })
+            .filter(|(row, column, _)| admitted(*row, *column))
+            .map(|(row, column, _)| (row, column))
+            .min_by_key(|(row, column)| {
+                let (across, down) = (self.rows[*row].len() - 1, self.columns[*column].len() - 1);
+                (across * down, *row, *column)
+            })
+    }
+
+    /// The coefficient of an unknown in a row.
+    pub(super) fn entry(&self, row: usize, column: usize) -> Expression {
+        self.rows[row]
+            .get(&column)
+            .copied()
+            .unwrap_or(Expression::ZERO)
+    }
+
+    /// Eliminates `column` from every other open row with the pivot in `row`.
+    pub(super) fn eliminate(
+        &mut self,
+        pool: &mut Pool,
+        row: usize,
+        column: usize,
+    ) -> Result<(), Vanished> {
+        let pivot = self.entry(row, column);
+        let pivot_row = self.rows[row].clone();
+        self.open_rows.remove(&row);
+        self.open_columns.remove(&column);
+        self.pivots.push((row, column));
+        for inner in pivot_row.keys() {
+            self.columns[*inner].remove(&row);
+        }
+        let others: Vec<usize> = std::mem::take(&mut self.columns[column])
+            .into_iter()
+            .collect();
+        for other in others {
+            let entry = self.rows[other].remove(&column).unwrap_or(Expression::ZERO);
+            let factor = pool.divide(entry, pivot).ok_or(Vanished)?;
+            for (inner, value) in pivot_row.iter().filter(|(inner, _)| **inner != column) {
+                let product = pool.multiply(factor, *value);
+                let reduced = pool.subtract(self.entry(other, *inner), product);
+                if reduced == Expression::ZERO {
+                    self.rows[other].remove(inner);
+                    self.columns[*inner].remove(&other);
+                } else {
+                    self.rows[other].insert(*inner, reduced);
+                    self.columns[*inner].insert(other);
+                }
+            }
+            let product = pool.multiply(factor, self.right[row]);
+            self.right[other] = pool.subtract(self.right[other], product);
+        }
+        Ok(())
+    }
+
+    /// What is left, as a dense system: columns, matrix, right side.
+    pub(super) fn rest(&self) -> (Vec<usize>, Matrix, Vec<Expression>) {
+        let columns: Vec<usize> = self.open_columns.iter().copied().collect();
+        let mut entries = Vec::with_capacity(columns.len() * self.open_rows.len());
+        for row in &self.open_rows {
+            entries.extend(columns.iter().map(|column| self.entry(*row, *column)));
+        }
+        let right = self.open_rows.iter().map(|row| self.right[*row]).collect();
+        let matrix = Matrix::new(self.open_rows.len(), columns.len(), entries);
+        (columns, matrix, right)
+    }
+
+    /// All unknowns, given those that were left.
+    pub(super) fn back_substitute(
+        self,
+        pool: &mut Pool,
+        columns: &[usize],
+        values: &[Expression],
+    ) -> Result<Vec<Expression>, Vanished> {
+        let mut solution = vec![Expression::ZERO; self.rows.len()];
+        for (column, value) in columns.iter().zip(values) {
+            solution[*column] = *value;
+        }
+        for (row, column) in self.pivots.iter().rev() {
+            let mut rest = self.right[*row];
+            for (inner, value) in self.rows[*row].iter().filter(|(inner, _)| *inner != column) {
+                let product = pool.multiply(*value, solution[*inner]);
+                rest = pool.subtract(rest, product);
+            }
+            let pivot = self.entry(*row, *column);
+            solution[*column] = pool.divide(rest, pivot).ok_or(Vanished)?;
+        }
+        Ok(solution)
+    }
+}

@@ -1,0 +1,135 @@
+//! The order in which a reduced system is eliminated: from the leaves of its tree to the base.
+//!
+//! Every rate depends on some independent rates: those of coordinates and of the storages that are states. It belongs
+//! to the deepest of them, the one on which the fewest depend; an effort belongs where the flow of its wire does, and
+//! an equation where the unknown that it is about does. Eliminating what belongs to one independent rate after
+//! another, deepest first, is what recursive algorithms for multibody systems do (Featherstone 1983), and costs as
+//! much for each body however long the chain.
+
+use std::collections::BTreeMap;
+
+use super::blocks;
+use crate::equations::{Owner, Scalars};
+
+/// The level of every unknown; none for those that belong to the base.
+#[must_use]
+pub(super) fn assign(
+    scalars: &Scalars,
+    matched: &BTreeMap<usize, usize>,
+    rate_of: &BTreeMap<usize, usize>,
+    is_state: &dyn Fn(Owner) -> bool,
+) -> Vec<Option<usize>> {
+    let dependence = Dependence::of(scalars, matched, rate_of, is_state);
+    let mut levels = vec![None; scalars.unknowns];
+    for (unknown, rate) in rate_of {
+        levels[*rate] = dependence.level(*unknown);
+    }
+    // The components of a vector stay together, so that no more of a frame is left than it has.
+    for wire in &scalars.wires {
+        for side in [0, 1] {
+            let rates = wire.iter().filter_map(|pair| rate_of.get(&pair[side]));
+            let level = rates.clone().filter_map(|rate| levels[*rate]).min();
+            let Some(level) = level else { continue };
+            for rate in rates {
+                lower(&mut levels[*rate], level);
+            }
+            for pair in wire
+                .iter()
+                .filter(|pair| !rate_of.contains_key(&pair[1 - side]))
+            {
+                lower(&mut levels[pair[1 - side]], level);
+            }
+        }
+    }
+    levels
+}
+
+fn lower(level: &mut Option<usize>, to: usize) {
+    *level = Some(level.map_or(to, |level| level.min(to)));
+}
+
+/// Which independent rates each unknown's rate depends on, as sets of bits.
+struct Dependence {
+    sets: BTreeMap<usize, Vec<u64>>,
+    /// Level of each independent rate.
+    rank: Vec<usize>,
+}
+
+impl Dependence {
+    fn of(
+        scalars: &Scalars,
+        matched: &BTreeMap<usize, usize>,
+        rate_of: &BTreeMap<usize, usize>,
+        is_state: &dyn Fn(Owner) -> bool,
+    ) -> Self {
+        let unknowns: Vec<usize> = rate_of.keys().copied().collect();
+        let place: BTreeMap<usize, usize> =
+            unknowns.iter().enumerate().map(|(k, u)| (*u, k)).collect();
+        let incidence: Vec<Vec<usize>> = unknowns
+            .iter()
+            .map(|unknown| {
+                let terms = scalars.equations[matched[unknown]].terms.keys();
+                terms.filter_map(|term| place.get(term).copied()).collect()
+            })
+            .collect();
+        let own: Vec<usize> = (0..unknowns.len()).collect();
+        let mut sets: Vec<Vec<u64>> = vec![Vec::new(); unknowns.len()];
+        let mut independent = 0;
+        for block in blocks::ordered(&incidence, &own) {
+            let mut set: Vec<u64> = Vec::new();
+            for member in &block {
+                for other in &incidence[*member] {
+                    join(&mut set, &sets[*other]);
+                }
+            }
+            let equation = &scalars.equations[matched[&unknowns[block[0]]]];
+            if is_state(equation.owner) {
+                insert(&mut set, independent);
+                independent += 1;
+            }
+            for member in block {
+                sets[member].clone_from(&set);
+            }
+        }
+        let mut weight = vec![0usize; independent];
+        for set in &sets {
+            members(set).for_each(|k| weight[k] += 1);
+        }
+        let mut order: Vec<usize> = (0..independent).collect();
+        order.sort_by_key(|k| (weight[*k], std::cmp::Reverse(*k)));
+        let mut rank = vec![0; independent];
+        for (level, k) in order.into_iter().enumerate() {
+            rank[k] = level;
+        }
+        Self {
+            sets: unknowns.into_iter().zip(sets).collect(),
+            rank,
+        }
+    }
+
+    fn level(&self, unknown: usize) -> Option<usize> {
+        members(&self.sets[&unknown]).map(|k| self.rank[k]).min()
+    }
+}
+
+fn insert(set: &mut Vec<u64>, member: usize) {
+    if set.len() <= member / 64 {
+        set.resize(member / 64 + 1, 0);
+    }
+    set[member / 64] |= 1 << (member % 64);
+}
+
+fn join(set: &mut Vec<u64>, other: &[u64]) {
+    if set.len() < other.len() {
+        set.resize(other.len(), 0);
+    }
+    set.iter_mut().zip(other).for_each(|(a, b)| *a |= b);
+}
+
+fn members(set: &[u64]) -> impl Iterator<Item = usize> + '_ {
+    set.iter().enumerate().flat_map(|(word, bits)| {
+        (0..64)
+            .filter(move |bit| bits >> bit & 1 == 1)
+            .map(move |bit| word * 64 + bit)
+    })
+}

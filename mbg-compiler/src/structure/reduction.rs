@@ -1,0 +1,666 @@
+//! Index reduction: what the equations become when some storages are no states.
+//!
+//! A dependent storage has its co-energy variable imposed, so its momentum or displacement is `J y`, and its other
+//! variable the time derivative of that. The equations from which `y` follows are differentiated once (Pantelides
+//! 1988), moduli included, with the rates `ẏ` as further unknowns; the rate of a coordinate stays free and is what
+//! the balance of efforts determines. What was one singular system is then one regular system, which is solved like
+//! any other.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::levels;
+use super::matching;
+use super::selection::{Lost, Selection};
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error};
+use crate::elaborate::{Condition, Elaborated, State, StateRate, Variable};
+use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, linearise};
+use crate::graph::{ElementId, ElementKind, Law, component_name};
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol};
+
+/// What replaces the lost states.
+pub struct Reduction {
+    /// The extended equations.
+    pub scalars: Scalars,
+    /// Momentum or displacement of each lost state, in signals.
+    pub momenta: BTreeMap<usize, Expression>,
+}
+
+/// Reduces; coordinates become states of the model. None if something was reported.
+pub fn reduce(
+    model: &mut Elaborated,
+    scalars: Scalars,
+    selection: &Selection,
+    pool: &mut Pool,
+    diagnostics: &mut Diagnostics,
+) -> Option<Reduction> {
+    let mut reducer = Reducer {
+        scalars,
+        pool,
+        momenta: BTreeMap::new(),
+        signal_of: BTreeMap::new(),
+        rate_of: BTreeMap::new(),
+        determined: Vec::new(),
+    };
+    let before = diagnostics.list().len();
+    let inverses = reducer.inverses(model, &selection.lost, diagnostics);
+    if diagnostics.list().len() > before {
+        return None;
+    }
+    reducer.express_momenta(model, &selection.lost, &inverses);
+    reducer.replace_rows(model, selection);
+    let matched = reducer.matched()?;
+    let needed = reducer.closure(model, &matched, &selection.lost, &inverses, diagnostics)?;
+    reducer.declare_rates(&needed);
+    for unknown in &needed {
+        reducer.differentiate(model, *unknown, matched[unknown], diagnostics);
+    }
+    reducer.dynamics(model, &selection.lost, &inverses, diagnostics);
+    if diagnostics.list().len() > before {
+        return None;
+    }
+    reducer.order(model, &matched, &selection.lost, &inverses);
+    reducer.state_rates(model);
+    Some(Reduction {
+        scalars: reducer.scalars,
+        momenta: reducer.momenta,
+    })
+}
+
+/// A storage's linear law `p = J (y − y₀)`.
+struct Inverse {
+    matrix: Matrix,
+    offset: Vec<Expression>,
+}
+
+struct Reducer<'a> {
+    scalars: Scalars,
+    pool: &'a mut Pool,
+    momenta: BTreeMap<usize, Expression>,
+    /// Signal that reads an unknown.
+    signal_of: BTreeMap<usize, Expression>,
+    /// Unknown that is the rate of an unknown.
+    rate_of: BTreeMap<usize, usize>,
+    /// Unknowns that follow from the states without any rate.
+    determined: Vec<bool>,
+}
+
+impl Reducer<'_> {
+    /// The inverse law of every storage that lost a state.
+    fn inverses(
+        &mut self,
+        model: &Elaborated,
+        lost: &[Lost],
+        diagnostics: &mut Diagnostics,
+    ) -> BTreeMap<ElementId, Inverse> {
+        let elements: BTreeSet<ElementId> = lost.iter().map(|lost| lost.element).collect();
+        let mut inverses = BTreeMap::new();
+        for id in elements {
+            if let Some(inverse) = self.inverse(model, id) {
+                inverses.insert(id, inverse);
+                continue;
+            }
+            let element = &model.graph.elements[id.0];
+            let message = format!(
+                "storage `{}` depends on others, and its nonlinear law cannot be inverted",
+                element.name
+            );
+            let span = model.graph.origins.span(element.origin);
+            let help = "put `#[derivative]` before another of the storages, so that this one stays a state";
+            diagnostics.report(error(codes::ORDER_LOST_UNSUPPORTED, span, message).help(help));
+        }
+        inverses
+    }
+
+    fn inverse(&mut self, model: &Elaborated, id: ElementId) -> Option<Inverse> {
+        let Law::Storage(storage) = &model.graph.elements[id.0].law else {
+            return None;
+        };
+        let own =
+            |symbol: &Symbol| matches!(symbol, Symbol::State(s) if storage.states.contains(s));
+        let mut entries = Vec::new();
+        for row in &storage.coenergy {
+            for state in storage.states.clone() {
+                let slope = Differentiator::new(Symbol::State(state)).derivative(self.pool, *row);
+                if symbols(self.pool, &[slope]).iter().any(own) {
+                    return None;
+                }
+                entries.push(slope);
+            }
+        }
+        let size = storage.coenergy.len();
+        let matrix = Matrix::new(size, size, entries).inverse(self.pool)?;
+        let mut empty = Substitution::new();
+        for state in storage.states.clone() {
+            empty.set(Symbol::State(state), Expression::ZERO);
+        }
+        let offset = storage
+            .coenergy
+            .iter()
+            .map(|row| empty.apply(self.pool, *row))
+            .collect::<Option<_>>()?;
+        Some(Inverse { matrix, offset })
+    }
+
+    /// The unknown that a storage states, its co-energy variable.
+    fn coenergy(&self, model: &Elaborated, id: ElementId, component: usize) -> usize {
+        let port = &self.scalars.ports[&id];
+        if model.graph.elements[id.0].kind == ElementKind::I {
+            port.flow[component]
+        } else {
+            port.effort[component]
+        }
+    }
+
+    /// The unknown that is the rate of a storage's state, and whether it counts the other way.
+    fn own_rate(&self, model: &Elaborated, id: ElementId, component: usize) -> (usize, bool) {
+        let port = &self.scalars.ports[&id];
+        if model.graph.elements[id.0].kind == ElementKind::I {
+            (port.effort[component], port.effort_reversed)
+        } else {
+            (port.flow[component], port.flow_reversed)
+        }
+    }
+
+    /// The expression that reads an unknown.
+    fn signal(&mut self, unknown: usize) -> Expression {
+        if let Some(known) = self.signal_of.get(&unknown) {
+            return *known;
+        }
+        let number = self.scalars.signals.len();
+        self.scalars.signals.push((unknown, false));
+        let signal = self.pool.symbol(Symbol::Signal(number));
+        self.signal_of.insert(unknown, signal);
+        signal
+    }
+
+    /// `p = J (y − y₀)` for the lost states, everywhere.
+    fn express_momenta(
+        &mut self,
+        model: &Elaborated,
+        lost: &[Lost],
+        inverses: &BTreeMap<ElementId, Inverse>,
+    ) {
+        for lost in lost {
+            let Law::Storage(storage) = &model.graph.elements[lost.element.0].law else {
+                continue;
+            };
+            let inverse = &inverses[&lost.element];
+            let mut momentum = Expression::ZERO;
+            for component in 0..inverse.matrix.columns {
+                let unknown = self.coenergy(model, lost.element, component);
+                let own = self.signal(unknown);
+                let difference = self.pool.subtract(own, inverse.offset[component]);
+                let term = self
+                    .pool
+                    .multiply(inverse.matrix.at(lost.component, component), difference);
+                momentum = self.pool.add(momentum, term);
+            }
+            self.momenta
+                .insert(storage.states.start + lost.component, momentum);
+        }
+        let mut substitution = Substitution::new();
+        for (state, momentum) in &self.momenta {
+            substitution.set(Symbol::State(*state), *momentum);
+        }
+        for equation in &mut self.scalars.equations {
+            let mut replace = |pool: &mut Pool, expression: &mut Expression| {
+                if let Some(replaced) = substitution.apply(pool, *expression) {
+                    *expression = replaced;
+                }
+            };
+            replace(self.pool, &mut equation.constant);
+            for coefficient in equation.terms.values_mut() {
+                replace(self.pool, coefficient);
+            }
+            linearise(self.pool, equation, &self.scalars.signals);
+        }
+    }
+
+    /// Takes the rows of the lost states away and puts those of the coordinates in.
+    fn replace_rows(&mut self, model: &mut Elaborated, selection: &Selection) {
+        let lost: BTreeSet<usize> = selection.lost.iter().map(|lost| lost.equation).collect();
+        let mut position = 0;
+        self.scalars.equations.retain(|_| {
+            position += 1;
+            !lost.contains(&(position - 1))
+        });
+        for (id, component, flow) in &selection.coordinates {
+            let junction = &model.graph.junctions[id.0];
+            let letter = if junction.dimension == 1 {
+                String::new()
+            } else {
+                format!(".{}", component_name(*component, junction.dimension))
+            };
+            let state = Symbol::State(model.states.len());
+            let span = model.graph.origins.span(junction.origin);
+            model.states.push(State {
+                variable: Variable {
+                    name: format!("{}.f{letter}", junction.name),
+                    unit: String::new(),
+                },
+                initial: Expression::ZERO,
+                rate: StateRate::Unknown(*flow),
+                span,
+            });
+            self.scalars.equations.push(Equation {
+                terms: BTreeMap::from([(*flow, Expression::ONE.negated())]),
+                constant: self.pool.symbol(state),
+                signals: Vec::new(),
+                owner: Owner::Coordinate(*id, *component),
+                about: [*flow; 2],
+                level: None,
+                rate: None,
+            });
+        }
+    }
+
+    /// The equation of every unknown that follows from the states alone (Dulmage and Mendelsohn 1958).
+    fn matched(&mut self) -> Option<BTreeMap<usize, usize>> {
+        let incidence: Vec<Vec<usize>> = self
+            .scalars
+            .equations
+            .iter()
+            .map(|equation| equation.terms.keys().copied().collect())
+            .collect();
+        let unknown_of = matching::of_all_equations(&incidence, self.scalars.unknowns)?;
+        let mut containing = vec![Vec::new(); self.scalars.unknowns];
+        for (row, equation) in self.scalars.equations.iter().enumerate() {
+            for unknown in equation.terms.keys().chain(&equation.signals) {
+                containing[*unknown].push(row);
+            }
+        }
+        let mut determined = vec![false; self.scalars.unknowns];
+        for unknown in &unknown_of {
+            determined[*unknown] = true;
+        }
+        let mut open: Vec<usize> = (0..self.scalars.unknowns)
+            .filter(|unknown| !determined[*unknown])
+            .collect();
+        while let Some(unknown) = open.pop() {
+            for row in &containing[unknown] {
+                if std::mem::replace(&mut determined[unknown_of[*row]], false) {
+                    open.push(unknown_of[*row]);
+                }
+            }
+        }
+        self.determined = determined;
+        Some(
+            unknown_of
+                .into_iter()
+                .enumerate()
+                .filter(|(_, unknown)| self.determined[*unknown])
+                .map(|(row, unknown)| (unknown, row))
+                .collect(),
+        )
+    }
+
+    /// Unknowns whose rates are needed: those that lost momenta hold, and whatever these follow from. None if one of
+    /// them follows from a rate itself.
+    fn closure(
+        &self,
+        model: &Elaborated,
+        matched: &BTreeMap<usize, usize>,
+        lost: &[Lost],
+        inverses: &BTreeMap<ElementId, Inverse>,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<BTreeSet<usize>> {
+        let mut needed = BTreeSet::new();
+        for lost in lost {
+            let matrix = &inverses[&lost.element].matrix;
+            let mut open: Vec<usize> = (0..matrix.columns)
+                .filter(|column| matrix.at(lost.component, *column) != Expression::ZERO)
+                .map(|column| self.coenergy(model, lost.element, column))
+                .collect();
+            while let Some(unknown) = open.pop() {
+                if !needed.insert(unknown) {
+                    continue;
+                }
+                let Some(row) = matched.get(&unknown) else {
+                    report_second_derivative(model, lost.element, diagnostics);
+                    return None;
+                };
+                let equation = &self.scalars.equations[*row];
+                open.extend(equation.terms.keys().chain(&equation.signals));
+            }
+        }
+        Some(needed)
+    }
+
+    fn declare_rates(&mut self, needed: &BTreeSet<usize>) {
+        for unknown in needed {
+            self.rate_of.insert(*unknown, self.scalars.unknowns);
+            self.scalars.unknowns += 1;
+            let name = &self.scalars.names[*unknown];
+            let name = if name.is_empty() {
+                String::new()
+            } else {
+                format!("{name}.rate")
+            };
+            self.scalars.names.push(name);
+            self.determined.push(false);
+        }
+    }
+
+    /// The time derivative of the equation from which an unknown follows, unless it is that of a coordinate, whose rate is free.
+    fn differentiate(
+        &mut self,
+        model: &Elaborated,
+        unknown: usize,
+        row: usize,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let equation = self.scalars.equations[row].clone();
+        if let Owner::Coordinate(..) = equation.owner {
+            return;
+        }
+        let mut left = equation.constant;
+        for (term, coefficient) in &equation.terms {
+            let own = self.signal(*term);
+            let product = self.pool.multiply(*coefficient, own);
+            left = self.pool.add(left, product);
+        }
+        let sum = self.total(model, left);
+        if let Some(input) = sum.input {
+            report_input(model, equation.owner, input, diagnostics);
+        }
+        let rate = self.rate_of.get(&unknown).copied();
+        self.push(sum, equation.owner, [unknown; 2], rate);
+    }
+
+    fn push(&mut self, sum: Linear, owner: Owner, about: [usize; 2], rate: Option<usize>) {
+        let mut equation = Equation {
+            terms: sum.terms,
+            constant: sum.constant,
+            signals: Vec::new(),
+            owner,
+            about,
+            level: None,
+            rate,
+        };
+        equation.terms.retain(|_, c| *c != Expression::ZERO);
+        linearise(self.pool, &mut equation, &self.scalars.signals);
+        self.scalars.equations.push(equation);
+    }
+
+    /// The time derivative of an expression, linear in rates.
+    fn total(&mut self, model: &Elaborated, expression: Expression) -> Linear {
+        let mut sum = Linear::default();
+        if self.pool.rate(expression) != Rate::Varying {
+            return sum;
+        }
+        for symbol in symbols(self.pool, &[expression]) {
+            let slope = Differentiator::new(symbol).derivative(self.pool, expression);
+            match symbol {
+                Symbol::Parameter(_) => {}
+                Symbol::Time => sum.constant = self.pool.add(sum.constant, slope),
+                Symbol::Input(input) => sum.input = Some(input),
+                Symbol::Signal(signal) => {
+                    let (unknown, reversed) = self.scalars.signals[signal];
+                    let rate = self.rate_of[&unknown];
+                    sum.add(self.pool, rate, slope.flipped(reversed));
+                }
+                Symbol::State(state) => self.along_state(model, state, slope, &mut sum),
+            }
+        }
+        sum
+    }
+
+    fn along_state(
+        &mut self,
+        model: &Elaborated,
+        state: usize,
+        slope: Expression,
+        sum: &mut Linear,
+    ) {
+        match model.states[state].rate {
+            StateRate::Storage(id, component) => {
+                let (unknown, reversed) = self.own_rate(model, id, component);
+                let slope = slope.flipped(reversed);
+                if self.determined[unknown] {
+                    let rate = self.signal(unknown);
+                    let product = self.pool.multiply(slope, rate);
+                    sum.constant = self.pool.add(sum.constant, product);
+                } else {
+                    sum.add(self.pool, unknown, slope);
+                }
+            }
+            StateRate::Expression(rate) => {
+                let product = self.pool.multiply(slope, rate);
+                sum.constant = self.pool.add(sum.constant, product);
+            }
+            StateRate::Unknown(flow) => {
+                if let Some(rate) = self.rate_of.get(&flow) {
+                    sum.add(self.pool, *rate, slope);
+                }
+            }
+        }
+    }
+
+    /// `ṗ = d/dt J (y − y₀)` for every lost state.
+    fn dynamics(
+        &mut self,
+        model: &Elaborated,
+        lost: &[Lost],
+        inverses: &BTreeMap<ElementId, Inverse>,
+        diagnostics: &mut Diagnostics,
+    ) {
+        for lost in lost {
+            let inverse = &inverses[&lost.element];
+            let owner = Owner::Element(lost.element, lost.component);
+            let (rate, reversed) = self.own_rate(model, lost.element, lost.component);
+            let mut sum = Linear::default();
+            sum.add(self.pool, rate, Expression::ONE.negated().flipped(reversed));
+            for component in 0..inverse.matrix.columns {
+                let entry = inverse.matrix.at(lost.component, component);
+                if entry == Expression::ZERO {
+                    continue;
+                }
+                let unknown = self.coenergy(model, lost.element, component);
+                sum.add(self.pool, self.rate_of[&unknown], entry);
+                let offset = inverse.offset[component];
+                let own = self.signal(unknown);
+                let difference = self.pool.subtract(own, offset);
+                let change = self.total(model, entry);
+                sum.add_scaled(self.pool, &change, difference);
+                let change = self.total(model, offset);
+                sum.add_scaled(self.pool, &change, entry.negated());
+            }
+            if let Some(input) = sum.input {
+                report_input(model, owner, input, diagnostics);
+            }
+            let port = &self.scalars.ports[&lost.element];
+            let about = [port.effort[lost.component], port.flow[lost.component]];
+            self.push(sum, owner, about, None);
+        }
+    }
+
+    /// Puts unknowns and equations on their levels.
+    fn order(
+        &mut self,
+        model: &Elaborated,
+        matched: &BTreeMap<usize, usize>,
+        lost: &[Lost],
+        inverses: &BTreeMap<ElementId, Inverse>,
+    ) {
+        let is_state = |owner| match owner {
+            Owner::Coordinate(..) => true,
+            Owner::Element(id, _) => {
+                matches!(model.graph.elements[id.0].law, Law::Storage(_))
+            }
+            Owner::Structure => false,
+        };
+        let levels = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        for equation in &mut self.scalars.equations {
+            let rate = equation
+                .about
+                .iter()
+                .find_map(|unknown| self.rate_of.get(unknown));
+            equation.level = rate.and_then(|rate| levels[*rate]);
+        }
+        let pool = &mut *self.pool;
+        let definite = inverses
+            .values()
+            .all(|inverse| is_definite(model, &inverse.matrix, pool));
+        self.independent(model, lost, &levels, definite);
+        self.scalars.levels = levels;
+    }
+
+    /// The independent rate of each level.
+    fn independent(
+        &mut self,
+        model: &Elaborated,
+        lost: &[Lost],
+        levels: &[Option<usize>],
+        definite: bool,
+    ) {
+        for (number, state) in model.states.iter().enumerate() {
+            let (unknown, imposed) = match state.rate {
+                StateRate::Unknown(flow) => (self.rate_of.get(&flow).copied(), flow),
+                StateRate::Storage(id, component) => (
+                    Some(self.own_rate(model, id, component).0),
+                    self.coenergy(model, id, component),
+                ),
+                StateRate::Expression(_) => continue,
+            };
+            let is_lost = self.momenta.contains_key(&number);
+            let (Some(unknown), Some(rate), false) = (unknown, self.rate_of.get(&imposed), is_lost)
+            else {
+                continue;
+            };
+            let Some(level) = levels[*rate] else { continue };
+            let inertia = match state.rate {
+                _ if !definite => Inertia::Unknown,
+                StateRate::Unknown(_) => self.moved(model, lost, levels, number, level),
+                StateRate::Storage(id, _) => match self.inverse(model, id) {
+                    Some(inverse) if is_definite(model, &inverse.matrix, self.pool) => Inertia::Own,
+                    _ => Inertia::Unknown,
+                },
+                StateRate::Expression(_) => continue,
+            };
+            let independent = Independent { unknown, inertia };
+            self.scalars.independent.insert(level, independent);
+        }
+    }
+
+    /// Lost storages on the level of a coordinate.
+    fn moved(
+        &self,
+        model: &Elaborated,
+        lost: &[Lost],
+        levels: &[Option<usize>],
+        state: usize,
+        level: usize,
+    ) -> Inertia {
+        let mut storages: BTreeMap<ElementId, Vec<usize>> = BTreeMap::new();
+        for lost in lost {
+            let unknown = self.coenergy(model, lost.element, lost.component);
+            let rate = self.rate_of.get(&unknown);
+            if rate.is_some_and(|rate| levels[*rate] == Some(level)) {
+                storages.entry(lost.element).or_default().push(unknown);
+            }
+        }
+        let storages = storages.into_values().collect();
+        Inertia::Moved { state, storages }
+    }
+
+    /// From now on the rate of a coordinate is an unknown of its own.
+    fn state_rates(&mut self, model: &mut Elaborated) {
+        for state in &mut model.states {
+            if let StateRate::Unknown(flow) = state.rate
+                && let Some(rate) = self.rate_of.get(&flow)
+            {
+                state.rate = StateRate::Unknown(*rate);
+            }
+        }
+    }
+}
+
+/// Whether a law is positive definite for all parameters that `new` accepts: its leading principal minors are positive
+/// constants, or assumed positive.
+fn is_definite(model: &Elaborated, matrix: &Matrix, pool: &mut Pool) -> bool {
+    let assumed = |expression: Expression| {
+        model
+            .assumptions
+            .iter()
+            .any(|known| known.expression == expression && known.condition == Condition::Positive)
+    };
+    (1..=matrix.rows).all(|size| {
+        let minor = if matrix.is_diagonal() {
+            matrix.at(size - 1, size - 1)
+        } else {
+            matrix.leading(size).determinant(pool)
+        };
+        match pool.constant_value(minor) {
+            Some(value) => value > 0.0,
+            None => assumed(minor),
+        }
+    })
+}
+
+/// A sum of unknowns with coefficients, and what is known.
+struct Linear {
+    terms: BTreeMap<usize, Expression>,
+    constant: Expression,
+    /// An input whose own derivative would be needed.
+    input: Option<usize>,
+}
+
+impl Default for Linear {
+    fn default() -> Self {
+        Self {
+            terms: BTreeMap::new(),
+            constant: Expression::ZERO,
+            input: None,
+        }
+    }
+}
+
+impl Linear {
+    fn add(&mut self, pool: &mut Pool, unknown: usize, coefficient: Expression) {
+        let known = self.terms.entry(unknown).or_insert(Expression::ZERO);
+        *known = pool.add(*known, coefficient);
+    }
+
+    fn add_scaled(&mut self, pool: &mut Pool, other: &Self, factor: Expression) {
+        for (unknown, coefficient) in &other.terms {
+            let scaled = pool.multiply(*coefficient, factor);
+            self.add(pool, *unknown, scaled);
+        }
+        let scaled = pool.multiply(other.constant, factor);
+        self.constant = pool.add(self.constant, scaled);
+        self.input = self.input.or(other.input);
+    }
+}
+
+fn report_second_derivative(model: &Elaborated, id: ElementId, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let element = &graph.elements[id.0];
+    let message = format!(
+        "storage `{}` follows from efforts or flows that are rates themselves",
+        element.name
+    );
+    let report = error(
+        codes::ORDER_LOST_UNSUPPORTED,
+        graph.origins.span(element.origin),
+        message,
+    )
+    .note("it would have to be differentiated twice")
+    .help("put a spring and a damper, or an inertia, where it is coupled");
+    diagnostics.report(report);
+}
+
+fn report_input(model: &Elaborated, owner: Owner, input: usize, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let span = match owner {
+        Owner::Element(id, _) => graph.origins.span(graph.elements[id.0].origin),
+        Owner::Structure | Owner::Coordinate(..) => model.name.span(),
+    };
+    let name = &model.inputs[input].name;
+    let message = format!("a dependent storage needs the time derivative of the input `{name}`");
+    let report = error(codes::ORDER_LOST_UNSUPPORTED, span, message)
+        .note("an input is known by its value alone")
+        .help("put a spring and a damper between the source and the storage, or give the source as a law of `t`");
+    diagnostics.report(report);
+}

@@ -1,0 +1,479 @@
+//! Which storages are states when not all of them can be.
+//!
+//! Rows are taken in order of priority (structure and resistors, sources, storages as declared, marked storages) and
+//! reduced by those before them, over the prime field. By the greedy theorem for linear matroids the rows that vanish
+//! are the fewest, and each is a combination of earlier rows, which names its causes. Where storages depend on each
+//! other, they are chosen once more: flows of `coordinate` junctions come first, and what is fixed for almost every
+//! state, but not at the nominal one, comes last.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error, listing};
+use crate::elaborate::Elaborated;
+use crate::equations::{Equation, Owner, Scalars};
+use crate::graph::{ElementId, ElementKind, JunctionId, Law};
+use crate::symbolic::{Evaluation, Expression, Pool, Symbol, field};
+
+/// What is a state, and what is not.
+pub struct Selection {
+    /// Rows of storages that follow from others.
+    pub lost: Vec<Lost>,
+    /// Coordinates that are states in their place: junction, component, flow.
+    pub coordinates: Vec<(JunctionId, usize, usize)>,
+}
+
+/// A component of a storage that is no state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// Its equation.
+    pub equation: usize,
+    /// The storage.
+    pub element: ElementId,
+    /// Its component.
+    pub component: usize,
+    /// Storages, sources and coordinates that it follows from.
+    pub causes: BTreeSet<Owner>,
+}
+
+/// Selects, or reports why the equations have no solution.
+pub fn select(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) -> Option<Selection> {
+    let mut first = Selector::new(model, scalars, pool);
+    let mut order: Vec<usize> = (0..scalars.equations.len()).collect();
+    order.sort_by_key(|row| (first.priority(scalars.equations[*row].owner), *row));
+    for row in order {
+        first.take(&scalars.equations[row], row, false);
+    }
+    if !first.report(diagnostics) {
+        return None;
+    }
+    Some(again(model, scalars, pool, first))
+}
+
+/// The second choice, among the storages that take part in a dependence.
+fn again(model: &Elaborated, scalars: &Scalars, pool: &Pool, first: Selector) -> Selection {
+    let involved: BTreeSet<ElementId> = first
+        .lost
+        .iter()
+        .flat_map(|lost| {
+            lost.causes
+                .iter()
+                .filter_map(|cause| storage(model, *cause))
+                .chain([lost.element])
+        })
+        .collect();
+    let is_involved = |owner| storage(model, owner).is_some_and(|id| involved.contains(&id));
+    let coordinates: Vec<Equation> = scalars
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate_row(*coordinate))
+        .filter(|row| first.follows(row))
+        .collect();
+    let mut second = Selector::new(model, scalars, pool);
+    let mut order: Vec<usize> = (0..scalars.equations.len()).collect();
+    order.sort_by_key(|row| (second.priority(scalars.equations[*row].owner), *row));
+    let (involved, free): (Vec<usize>, Vec<usize>) = order
+        .into_iter()
+        .partition(|row| is_involved(scalars.equations[*row].owner));
+    for row in free {
+        second.take(&scalars.equations[row], row, false);
+    }
+    let mut candidates: Vec<(&Equation, usize)> =
+        coordinates.iter().map(|row| (row, usize::MAX)).collect();
+    candidates.extend(
+        involved
+            .into_iter()
+            .map(|row| (&scalars.equations[row], row)),
+    );
+    let mut postponed = Vec::new();
+    for (equation, row) in candidates {
+        if !second.take(equation, row, true) {
+            postponed.push((equation, row));
+        }
+    }
+    for (equation, row) in postponed {
+        second.take(equation, row, false);
+    }
+    let chosen = second.coordinates;
+    Selection {
+        lost: second.lost,
+        coordinates: scalars
+            .coordinates
+            .iter()
+            .filter(|coordinate| chosen.contains(&coordinate.2))
+            .copied()
+            .collect(),
+    }
+}
+
+/// The row `flow = state` of a coordinate; its constant is not needed here.
+fn coordinate_row((junction, component, flow): (JunctionId, usize, usize)) -> Equation {
+    Equation {
+        terms: BTreeMap::from([(flow, Expression::ONE)]),
+        constant: Expression::ZERO,
+        signals: Vec::new(),
+        owner: Owner::Coordinate(junction, component),
+        about: [flow; 2],
+        level: None,
+        rate: None,
+    }
+}
+
+fn storage(model: &Elaborated, owner: Owner) -> Option<ElementId> {
+    match owner {
+        Owner::Element(id, _) if matches!(model.graph.elements[id.0].law, Law::Storage(_)) => {
+            Some(id)
+        }
+        _ => None,
+    }
+}
+
+struct Selector<'a> {
+    model: &'a Elaborated,
+    pool: &'a Pool,
+    exact: Echelon,
+    nominal: NominalEchelon,
+    nominal_values: BTreeMap<usize, f64>,
+    lost: Vec<Lost>,
+    sources: Vec<(ElementId, BTreeSet<Owner>)>,
+    coordinates: BTreeSet<usize>,
+    structure: bool,
+}
+
+impl<'a> Selector<'a> {
+    fn new(model: &'a Elaborated, scalars: &Scalars, pool: &'a Pool) -> Self {
+        Self {
+            model,
+            pool,
+            exact: Echelon::default(),
+            nominal: NominalEchelon::default(),
+            nominal_values: nominal_values(model, scalars, pool),
+            lost: Vec::new(),
+            sources: Vec::new(),
+            coordinates: BTreeSet::new(),
+            structure: false,
+        }
+    }
+
+    fn priority(&self, owner: Owner) -> usize {
+        let Owner::Element(id, _) = owner else {
+            return 0;
+        };
+        let element = &self.model.graph.elements[id.0];
+        match element.law {
+            Law::Storage(_) => 2 + usize::from(element.derivative),
+            Law::Source(_) => 1,
+            _ => 0,
+        }
+    }
+
+    fn images(&self, equation: &Equation) -> BTreeMap<usize, u64> {
+        equation
+            .terms
+            .iter()
+            .map(|(unknown, c)| (*unknown, self.pool.image(*c).0[0]))
+            .collect()
+    }
+
+    /// Whether the row is a combination of those taken.
+    fn follows(&self, equation: &Equation) -> bool {
+        self.exact.vanishes(&self.images(equation))
+    }
+
+    /// Takes a row. With `cautious`, a row that says something new in general but not at the nominal state is left,
+    /// and the answer is no.
+    fn take(&mut self, equation: &Equation, row: usize, cautious: bool) -> bool {
+        let values = equation
+            .terms
+            .iter()
+            .map(|(unknown, c)| {
+                let value = self
+                    .nominal_values
+                    .get(&c.node())
+                    .copied()
+                    .unwrap_or(f64::NAN);
+                (*unknown, if c.is_negative() { -value } else { value })
+            })
+            .collect();
+        let reduced = self.nominal.reduced(values);
+        let own = match equation.owner {
+            Owner::Element(id, _) if !is_cause(self.model, id) => BTreeSet::new(),
+            Owner::Structure => BTreeSet::new(),
+            owner => BTreeSet::from([owner]),
+        };
+        let images = self.images(equation);
+        if cautious && reduced.is_none() && !self.exact.vanishes(&images) {
+            return false;
+        }
+        match (self.exact.reduce(images, own), equation.owner) {
+            (None, owner) => {
+                if let Some(reduced) = reduced {
+                    self.nominal.insert(reduced);
+                }
+                if let Owner::Coordinate(..) = owner {
+                    self.coordinates.insert(equation.about[0]);
+                }
+            }
+            (Some(causes), Owner::Element(element, component)) => {
+                let own = Owner::Element(element, component);
+                let causes = causes.into_iter().filter(|cause| *cause != own).collect();
+                if storage(self.model, own).is_some() {
+                    self.lost.push(Lost {
+                        equation: row,
+                        element,
+                        component,
+                        causes,
+                    });
+                } else {
+                    self.sources.push((element, causes));
+                }
+            }
+            (Some(_), Owner::Structure) => self.structure = true,
+            (Some(_), Owner::Coordinate(..)) => {}
+        }
+        true
+    }
+
+    /// Reports what cannot be accepted; true if there is nothing of the kind.
+    fn report(&self, diagnostics: &mut Diagnostics) -> bool {
+        let before = diagnostics.list().len();
+        for (source, causes) in &self.sources {
+            self.report_source(*source, causes, diagnostics);
+        }
+        let mut by_element: BTreeMap<ElementId, (usize, BTreeSet<Owner>)> = BTreeMap::new();
+        for lost in &self.lost {
+            let entry = by_element.entry(lost.element).or_default();
+            entry.0 += 1;
+            entry.1.extend(&lost.causes);
+        }
+        for (element, (count, causes)) in &by_element {
+            if !self.model.graph.elements[element.0].derivative {
+                self.report_storage(*element, *count, causes, diagnostics);
+            }
+        }
+        let nothing = self.lost.is_empty() && self.sources.is_empty();
+        if self.structure || nothing {
+            let message = "the junction structure leaves efforts or flows undetermined";
+            diagnostics.error(codes::SINGULAR_JUNCTIONS, self.model.name.span(), message);
+        }
+        diagnostics.list().len() == before
+    }
+
+    fn names(&self, own: ElementId, causes: &BTreeSet<Owner>) -> String {
+        let elements: BTreeSet<ElementId> = causes
+            .iter()
+            .filter_map(|cause| match cause {
+                Owner::Element(id, _) if *id != own => Some(*id),
+                _ => None,
+            })
+            .collect();
+        let graph = &self.model.graph;
+        listing(elements.iter().map(|id| graph.elements[id.0].name.clone()))
+    }
+
+    fn report_source(
+        &self,
+        id: ElementId,
+        causes: &BTreeSet<Owner>,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let graph = &self.model.graph;
+        let element = &graph.elements[id.0];
+        let imposed = imposed(element.kind);
+        let message = format!(
+            "source `{}` imposes {imposed} that is imposed already",
+            element.name
+        );
+        let span = graph.origins.span(element.origin);
+        let note = format!("it is fixed by {}", self.names(id, causes));
+        diagnostics.report(error(codes::SOURCES_CONFLICT, span, message).note(note));
+    }
+
+    fn report_storage(
+        &self,
+        id: ElementId,
+        count: usize,
+        causes: &BTreeSet<Owner>,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let graph = &self.model.graph;
+        let element = &graph.elements[id.0];
+        let components = if count == 1 {
+            "one component".to_owned()
+        } else {
+            format!("{count} components")
+        };
+        let follow = if count == 1 { "follows" } else { "follow" };
+        let message = format!(
+            "storage `{}` depends on others: {components} of its {} {follow} from {}",
+            element.name,
+            imposed(element.kind),
+            self.names(id, causes),
+        );
+        let name = element.name.rsplit('.').next().unwrap_or(&element.name);
+        let mark = format!(
+            "write `#[derivative] {:?} {name} {{ … }}` to accept it: its state is then eliminated",
+            element.kind
+        );
+        let report = error(
+            codes::ORDER_LOST,
+            graph.origins.span(element.origin),
+            message,
+        )
+        .note("this is a true loss of order: no choice of strokes makes all of them states")
+        .help(mark)
+        .help("or put a spring and a damper between them, or merge the storages into one");
+        diagnostics.report(report);
+    }
+}
+
+/// What the element states about its bond.
+fn imposed(kind: ElementKind) -> &'static str {
+    if matches!(kind, ElementKind::I | ElementKind::Sf) {
+        "flow"
+    } else {
+        "effort"
+    }
+}
+
+fn is_cause(model: &Elaborated, id: ElementId) -> bool {
+    matches!(
+        model.graph.elements[id.0].law,
+        Law::Source(_) | Law::Storage(_)
+    )
+}
+
+/// Coefficients at the nominal state: initial values, default parameters, inputs zero.
+fn nominal_values(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> BTreeMap<usize, f64> {
+    let parameter = |symbol: Symbol| match symbol {
+        Symbol::Parameter(index) => model.parameters[index].default,
+        _ => 0.0,
+    };
+    let mut initial = Evaluation::new(&parameter);
+    let states: Vec<f64> = model
+        .states
+        .iter()
+        .map(|state| initial.value(pool, state.initial))
+        .collect();
+    let symbol = |symbol: Symbol| match symbol {
+        Symbol::State(index) => states[index],
+        other => parameter(other),
+    };
+    let mut evaluation = Evaluation::new(&symbol);
+    scalars
+        .equations
+        .iter()
+        .flat_map(|equation| equation.terms.values())
+        .chain([&Expression::ONE])
+        .map(|c| (c.node(), evaluation.value(pool, c.magnitude())))
+        .collect()
+}
+
+/// Rows in echelon form over the field, each with the rows it came from.
+#[derive(Default)]
+struct Echelon {
+    rows: BTreeMap<usize, (BTreeMap<usize, u64>, BTreeSet<Owner>)>,
+}
+
+impl Echelon {
+    /// Adds a row; if it vanishes, gives the rows it is a combination of.
+    fn reduce(
+        &mut self,
+        row: BTreeMap<usize, u64>,
+        mut causes: BTreeSet<Owner>,
+    ) -> Option<BTreeSet<Owner>> {
+        let mut rest = self.rest(row, &mut causes);
+        let Some((&lead, &value)) = rest.first_key_value() else {
+            return Some(causes);
+        };
+        let inverse = field::invert(value).unwrap_or(0);
+        rest.values_mut()
+            .for_each(|entry| *entry = field::multiply(*entry, inverse));
+        self.rows.insert(lead, (rest, causes));
+        None
+    }
+
+    /// Whether a row vanishes.
+    fn vanishes(&self, row: &BTreeMap<usize, u64>) -> bool {
+        self.rest(row.clone(), &mut BTreeSet::new()).is_empty()
+    }
+
+    /// What remains of a row up to the first unknown that no earlier row leads with.
+    fn rest(
+        &self,
+        mut row: BTreeMap<usize, u64>,
+        causes: &mut BTreeSet<Owner>,
+    ) -> BTreeMap<usize, u64> {
+        row.retain(|_, value| *value != 0);
+        while let Some((&lead, &value)) = row.first_key_value() {
+            let Some((pivot, origin)) = self.rows.get(&lead) else {
+                break;
+            };
+            for (unknown, entry) in pivot {
+                let known = row.get(unknown).copied().unwrap_or(0);
+                let reduced = field::subtract(known, field::multiply(value, *entry));
+                if reduced == 0 {
+                    row.remove(unknown);
+                } else {
+                    row.insert(*unknown, reduced);
+                }
+            }
+            causes.extend(origin.iter().copied());
+        }
+        row
+    }
+}
+
+/// Rows at the nominal state, each reduced by those before it, with its largest entry as the lead.
+#[derive(Default)]
+struct NominalEchelon {
+    rows: Vec<(usize, BTreeMap<usize, f64>)>,
+    leads: BTreeMap<usize, usize>,
+}
+
+impl NominalEchelon {
+    /// A row is taken to vanish when it has become this much smaller.
+    const VANISHED: f64 = 1e-9;
+
+    /// The row reduced by all others; none if it vanishes. A coefficient without a value counts as one.
+    fn reduced(&self, mut row: BTreeMap<usize, f64>) -> Option<BTreeMap<usize, f64>> {
+        row.values_mut()
+            .filter(|value| !value.is_finite())
+            .for_each(|value| *value = 1.0);
+        let largest =
+            |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let size = largest(&row);
+        let mut done = 0;
+        while let Some(next) = row
+            .keys()
+            .filter_map(|unknown| self.leads.get(unknown).copied())
+            .filter(|position| *position >= done)
+            .min()
+        {
+            let (lead, pivot) = &self.rows[next];
+            let factor = row.get(lead).copied().unwrap_or(0.0) / pivot[lead];
+            for (unknown, entry) in pivot {
+                *row.entry(*unknown).or_default() -= factor * entry;
+            }
+            row.remove(lead);
+            done = next + 1;
+        }
+        row.retain(|_, value| value.abs() > Self::VANISHED * size);
+        (!row.is_empty()).then_some(row)
+    }
+
+    fn insert(&mut self, row: BTreeMap<usize, f64>) {
+        let lead = row
+            .iter()
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()).then(b.0.cmp(a.0)));
+        if let Some((&lead, _)) = lead {
+            self.leads.insert(lead, self.rows.len());
+            self.rows.push((lead, row));
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! What `new` refuses, and that it refuses nothing else.
+
+use mbg_runtime::{ParameterError, Rk4, System, mbg};
+
+use super::behaviour::{Ladder, LadderParameters, Oscillator, OscillatorParameters};
+use crate::ins::{Ins, InsClassic, InsClassicParameters, InsParameters, gust};
+
+mbg! {
+    /// Resistors that must take the effort, or the flow, whatever their law is given as.
+    pub(crate) model Leaks {
+        param leak: ohm = 2.0;
+        param bypass: S = 0.5;
+        param drag: N*s/m = 3.0;
+        param slip: m/(N*s) = 0.25;
+        0 node {
+            C store { compliance: 0.5, initial: 1.0 }
+            R by_resistance { resistance: leak }
+            R by_conductance { conductance: bypass }
+        }
+        1 body {
+            I mass { inertia: 1.0, initial_flow: 1.0 }
+            R by_drag { resistance: drag }
+            R by_slip { conductance: slip }
+        }
+        output loss: A = by_resistance.f;
+    }
+}
+
+#[track_caller]
+fn refused<T>(result: Result<T, ParameterError>, name: &str, value: f64, reason: &str) {
+    match result {
+        Ok(_) => panic!("`{name}` = {value} was accepted"),
+        Err(error) => {
+            assert_eq!(error.name, name);
+            assert!(error.value == value || error.value.is_nan() && value.is_nan());
+            assert_eq!(error.reason, reason);
+        }
+    }
+}
+
+#[test]
+fn an_inertia_must_be_positive() {
+    for mass in [0.0, -0.0, -2.0] {
+        let parameters = OscillatorParameters {
+            mass,
+            ..OscillatorParameters::default()
+        };
+        let reason = "it must be positive: it is the inertia of `body`";
+        refused(Oscillator::new(parameters), "mass", mass, reason);
+    }
+    let lightest = OscillatorParameters {
+        mass: f64::MIN_POSITIVE,
+        ..OscillatorParameters::default()
+    };
+    assert!(Oscillator::new(lightest).is_ok());
+}
+
+#[test]
+fn a_resistor_must_have_the_inverse_that_its_stroke_needs() {
+    let default = LeaksParameters::default();
+    let leaks = |leak, bypass, drag, slip| {
+        Leaks::new(LeaksParameters {
+            leak,
+            bypass,
+            drag,
+            slip,
+        })
+    };
+    let LeaksParameters {
+        leak,
+        bypass,
+        drag,
+        slip,
+    } = default;
+    let reason = "it must not be zero: the chosen causality divides by it";
+    refused(leaks(0.0, bypass, drag, slip), "leak", 0.0, reason);
+    refused(leaks(leak, bypass, drag, 0.0), "slip", 0.0, reason);
+    // Nothing divides by a conductance that takes the effort, nor by a resistance that takes the flow.
+    assert!(leaks(leak, 0.0, 0.0, slip).is_ok());
+    // A negative resistance is active, not singular.
+    assert!(leaks(-leak, bypass, drag, -slip).is_ok());
+}
+
+#[test]
+fn every_parameter_must_be_a_finite_number() {
+    let reason = "it must be a finite number";
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let with = |drag, stiffness, damping| {
+            let ins = InsParameters {
+                drag,
+                stiffness,
+                damping,
+            };
+            let classic = InsClassicParameters {
+                drag,
+                stiffness,
+                damping,
+            };
+            (Ins::new(ins), InsClassic::new(classic))
+        };
+        for (name, (ins, classic)) in [
+            ("drag", with(value, 1e-5, 1e-5)),
+            ("stiffness", with(1e3, value, 1e-5)),
+            ("damping", with(1e3, 1e-5, value)),
+        ] {
+            refused(ins, name, value, reason);
+            refused(classic, name, value, reason);
+        }
+    }
+}
+
+#[test]
+fn the_navigation_system_runs_without_friction_and_springs() {
+    let free = Ins::new(InsParameters {
+        drag: 0.0,
+        stiffness: 0.0,
+        damping: 0.0,
+    })
+    .unwrap();
+    let mut last = free.initial_state();
+    let damped = Ins::new(InsParameters {
+        damping: 0.0,
+        ..InsParameters::default()
+    })
+    .unwrap();
+    Rk4::fixed(
+        &damped,
+        &gust(0.1),
+        0.0,
+        5.0,
+        1e-2,
+        damped.initial_state(),
+        |_, x| last = *x,
+    )
+    .unwrap();
+    assert!(last[6] < -0.1, "the fuselage turned about its gimbals");
+    Rk4::fixed(
+        &free,
+        &gust(0.1),
+        0.0,
+        1.5,
+        1e-2,
+        free.initial_state(),
+        |_, x| last = *x,
+    )
+    .unwrap();
+    // Nothing holds the platform and nothing brakes the fuselage.
+    assert_eq!(last.rows(3, 3).amax(), 0.0);
+    assert!(last.rows(0, 3).norm() > 1000.0);
+}
+
+#[test]
+fn a_loop_is_refused_where_its_determinant_vanishes() {
+    let ladder = |r1, r2| Ladder::new(LadderParameters { r1, r2 });
+    let reason = "it must not be zero: the chosen causality divides by it";
+    refused(ladder(0.0, 0.0), "r1 + r2 + r1 r2", 0.0, reason);
+    refused(ladder(1.0, -0.5), "r1 + r2 + r1 r2", 0.0, reason);
+    // One resistor alone may be a plain wire.
+    assert!(ladder(0.0, 3.0).is_ok());
+    assert!(ladder(2.0, 0.0).is_ok());
+}

@@ -1,0 +1,18 @@
+//! Misspelt names in a chain, a law and a call.
+
+use mbg_runtime::mbg;
+
+mbg! {
+    component Bearing(port shaft) {
+        shaft -> R friction { resistance: 0.1 };
+    }
+    model Names {
+        param mass: kg = 1.0;
+        1 body { I rotor { inertia: mas } }
+        bdy -> R damper { resistance: 1.0 };
+        bearing: Baering (body);
+        output speed = rotor.v;
+    }
+}
+
+fn main() {}

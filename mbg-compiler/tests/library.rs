@@ -433,6 +433,115 @@ fn mechanisms_of_any_length_are_written_once() {
     }
 }
 
+/// The place of a state in the order of the program.
+fn place(model: &Compiled, name: &str) -> usize {
+    let mut names = model
+        .states
+        .iter()
+        .map(|state| &model.model.states[*state].variable.name);
+    names.position(|known| known == name).unwrap()
+}
+
+#[test]
+fn a_pendulum_swings_on_a_cart() {
+    assert_lossless(&compiled(PENDULUM));
+    let model = compiled(
+        "#[derivative]
+        model Cart {
+            gravity [0.0, -9.81];
+            1 ground[3] { Sf fixed { flow: 0.0 } }
+            1 cart[3];
+            1 arm[3];
+            1 bob[3];
+            slide: PlanarPrismatic { force: 0.7 } (ground, cart);
+            body: PlanarBody { mass: 3.0, inertia: 1.0 } (cart);
+            hinge: PlanarRevolute { damping: 0.2 } (cart, arm);
+            rod: PlanarOffset { angle: hinge.angle_b, x: 0.5 } (arm, bob);
+            load: PlanarBody { mass: 2.0, inertia: 0.1 } (bob);
+            output angle = hinge.angle;
+            output travel = slide.travel;
+        }",
+    );
+    assert_lossless(&model);
+    let state = state(&model);
+    let change = run(&model, Routines::DERIVATIVE, &state);
+    let [angle, rate, speed] =
+        ["hinge.angle", "hinge.rate.f", "slide.rate.f"].map(|name| place(&model, name));
+    let ((sine, cosine), (spin, slide)) = (state[angle].sin_cos(), (change[rate], change[speed]));
+    // Masses 3 and 2 at a distance of 0.5, hence 2 · 0.5 = 1 as the coupling.
+    let force = 5.0 * slide - (spin * sine + state[rate].powi(2) * cosine);
+    let moment = (0.5 + 0.1) * spin - slide * sine + 9.81 * cosine;
+    assert_near(&[force, moment], &[0.7, -0.2 * state[rate]], 1e-12);
+    assert_near(&[change[angle]], &[state[rate]], 1e-12);
+}
+
+/// The torques that move the chain as given, by the recursion of Newton and Euler in the axes of the links.
+fn torques(angles: &[f64], rates: &[f64], accelerations: &[f64]) -> Vec<f64> {
+    let (tip, centre, inertia) = (
+        [0.0, 0.0, -1.0],
+        [0.0, 0.0, -0.5],
+        [0.083_958_333_333_333_34, 0.083_958_333_333_333_34, 0.001_25],
+    );
+    let along = |axis: usize, value: f64| {
+        let mut vector = [0.0; 3];
+        vector[axis] = value;
+        vector
+    };
+    let spun = |omega: &[f64; 3], alpha: &[f64; 3], arm: &[f64; 3]| {
+        sum(&[cross(alpha, arm), cross(omega, &cross(omega, arm))])
+    };
+    let (mut omega, mut alpha, mut acceleration) = ([0.0; 3], [0.0; 3], [0.0, 0.0, 9.81]);
+    let mut loads = Vec::new();
+    for (link, angle) in angles.iter().enumerate() {
+        let axis = link % 2;
+        if link > 0 {
+            acceleration = sum(&[acceleration, spun(&omega, &alpha, &tip)]);
+        }
+        acceleration = turned(acceleration, axis, *angle);
+        let rate = along(axis, rates[link]);
+        omega = sum(&[turned(omega, axis, *angle), rate]);
+        let own = sum(&[along(axis, accelerations[link]), cross(&omega, &rate)]);
+        alpha = sum(&[turned(alpha, axis, *angle), own]);
+        let momentum = [0, 1, 2].map(|axis| inertia[axis] * omega[axis]);
+        let change = [0, 1, 2].map(|axis| inertia[axis] * alpha[axis]);
+        let force = sum(&[acceleration, spun(&omega, &alpha, &centre)]);
+        let moment = sum(&[change, cross(&omega, &momentum), cross(&centre, &force)]);
+        loads.push((force, moment));
+    }
+    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+    let mut torques = vec![0.0; angles.len()];
+    for (link, (own_force, own_moment)) in loads.into_iter().enumerate().rev() {
+        moment = sum(&[own_moment, moment, cross(&tip, &force)]);
+        force = sum(&[own_force, force]);
+        torques[link] = moment[link % 2];
+        force = turned(force, link % 2, -angles[link]);
+        moment = turned(moment, link % 2, -angles[link]);
+    }
+    torques
+}
+
+#[test]
+fn a_chain_moves_as_newton_and_euler_say() {
+    for rods in 1..7 {
+        let model = compiled(&CHAIN.replace("rods = 4", &format!("rods = {rods}")));
+        let state = state(&model);
+        let place = |link: usize, word: &str| place(&model, &format!("links[{link}].hinge.{word}"));
+        let change = run(&model, Routines::DERIVATIVE, &state);
+        let by_link = |word: &str, values: &[f64]| -> Vec<f64> {
+            (0..rods).map(|link| values[place(link, word)]).collect()
+        };
+        let rates = by_link("rate.f", &state);
+        assert_near(&by_link("angle", &change), &rates, 1e-12);
+        let found = torques(
+            &by_link("angle", &state),
+            &rates,
+            &by_link("rate.f", &change),
+        );
+        let damping: Vec<f64> = rates.iter().map(|rate| -0.1 * rate).collect();
+        assert_near(&found, &damping, 1e-9);
+    }
+}
+
 #[test]
 fn mistakes_inside_the_library_are_told_at_the_instance() {
     let planar = "model M { gravity [0.0, 0.0, -9.81]; 1 a[3];

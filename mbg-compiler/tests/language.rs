@@ -1,81 +1,34 @@
 //! Loops, named values and gravity, from the text to the flat graph.
 #![allow(clippy::unwrap_used)]
 
+mod models;
+
 use std::fmt::Write;
 
-use mbg_compiler::compile::{Compiled, compile};
-use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::elaborate::{self, Elaborated};
-use mbg_compiler::symbolic::Pool;
+use mbg_compiler::graph::BondId;
+use mbg_compiler::symbolic::Symbol;
 use mbg_compiler::symbolic::print::Printer;
-use mbg_compiler::syntax::{self, ast::Item};
-
-/// Hands the last model of a text on, and returns what was reported.
-fn with_model<T>(
-    text: &str,
-    read: impl FnOnce(&syntax::ast::Model, &syntax::ast::Source, &mut Diagnostics) -> T,
-) -> (T, Vec<String>) {
-    let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(text.parse().unwrap(), &mut diagnostics);
-    let Some(Item::Model(model)) = source.items.last() else {
-        panic!("a model was written")
-    };
-    let result = read(model, &source, &mut diagnostics);
-    let reported = diagnostics.list().iter().map(|diagnostic| {
-        let start = diagnostic.span.start();
-        format!("{}:{} {}", start.line, start.column + 1, diagnostic.text())
-    });
-    (result, reported.collect())
-}
-
-fn compiled(text: &str) -> Compiled {
-    let (compiled, reported) = with_model(text, |model, source, diagnostics| {
-        compile(model, &elaborate::component_table(source), diagnostics)
-    });
-    assert!(reported.is_empty(), "{}", reported.join("\n"));
-    compiled.unwrap()
-}
-
-/// What elaboration reports.
-fn errors(text: &str) -> Vec<String> {
-    let reported = with_model(text, |model, source, diagnostics| {
-        let mut pool = Pool::new();
-        let _ = elaborate::elaborate(
-            model,
-            &elaborate::component_table(source),
-            &mut pool,
-            diagnostics,
-        );
-    });
-    reported.1
-}
+use models::{compiled, elaborated};
 
 /// Bonds, initial states and outputs of the flat graph.
 fn flat(text: &str) -> String {
-    let mut pool = Pool::new();
-    let (model, reported) = with_model(text, |model, source, diagnostics| {
-        let components = elaborate::component_table(source);
-        elaborate::elaborate(model, &components, &mut pool, diagnostics)
-    });
-    assert!(reported.is_empty(), "{}", reported.join("\n"));
-    described(&model.unwrap(), &pool)
-}
-
-fn described(model: &Elaborated, pool: &Pool) -> String {
+    let (model, pool) = elaborated(text).unwrap_or_else(|reported| panic!("{reported}"));
     let mut text = String::new();
     for bond in 0..model.graph.bonds.len() {
-        let bond = mbg_compiler::graph::BondId(bond);
-        let dimension = model.graph.bonds[bond.0].dimension;
-        writeln!(text, "{} [{dimension}]", model.graph.bond_name(bond)).unwrap();
+        let dimension = model.graph.bonds[bond].dimension;
+        writeln!(
+            text,
+            "{} [{dimension}]",
+            model.graph.bond_name(BondId(bond))
+        )
+        .unwrap();
     }
     let name = |symbol| match symbol {
-        mbg_compiler::symbolic::Symbol::Parameter(index) => {
-            model.parameters[index].name.to_string()
-        }
-        mbg_compiler::symbolic::Symbol::State(index) => model.states[index].variable.name.clone(),
+        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
+        Symbol::State(index) => model.states[index].variable.name.clone(),
         other => format!("{other:?}"),
     };
-    let printer = Printer::new(pool, &name);
+    let printer = Printer::new(&pool, &name);
     for state in &model.states {
         let (name, initial) = (&state.variable.name, printer.text(state.initial));
         writeln!(text, "state {name} = {initial}").unwrap();
@@ -257,6 +210,22 @@ fn a_comparison_of_whole_numbers_chooses_at_compile_time() {
 }
 
 #[test]
+fn time_yields_to_a_value_of_its_name_and_to_nothing_else() {
+    let text = "model M {
+        1 a { R t { effort: 2.0 * f } I m { inertia: 1.0 } }
+        for t in 3..4 { output declared = t; }
+        output time = t;
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    a -> t [1]
+    a -> m [1]
+    state m.p = 0
+    output t[3].declared = 3
+    output time = Time
+    ");
+}
+
+#[test]
 fn gravity_is_seen_by_every_component() {
     let text = |statement: &str| {
         format!(
@@ -296,7 +265,7 @@ fn gravity_is_seen_by_every_component() {
 fn mistake(statements: &str) -> String {
     let text =
         format!("model M {{ param n = 3.0; 1 a[3] {{ I m {{ inertia: 1.0 }} }}\n{statements} }}");
-    errors(&text).join("\n")
+    elaborated(&text).err().unwrap_or_default()
 }
 
 #[test]

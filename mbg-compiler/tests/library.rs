@@ -1,45 +1,14 @@
 //! The library: each component is read, connected, and does what its equation says.
 #![allow(clippy::unwrap_used)]
 
-use mbg_compiler::compile::{Compiled, Routines, compile};
+mod models;
+
+use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::elaborate::{self, Elaborated};
 use mbg_compiler::program::{self, Arguments};
-use mbg_compiler::symbolic::Pool;
-use mbg_compiler::syntax::ast::{Item, Source};
+use mbg_compiler::syntax::ast::Item;
 use mbg_compiler::syntax::{self, library};
-
-/// Reads a text, hands its last model to a stage, and returns what was reported.
-fn stage<T>(
-    text: &str,
-    run: impl FnOnce(&syntax::ast::Model, &Source, &mut Diagnostics) -> Option<T>,
-) -> Result<T, String> {
-    let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(text.parse().unwrap(), &mut diagnostics);
-    let Some(Item::Model(model)) = source.items.last() else {
-        panic!("a model was written")
-    };
-    let result = run(model, &source, &mut diagnostics);
-    let reported = diagnostics.list().iter().map(|diagnostic| {
-        let start = diagnostic.span.start();
-        format!("{}:{} {}", start.line, start.column + 1, diagnostic.text())
-    });
-    result.ok_or_else(|| reported.collect::<Vec<_>>().join("\n"))
-}
-
-fn elaborated(text: &str) -> Result<Elaborated, String> {
-    stage(text, |model, source, diagnostics| {
-        let components = elaborate::component_table(source);
-        elaborate::elaborate(model, &components, &mut Pool::new(), diagnostics)
-    })
-}
-
-fn compiled(text: &str) -> Compiled {
-    let compiled = stage(text, |model, source, diagnostics| {
-        compile(model, &elaborate::component_table(source), diagnostics)
-    });
-    compiled.unwrap_or_else(|reported| panic!("{reported}"))
-}
+use models::{compiled, elaborated};
 
 /// Results of a routine at a state, at time zero and without inputs.
 fn run(model: &Compiled, routine: usize, state: &[f64]) -> Vec<f64> {
@@ -143,7 +112,10 @@ fn components_are_read_only_when_used() {
 fn a_component_of_the_user_wins() {
     let text = "component Body(port at) { at -> I own { inertia: 1.0 }; }
     model M { 1 a; body: Body (a); }";
-    assert_eq!(elaborated(text).unwrap().graph.elements[0].name, "body.own");
+    assert_eq!(
+        elaborated(text).unwrap().0.graph.elements[0].name,
+        "body.own"
+    );
 }
 
 #[test]
@@ -400,7 +372,7 @@ model Chain {
 
 #[test]
 fn mechanisms_of_any_length_are_written_once() {
-    let pendulum = elaborated(PENDULUM).unwrap();
+    let (pendulum, _) = elaborated(PENDULUM).unwrap();
     let states: Vec<&str> = pendulum
         .states
         .iter()
@@ -427,7 +399,7 @@ fn mechanisms_of_any_length_are_written_once() {
     assert_eq!(coordinates.count(), 3);
     for rods in [1, 32, 64] {
         let text = CHAIN.replace("rods = 4", &format!("rods = {rods}"));
-        let chain = elaborated(&text).unwrap();
+        let (chain, _) = elaborated(&text).unwrap();
         assert_eq!(chain.states.len(), 7 * rods);
         assert_eq!(chain.outputs.len(), rods);
     }

@@ -190,7 +190,14 @@ pub(super) struct Lookup<'a, 'm> {
 impl Names for Lookup<'_, '_> {
     fn value(&mut self, pool: &mut Pool, path: &[Step]) -> Option<Result<Value>> {
         if let [Step { name, index: None }] = path {
-            if name == "t" {
+            // An element may bear the name of time, since it has no value that could be meant.
+            let taken = matches!(
+                self.scopes.find(self.scope, "t"),
+                Some(
+                    Entity::Value(_) | Entity::Definition(_) | Entity::Input(_) | Entity::States(_)
+                )
+            );
+            if name == "t" && !taken {
                 return Some(Ok(Value::Scalar(pool.symbol(Symbol::Time))));
             }
             if let Some(own) = self.own.clone()

@@ -60,9 +60,18 @@ pub struct Scalars {
     /// Flows of the junctions marked `coordinate`, by component.
     pub coordinates: Vec<(JunctionId, usize, usize)>,
     /// For unknowns of a reduced system: the place of each in the order of elimination.
-    pub levels: Vec<Option<usize>>,
+    pub turns: Vec<Option<Turn>>,
     /// The independent rate of each level of a reduced system.
     pub independent: BTreeMap<usize, Independent>,
+}
+
+/// When an unknown of a reduced system is eliminated: level by level, and in a level the deepest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Turn {
+    /// Position, from the leaves to the base, of the independent rate to which the unknown belongs.
+    pub level: usize,
+    /// How many equations lie between the states and the unknown.
+    pub depth: usize,
 }
 
 /// An independent rate of a reduced system.
@@ -449,7 +458,7 @@ impl Former<'_> {
             names,
             wires,
             coordinates,
-            levels: vec![None; self.classes.count],
+            turns: vec![None; self.classes.count],
             independent: BTreeMap::new(),
         }
     }

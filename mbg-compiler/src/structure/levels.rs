@@ -9,48 +9,58 @@
 use std::collections::BTreeMap;
 
 use super::blocks;
-use crate::equations::{Owner, Scalars};
+use crate::equations::{Owner, Scalars, Turn};
 
-/// The level of every unknown; none for those that belong to the base.
+/// The turn of every unknown; none for those that belong to the base.
 #[must_use]
 pub(super) fn assign(
     scalars: &Scalars,
     matched: &BTreeMap<usize, usize>,
     rate_of: &BTreeMap<usize, usize>,
     is_state: &dyn Fn(Owner) -> bool,
-) -> Vec<Option<usize>> {
+) -> Vec<Option<Turn>> {
     let dependence = Dependence::of(scalars, matched, rate_of, is_state);
-    let mut levels = vec![None; scalars.unknowns];
+    let mut turns = vec![None; scalars.unknowns];
     for (unknown, rate) in rate_of {
-        levels[*rate] = dependence.level(*unknown);
+        turns[*rate] = dependence.turn(*unknown);
     }
     // The components of a vector stay together, so that no more of a frame is left than it has.
     for wire in &scalars.wires {
         for side in [0, 1] {
             let rates = wire.iter().filter_map(|pair| rate_of.get(&pair[side]));
-            let level = rates.clone().filter_map(|rate| levels[*rate]).min();
-            let Some(level) = level else { continue };
+            let mut common = None;
+            for rate in rates.clone() {
+                join_turns(&mut common, turns[*rate]);
+            }
             for rate in rates {
-                lower(&mut levels[*rate], level);
+                join_turns(&mut turns[*rate], common);
             }
             for pair in wire
                 .iter()
                 .filter(|pair| !rate_of.contains_key(&pair[1 - side]))
             {
-                lower(&mut levels[pair[1 - side]], level);
+                join_turns(&mut turns[pair[1 - side]], common);
             }
         }
     }
-    levels
+    turns
 }
 
-fn lower(level: &mut Option<usize>, to: usize) {
-    *level = Some(level.map_or(to, |level| level.min(to)));
+/// The lower level and the greater depth of both.
+fn join_turns(place: &mut Option<Turn>, other: Option<Turn>) {
+    *place = match (*place, other) {
+        (Some(a), Some(b)) => Some(Turn {
+            level: a.level.min(b.level),
+            depth: a.depth.max(b.depth),
+        }),
+        (a, b) => a.or(b),
+    };
 }
 
 /// Which independent rates each unknown's rate depends on, as sets of bits.
 struct Dependence {
-    sets: BTreeMap<usize, Vec<u64>>,
+    /// Set and depth of each unknown.
+    sets: BTreeMap<usize, (Vec<u64>, usize)>,
     /// Level of each independent rate.
     rank: Vec<usize>,
 }
@@ -73,13 +83,14 @@ impl Dependence {
             })
             .collect();
         let own: Vec<usize> = (0..unknowns.len()).collect();
-        let mut sets: Vec<Vec<u64>> = vec![Vec::new(); unknowns.len()];
+        let mut sets: Vec<(Vec<u64>, usize)> = vec![Default::default(); unknowns.len()];
         let mut independent = 0;
         for block in blocks::ordered(&incidence, &own) {
-            let mut set: Vec<u64> = Vec::new();
+            let (mut set, mut depth) = (Vec::new(), 0);
             for member in &block {
-                for other in &incidence[*member] {
-                    join(&mut set, &sets[*other]);
+                for other in incidence[*member].iter().filter(|k| !block.contains(k)) {
+                    join(&mut set, &sets[*other].0);
+                    depth = depth.max(sets[*other].1 + 1);
                 }
             }
             let equation = &scalars.equations[matched[&unknowns[block[0]]]];
@@ -88,11 +99,11 @@ impl Dependence {
                 independent += 1;
             }
             for member in block {
-                sets[member].clone_from(&set);
+                sets[member] = (set.clone(), depth);
             }
         }
         let mut weight = vec![0usize; independent];
-        for set in &sets {
+        for (set, _) in &sets {
             members(set).for_each(|k| weight[k] += 1);
         }
         let mut order: Vec<usize> = (0..independent).collect();
@@ -107,8 +118,13 @@ impl Dependence {
         }
     }
 
-    fn level(&self, unknown: usize) -> Option<usize> {
-        members(&self.sets[&unknown]).map(|k| self.rank[k]).min()
+    fn turn(&self, unknown: usize) -> Option<Turn> {
+        let (set, depth) = &self.sets[&unknown];
+        let level = members(set).map(|k| self.rank[k]).min()?;
+        Some(Turn {
+            level,
+            depth: *depth,
+        })
     }
 }
 

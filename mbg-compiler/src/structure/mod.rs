@@ -71,7 +71,7 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         .collect();
     // What a reduced system eliminates level by level is one block, whatever could be split off.
     let levelled: Vec<usize> = (0..all.len())
-        .filter(|row| scalars.levels[matching[*row]].is_some())
+        .filter(|row| scalars.turns[matching[*row]].is_some())
         .collect();
     for (row, next) in levelled.iter().zip(levelled.iter().cycle().skip(1)) {
         all[*row].push(matching[*next]);

@@ -14,7 +14,7 @@ use super::selection::{Lost, Selection};
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Condition, Elaborated, State, StateRate, Variable};
-use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, linearise};
+use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, Turn, linearise};
 use crate::graph::{ElementId, ElementKind, Law, component_name};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol};
@@ -491,20 +491,20 @@ impl Reducer<'_> {
             }
             Owner::Structure => false,
         };
-        let levels = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        let turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
         for equation in &mut self.scalars.equations {
             let rate = equation
                 .about
                 .iter()
                 .find_map(|unknown| self.rate_of.get(unknown));
-            equation.level = rate.and_then(|rate| levels[*rate]);
+            equation.level = rate.and_then(|rate| turns[*rate]).map(|turn| turn.level);
         }
         let pool = &mut *self.pool;
         let definite = inverses
             .values()
             .all(|inverse| is_definite(model, &inverse.matrix, pool));
-        self.independent(model, lost, &levels, definite);
-        self.scalars.levels = levels;
+        self.independent(model, lost, &turns, definite);
+        self.scalars.turns = turns;
     }
 
     /// The independent rate of each level.
@@ -512,7 +512,7 @@ impl Reducer<'_> {
         &mut self,
         model: &Elaborated,
         lost: &[Lost],
-        levels: &[Option<usize>],
+        turns: &[Option<Turn>],
         definite: bool,
     ) {
         for (number, state) in model.states.iter().enumerate() {
@@ -529,10 +529,12 @@ impl Reducer<'_> {
             else {
                 continue;
             };
-            let Some(level) = levels[*rate] else { continue };
+            let Some(Turn { level, .. }) = turns[*rate] else {
+                continue;
+            };
             let inertia = match state.rate {
                 _ if !definite => Inertia::Unknown,
-                StateRate::Unknown(_) => self.moved(model, lost, levels, number, level),
+                StateRate::Unknown(_) => self.moved(model, lost, turns, number, level),
                 StateRate::Storage(id, _) => match self.inverse(model, id) {
                     Some(inverse) if is_definite(model, &inverse.matrix, self.pool) => Inertia::Own,
                     _ => Inertia::Unknown,
@@ -549,7 +551,7 @@ impl Reducer<'_> {
         &self,
         model: &Elaborated,
         lost: &[Lost],
-        levels: &[Option<usize>],
+        turns: &[Option<Turn>],
         state: usize,
         level: usize,
     ) -> Inertia {
@@ -557,7 +559,8 @@ impl Reducer<'_> {
         for lost in lost {
             let unknown = self.coenergy(model, lost.element, lost.component);
             let rate = self.rate_of.get(&unknown);
-            if rate.is_some_and(|rate| levels[*rate] == Some(level)) {
+            let turn = rate.and_then(|rate| turns[*rate]);
+            if turn.is_some_and(|turn| turn.level == level) {
                 storages.entry(lost.element).or_default().push(unknown);
             }
         }

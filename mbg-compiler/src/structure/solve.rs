@@ -1,5 +1,6 @@
 //! Solving the blocks one after another.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::{System, Vanished};
@@ -65,6 +66,16 @@ fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
         .collect()
 }
 
+/// What is eliminated together with one independent rate.
+#[derive(Default)]
+struct Level {
+    rows: BTreeSet<usize>,
+    /// Columns, the deepest first.
+    columns: BTreeMap<Reverse<usize>, BTreeSet<usize>>,
+    /// The independent rate itself, which is eliminated by its inertia.
+    last: Option<usize>,
+}
+
 struct Solver<'a> {
     scalars: &'a Scalars,
     pool: &'a mut Pool,
@@ -89,7 +100,7 @@ impl Solver<'_> {
         }
         if unknowns
             .iter()
-            .any(|unknown| scalars.levels[*unknown].is_some())
+            .any(|unknown| scalars.turns[*unknown].is_some())
         {
             return self.by_levels(equations, unknowns);
         }
@@ -146,35 +157,24 @@ impl Solver<'_> {
         }
         let rates: BTreeSet<usize> = scalars.equations.iter().filter_map(|e| e.rate).collect();
         let mut system = System::new(rows, right);
-        let mut levels: BTreeMap<usize, (BTreeSet<usize>, BTreeSet<usize>)> = BTreeMap::new();
-        for (row, equation) in equations.iter().enumerate() {
-            if let Some(level) = scalars.equations[*equation].level {
-                levels.entry(level).or_default().0.insert(row);
+        // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
+        let admitted = |row: usize, column: usize| match scalars.equations[equations[row]].rate {
+            Some(rate) => rate == unknowns[column],
+            None => !rates.contains(&unknowns[column]),
+        };
+        for (number, level) in self.levels(equations, unknowns) {
+            let mut rows = level.rows;
+            let mut left = BTreeSet::new();
+            for (_, columns) in level.columns {
+                let rest = system.eliminate_constants(self.pool, rows, columns, &admitted)?;
+                rows = rest.0;
+                left.extend(rest.1);
             }
-        }
-        for (column, unknown) in unknowns.iter().enumerate() {
-            if let Some(level) = scalars.levels[*unknown] {
-                levels.entry(level).or_default().1.insert(column);
-            }
-        }
-        for (level, (rows, mut columns)) in levels {
-            // The independent rate itself comes last, by its inertia.
-            let rate = scalars.independent.get(&level).map(|rate| rate.unknown);
-            let rate = rate.and_then(|unknown| place.get(&unknown).copied());
-            let held = rate.filter(|rate| columns.remove(rate));
-            // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
-            let rate_of_row = |row: usize| scalars.equations[equations[row]].rate;
-            let admitted = |row: usize, column: usize| match rate_of_row(row) {
-                Some(rate) => rate == unknowns[column],
-                None => !rates.contains(&unknowns[column]),
-            };
-            let (rows, mut columns) =
-                system.eliminate_constants(self.pool, rows, columns, &admitted)?;
-            columns.extend(held);
+            left.extend(level.last);
             if let (Some(row), Some(column), 1, 1) =
-                (rows.first(), columns.first(), rows.len(), columns.len())
+                (rows.first(), left.first(), rows.len(), left.len())
                 && system.entry(*row, *column) != Expression::ZERO
-                && self.is_positive(level)
+                && self.is_positive(number)
             {
                 system.eliminate(self.pool, *row, *column)?;
             }
@@ -189,6 +189,30 @@ impl Solver<'_> {
         let values = system.back_substitute(self.pool, &columns, &values)?;
         self.store(unknowns, values);
         Ok(())
+    }
+
+    /// Rows and columns of a block by level.
+    fn levels(&self, equations: &[usize], unknowns: &[usize]) -> BTreeMap<usize, Level> {
+        let mut levels: BTreeMap<usize, Level> = BTreeMap::new();
+        for (row, equation) in equations.iter().enumerate() {
+            if let Some(level) = self.scalars.equations[*equation].level {
+                levels.entry(level).or_default().rows.insert(row);
+            }
+        }
+        for (column, unknown) in unknowns.iter().enumerate() {
+            let Some(turn) = self.scalars.turns[*unknown] else {
+                continue;
+            };
+            let level = levels.entry(turn.level).or_default();
+            match self.scalars.independent.get(&turn.level) {
+                Some(independent) if independent.unknown == *unknown => level.last = Some(column),
+                _ => {
+                    let deepest = level.columns.entry(Reverse(turn.depth)).or_default();
+                    deepest.insert(column);
+                }
+            }
+        }
+        levels
     }
 
     /// Whether what a level divides by is positive at every state: some storage with a positive definite law moves

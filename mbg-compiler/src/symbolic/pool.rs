@@ -423,8 +423,8 @@ impl Pool {
         }
     }
 
-    /// The sum with a common factor taken out, where what remains in the brackets is known already: that is how
-    /// `m cos² + m sin²` becomes `m`.
+    /// The sum with a common factor taken out, where what remains in the brackets is known already or is computed once
+    /// when a model is built: that is how `m cos² + m sin²` becomes `m`, and `a x y − b x y` becomes `(a − b) x y`.
     fn collect(&mut self, a: Expression, b: Expression) -> Option<Expression> {
         let left = self.factors(a);
         let mut right = self.factors(b);
@@ -449,9 +449,24 @@ impl Pool {
                 .iter()
                 .fold(start, |image, factor| image.times(pool.image(*factor)))
         };
-        let left = product(self, &rest, a.is_negative());
-        let right = product(self, &right, b.is_negative());
-        let mut whole = self.look_up(left.plus(right))?;
+        let image = product(self, &rest, a.is_negative());
+        let image = image.plus(product(self, &right, b.is_negative()));
+        let varies = |factor: &Expression| self.rate(*factor) == Rate::Varying;
+        let mut whole = match self.look_up(image) {
+            Some(whole) => whole,
+            None if rest.iter().chain(&right).any(varies) => return None,
+            None => {
+                let multiply = |pool: &mut Self, factors: Vec<Expression>, negative: bool| {
+                    let start = Expression::ONE.flipped(negative);
+                    factors
+                        .into_iter()
+                        .fold(start, |product, factor| pool.multiply(product, factor))
+                };
+                let left = multiply(self, rest, a.is_negative());
+                let right = multiply(self, right, b.is_negative());
+                self.add(left, right)
+            }
+        };
         for factor in common {
             whole = self.multiply(whole, factor);
         }

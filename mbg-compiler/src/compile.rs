@@ -350,15 +350,19 @@ fn powers(
     (supplied, dissipated)
 }
 
-fn jacobian(pool: &mut Pool, rates: &[Expression], symbols: &[Symbol]) -> Vec<Expression> {
-    let mut columns: Vec<Differentiator> = symbols
+/// `∂rates/∂by` by rows; only what a rate holds is differentiated.
+fn jacobian(pool: &mut Pool, rates: &[Expression], by: &[Symbol]) -> Vec<Expression> {
+    let mut columns: BTreeMap<Symbol, (usize, Differentiator)> = by
         .iter()
-        .map(|symbol| Differentiator::new(*symbol))
+        .enumerate()
+        .map(|(column, symbol)| (*symbol, (column, Differentiator::new(*symbol))))
         .collect();
-    let mut entries = Vec::with_capacity(rates.len() * symbols.len());
-    for rate in rates {
-        for column in &mut columns {
-            entries.push(column.derivative(pool, *rate));
+    let mut entries = vec![Expression::ZERO; rates.len() * by.len()];
+    for (row, rate) in rates.iter().enumerate() {
+        for symbol in symbols(pool, &[*rate]) {
+            if let Some((column, derivative)) = columns.get_mut(&symbol) {
+                entries[row * by.len() + *column] = derivative.derivative(pool, *rate);
+            }
         }
     }
     entries

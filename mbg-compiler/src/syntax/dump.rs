@@ -142,6 +142,13 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         }
         Statement::Gravity(gravity) => writeln!(text, "  gravity {}", expression(&gravity.value)),
         Statement::Loop(it) => write_loop(text, it),
+        Statement::Closure(it) => {
+            let displacement = it.displacement.as_ref().map_or_else(String::new, |value| {
+                format!(", displacement: {}", expression(value))
+            });
+            let (from, to) = (reference(&it.from), reference(&it.to));
+            writeln!(text, "  close {from} -> {to} by multipliers{displacement}")
+        }
         Statement::Causality(Causality::Uniform, _) => writeln!(text, "  causality uniform"),
         Statement::Causality(Causality::Componentwise, _) => {
             writeln!(text, "  causality componentwise")

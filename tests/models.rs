@@ -17,6 +17,7 @@ mod run;
 mod models {
     mod behaviour;
     mod energy;
+    mod loops;
     mod navigation;
     mod parameters;
 }

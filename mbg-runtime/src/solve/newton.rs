@@ -32,12 +32,15 @@ pub(super) fn newton<T: Real, const K: usize>(
     let mut scale = start.map(|z| seen(z.abs()));
     let (mut residual, mut jacobian) = evaluate(&point);
     let mut iterations = 1;
+    let mut earlier = f64::INFINITY;
     loop {
         let full = divided(jacobian, residual);
         scale.zip_apply(&point, |scale, z| *scale = scale.max(seen(z.abs())));
         let error = relative(&full, &scale);
         // The last correction is made after the decision, so that slopes of dual numbers are right as well.
-        let converged = error <= 16.0 * T::EPSILON;
+        let stalled = error < T::SINGULAR && error >= 0.5 * earlier;
+        let converged = error <= 4.0 * T::EPSILON || stalled;
+        earlier = error;
         if converged || iterations >= ITERATIONS {
             return Solved {
                 solution: point - full,

@@ -181,7 +181,7 @@ fn check<S, D, const N: usize, const M: usize, const P: usize>(
         (upper.0 - lower.0) / (upper.1 - lower.1)
     };
     // What a difference loses by rounding.
-    let rounding = 1e-15 * rate.amax() / 1e-9;
+    let rounding = 1e-15 * rate.amax().max(1e-3) / 1e-9;
     let near = |a: SVector<f64, N>, b: SVector<f64, N>, relative: f64, absolute: f64| {
         for row in 0..N {
             let scale = a[row].abs().max(b[row].abs());

@@ -181,7 +181,7 @@ fn check<S, D, const N: usize, const M: usize, const P: usize>(
         (upper.0 - lower.0) / (upper.1 - lower.1)
     };
     // What a difference loses by rounding.
-    let rounding = 1e-15 * rate.amax().max(1e-3) / 1e-9;
+    let rounding = 3e-14 * rate.amax().max(1e-3) / 1e-9;
     let near = |a: SVector<f64, N>, b: SVector<f64, N>, relative: f64, absolute: f64| {
         for row in 0..N {
             let scale = a[row].abs().max(b[row].abs());
@@ -192,12 +192,22 @@ fn check<S, D, const N: usize, const M: usize, const P: usize>(
     };
     for state in 0..N {
         let exact = by_state.column(state).into_owned();
-        near(exact, column(Some(state), None), 1e-10, 0.0);
+        near(
+            exact,
+            column(Some(state), None),
+            1e-10,
+            1e-14 * exact.amax() + 1e-20,
+        );
         near(exact, difference(Some(state), None, memory), 1e-5, rounding);
     }
     for input in 0..M {
         let exact = by_input.column(input).into_owned();
-        near(exact, column(None, Some(input)), 1e-10, 0.0);
+        near(
+            exact,
+            column(None, Some(input)),
+            1e-10,
+            1e-14 * exact.amax() + 1e-20,
+        );
         near(exact, difference(None, Some(input), memory), 1e-5, rounding);
     }
     let along = x.zip_map(&rate, |value, slope| Dual { value, slope });

@@ -19,7 +19,7 @@ fn classic() -> InsClassic {
 }
 
 /// A pseudo-random sequence in [-1, 1), the same every time.
-fn noise(seed: u64) -> impl FnMut() -> f64 {
+pub(super) fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
         state = state

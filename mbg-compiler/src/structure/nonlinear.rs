@@ -73,10 +73,14 @@ impl Solver<'_> {
             rows.push(row);
             right.push(rest.negated());
         }
+        let laws = (0..held.len())
+            .filter(|row| !held[*row].is_empty())
+            .collect();
         Ok(Tearing {
             unknowns,
             system: System::new(rows, right),
             held,
+            laws,
         })
     }
 
@@ -180,6 +184,8 @@ struct Tearing<'a> {
     system: System,
     /// Columns that coefficients and right side of each row hold as symbols.
     held: Vec<BTreeSet<usize>>,
+    /// Rows that hold symbols and are as they were written.
+    laws: BTreeSet<usize>,
 }
 
 impl Tearing<'_> {
@@ -194,12 +200,14 @@ impl Tearing<'_> {
             for (column, coefficient) in self.system.entries(*row) {
                 let enters = entering.contains(column);
                 let class = match (pool.rate(*coefficient), linear, enters) {
-                    (Rate::Constant, true, false) => 0,
-                    (Rate::Constant, true, true) if homogeneous => 1,
-                    (Rate::Constant, false, false) => 2,
+                    // A law gives its result more exactly than a balance of large numbers does.
+                    (Rate::Constant, false, false) if self.laws.contains(row) => 0,
+                    (Rate::Constant, true, false) => 1,
+                    (Rate::Constant, true, true) if homogeneous => 2,
+                    (Rate::Constant, false, false) => 3,
                     // A large iteration is worth an assumption about parameters.
-                    (Rate::Parameter, true, false) if large => 3,
-                    (Rate::Parameter, false, false) if large => 4,
+                    (Rate::Parameter, true, false) if large => 4,
+                    (Rate::Parameter, false, false) if large => 5,
                     _ => continue,
                 };
                 let candidate = (class, self.system.fill(*row, *column), *row, *column);
@@ -215,6 +223,7 @@ impl Tearing<'_> {
         let own = self.held[row].clone();
         for other in self.system.holders(column) {
             self.held[other].extend(&own);
+            self.laws.remove(&other);
         }
         if self.held.iter().any(|held| held.contains(&column)) {
             self.replace(pool, row, column)?;

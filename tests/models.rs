@@ -15,6 +15,7 @@ mod run;
 
 #[allow(clippy::unwrap_used)]
 mod models {
+    mod amplifier;
     mod behaviour;
     mod energy;
     mod loops;

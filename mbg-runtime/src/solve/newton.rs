@@ -24,6 +24,9 @@ pub(super) struct Solved<T, const K: usize> {
 }
 
 /// Makes the residuals zero, beginning at `start`.
+///
+/// It has converged when the next step is nothing but rounding, or when it is small and the residuals become no smaller
+/// by it. That step is made all the same, so that the slopes of dual numbers are right as well.
 pub(super) fn newton<T: Real, const K: usize>(
     start: SVector<T, K>,
     evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
@@ -32,34 +35,32 @@ pub(super) fn newton<T: Real, const K: usize>(
     let mut scale = start.map(|z| seen(z.abs()));
     let (mut residual, mut jacobian) = evaluate(&point);
     let mut iterations = 1;
-    let mut earlier = f64::INFINITY;
     loop {
-        let full = divided(jacobian, residual);
+        let step = divided(jacobian, residual);
         scale.zip_apply(&point, |scale, z| *scale = scale.max(seen(z.abs())));
-        let error = relative(&full, &scale);
-        // The last correction is made after the decision, so that slopes of dual numbers are right as well.
-        let stalled = error < T::SINGULAR && error >= 0.5 * earlier;
-        let converged = error <= 4.0 * T::EPSILON || stalled;
-        earlier = error;
-        if converged || iterations >= ITERATIONS {
-            return Solved {
-                solution: point - full,
-                residual: error,
-                iterations,
-                converged,
-            };
+        let relative = largest(&step, &scale);
+        let end = |converged: bool, iterations: usize| Solved {
+            solution: point - step,
+            residual: relative,
+            iterations,
+            converged,
+        };
+        if relative <= 4.0 * T::EPSILON || iterations >= ITERATIONS {
+            return end(relative <= 4.0 * T::EPSILON, iterations);
         }
         let before = norm(&residual, &jacobian);
         let mut factor = 1.0;
         loop {
-            let trial = point.zip_map(&full, |z, step| z - T::from_f64(factor) * step);
+            let trial = point.zip_map(&step, |z, step| z - T::from_f64(factor) * step);
             let (trial_residual, trial_jacobian) = evaluate(&trial);
             iterations += 1;
-            let after = norm(&trial_residual, &jacobian);
-            let better = after <= (1.0 - 0.1 * factor) * before || error < 1e-6;
-            if better || factor < SHORTEST || iterations >= ITERATIONS {
+            if norm(&trial_residual, &jacobian) <= (1.0 - 0.1 * factor) * before {
                 (point, residual, jacobian) = (trial, trial_residual, trial_jacobian);
                 break;
+            }
+            if relative < T::SINGULAR || factor < SHORTEST || iterations >= ITERATIONS {
+                let small = largest(&step, &scale.map(|scale| scale + 1.0)) < T::SINGULAR;
+                return end(small, iterations);
             }
             factor *= 0.5;
         }
@@ -71,7 +72,7 @@ fn seen<T: Real>(value: T) -> f64 {
 }
 
 /// Largest step in units of what the unknown has been; NaN when one is.
-fn relative<T: Real, const K: usize>(step: &SVector<T, K>, scale: &SVector<f64, K>) -> f64 {
+fn largest<T: Real, const K: usize>(step: &SVector<T, K>, scale: &SVector<f64, K>) -> f64 {
     let mut largest = 0.0;
     for (step, scale) in step.iter().zip(scale.iter()) {
         let error = seen(step.abs()) / (scale + f64::MIN_POSITIVE);

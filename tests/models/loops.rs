@@ -93,6 +93,31 @@ mbg! {
         output current = first.f;
     }
 
+    /// A resistor to the next node, and a diode to ground there.
+    component Rung(port from, port to) {
+        1 wire { R resistor { resistance: 10.0 } }
+        from -> wire;
+        wire -> to;
+        to -> R diode { flow: 1e-4 * (exp(e / 0.026) - 1.0) };
+    }
+
+    /// Four diodes in a ladder: too many unknowns for an adjugate.
+    pub(crate) model DiodeLadder {
+        input voltage: V;
+        0 start { Se supply { effort: voltage } }
+        0 first;
+        0 second;
+        0 third;
+        0 fourth;
+        1 choke { I coil { inertia: 0.01 } R load { resistance: 5.0 } }
+        a: Rung (start, first);
+        b: Rung (first, second);
+        c: Rung (second, third);
+        d: Rung (third, fourth);
+        fourth -> choke;
+        output last: V = fourth.e;
+    }
+
     /// A friction that has no force for a strong push backwards.
     pub(crate) model Parabola {
         input force: N;
@@ -388,6 +413,11 @@ fn jacobians_and_power_are_exact() {
             &SVector::zeros(),
             &next(30.0),
         );
+        check(
+            both!(DiodeLadder, DiodeLadderParameters),
+            &next(1e-4),
+            &next(3.0),
+        );
         let x = SVector::from([next(1e-4)[0], next(1e-4)[0], next(1e-4)[0]]);
         check(both!(TwoDiodes, TwoDiodesParameters), &x, &next(3.0));
     }
@@ -404,6 +434,7 @@ fn metadata_tells_how_each_loop_is_solved() {
         "Newton, 1 unknown, at most 100 iterations"
     );
     assert!(newton(2)(&TwoDiodes::<f64>::META.loops[0]));
+    assert!(newton(4)(&DiodeLadder::<f64>::META.loops[0]));
     assert!(newton(1)(&TurnedRound::<f64>::META.loops[0]));
     assert!(
         Modulated::<f64>::META

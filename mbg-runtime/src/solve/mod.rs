@@ -33,8 +33,9 @@ pub struct Outcome {
 /// Memory of a model with nonlinear algebraic loops: the unknowns of all of them, where the next solve begins, and how
 /// the last solve of each ended.
 ///
-/// A solve begins at zero when there is no earlier one, and again when it fails from where the last one ended. One that
-/// fails all the same gives NaN, so that no result can be mistaken for a solution, and leaves the start as it was.
+/// A solve begins where the last one ended, at first at zero. If it fails, it begins again at zero and then at one,
+/// where a law whose slope at zero is infinite has a finite one. A solve that fails all the same gives NaN, so that no
+/// result can be mistaken for a solution, and leaves the start as it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMemory<T, const LOOPS: usize, const UNKNOWNS: usize> {
     unknowns: [T; UNKNOWNS],
@@ -81,18 +82,20 @@ pub fn solve<T: Real, const K: usize, const LOOPS: usize, const UNKNOWNS: usize>
     first: usize,
     evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
 ) -> SVector<T, K> {
-    let zero = T::from_f64(0.0);
-    let mut start = SVector::<T, K>::from_element(zero);
+    let zero = SVector::<T, K>::from_element(T::from_f64(0.0));
+    let mut start = zero;
     let last = memory.unknowns.iter().skip(first);
     start.iter_mut().zip(last).for_each(|(z, last)| *z = *last);
-    let cold = start.iter().all(|z| *z == zero);
+    let one = zero.map(|_| T::from_f64(1.0));
     let mut solved = newton(start, &evaluate);
-    if !solved.converged && !cold {
-        let again = newton(SVector::from_element(zero), &evaluate);
-        solved = Solved {
-            iterations: solved.iterations + again.iterations,
-            ..again
-        };
+    for other in [zero, one] {
+        if !solved.converged && other != start {
+            let again = newton(other, &evaluate);
+            solved = Solved {
+                iterations: solved.iterations + again.iterations,
+                ..again
+            };
+        }
     }
     if let Some(outcome) = memory.outcomes.get_mut(number) {
         *outcome = Outcome {

@@ -36,7 +36,13 @@ pub(super) fn newton<T: Real, const K: usize>(
     let (mut residual, mut jacobian) = evaluate(&point);
     let mut iterations = 1;
     loop {
-        let step = divided(jacobian, residual);
+        let mut step = divided(jacobian, residual);
+        if residual.iter().all(|value| seen(*value) == 0.0)
+            && step.iter().any(|step| seen(*step).is_nan())
+        {
+            // At a solution where the Jacobian does not exist.
+            step = step.map(|_| T::from_f64(0.0));
+        }
         scale.zip_apply(&point, |scale, z| *scale = scale.max(seen(z.abs())));
         let relative = largest(&step, &scale);
         let end = |converged: bool, iterations: usize| Solved {

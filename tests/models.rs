@@ -9,6 +9,8 @@ mod ins;
 #[path = "../examples/ins/reference.rs"]
 #[allow(unreachable_pub)]
 mod reference;
+#[path = "references/mod.rs"]
+mod references;
 #[path = "../examples/ins/run.rs"]
 #[allow(unreachable_pub, dead_code)]
 mod run;

@@ -31,6 +31,8 @@ codes! {
     MISSING_DEFAULT = "MBG0214", "a parameter without a value";
     RECURSION = "MBG0215", "a component that contains itself";
     NOT_FINITE = "MBG0216", "a law that divides by zero or whose literal breaks an assumption";
+    WHOLE_NUMBER = "MBG0217", "a bound or an index that is no whole number known at compile time";
+    CYCLE = "MBG0218", "a value that is defined by itself";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";

@@ -92,6 +92,11 @@ const FIXTURES: &[(Code, &str)] = &[
         "model M { 1 a { I m { inertia: -1.0 } } }",
     ),
     (
+        codes::WHOLE_NUMBER,
+        beside_a_mass!("for k in 0..2.5 { 1 b; }"),
+    ),
+    (codes::CYCLE, beside_a_mass!("let x = y; let y = x;")),
+    (
         codes::STORAGE_DERIVATIVE,
         beside_a_mass!("a -> I n { inertia: 2.0 };"),
     ),

@@ -12,7 +12,7 @@ mod meta;
 mod polynomial;
 mod real;
 mod scalar;
-mod solve;
+pub mod solve;
 mod step;
 mod system;
 

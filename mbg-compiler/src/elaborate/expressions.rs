@@ -2,11 +2,12 @@
 
 use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
-use syn::{BinOp, Expr, Lit, Member, UnOp};
+use syn::{BinOp, Expr, Lit, Member, RangeLimits, UnOp};
 
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product, Rate};
+use crate::syntax::dump;
 
 /// What an expression stands for.
 #[derive(Clone, Debug)]
@@ -20,10 +21,22 @@ pub enum Value {
 /// A failed evaluation.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
+/// A name in a dotted path, with the index in brackets after it and where that stands.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// The name.
+    pub name: Ident,
+    /// `2` in `links[2]`.
+    pub index: Option<(i64, Span)>,
+}
+
 /// Where names get their meaning.
 pub trait Names {
-    /// The value of a dotted path such as `spring.q`; none if the name is unknown.
-    fn value(&mut self, pool: &mut Pool, path: &[Ident]) -> Option<Result<Value>>;
+    /// The value of a dotted path such as `spring.q` or `links[2].spring.q`; none if the name is unknown.
+    fn value(&mut self, pool: &mut Pool, path: &[Step]) -> Option<Result<Value>>;
+
+    /// The number that an expression stands for while the model is compiled.
+    fn whole(&self, expression: &Expr) -> Result<i64>;
 
     /// Every plain name.
     fn all(&self) -> Vec<&str>;
@@ -124,6 +137,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             Expr::Array(array) => self.array(array),
             Expr::If(choice) => self.choice(choice),
+            Expr::Block(block) => self.branch(&block.block),
             _ => fail(
                 expression.span(),
                 "expected a law: numbers, names, + - * /, functions, vectors or `if`",
@@ -133,13 +147,8 @@ impl<N: Names> Evaluator<'_, N> {
 
     /// The value, which must be a number.
     pub fn scalar(&mut self, expression: &Expr) -> Result<Expression> {
-        match self.evaluate(expression)? {
-            Value::Scalar(value) => Ok(value),
-            other => mismatch(
-                expression.span(),
-                format!("expected a number, found {}", other.shape()),
-            ),
-        }
+        let value = self.evaluate(expression)?;
+        number(&value, expression.span())
     }
 
     fn literal(&mut self, literal: &Lit) -> Result<Value> {
@@ -166,51 +175,30 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     fn path(&mut self, expression: &Expr) -> Result<Value> {
-        let mut members = Vec::new();
-        let mut rest = expression;
-        while let Expr::Field(field) = rest {
-            let Member::Named(name) = &field.member else {
-                return fail(
-                    field.member.span(),
-                    "expected a name after `.`; a component is `[0]` or `.x`",
-                );
+        let Some(steps) = self.steps(expression)? else {
+            return match expression {
+                Expr::Field(field) => {
+                    let name = member(field)?;
+                    let value = self.evaluate(&field.base)?;
+                    self.component(value, &name)
+                }
+                _ => fail(expression.span(), "expected a plain name"),
             };
-            members.push(name.clone());
-            rest = &field.base;
-        }
-        let Expr::Path(base) = rest else {
-            let Some(last) = members.first().cloned() else {
-                return fail(rest.span(), "expected a name");
-            };
-            let Expr::Field(field) = expression else {
-                return fail(rest.span(), "expected a name");
-            };
-            let value = self.evaluate(&field.base)?;
-            return self.component(value, &last);
         };
-        let Some(base) = base.path.get_ident() else {
-            return fail(rest.span(), "expected a plain name");
-        };
-        members.push(base.clone());
-        members.reverse();
-        if let Some(value) = self.names.value(self.pool, &members) {
+        if let Some(value) = self.names.value(self.pool, &steps) {
             return value;
         }
-        if let Some((last, front)) = members.split_last()
+        if let Some((Step { name, index: None }, front)) = steps.split_last()
             && !front.is_empty()
-            && component_index(last).is_some()
+            && component_index(name).is_some()
             && let Some(value) = self.names.value(self.pool, front)
         {
-            return self.component(value?, last);
+            return self.component(value?, name);
         }
-        let text = members
-            .iter()
-            .map(ToString::to_string)
-            .collect::<Vec<_>>()
-            .join(".");
-        let name = members
+        let name = steps
             .last()
-            .map_or_else(|| expression.span(), Ident::span);
+            .map_or_else(|| expression.span(), |step| step.name.span());
+        let text = dump::expression(expression);
         let report = error(
             codes::UNKNOWN_NAME,
             name,
@@ -220,6 +208,40 @@ impl<N: Names> Evaluator<'_, N> {
         Err(Box::new(report.did_you_mean(&text, &known)))
     }
 
+    /// The steps of a dotted path; none if it does not begin with a name.
+    fn steps(&self, expression: &Expr) -> Result<Option<Vec<Step>>> {
+        let mut steps = Vec::new();
+        let (mut rest, mut index) = (expression, None);
+        loop {
+            let name = match rest {
+                Expr::Index(indexed) if index.is_none() => {
+                    let number = self.names.whole(&indexed.index)?;
+                    index = Some((number, indexed.index.span()));
+                    rest = &indexed.expr;
+                    continue;
+                }
+                Expr::Field(field) => {
+                    rest = &field.base;
+                    member(field)?
+                }
+                Expr::Path(base) => match base.path.get_ident() {
+                    Some(name) => {
+                        let name = name.clone();
+                        steps.push(Step { name, index });
+                        steps.reverse();
+                        return Ok(Some(steps));
+                    }
+                    None => return Ok(None),
+                },
+                _ => return Ok(None),
+            };
+            steps.push(Step {
+                name,
+                index: index.take(),
+            });
+        }
+    }
+
     fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
         let Some(index) = component_index(name) else {
             return fail(
@@ -227,30 +249,48 @@ impl<N: Names> Evaluator<'_, N> {
                 format!("expected `x`, `y` or `z`, found `{name}`"),
             );
         };
-        self.pick(value, index, name.span())
+        self.pick(value, index as i64, name.span())
     }
 
-    fn pick(&mut self, value: Value, index: usize, span: Span) -> Result<Value> {
+    fn pick(&mut self, value: Value, index: i64, span: Span) -> Result<Value> {
         let shape = value.shape();
-        match value.entries(self.pool) {
-            Some(entries) if index < entries.len() => Ok(Value::Scalar(entries[index])),
-            _ => mismatch(span, format!("component {index} of {shape} does not exist")),
+        let entries = value.entries(self.pool).unwrap_or_default();
+        match usize::try_from(index)
+            .ok()
+            .and_then(|index| entries.get(index))
+        {
+            Some(entry) => Ok(Value::Scalar(*entry)),
+            None => mismatch(span, format!("component {index} of {shape} does not exist")),
         }
     }
 
     fn index(&mut self, index: &syn::ExprIndex) -> Result<Value> {
         let value = self.evaluate(&index.expr)?;
-        let Expr::Lit(syn::ExprLit {
-            lit: Lit::Int(number),
-            ..
-        }) = &*index.index
+        let span = index.index.span();
+        let Expr::Range(range) = &*index.index else {
+            let number = self.names.whole(&index.index)?;
+            return self.pick(value, number, span);
+        };
+        let (Some(start), Some(end), RangeLimits::HalfOpen(_)) =
+            (&range.start, &range.end, &range.limits)
         else {
-            return fail(index.index.span(), "expected the number of a component");
+            return fail(
+                span,
+                "expected a range such as `1..3`, which excludes its end",
+            );
         };
-        let Ok(number) = number.base10_parse() else {
-            return fail(index.index.span(), "expected the number of a component");
-        };
-        self.pick(value, number, index.index.span())
+        let (start, end) = (self.names.whole(start)?, self.names.whole(end)?);
+        let shape = value.shape();
+        let entries = value.entries(self.pool).unwrap_or_default();
+        match (usize::try_from(start), usize::try_from(end)) {
+            (Ok(first), Ok(last)) if first < last && last <= entries.len() => {
+                Ok(Value::column(entries[first..last].to_vec()))
+            }
+            _ => mismatch(
+                span,
+                format!("components {start}..{end} of {shape} do not exist"),
+            ),
+        }
     }
 
     fn binary(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
@@ -262,6 +302,11 @@ impl<N: Names> Evaluator<'_, N> {
                 "`^` is not a power; in Rust it is the exclusive or",
             );
             return Err(Box::new(report.help("write `powi(x, 2)`")));
+        }
+        if matches!(binary.op, BinOp::Rem(_)) {
+            let whole = Expr::Binary(binary.clone());
+            let number = self.names.whole(&whole)?;
+            return Ok(Value::Scalar(self.pool.integer(number)));
         }
         if !matches!(
             binary.op,
@@ -434,9 +479,31 @@ impl<N: Names> Evaluator<'_, N> {
                     &entries?,
                 )))))
             }
+            "skew" => {
+                count(1)?;
+                let [x, y, z] = self.triple(&arguments[0])?;
+                let zero = Expression::ZERO;
+                let rows = [
+                    zero,
+                    z.negated(),
+                    y,
+                    z,
+                    zero,
+                    x.negated(),
+                    y.negated(),
+                    x,
+                    zero,
+                ];
+                let matrix = Matrix::new(3, 3, rows.to_vec());
+                Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+            }
             "jacobian_xyz" => {
                 count(1)?;
-                self.jacobian(&arguments[0])
+                let factor = Factor::GimbalJacobian {
+                    angles: self.triple(&arguments[0])?,
+                    transposed: false,
+                };
+                Ok(Value::Matrix(Product::of(factor)))
             }
             _ => self.elementary(name, arguments),
         }
@@ -454,7 +521,7 @@ impl<N: Names> Evaluator<'_, N> {
             );
             return Err(Box::new(report.help(
                 "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
-                 diag, transpose, rot_x, rot_y, rot_z, jacobian_xyz",
+                 diag, transpose, skew, rot_x, rot_y, rot_z, jacobian_xyz",
             )));
         };
         if arguments.len() != function.arity() {
@@ -491,17 +558,14 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    fn jacobian(&mut self, argument: &Expr) -> Result<Value> {
+    fn triple(&mut self, argument: &Expr) -> Result<[Expression; 3]> {
         let value = self.evaluate(argument)?;
         let shape = value.shape();
         match value.entries(self.pool).as_deref() {
-            Some(&[a, b, c]) => Ok(Value::Matrix(Product::of(Factor::GimbalJacobian {
-                angles: [a, b, c],
-                transposed: false,
-            }))),
+            Some(&[a, b, c]) => Ok([a, b, c]),
             _ => mismatch(
                 argument.span(),
-                format!("expected a vector of 3 angles, found {shape}"),
+                format!("expected a vector of 3, found {shape}"),
             ),
         }
     }
@@ -534,20 +598,25 @@ impl<N: Names> Evaluator<'_, N> {
                 "expected a comparison with < <= > or >=",
             );
         };
-        let (a, b) = (self.scalar(&test.left)?, self.scalar(&test.right)?);
-        let yes = self.block(&choice.then_branch)?;
-        let no = match &choice.else_branch {
-            Some((_, branch)) => match &**branch {
-                Expr::Block(block) => self.block(&block.block)?,
-                other => self.scalar(other)?,
-            },
-            None => {
-                return fail(
-                    choice.span(),
-                    "expected an `else`: both branches are evaluated and one is selected",
-                );
-            }
+        let Some((_, otherwise)) = &choice.else_branch else {
+            return fail(
+                choice.span(),
+                "expected an `else`: an `if` has a value on both sides",
+            );
         };
+        if let Some(chosen) = self.decided(test) {
+            return if chosen {
+                self.branch(&choice.then_branch)
+            } else {
+                self.evaluate(otherwise)
+            };
+        }
+        let (a, b) = (self.scalar(&test.left)?, self.scalar(&test.right)?);
+        let yes = number(
+            &self.branch(&choice.then_branch)?,
+            choice.then_branch.span(),
+        )?;
+        let no = self.scalar(otherwise)?;
         let arguments = match test.op {
             BinOp::Lt(_) => [a, b, yes, no],
             BinOp::Gt(_) => [b, a, yes, no],
@@ -563,11 +632,45 @@ impl<N: Names> Evaluator<'_, N> {
         ))
     }
 
-    fn block(&mut self, block: &syn::Block) -> Result<Expression> {
+    /// A comparison of whole numbers chooses while the model is compiled: the other branch need not even exist.
+    fn decided(&self, test: &syn::ExprBinary) -> Option<bool> {
+        let left = self.names.whole(&test.left).ok()?;
+        let right = self.names.whole(&test.right).ok()?;
+        match test.op {
+            BinOp::Lt(_) => Some(left < right),
+            BinOp::Gt(_) => Some(left > right),
+            BinOp::Le(_) => Some(left <= right),
+            BinOp::Ge(_) => Some(left >= right),
+            BinOp::Eq(_) => Some(left == right),
+            BinOp::Ne(_) => Some(left != right),
+            _ => None,
+        }
+    }
+
+    fn branch(&mut self, block: &syn::Block) -> Result<Value> {
         match block.stmts.as_slice() {
-            [syn::Stmt::Expr(expression, None)] => self.scalar(expression),
+            [syn::Stmt::Expr(expression, None)] => self.evaluate(expression),
             _ => fail(block.span(), "expected one expression"),
         }
+    }
+}
+
+/// The value, which must be a number.
+fn number(value: &Value, span: Span) -> Result<Expression> {
+    match value {
+        Value::Scalar(value) => Ok(*value),
+        other => mismatch(span, format!("expected a number, found {}", other.shape())),
+    }
+}
+
+/// The name after a dot.
+fn member(field: &syn::ExprField) -> Result<Ident> {
+    match &field.member {
+        Member::Named(name) => Ok(name.clone()),
+        Member::Unnamed(_) => fail(
+            field.member.span(),
+            "expected a name after `.`; a component is `[0]` or `.x`",
+        ),
     }
 }
 

@@ -10,7 +10,7 @@ use super::model::{Elaborated, Output, State, StateRate};
 use super::scope::{Entity, Lookup, Own};
 use super::{Builder, Pending, component_names};
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
+use crate::diagnostics::{error, listing};
 use crate::graph::{ElementId, Law};
 use crate::symbolic::{Expression, Pool, Symbol};
 use crate::syntax::ast::{self, Statement};
@@ -28,7 +28,10 @@ impl<'a> Builder<'a> {
                 .report(report.help(format!("write `param {} = 1.0;`", parameter.name)));
             return 0.0;
         };
-        match self.evaluate(0, expression) {
+        let value = self.evaluate(0, expression);
+        // A default is a number and waits for no other value.
+        self.missing = None;
+        match value {
             Ok(Value::Scalar(value)) if self.pool.constant_value(value).is_some() => {
                 self.pool.constant_value(value).unwrap_or(0.0)
             }
@@ -58,13 +61,14 @@ impl<'a> Builder<'a> {
             let start = self.states.len();
             let unit = unit.map_or("", |unit| unit.text.as_str());
             let path = self.path(scope, name);
+            let span = self.place(scope, name.span());
             for variable in component_names(&path, dimension, unit) {
                 let rate = StateRate::Expression(Expression::ZERO);
                 self.states.push(State {
                     variable,
                     initial: Expression::ZERO,
                     rate,
-                    span: name.span(),
+                    span,
                 });
             }
             let states = start..self.states.len();
@@ -89,53 +93,57 @@ impl<'a> Builder<'a> {
     /// Reads everything that was put off.
     pub(super) fn resolve_laws(&mut self) {
         for pending in std::mem::take(&mut self.pending) {
-            let result = match pending {
-                Pending::Argument {
-                    caller,
-                    scope,
-                    name,
-                    value,
-                } => self.argument(caller, scope, name, value),
-                Pending::Law { scope, element, id } => self.law(scope, element, id),
-                Pending::Gyroscopic { storage, id } => {
-                    let states = self.ports[storage.0].0.clone();
-                    let momentum = states
-                        .map(|state| self.pool.symbol(Symbol::State(state)))
-                        .collect();
-                    self.graph.elements[id.0].law = Law::EulerJunction(momentum);
-                    Ok(())
-                }
-                Pending::Integral {
-                    scope,
-                    integral,
-                    states,
-                } => self.integral(scope, integral, states),
-                Pending::Attitude {
-                    scope,
-                    attitude,
-                    states,
-                } => self.attitude(scope, attitude, states),
-                Pending::Output { scope, output } => self.output(scope, output),
-            };
-            if let Err(report) = result {
-                self.diagnostics.report(*report);
+            if let Pending::Law { scope, element, .. } = pending {
+                self.check_words(scope, element);
             }
+            self.settle(pending.scope(), |builder| {
+                builder.resolve_law(pending.clone())
+            });
+        }
+        self.define_unread();
+    }
+
+    fn resolve_law(&mut self, pending: Pending<'a>) -> Result<()> {
+        match pending {
+            Pending::Law { scope, element, id } => self.law(scope, element, id),
+            Pending::Gyroscopic { storage, id, .. } => {
+                let states = self.ports[storage.0].0.clone();
+                let momentum = states
+                    .map(|state| self.pool.symbol(Symbol::State(state)))
+                    .collect();
+                self.graph.elements[id.0].law = Law::EulerJunction(momentum);
+                Ok(())
+            }
+            Pending::Integral {
+                scope,
+                integral,
+                states,
+            } => self.integral(scope, integral, states),
+            Pending::Attitude {
+                scope,
+                attitude,
+                states,
+            } => self.attitude(scope, attitude, states),
+            Pending::Output { scope, output } => self.output(scope, output),
         }
     }
 
-    fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_>) {
+    fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_, 'a>) {
         let lookup = Lookup {
             scopes: &self.scopes,
             scope,
             graph: &self.graph,
             ports: &self.ports,
+            definitions: &self.definitions,
+            missing: &mut self.missing,
             signals: &mut self.signals,
             own: None,
         };
         (self.pool, lookup)
     }
 
-    fn evaluate(&mut self, scope: usize, expression: &syn::Expr) -> Result<Value> {
+    /// The value of an expression with names from a scope.
+    pub(super) fn evaluate(&mut self, scope: usize, expression: &syn::Expr) -> Result<Value> {
         let (pool, mut lookup) = self.lookup(scope);
         Evaluator {
             pool,
@@ -152,10 +160,20 @@ impl<'a> Builder<'a> {
         name: &Ident,
     ) -> Result<Vec<Expression>> {
         let value = self.evaluate(scope, expression)?;
-        let shape = value.shape();
+        self.entries(&value, dimension, name)
+    }
+
+    /// The entries of a vector of the given dimension.
+    pub(super) fn entries(
+        &mut self,
+        value: &Value,
+        dimension: usize,
+        name: &Ident,
+    ) -> Result<Vec<Expression>> {
         match value.entries(self.pool) {
             Some(entries) if entries.len() == dimension => Ok(entries),
             _ => {
+                let shape = value.shape();
                 let message = format!("`{name}` has dimension {dimension}, found {shape}");
                 Err(Box::new(error(
                     codes::WRONG_DIMENSION,
@@ -166,22 +184,25 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn argument(
-        &mut self,
-        caller: usize,
-        scope: usize,
-        name: &Ident,
-        value: &syn::Expr,
-    ) -> Result<()> {
-        let value = self.evaluate(caller, value)?;
-        self.scopes[scope]
-            .names
-            .insert(name.to_string(), Entity::Value(Some(value)));
-        Ok(())
+    /// Reports the words that an element does not know.
+    pub(super) fn check_words(&mut self, scope: usize, element: &ast::Element) {
+        let words = [law_words(element.kind), other_words(element.kind)].concat();
+        for field in &element.fields {
+            if words.iter().any(|word| field.name == word) {
+                continue;
+            }
+            let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
+            let known = words.iter().map(|word| (*word).to_owned());
+            let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
+            self.tell(
+                scope,
+                report.help(format!("its words are {}", listing(known))),
+            );
+        }
     }
 
     fn law(&mut self, scope: usize, element: &ast::Element, id: ElementId) -> Result<()> {
-        let field = law_field(element, self.diagnostics)?;
+        let field = law_field(element)?;
         let (states, dimension) = self.ports[id.0].clone();
         let own = Own {
             element: id,
@@ -293,6 +314,7 @@ impl<'a> Builder<'a> {
                 message,
             )));
         }
+        let span = self.place(scope, output.name.span());
         self.outputs.extend(
             variables
                 .into_iter()
@@ -300,7 +322,7 @@ impl<'a> Builder<'a> {
                 .map(|(variable, value)| Output {
                     variable,
                     value,
-                    span: output.name.span(),
+                    span,
                 }),
         );
         Ok(())
@@ -324,28 +346,8 @@ impl<'a> Builder<'a> {
 }
 
 /// The one field that carries the law.
-fn law_field<'e>(
-    element: &'e ast::Element,
-    diagnostics: &mut Diagnostics,
-) -> Result<&'e ast::Field> {
+fn law_field(element: &ast::Element) -> Result<&ast::Field> {
     let words = law_words(element.kind);
-    let others = other_words(element.kind);
-    for field in &element.fields {
-        let word = field.name.to_string();
-        if !words.contains(&word.as_str()) && !others.contains(&word.as_str()) {
-            let message = format!("`{:?}` does not know `{word}`", element.kind);
-            let known: Vec<String> = words
-                .iter()
-                .chain(others)
-                .map(|word| (*word).to_owned())
-                .collect();
-            let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
-            diagnostics.report(report.help(format!(
-                "its words are {}",
-                crate::diagnostics::listing(known)
-            )));
-        }
-    }
     let mut laws = element
         .fields
         .iter()
@@ -376,14 +378,16 @@ fn law_field<'e>(
     }
 }
 
-/// Names of components, for the driver.
+/// The components by name, those of the library included, for the driver.
 pub fn component_table(source: &ast::Source) -> BTreeMap<String, &ast::Component> {
     source
         .items
         .iter()
         .filter_map(|item| match item {
-            ast::Item::Component(component) => Some((component.name.to_string(), component)),
+            ast::Item::Component(component) => Some(component),
             ast::Item::Model(_) => None,
         })
+        .chain(&source.library)
+        .map(|component| (component.name.to_string(), component))
         .collect()
 }

@@ -47,14 +47,14 @@ pub(super) fn other_words(kind: ElementKind) -> &'static [&'static str] {
 }
 
 /// Reads one element's law.
-pub(super) struct Reader<'a, 'b> {
+pub(super) struct Reader<'a, 'b, 'm> {
     pub(super) pool: &'a mut Pool,
-    pub(super) lookup: &'a mut Lookup<'b>,
+    pub(super) lookup: &'a mut Lookup<'b, 'm>,
     pub(super) element: &'a Element,
     pub(super) own: Own,
 }
 
-impl Reader<'_, '_> {
+impl Reader<'_, '_, '_> {
     /// The law, or what is wrong with it. The caller has checked that exactly one law word stands there.
     pub(super) fn read(&mut self, field: &Field) -> Result<Reading> {
         let Some(value) = &field.value else {

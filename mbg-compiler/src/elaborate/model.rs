@@ -128,7 +128,7 @@ pub enum Place {
 pub type Signal = (Quantity, Place, usize);
 
 /// Numbered signals, each once.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Signals {
     list: Vec<Signal>,
     numbers: BTreeMap<Signal, usize>,

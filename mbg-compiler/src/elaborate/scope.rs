@@ -3,21 +3,29 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
+use syn::Expr;
 
-use super::expressions::{Names, Result, Value, fail};
-use super::is_two_port;
+use super::bonds::is_two_port;
+use super::definitions::{Definitions, Missing, Progress};
+use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Place, Quantity, Signals};
+use super::wholes::Wholes;
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Pool, Symbol};
 
+/// The acceleration of free fall: a name of the model that every component sees.
+pub(super) const GRAVITY: &str = "gravity";
+
 /// What a name stands for.
 #[derive(Clone, Debug)]
 pub(super) enum Entity {
-    /// A value, once it is known.
-    Value(Option<Value>),
+    /// A value.
+    Value(Value),
+    /// A value that is worked out when it is first needed.
+    Definition(usize),
     /// Inputs by number.
     Input(Range<usize>),
     /// Components of a junction.
@@ -28,19 +36,131 @@ pub(super) enum Entity {
     States(Range<usize>),
     /// A component in use: its scope.
     Instance(usize),
+    /// A loop with a label: the first value of its variable, and the scopes of its iterations.
+    Loop(i64, Vec<usize>),
     /// Declared, but broken or without a value.
     Opaque,
 }
 
-/// The names of a model or of one component in use.
-#[derive(Debug)]
+/// The names of a model, of one component in use, or of one iteration of a loop.
+#[derive(Debug, Default)]
 pub(super) struct Scope {
     /// `arm.` inside the instance `arm`.
     pub(super) prefix: String,
     /// Whether `#[derivative]` covers everything inside.
     pub(super) derivative: bool,
+    /// The scope whose names an iteration of a loop sees as well.
+    pub(super) around: Option<usize>,
+    /// Inside a component of the library: its name, and the instance in the user's text.
+    pub(super) library: Option<(String, Span)>,
+    /// Names that stand for whole numbers.
+    pub(super) wholes: Wholes,
     /// Names.
     pub(super) names: BTreeMap<String, Entity>,
+    /// Loops in order of declaration: their paths, and the scopes of their iterations.
+    pub(super) loops: Vec<(String, Vec<usize>)>,
+}
+
+/// All scopes of a model; the first is its own.
+#[derive(Debug, Default)]
+pub(super) struct Scopes(pub(super) Vec<Scope>);
+
+impl std::ops::Index<usize> for Scopes {
+    type Output = Scope;
+
+    fn index(&self, scope: usize) -> &Scope {
+        &self.0[scope]
+    }
+}
+
+impl std::ops::IndexMut<usize> for Scopes {
+    fn index_mut(&mut self, scope: usize) -> &mut Scope {
+        &mut self.0[scope]
+    }
+}
+
+impl Scopes {
+    /// Adds a scope.
+    pub(super) fn add(&mut self, scope: Scope) -> usize {
+        self.0.push(scope);
+        self.0.len() - 1
+    }
+
+    /// What a plain name stands for in a scope.
+    pub(super) fn find(&self, scope: usize, name: &str) -> Option<&Entity> {
+        if name == GRAVITY {
+            return self.0[0].names.get(name);
+        }
+        let mut current = Some(scope);
+        while let Some(scope) = current {
+            if let Some(entity) = self.0[scope].names.get(name) {
+                return Some(entity);
+            }
+            current = self.0[scope].around;
+        }
+        None
+    }
+
+    /// Every plain name that a scope sees.
+    pub(super) fn visible(&self, scope: usize) -> Vec<&str> {
+        let mut names = Vec::new();
+        let mut current = Some(scope);
+        while let Some(scope) = current {
+            names.extend(self.0[scope].names.keys().map(String::as_str));
+            current = self.0[scope].around;
+        }
+        names
+    }
+
+    /// Follows instances and iterations as far as the path leads through them: what is found there, and the number of
+    /// steps that led to it. A selection on the last of these steps is left to the caller.
+    pub(super) fn follow(&self, scope: usize, path: &[Step]) -> Result<Option<(&Entity, usize)>> {
+        let Some(mut entity) = path
+            .first()
+            .and_then(|step| self.find(scope, &step.name.to_string()))
+        else {
+            return Ok(None);
+        };
+        for (position, pair) in path.windows(2).enumerate() {
+            let inner = match (entity, &pair[0].index) {
+                (Entity::Instance(inner), None) => *inner,
+                (Entity::Loop(start, scopes), index) => iteration(&pair[0], *start, scopes, index)?,
+                _ => return Ok(Some((entity, position + 1))),
+            };
+            let Some(next) = self.0[inner].names.get(&pair[1].name.to_string()) else {
+                return Ok(None);
+            };
+            entity = next;
+        }
+        Ok(Some((entity, path.len())))
+    }
+}
+
+/// The scope of one iteration.
+fn iteration(
+    step: &Step,
+    start: i64,
+    scopes: &[usize],
+    index: &Option<(i64, Span)>,
+) -> Result<usize> {
+    let name = &step.name;
+    let Some((index, span)) = index else {
+        let message =
+            format!("`{name}` is a loop; write `{name}[{start}]` for its first iteration");
+        return Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)));
+    };
+    let place = index
+        .checked_sub(start)
+        .and_then(|place| usize::try_from(place).ok());
+    match place.and_then(|place| scopes.get(place)) {
+        Some(scope) => Ok(*scope),
+        None => {
+            let end = start.saturating_add_unsigned(scopes.len() as u64);
+            let message =
+                format!("`{name}` runs over {start}..{end}, there is no `{name}[{index}]`");
+            Err(Box::new(error(codes::UNKNOWN_NAME, *span, message)))
+        }
+    }
 }
 
 /// The variables of the element whose law is being read.
@@ -54,60 +174,84 @@ pub(super) struct Own {
 }
 
 /// Names as one law sees them.
-pub(super) struct Lookup<'a> {
-    pub(super) scopes: &'a [Scope],
+pub(super) struct Lookup<'a, 'm> {
+    pub(super) scopes: &'a Scopes,
     pub(super) scope: usize,
     pub(super) graph: &'a BondGraph,
     /// States and dimension of one-ports by element.
     pub(super) ports: &'a [(Range<usize>, usize)],
+    pub(super) definitions: &'a Definitions<'m>,
+    /// Set where the law cannot be read, at least not yet.
+    pub(super) missing: &'a mut Option<Missing>,
     pub(super) signals: &'a mut Signals,
     pub(super) own: Option<Own>,
 }
 
-impl Names for Lookup<'_> {
-    fn value(&mut self, pool: &mut Pool, path: &[Ident]) -> Option<Result<Value>> {
-        if let [only] = path {
-            if only == "t" {
+impl Names for Lookup<'_, '_> {
+    fn value(&mut self, pool: &mut Pool, path: &[Step]) -> Option<Result<Value>> {
+        if let [Step { name, index: None }] = path {
+            // An element may bear the name of time, since it has no value that could be meant.
+            let taken = matches!(
+                self.scopes.find(self.scope, "t"),
+                Some(
+                    Entity::Value(_) | Entity::Definition(_) | Entity::Input(_) | Entity::States(_)
+                )
+            );
+            if name == "t" && !taken {
                 return Some(Ok(Value::Scalar(pool.symbol(Symbol::Time))));
             }
             if let Some(own) = self.own.clone()
-                && ["q", "p", "e", "f"].iter().any(|word| only == word)
+                && ["q", "p", "e", "f"].iter().any(|word| name == word)
             {
-                return Some(self.own_variable(pool, &own, only));
+                return Some(self.own_variable(pool, &own, name));
             }
         }
-        let mut scope = self.scope;
-        for (position, name) in path.iter().enumerate() {
-            let entity = self.scopes[scope].names.get(&name.to_string())?;
-            let rest = &path[position + 1..];
-            match (entity, rest) {
-                (Entity::Instance(inner), [_, ..]) => scope = *inner,
-                (Entity::Element(id), [variable]) => {
-                    return self.element_variable(pool, *id, variable);
-                }
-                (Entity::Junction(id, range), [variable]) => {
-                    return self.junction_variable(pool, *id, range.clone(), variable);
-                }
-                (entity, []) => return Some(self.plain(pool, entity, name)),
-                _ => return None,
-            }
+        let (entity, steps) = match self.scopes.follow(self.scope, path) {
+            Ok(found) => found?,
+            Err(report) => return Some(Err(report)),
+        };
+        let (last, rest) = (&path[steps - 1], &path[steps..]);
+        // Whatever has an index here is no loop.
+        if path[steps - 1..].iter().any(|step| step.index.is_some()) {
+            return None;
         }
-        None
+        match (entity, rest) {
+            (Entity::Opaque, _) => {
+                *self.missing = Some(Missing::Broken);
+                Some(fail(last.name.span(), "this is broken"))
+            }
+            (Entity::Element(id), [variable]) => self.element_variable(pool, *id, &variable.name),
+            (Entity::Junction(id, range), [variable]) => {
+                self.junction_variable(pool, *id, range.clone(), &variable.name)
+            }
+            (entity, []) => Some(self.plain(pool, entity, &last.name)),
+            _ => None,
+        }
+    }
+
+    fn whole(&self, expression: &Expr) -> Result<i64> {
+        self.scopes[self.scope].wholes.evaluate(expression)
     }
 
     fn all(&self) -> Vec<&str> {
-        let names = &self.scopes[self.scope].names;
-        names.keys().map(String::as_str).collect()
+        self.scopes.visible(self.scope)
     }
 }
 
 /// Why `e` and `f` of a two-port mean nothing.
 const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
 
-impl Lookup<'_> {
-    fn plain(&self, pool: &mut Pool, entity: &Entity, name: &Ident) -> Result<Value> {
+impl Lookup<'_, '_> {
+    fn plain(&mut self, pool: &mut Pool, entity: &Entity, name: &Ident) -> Result<Value> {
         match entity {
-            Entity::Value(Some(value)) => Ok(value.clone()),
+            Entity::Value(value) => Ok(value.clone()),
+            Entity::Definition(id) => match &self.definitions[*id].progress {
+                Progress::Known(value) => Ok(value.clone()),
+                _ => {
+                    *self.missing = Some(Missing::Definition(*id));
+                    fail(name.span(), format!("`{name}` has no value here"))
+                }
+            },
             Entity::Input(range) => Ok(symbols(pool, range.clone().map(Symbol::Input))),
             Entity::States(range) => Ok(symbols(pool, range.clone().map(Symbol::State))),
             Entity::Junction(..) => fail(

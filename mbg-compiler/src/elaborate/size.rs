@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use proc_macro2::Ident;
+
+use super::wholes::Wholes;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
-use crate::syntax::ast::{Component, Element, Model, Statement};
+use crate::syntax::ast::{Component, Element, Instance, Loop, Model, Statement};
 
-/// The most vector bonds that a model may have.
+/// The most vector bonds that a model may have, and the most instances and iterations of loops.
 pub const LIMIT: usize = 4096;
 
 /// Reports a model that is too large or a component that contains itself; false if it did.
@@ -19,64 +22,145 @@ pub(super) fn check(
         components,
         known: BTreeMap::new(),
         open: Vec::new(),
+        probing: false,
     };
-    match counter.count(&model.statements) {
-        Ok(count) if count <= LIMIT => true,
-        Ok(count) => {
-            let message = format!(
-                "`{}` has {count} vector bonds, the limit is {LIMIT}",
-                model.name
-            );
-            let report = error(codes::TOO_LARGE, model.name.span(), message);
-            diagnostics.report(
-                report.help("split the scene into models that exchange inputs and outputs"),
-            );
-            false
-        }
-        Err(name) => {
+    let wholes = Wholes::of_model(&model.statements);
+    let found = match counter.count(&model.statements, &wholes) {
+        Ok(size) if size.bonds <= LIMIT => return true,
+        Ok(size) => format!("{} vector bonds", size.bonds),
+        Err(Stop::Scopes) => "too many instances and iterations of loops".to_owned(),
+        // Elaboration tells which bound of a loop is no whole number.
+        Err(Stop::Unknown) => return true,
+        Err(Stop::Recursion(name)) => {
             let message = format!("component `{name}` contains itself");
             diagnostics.error(codes::RECURSION, name.span(), message);
-            false
+            return false;
         }
+    };
+    let message = format!("`{}` has {found}, the limit is {LIMIT}", model.name);
+    let report = error(codes::TOO_LARGE, model.name.span(), message);
+    diagnostics.report(report.help("split the scene into models that exchange inputs and outputs"));
+    false
+}
+
+/// What there is to build.
+#[derive(Clone, Copy, Default)]
+struct Size {
+    /// Vector bonds.
+    bonds: usize,
+    /// Instances and iterations of loops.
+    scopes: usize,
+}
+
+impl Size {
+    fn add(&mut self, other: Self, times: usize) -> Result<(), Stop> {
+        let grown = |own: usize, other: usize| own.saturating_add(other.saturating_mul(times));
+        self.bonds = grown(self.bonds, other.bonds);
+        self.scopes = grown(self.scopes, other.scopes);
+        if self.scopes > LIMIT {
+            return Err(Stop::Scopes);
+        }
+        Ok(())
     }
+}
+
+/// Why counting ended early.
+enum Stop {
+    /// Too many instances and iterations to count on.
+    Scopes,
+    /// A bound of a loop is not known.
+    Unknown,
+    /// A component contains itself.
+    Recursion(Ident),
 }
 
 struct Counter<'a> {
     components: &'a BTreeMap<String, &'a Component>,
-    known: BTreeMap<String, usize>,
+    /// Sizes of components by the whole numbers that they are given, and by whether that was a probe.
+    known: BTreeMap<(bool, String, Wholes), Size>,
     open: Vec<String>,
+    /// Whether an unknown bound ends the count; otherwise its loop counts for nothing, since it will not be built.
+    probing: bool,
 }
 
 impl Counter<'_> {
-    fn count(&mut self, statements: &[Statement]) -> Result<usize, proc_macro2::Ident> {
-        let mut total = 0usize;
+    fn count(&mut self, statements: &[Statement], wholes: &Wholes) -> Result<Size, Stop> {
+        let mut total = Size::default();
         for statement in statements {
-            total = total.saturating_add(match statement {
+            let bonds = match statement {
                 Statement::Junction(junction) => junction.elements.iter().map(bonds).sum(),
                 Statement::Chain(chain) => chain.arrows.len(),
-                Statement::Instance(instance) => self.instance(&instance.component)?,
+                Statement::Instance(instance) => {
+                    total.add(self.instance(instance, wholes)?, 1)?;
+                    0
+                }
+                Statement::Loop(repeated) => {
+                    total.add(self.repeated(repeated, wholes)?, 1)?;
+                    0
+                }
                 _ => 0,
-            });
+            };
+            total.add(Size { bonds, scopes: 0 }, 1)?;
         }
         Ok(total)
     }
 
-    fn instance(&mut self, name: &proc_macro2::Ident) -> Result<usize, proc_macro2::Ident> {
-        let text = name.to_string();
-        if let Some(known) = self.known.get(&text) {
+    fn instance(&mut self, instance: &Instance, wholes: &Wholes) -> Result<Size, Stop> {
+        let name = instance.component.to_string();
+        if self.open.contains(&name) {
+            return Err(Stop::Recursion(instance.component.clone()));
+        }
+        let Some(component) = self.components.get(&name) else {
+            return Ok(Size::default());
+        };
+        let inner = wholes.of_instance(instance, component);
+        let key = (self.probing, name.clone(), inner.clone());
+        if let Some(known) = self.known.get(&key) {
             return Ok(*known);
         }
-        if self.open.contains(&text) {
-            return Err(name.clone());
-        }
-        let Some(component) = self.components.get(&text) else {
-            return Ok(0);
-        };
-        self.open.push(text.clone());
-        let count = self.count(&component.statements)?;
+        self.open.push(name);
+        let counted = self.count(&component.statements, &inner);
         self.open.pop();
-        self.known.insert(text, count);
-        Ok(count)
+        let mut size = counted?;
+        size.scopes += 1;
+        self.known.insert(key, size);
+        Ok(size)
+    }
+
+    /// All iterations at once where they are alike; otherwise one after the other, as far as the limit.
+    fn repeated(&mut self, repeated: &Loop, wholes: &Wholes) -> Result<Size, Stop> {
+        let range = match wholes.range(repeated) {
+            Ok(range) => range,
+            Err(_) if self.probing => return Err(Stop::Unknown),
+            Err(_) => return Ok(Size::default()),
+        };
+        let length = usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0);
+        if length == 0 {
+            return Ok(Size::default());
+        }
+        let iteration = Size {
+            bonds: 0,
+            scopes: 1,
+        };
+        let mut total = Size::default();
+        let probing = std::mem::replace(&mut self.probing, true);
+        let alike = self.count(&repeated.statements, &wholes.of_iteration(repeated, None));
+        self.probing = probing;
+        match alike {
+            Ok(size) => {
+                total.add(size, length)?;
+                total.add(iteration, length)?;
+            }
+            Err(Stop::Unknown) => {
+                for number in range {
+                    let wholes = wholes.of_iteration(repeated, Some(number));
+                    total.add(self.count(&repeated.statements, &wholes)?, 1)?;
+                    total.add(iteration, 1)?;
+                }
+            }
+            Err(stop) => return Err(stop),
+        }
+        Ok(total)
     }
 }
 

@@ -130,7 +130,7 @@ impl Writer<'_> {
         let (residuals, jacobian) = solve.results.split_at(solve.size);
         let (residuals, jacobian) = (operands(residuals), operands(jacobian));
         quote! {
-            let #unknowns = ::mbg_runtime::__private::solve::<T, #size, _, _>(
+            let #unknowns = ::mbg_runtime::LoopMemory::solve(
                 memory, #number, #first,
                 |#unknowns: &::mbg_runtime::__private::SVector<T, #size>| {
                     #body

@@ -124,6 +124,18 @@ impl System {
             .unwrap_or(Expression::ZERO)
     }
 
+    /// The entries of a row.
+    pub(super) fn row(&self, row: usize) -> impl Iterator<Item = (usize, Expression)> + '_ {
+        self.rows[row]
+            .iter()
+            .map(|(column, value)| (*column, *value))
+    }
+
+    /// Open rows that hold a column.
+    pub(super) fn rows_with(&self, column: usize) -> impl Iterator<Item = usize> + '_ {
+        self.columns[column].iter().copied()
+    }
+
     /// Eliminates `column` from every other open row with the pivot in `row`.
     pub(super) fn eliminate(
         &mut self,

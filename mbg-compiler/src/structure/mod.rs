@@ -6,6 +6,7 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
+mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;

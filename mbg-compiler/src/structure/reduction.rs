@@ -366,7 +366,7 @@ impl Reducer<'_> {
             report_input(model, equation.owner, input, diagnostics);
         }
         let rate = self.rate_of.get(&unknown).copied();
-        self.push(sum, equation.owner, [unknown; 2], rate);
+        self.push(sum, equation.owner, equation.about, rate);
     }
 
     fn push(&mut self, sum: Linear, owner: Owner, about: [usize; 2], rate: Option<usize>) {
@@ -494,10 +494,11 @@ impl Reducer<'_> {
         };
         let turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
         for equation in &mut self.scalars.equations {
-            let rate = equation
+            let about = equation
                 .about
                 .iter()
                 .find_map(|unknown| self.rate_of.get(unknown));
+            let rate = equation.rate.as_ref().or(about);
             equation.level = rate.and_then(|rate| turns[*rate]).map(|turn| turn.level);
         }
         let pool = &mut *self.pool;

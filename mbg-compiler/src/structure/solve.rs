@@ -3,10 +3,13 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::congruence::{self, Conjugate};
 use super::eliminate::{System, Vanished};
 use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Owner, Scalars};
+type Columns = BTreeSet<usize>;
+
 use crate::symbolic::{
     Differentiator, Expression, Function, Matrix, Pool, Rate, Substitution, Symbol,
 };
@@ -169,6 +172,7 @@ impl Solver<'_> {
         }
         let rates: BTreeSet<usize> = scalars.equations.iter().filter_map(|e| e.rate).collect();
         let mut system = System::new(rows, right);
+        let conjugates = self.conjugates(equations, &place);
         // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
         let admitted = |row: usize, column: usize| match scalars.equations[equations[row]].rate {
             Some(rate) => rate == unknowns[column],
@@ -178,9 +182,19 @@ impl Solver<'_> {
             let mut rows = level.rows;
             let mut left = BTreeSet::new();
             for (_, columns) in level.columns {
-                let rest = system.eliminate_constants(self.pool, rows, columns, &admitted)?;
-                rows = rest.0;
-                left.extend(rest.1);
+                // Efforts that meet at a junction first, then the rates of the junction, then the effort that comes
+                // with them: so the inertia of all that hangs on the junction is turned as a whole.
+                let is_rate = |column: &usize| conjugates.contains_key(column);
+                let coming =
+                    |column: &usize| conjugates.values().any(|rate| rate.effort == Some(*column));
+                let (turned, efforts): (Columns, Columns) = columns.into_iter().partition(is_rate);
+                let (last, first): (Columns, Columns) = efforts.into_iter().partition(coming);
+                for columns in [first, turned, last] {
+                    congruence::prepare(self.pool, &system, &conjugates, &columns);
+                    let rest = system.eliminate_constants(self.pool, rows, columns, &admitted)?;
+                    rows = rest.0;
+                    left.extend(rest.1);
+                }
             }
             left.extend(level.last);
             if let (Some(row), Some(column), 1, 1) =
@@ -201,6 +215,22 @@ impl Solver<'_> {
         let values = system.back_substitute(self.pool, &columns, &values)?;
         self.store(unknowns, values);
         Ok(())
+    }
+
+    /// For the column of every rate the row that gives it, and the effort that comes with it.
+    fn conjugates(
+        &self,
+        equations: &[usize],
+        place: &BTreeMap<usize, usize>,
+    ) -> BTreeMap<usize, Conjugate> {
+        let given = |(row, equation): (usize, &usize)| {
+            let equation = &self.scalars.equations[*equation];
+            let column = place.get(&equation.rate?)?;
+            let effort = equation.about.iter().find_map(|unknown| place.get(unknown));
+            let effort = effort.copied();
+            Some((*column, Conjugate { row, effort }))
+        };
+        equations.iter().enumerate().filter_map(given).collect()
     }
 
     /// Rows and columns of a block by level.

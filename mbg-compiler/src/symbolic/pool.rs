@@ -466,6 +466,9 @@ impl Pool {
         if let Some(collected) = self.collect(a, b) {
             return collected;
         }
+        if let Some(gathered) = self.gather(a, b) {
+            return gathered;
+        }
         match (a.is_negative(), b.is_negative()) {
             (true, true) => self
                 .intern(Operation::Add(a.negated(), b.negated()), image.negated())
@@ -473,6 +476,30 @@ impl Pool {
             (true, false) => self.intern(Operation::Add(b, a), image),
             _ => self.intern(Operation::Add(a, b), image),
         }
+    }
+
+    /// Terms that change seldom are gathered, so that they are added seldom: `(x + a) + b` is `x + (a + b)`.
+    fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        let (slow, fast) = if self.rate(a) <= self.rate(b) {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        let Operation::Add(first, second) = *self.operation(fast) else {
+            return None;
+        };
+        let flip = fast.is_negative();
+        let (first, second) = (first.flipped(flip), second.flipped(flip));
+        let (inner, rest) = if self.rate(first) <= self.rate(second) {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        if self.rate(inner) < self.rate(rest) && self.rate(slow) < self.rate(rest) {
+            let gathered = self.add(slow, inner);
+            return Some(self.add(gathered, rest));
+        }
+        None
     }
 
     /// The sum with a common factor taken out, where what remains in the brackets is known already or is computed once

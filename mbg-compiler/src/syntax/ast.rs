@@ -10,6 +10,8 @@ use syn::{Attribute, Expr, Visibility};
 pub struct Source {
     /// Models and components in order of appearance.
     pub items: Vec<Item>,
+    /// Components of the library that the items use and do not declare themselves.
+    pub library: Vec<Component>,
 }
 
 /// A top-level item.
@@ -40,6 +42,8 @@ pub struct Component {
     pub documentation: Vec<Attribute>,
     /// Set by `#[derivative]`: storages inside may be in derivative causality.
     pub derivative: Option<Span>,
+    /// Whether it comes from the library: its tokens then have no place in the user's text.
+    pub library: bool,
     /// Name by which an instance calls it.
     pub name: Ident,
     /// Ports in order of declaration.
@@ -74,6 +78,12 @@ pub enum Statement {
     Chain(Chain),
     /// `x: RevoluteX { stiffness: k } (fuselage, frame1);`
     Instance(Instance),
+    /// `let arm[2] = [x * cos(angle), x * sin(angle)];`
+    Let(Let),
+    /// `gravity [0.0, 0.0, -9.81];`
+    Gravity(Gravity),
+    /// `links: for k in 0..4 { … }`
+    Loop(Loop),
     /// `causality componentwise;`
     Causality(Causality, Span),
     /// A statement that could not be read; its error is reported. It keeps the name, when one was seen, so that
@@ -87,6 +97,8 @@ pub struct Parameter {
     pub documentation: Vec<Attribute>,
     /// Name.
     pub name: Ident,
+    /// Dimension, when written; otherwise a component takes a value of any shape.
+    pub dimension: Option<usize>,
     /// Unit, when written.
     pub unit: Option<Unit>,
     /// Default value; a model's parameters must have one.
@@ -117,6 +129,42 @@ pub struct Output {
     pub unit: Option<Unit>,
     /// What it shows.
     pub value: Expr,
+}
+
+/// `let name[n]: unit = value;`
+pub struct Let {
+    /// Documentation comments.
+    pub documentation: Vec<Attribute>,
+    /// Name.
+    pub name: Ident,
+    /// Dimension, when written; otherwise the value may have any shape.
+    pub dimension: Option<usize>,
+    /// Unit, when written.
+    pub unit: Option<Unit>,
+    /// What it stands for.
+    pub value: Expr,
+}
+
+/// `gravity value;`
+pub struct Gravity {
+    /// The word.
+    pub name: Ident,
+    /// The acceleration of free fall.
+    pub value: Expr,
+}
+
+/// `label: for variable in start..end { statements }`
+pub struct Loop {
+    /// Name by which its turns are called from outside, when written.
+    pub label: Option<Ident>,
+    /// The whole number that counts the turns.
+    pub variable: Ident,
+    /// Its first value.
+    pub start: Expr,
+    /// One past its last value.
+    pub end: Expr,
+    /// What the braces hold.
+    pub statements: Vec<Statement>,
 }
 
 /// `integral name[n]: unit = rate, initial: value;`
@@ -188,23 +236,28 @@ pub enum ChainNode {
     Element(Element),
 }
 
-/// `rel`, `rel.x`, `rel[0]`, `rel[1..3]`, `arm.rel`.
+/// `rel`, `rel.x`, `rel[0]`, `rel[1..3]`, `arm.rel`, `links[k-1].rel[0]`.
 pub struct Reference {
-    /// The dotted path; a last `x`, `y` or `z` may mean a component, which elaboration decides.
-    pub path: Vec<Ident>,
-    /// What stands in brackets.
-    pub selection: Option<Selection>,
+    /// The dotted path, never empty; a last `x`, `y` or `z` may mean a component, which elaboration decides.
+    pub path: Vec<Segment>,
     /// The whole reference (its first token where spans cannot be joined).
     pub span: Span,
 }
 
-/// `[0]` or `[1..3]`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A name in a path, with what stands in brackets after it: the turn of a loop, or components of a junction.
+pub struct Segment {
+    /// The name.
+    pub name: Ident,
+    /// What stands in brackets.
+    pub selection: Option<Selection>,
+}
+
+/// `[0]` or `[1..3]`, of whole numbers that elaboration evaluates.
 pub struct Selection {
-    /// First component.
-    pub start: usize,
-    /// One past the last component.
-    pub end: usize,
+    /// The only one, or the first.
+    pub start: Expr,
+    /// One past the last.
+    pub end: Option<Expr>,
 }
 
 /// `R air { resistance: drag }`
@@ -286,4 +339,28 @@ pub struct Unit {
     pub text: String,
     /// Names with their integer exponents, in order of writing.
     pub factors: Vec<(String, i32)>,
+}
+
+impl Component {
+    /// Its parameters in order of declaration.
+    pub fn parameters(&self) -> impl Iterator<Item = &Parameter> {
+        self.statements
+            .iter()
+            .filter_map(|statement| match statement {
+                Statement::Parameter(parameter) => Some(parameter),
+                _ => None,
+            })
+    }
+}
+
+impl Instance {
+    /// What is given for a parameter: the name there, and the value.
+    #[must_use]
+    pub fn argument(&self, parameter: &Ident) -> Option<(&Ident, &Expr)> {
+        let field = self
+            .arguments
+            .iter()
+            .find(|field| field.name == *parameter)?;
+        Some((&field.name, field.value.as_ref()?))
+    }
 }

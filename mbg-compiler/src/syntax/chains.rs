@@ -1,11 +1,13 @@
 //! Chains of bonds, references to junctions, and instances of components.
 
 use proc_macro2::{Delimiter, Group, Span};
+use syn::Expr;
 
-use super::ast::{Chain, ChainNode, Instance, Reference, Selection};
+use super::ast::{Chain, ChainNode, Instance, Reference, Segment, Selection};
 use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
 use super::elements::{element, fields, kind, no_element};
+use super::expressions::{bounds, expression};
 use super::recovery::{Sink, finish};
 use super::words;
 use crate::codes;
@@ -90,12 +92,18 @@ fn unbonded(cursor: &Cursor, node: &ChainNode) -> Box<Diagnostic> {
     }
     let wanted = match node {
         ChainNode::Reference(reference)
-            if reference.path.len() == 1 && reference.selection.is_none() =>
+            if reference
+                .path
+                .iter()
+                .all(|segment| segment.selection.is_none()) =>
         {
-            "`->`, `.`, `[` or `:`"
+            match reference.path.len() {
+                1 => "`->`, `.`, `[` or `:`",
+                _ => "`->`, `.` or `[`",
+            }
         }
-        ChainNode::Reference(reference) if reference.selection.is_none() => "`->`, `.` or `[`",
-        _ => "`->`",
+        ChainNode::Reference(_) => "`->` or `.`",
+        ChainNode::Element(_) => "`->`",
     };
     cursor.expected(&format!("{wanted} after {}", cursor.previous()))
 }
@@ -112,7 +120,7 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
             .help("a value has a word before its name: `param x = …;` or `output x = …;`"),
         "`{`" => match node {
             Some(ChainNode::Reference(reference)) => {
-                let name = reference.path.last()?;
+                let name = &reference.path.last()?.name;
                 (*cursor.expected(&wanted)).help(format!(
                     "an element is written `R {name} {{ … }}`, with its kind before its name"
                 ))
@@ -124,14 +132,14 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
     Some(Box::new(error))
 }
 
-/// Reads `arm.rel[1..3]`.
+/// Reads `links[k-1].rel[1..3]`.
 pub(super) fn reference(cursor: &mut Cursor, what: &str) -> Parsed<Reference> {
     let start = cursor.span();
-    let mut path = vec![cursor.name(what)?];
+    let mut path = vec![segment(cursor, what)?];
     while cursor.take_punct('.') {
-        let before = format!("a name after `{}.`", path[path.len() - 1]);
-        match cursor.name(&before) {
-            Ok(name) => path.push(name),
+        let before = format!("a name after `{}.`", path[path.len() - 1].name);
+        match segment(cursor, &before) {
+            Ok(next) => path.push(next),
             Err(error)
                 if cursor.ident(0).is_none()
                     && cursor.peek(0).is_some_and(|token| {
@@ -145,51 +153,37 @@ pub(super) fn reference(cursor: &mut Cursor, what: &str) -> Parsed<Reference> {
             Err(error) => return Err(error),
         }
     }
+    let span = start.join(cursor.last_span()).unwrap_or(start);
+    Ok(Reference { path, span })
+}
+
+/// Reads a name and what stands in brackets after it.
+fn segment(cursor: &mut Cursor, what: &str) -> Parsed<Segment> {
+    let name = cursor.name(what)?;
     let selection = cursor
         .take_group(Delimiter::Bracket)
         .map(|group| selection(&group))
         .transpose()?;
-    let span = start.join(cursor.last_span()).unwrap_or(start);
-    Ok(Reference {
-        path,
-        selection,
-        span,
-    })
+    Ok(Segment { name, selection })
 }
 
 /// Reads `0` or `1..3`, between brackets.
 fn selection(group: &Group) -> Parsed<Selection> {
-    const WHAT: &str = "a component such as `0` or a range such as `1..3`";
     let mut cursor = Cursor::inside(group);
-    let start = cursor.integer(WHAT, codes::SYNTAX)?;
-    if cursor.ended() {
-        return Ok(Selection {
-            start,
-            end: start + 1,
-        });
-    }
-    if !(cursor.punct(0, '.') && cursor.punct(1, '.')) {
-        return Err(cursor.expected("`..` or `]` after the component"));
-    }
-    cursor.advance(2);
-    if cursor.punct(0, '=') {
-        let error = *cursor.expected("the end of the range after `..`");
-        return Err(Box::new(error.help(
-            "a range excludes its end: `1..3` selects the components 1 and 2",
-        )));
-    }
-    let end = cursor.integer("the end of the range after `..`", codes::SYNTAX)?;
-    if end <= start {
-        let message = format!("expected a range that selects a component, found `{start}..{end}`");
-        return Err(Box::new(crate::diagnostics::error(
-            codes::SYNTAX,
-            cursor.last_span(),
-            message,
-        )));
-    }
+    let value = expression(
+        &mut cursor,
+        "a component such as `0` or a range such as `1..3`",
+    )?;
     if !cursor.ended() {
-        return Err(cursor.expected("`]` after the range"));
+        return Err(cursor.expected(&format!("`]` after {}", cursor.previous())));
     }
+    let (start, end) = match value {
+        Expr::Range(range) => {
+            let (start, end) = bounds(range)?;
+            (start, Some(end))
+        }
+        start => (start, None),
+    };
     Ok(Selection { start, end })
 }
 

@@ -8,7 +8,7 @@ use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, Visibility};
 
 use super::ast::{
     Causality, Chain, ChainNode, Component, Element, Field, Instance, Item, Junction, JunctionKind,
-    Model, Reference, Source, Statement, Unit,
+    Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
 };
 use super::words;
 
@@ -76,8 +76,9 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
             write_documentation(text, "  ", &it.documentation)?;
             writeln!(
                 text,
-                "  param {}{}{}",
+                "  param {}{}{}{}",
                 it.name,
+                dimension(it.dimension),
                 unit(it.unit.as_ref()),
                 assigned(it.default.as_ref())
             )
@@ -129,6 +130,18 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         Statement::Junction(junction) => write_junction(text, junction),
         Statement::Chain(chain) => writeln!(text, "  chain {}", chain_text(chain)),
         Statement::Instance(instance) => writeln!(text, "  {}", instance_text(instance)),
+        Statement::Let(it) => {
+            write_documentation(text, "  ", &it.documentation)?;
+            let (dimension, value) = (dimension(it.dimension), assigned(Some(&it.value)));
+            writeln!(
+                text,
+                "  let {}{dimension}{}{value}",
+                it.name,
+                unit(it.unit.as_ref())
+            )
+        }
+        Statement::Gravity(gravity) => writeln!(text, "  gravity {}", expression(&gravity.value)),
+        Statement::Loop(it) => write_loop(text, it),
         Statement::Causality(Causality::Uniform, _) => writeln!(text, "  causality uniform"),
         Statement::Causality(Causality::Componentwise, _) => {
             writeln!(text, "  causality componentwise")
@@ -186,16 +199,28 @@ fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
         .try_for_each(|element| writeln!(text, "    {}", element_text(element)))
 }
 
+fn write_loop(text: &mut String, it: &Loop) -> fmt::Result {
+    let label = it
+        .label
+        .as_ref()
+        .map(|label| format!("{label}: "))
+        .unwrap_or_default();
+    let (start, end) = (expression(&it.start), expression(&it.end));
+    writeln!(text, "  {label}for {} in {start}..{end}", it.variable)?;
+    let mut inside = String::new();
+    write_statements(&mut inside, &it.statements)?;
+    inside
+        .lines()
+        .try_for_each(|line| writeln!(text, "  {line}"))
+}
+
 fn element_text(element: &Element) -> String {
     let mark = if element.derivative.is_some() {
         "#[derivative] "
     } else {
         ""
     };
-    let dimension = element
-        .dimension
-        .map(|dimension| format!("[{dimension}]"))
-        .unwrap_or_default();
+    let dimension = dimension(element.dimension);
     let kind = words::element_name(element.kind);
     format!(
         "{mark}{kind} {}{dimension} {}",
@@ -223,21 +248,30 @@ fn chain_text(chain: &Chain) -> String {
         .nodes
         .iter()
         .map(|node| match node {
-            ChainNode::Reference(reference) => reference_text(reference),
+            ChainNode::Reference(it) => reference(it),
             ChainNode::Element(element) => element_text(element),
         })
         .collect();
     nodes.join(" -> ")
 }
 
-fn reference_text(reference: &Reference) -> String {
-    let path: Vec<String> = reference.path.iter().map(ToString::to_string).collect();
-    let selection = reference
-        .selection
-        .as_ref()
-        .map(|it| format!("[{}..{}]", it.start, it.end))
-        .unwrap_or_default();
-    format!("{}{selection}", path.join("."))
+/// A reference as a person would type it.
+#[must_use]
+pub fn reference(reference: &Reference) -> String {
+    let segments: Vec<String> = reference.path.iter().map(segment_text).collect();
+    segments.join(".")
+}
+
+fn segment_text(segment: &Segment) -> String {
+    let Segment { name, selection } = segment;
+    match selection {
+        None => name.to_string(),
+        Some(Selection { start, end: None }) => format!("{name}[{}]", expression(start)),
+        Some(Selection {
+            start,
+            end: Some(end),
+        }) => format!("{name}[{}..{}]", expression(start), expression(end)),
+    }
 }
 
 fn instance_text(instance: &Instance) -> String {
@@ -246,7 +280,7 @@ fn instance_text(instance: &Instance) -> String {
     } else {
         ""
     };
-    let connections: Vec<String> = instance.connections.iter().map(reference_text).collect();
+    let connections: Vec<String> = instance.connections.iter().map(reference).collect();
     let arguments = fields_text(&instance.arguments);
     format!(
         "{mark}instance {}: {} {arguments} ({})",
@@ -258,6 +292,12 @@ fn instance_text(instance: &Instance) -> String {
 
 fn mark(derivative: bool) -> &'static str {
     if derivative { " #[derivative]" } else { "" }
+}
+
+fn dimension(dimension: Option<usize>) -> String {
+    dimension
+        .map(|dimension| format!("[{dimension}]"))
+        .unwrap_or_default()
 }
 
 fn unit(unit: Option<&Unit>) -> String {

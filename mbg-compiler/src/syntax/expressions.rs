@@ -1,11 +1,13 @@
 //! Laws: Rust expressions, read by `syn`.
 
-use proc_macro2::{Span, TokenStream, TokenTree};
-use syn::Expr;
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::parse::{ParseStream, Parser};
+use syn::spanned::Spanned;
+use syn::{Expr, ExprRange, RangeLimits};
 
 use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
+use super::dump;
 use super::recovery::opens;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -13,6 +15,51 @@ use crate::diagnostics::{Diagnostic, error};
 /// Reads an expression up to `,`, `;`, the end, or the first token that cannot continue it; `what` names it in errors.
 pub(super) fn expression(cursor: &mut Cursor, what: &str) -> Parsed<Expr> {
     let length = cursor.length_until(ends);
+    read(cursor, length, what)
+}
+
+/// Reads `start..end` up to an opening brace or the end.
+///
+/// `syn` would take `0..n { … }` for a range that ends in a structure.
+pub(super) fn range(cursor: &mut Cursor, what: &str) -> Parsed<(Expr, Expr)> {
+    let brace = |cursor: &Cursor, offset| cursor.group(offset, Delimiter::Brace).is_some();
+    let length =
+        cursor.length_until(|cursor, offset| brace(cursor, offset) || ends(cursor, offset));
+    match read(cursor, length, what)? {
+        Expr::Range(range) => bounds(range),
+        other => {
+            let message = format!("expected {what}, found `{}`", dump::expression(&other));
+            Err(Box::new(error(codes::SYNTAX, other.span(), message)))
+        }
+    }
+}
+
+/// The bounds of a range, both of which must be written.
+pub(super) fn bounds(range: ExprRange) -> Parsed<(Expr, Expr)> {
+    let span = range.limits.span();
+    if matches!(range.limits, RangeLimits::Closed(_)) {
+        let report = error(codes::SYNTAX, span, "expected `..`, found `..=`");
+        return Err(Box::new(
+            report.help("a range excludes its end: `1..3` holds 1 and 2"),
+        ));
+    }
+    match (range.start, range.end) {
+        (Some(start), Some(end)) => Ok((*start, *end)),
+        (None, _) => Err(Box::new(error(
+            codes::SYNTAX,
+            span,
+            "expected the start of the range before `..`",
+        ))),
+        (_, None) => Err(Box::new(error(
+            codes::SYNTAX,
+            span,
+            "expected the end of the range after `..`",
+        ))),
+    }
+}
+
+/// Reads an expression from at most the next `length` tokens.
+fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
     if length == 0 {
         return Err(cursor.expected(what));
     }

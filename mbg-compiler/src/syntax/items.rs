@@ -20,7 +20,10 @@ pub(super) fn source(tokens: TokenStream, sink: &mut Sink<'_>) -> Source {
     loop {
         while cursor.take_punct(';') {}
         if cursor.ended() {
-            return Source { items };
+            return Source {
+                items,
+                library: Vec::new(),
+            };
         }
         let start = cursor.position();
         match item(&mut cursor, sink) {
@@ -177,6 +180,7 @@ fn component(
     Component {
         documentation,
         derivative,
+        library: false,
         name,
         ports,
         statements,

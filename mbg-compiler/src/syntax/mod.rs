@@ -17,6 +17,8 @@ pub mod dump;
 mod elements;
 mod expressions;
 mod items;
+pub mod library;
+mod loops;
 mod recovery;
 mod statements;
 mod units;
@@ -46,5 +48,7 @@ pub const LARGEST_DIMENSION: usize = 1_000_000;
 /// ```
 #[must_use]
 pub fn parse(tokens: TokenStream, diagnostics: &mut Diagnostics) -> ast::Source {
-    items::source(tokens, &mut recovery::Sink::new(diagnostics))
+    let mut source = items::source(tokens, &mut recovery::Sink::new(diagnostics));
+    library::complete(&mut source);
+    source
 }

@@ -9,10 +9,15 @@ use crate::diagnostics::{Code, Diagnostic, Diagnostics, error};
 /// How deep the names of a broken statement are looked for: a loop, a junction, an element.
 const DEPTH: usize = 3;
 
+/// How deep loops may nest, far above any scene, far below where reading them could exhaust the stack.
+pub(super) const DEEPEST_LOOP: usize = 8;
+
 /// Where mistakes go, and the names that were lost to them.
 pub(super) struct Sink<'a> {
     diagnostics: &'a mut Diagnostics,
     lost: Vec<Ident>,
+    /// How many loops are open.
+    loops: usize,
 }
 
 impl<'a> Sink<'a> {
@@ -21,6 +26,7 @@ impl<'a> Sink<'a> {
         Self {
             diagnostics,
             lost: Vec::new(),
+            loops: 0,
         }
     }
 
@@ -38,6 +44,17 @@ impl<'a> Sink<'a> {
     /// Remembers the names that these tokens would have declared.
     pub(super) fn lose(&mut self, tokens: &[TokenTree]) {
         declared(tokens, DEPTH, &mut self.lost);
+    }
+
+    /// Reads the inside of a loop; none if it lies deeper than loops may nest.
+    pub(super) fn nested<T>(&mut self, read: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        if self.loops == DEEPEST_LOOP {
+            return None;
+        }
+        self.loops += 1;
+        let inside = read(self);
+        self.loops -= 1;
+        Some(inside)
     }
 
     /// Hands over the names lost so far.
@@ -80,6 +97,10 @@ pub(super) fn may_open(cursor: &Cursor) -> bool {
     let Some(word) = cursor.ident(0) else {
         return false;
     };
+    // The only statement whose first word no other word or digit follows.
+    if word == "gravity" {
+        return true;
+    }
     let element = cursor.ident(1).is_some() && words::element(&word.to_string()).is_some();
     element || cursor.arrow(1) || cursor.punct(1, ':')
 }
@@ -181,7 +202,10 @@ fn name_at(tokens: &[TokenTree], first: bool) -> Option<&Ident> {
 
 /// Whether a statement that begins with this word declares no name of its own.
 fn is_nameless(word: &Ident) -> bool {
-    word == "causality" || words::LATER.iter().any(|later| word == later)
+    ["causality", "gravity", "for"]
+        .iter()
+        .any(|nameless| word == nameless)
+        || words::LATER.iter().any(|later| word == later)
 }
 
 fn is_hash(token: &TokenTree) -> bool {

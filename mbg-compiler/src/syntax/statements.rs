@@ -1,16 +1,18 @@
 //! The statements of a model or component.
 
-use proc_macro2::{Delimiter, Group};
+use proc_macro2::{Delimiter, Group, Ident};
 use syn::Expr;
 
 use super::ast::{
-    Attitude, Causality, Input, Integral, Junction, JunctionKind, Output, Parameter, Statement,
+    Attitude, Causality, Gravity, Input, Integral, Junction, JunctionKind, Let, Output, Parameter,
+    Statement,
 };
 use super::attributes::Attributes;
 use super::chains::{chain, instance};
 use super::cursor::{Cursor, Parsed};
 use super::elements::one_ports;
 use super::expressions::expression;
+use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
 use super::words;
@@ -65,17 +67,18 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
         attributes.unmarked("a junction", sink);
         return junction(cursor, sink).map(Statement::Junction);
     }
-    let Some(word) = cursor.ident(0).map(ToString::to_string) else {
+    let Some(first) = cursor.ident(0).cloned() else {
         return Err(no_statement(cursor));
     };
+    let word = first.to_string();
     // A junction may bear one of the words as its name, and then an arrow, a dot or a bracket follows.
     let referred =
         cursor.arrow(1) || cursor.punct(1, '.') || cursor.group(1, Delimiter::Bracket).is_some();
-    if !referred {
+    // Gravity has no name, and its value may begin with any of these.
+    if !referred || word == "gravity" {
         if words::STATEMENTS.contains(&word.as_str()) {
             attributes.unmarked(&format!("`{word}`"), sink);
-            cursor.advance(1);
-            return declaration(cursor, &word, attributes, sink);
+            return declaration(cursor, first, attributes, sink);
         }
         if words::LATER.contains(&word.as_str()) {
             return Err(cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet")));
@@ -84,6 +87,12 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
     let misspelt = cursor.ident(1).is_some() && words::element(&word).is_none();
     if misspelt || words::is_reserved(&word) {
         return Err(no_statement(cursor));
+    }
+    if cursor.punct(1, ':') && cursor.ident(2).is_some_and(|word| word == "for") {
+        attributes.unmarked("a loop", sink);
+        let label = cursor.name("the label of a loop")?;
+        cursor.advance(2);
+        return repetition(cursor, Some(label), sink).map(Statement::Loop);
     }
     if cursor.punct(1, ':') {
         return instance(cursor, attributes.derivative, sink).map(Statement::Instance);
@@ -130,19 +139,23 @@ fn glued(cursor: &Cursor) -> Option<char> {
         .filter(|digit| matches!(digit, '0' | '1'))
 }
 
-/// Reads what follows one of [`words::STATEMENTS`].
+/// Reads a statement that begins with one of [`words::STATEMENTS`].
 fn declaration(
     cursor: &mut Cursor,
-    word: &str,
+    word: Ident,
     attributes: Attributes,
     sink: &mut Sink<'_>,
 ) -> Parsed<Statement> {
-    match word {
+    cursor.advance(1);
+    match word.to_string().as_str() {
         "param" => parameter(cursor, attributes, sink).map(Statement::Parameter),
         "input" => input(cursor, attributes, sink).map(Statement::Input),
         "output" => output(cursor, attributes, sink).map(Statement::Output),
         "integral" => integral(cursor, attributes, sink).map(Statement::Integral),
         "attitude" => attitude(cursor, attributes, sink).map(Statement::Attitude),
+        "let" => named_value(cursor, attributes, "let", sink).map(Statement::Let),
+        "gravity" => gravity(cursor, word, sink).map(Statement::Gravity),
+        "for" => repetition(cursor, None, sink).map(Statement::Loop),
         _ => causality(cursor, sink),
     }
 }
@@ -153,6 +166,7 @@ fn parameter(
     sink: &mut Sink<'_>,
 ) -> Parsed<Parameter> {
     let name = cursor.name("the name of the parameter after `param`")?;
+    let dimension = cursor.dimension()?;
     let unit = unit(cursor, sink);
     let equals = cursor.take_punct('=');
     let default = if equals {
@@ -163,10 +177,11 @@ fn parameter(
     } else {
         None
     };
-    let wanted = match (&unit, equals) {
-        (_, true) => "`;`",
-        (Some(_), false) => "`=` or `;`",
-        (None, false) => "`:`, `=` or `;`",
+    let wanted = match (dimension, &unit, equals) {
+        (_, _, true) => "`;`",
+        (_, Some(_), false) => "`=` or `;`",
+        (Some(_), None, false) => "`:`, `=` or `;`",
+        (None, None, false) => "`[`, `:`, `=` or `;`",
     };
     finish(
         cursor,
@@ -176,6 +191,7 @@ fn parameter(
     Ok(Parameter {
         documentation: attributes.documentation,
         name,
+        dimension,
         unit,
         default,
     })
@@ -204,19 +220,44 @@ fn input(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Pa
 }
 
 fn output(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Output> {
-    let name = cursor.name("the name of the output after `output`")?;
+    let named = named_value(cursor, attributes, "output", sink)?;
+    Ok(Output {
+        documentation: named.documentation,
+        name: named.name,
+        dimension: named.dimension.unwrap_or(1),
+        unit: named.unit,
+        value: named.value,
+    })
+}
+
+/// Reads `name[n]: unit = value;`, which stands after `let` and after `output`.
+fn named_value(
+    cursor: &mut Cursor,
+    attributes: Attributes,
+    word: &str,
+    sink: &mut Sink<'_>,
+) -> Parsed<Let> {
+    let owner = if word == "let" { "value" } else { word };
+    let name = cursor.name(&format!("the name of the {owner} after `{word}`"))?;
     let dimension = cursor.dimension()?;
     let unit = unit(cursor, sink);
     equals(cursor, dimension.is_some(), unit.is_some())?;
     let value = expression(cursor, &format!("the value of `{name}` after `=`"))?;
     finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
-    Ok(Output {
+    Ok(Let {
         documentation: attributes.documentation,
         name,
-        dimension: dimension.unwrap_or(1),
+        dimension,
         unit,
         value,
     })
+}
+
+/// Reads the value of gravity and its `;`.
+fn gravity(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Gravity> {
+    let value = expression(cursor, "the acceleration of free fall after `gravity`")?;
+    finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
+    Ok(Gravity { name, value })
 }
 
 fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Integral> {

@@ -9,11 +9,14 @@ pub(super) const STATEMENTS: &[&str] = &[
     "output",
     "integral",
     "attitude",
+    "let",
+    "gravity",
+    "for",
     "causality",
 ];
 
 /// Words that will begin a statement one day.
-pub(super) const LATER: &[&str] = &["for", "include", "close"];
+pub(super) const LATER: &[&str] = &["include", "close"];
 
 /// Words that begin an item.
 pub(super) const ITEMS: &[&str] = &["model", "component"];

@@ -1,151 +1,91 @@
-//! Bounded solves of nonlinear algebraic loops, and what a model remembers of them.
+//! Small solves of fixed size: nonlinear loops, multipliers of constraints, and the way back onto constraints.
+//!
+//! Everything is bounded: the number of iterations is fixed, nothing is allocated and nothing panics. A result says
+//! whether it can be trusted. Decisions (pivots, rank, damping) are taken lane by lane, so that lanes give what each
+//! would give alone, as far as they run at all: a loop ends when every lane has ended. Dual numbers decide by their
+//! values.
 
+mod dense;
+#[cfg(test)]
+mod lanes;
+mod least_norm;
+mod memory;
 mod newton;
+mod project;
 
-use nalgebra::{SMatrix, SVector};
+pub use least_norm::{LeastNorm, least_norm};
+pub use memory::{LoopMemory, Memory, Outcome};
+pub use newton::{ITERATIONS, Solved, newton};
+pub use project::{Projected, project, project_velocity};
 
 use crate::Real;
 
-pub use newton::ITERATIONS;
-use newton::{Solved, newton};
-
-/// What a model keeps from one evaluation to the next; `()` for a model without bounded solves.
-pub trait Memory: Copy + Default {
-    /// Number of the first loop whose last solve did not converge, in the order of solution, and its residual.
-    fn unsolved(&self) -> Option<(usize, f64)> {
-        None
-    }
+/// Whether a property holds in every lane.
+fn everywhere<T: Real>(number: T, holds: impl Fn(f64) -> bool) -> bool {
+    number.find(|lane| !holds(lane)).is_none()
 }
 
-impl Memory for () {}
-
-/// How the last solve of a loop ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// What is left, scaled.
-    pub residual: f64,
-    /// Evaluations of residual and Jacobian that it took.
-    pub iterations: usize,
-    /// Whether nothing but rounding is left.
-    pub converged: bool,
+/// Largest absolute value of all lanes; NaN when one is.
+fn largest<T: Real>(numbers: impl IntoIterator<Item = T>) -> T {
+    numbers
+        .into_iter()
+        .fold(T::from_f64(0.0), |largest, number| {
+            largest.max(number.abs())
+        })
 }
 
-/// Memory of a model with nonlinear algebraic loops: the unknowns of all of them, where the next solve begins, and how
-/// the last solve of each ended.
-///
-/// A solve begins where the last one ended, at first at zero. If it fails, it begins again at zero and then at one,
-/// where a law whose slope at zero is infinite has a finite one. A solve that fails all the same gives NaN, so that no
-/// result can be mistaken for a solution, and leaves the start as it was.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoopMemory<T, const LOOPS: usize, const UNKNOWNS: usize> {
-    unknowns: [T; UNKNOWNS],
-    outcomes: [Outcome; LOOPS],
+/// `Σ aᵢ bᵢ`.
+fn dot<T: Real>(a: &[T], b: &[T]) -> T {
+    a.iter()
+        .zip(b)
+        .fold(T::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
-impl<T, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UNKNOWNS> {
-    /// How the last solve of each loop ended, in the order of solution.
-    #[must_use]
-    pub fn outcomes(&self) -> &[Outcome; LOOPS] {
-        &self.outcomes
-    }
+/// Two numbers, exchanged in the lanes where `first < second`.
+fn exchanged<T: Real>(first: T, second: T, (a, b): (T, T)) -> (T, T) {
+    (
+        first.select_less(second, b, a),
+        first.select_less(second, a, b),
+    )
 }
 
-impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> Default
-    for LoopMemory<T, LOOPS, UNKNOWNS>
-{
-    fn default() -> Self {
-        let nothing = Outcome {
-            residual: 0.0,
-            iterations: 0,
-            converged: true,
-        };
-        Self {
-            unknowns: [T::from_f64(0.0); UNKNOWNS],
-            outcomes: [nothing; LOOPS],
-        }
-    }
-}
+/// An order that may differ from lane to lane: the places that the elements came from.
+#[derive(Clone, Copy)]
+struct Order<T, const K: usize>([T; K]);
 
-impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> Memory for LoopMemory<T, LOOPS, UNKNOWNS> {
-    fn unsolved(&self) -> Option<(usize, f64)> {
-        let failed = |(number, outcome): (usize, &Outcome)| {
-            (!outcome.converged).then_some((number, outcome.residual))
-        };
-        self.outcomes.iter().enumerate().find_map(failed)
+impl<T: Real, const K: usize> Order<T, K> {
+    fn unchanged() -> Self {
+        Self(core::array::from_fn(|place| T::from_f64(place as f64)))
     }
-}
 
-/// Solves loop `number`, whose `K` unknowns begin at `first`.
-pub fn solve<T: Real, const K: usize, const LOOPS: usize, const UNKNOWNS: usize>(
-    memory: &mut LoopMemory<T, LOOPS, UNKNOWNS>,
-    number: usize,
-    first: usize,
-    evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
-) -> SVector<T, K> {
-    let zero = SVector::<T, K>::from_element(T::from_f64(0.0));
-    let mut start = zero;
-    let last = memory.unknowns.iter().skip(first);
-    start.iter_mut().zip(last).for_each(|(z, last)| *z = *last);
-    let one = zero.map(|_| T::from_f64(1.0));
-    let mut solved = newton(start, &evaluate);
-    for other in [zero, one] {
-        if !solved.converged && other != start {
-            let again = newton(other, &evaluate);
-            solved = Solved {
-                iterations: solved.iterations + again.iterations,
-                ..again
-            };
-        }
+    /// Exchanges two elements in the lanes where `first < second`.
+    fn exchange(&mut self, (first, second): (T, T), i: usize, k: usize) {
+        (self.0[i], self.0[k]) = exchanged(first, second, (self.0[i], self.0[k]));
     }
-    if let Some(outcome) = memory.outcomes.get_mut(number) {
-        *outcome = Outcome {
-            residual: solved.residual,
-            iterations: solved.iterations,
-            converged: solved.converged,
-        };
-    }
-    if !solved.converged {
-        return SVector::from_element(T::from_f64(f64::NAN));
-    }
-    let next = memory.unknowns.iter_mut().skip(first);
-    next.zip(solved.solution.iter())
-        .for_each(|(next, z)| *next = *z);
-    solved.solution
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+    /// Whether element `i` came from `place`: below zero in the lanes where it did.
+    fn differs(&self, i: usize, place: usize) -> T {
+        (self.0[i] - T::from_f64(place as f64)).abs() - T::from_f64(0.5)
+    }
 
-    fn root(of: f64, memory: &mut LoopMemory<f64, 2, 3>) -> SVector<f64, 1> {
-        solve(memory, 1, 2, |z: &SVector<f64, 1>| {
-            (
-                SVector::from([z[0] * z[0] * z[0] + z[0] - of]),
-                SMatrix::from([[3.0 * z[0] * z[0] + 1.0]]),
-            )
+    /// Elements in this order.
+    fn apply(&self, elements: &[T; K]) -> [T; K] {
+        let zero = T::from_f64(0.0);
+        core::array::from_fn(|i| {
+            (0..K).fold(zero, |found, place| {
+                self.differs(i, place)
+                    .select_less(zero, elements[place], found)
+            })
         })
     }
 
-    #[test]
-    fn next_solve_begins_where_the_last_one_ended() {
-        let mut memory = LoopMemory::default();
-        assert!(f64::abs(root(10.0, &mut memory)[0] - 2.0) < 1e-15);
-        let cold = memory.outcomes()[1].iterations;
-        root(10.01, &mut memory);
-        assert!(memory.outcomes()[1].iterations < cold);
-        assert_eq!(memory.outcomes()[0].iterations, 0);
-        assert_eq!(memory.unsolved(), None);
-    }
-
-    #[test]
-    fn failure_gives_nan_and_is_remembered() {
-        let mut memory = LoopMemory::default();
-        root(10.0, &mut memory);
-        let before = memory.unknowns;
-        assert!(root(f64::NAN, &mut memory)[0].is_nan());
-        assert!(matches!(memory.unsolved(), Some((1, _))));
-        assert_eq!(memory.unknowns, before);
-        root(10.0, &mut memory);
-        assert_eq!(memory.unsolved(), None);
+    /// Elements back in the order that they came from.
+    fn undo(&self, elements: &[T; K]) -> [T; K] {
+        let zero = T::from_f64(0.0);
+        core::array::from_fn(|place| {
+            (0..K).fold(zero, |found, i| {
+                self.differs(i, place).select_less(zero, elements[i], found)
+            })
+        })
     }
 }

@@ -1,156 +1,406 @@
-//! Newton's iteration for a few equations, halving steps that do not help.
+//! Systems of nonlinear equations.
 
 use nalgebra::{SMatrix, SVector};
 
+use super::dense::Factors;
+use super::{dot, everywhere, largest};
 use crate::Real;
 
-/// Most evaluations of residual and Jacobian.
-pub const ITERATIONS: usize = 100;
+/// Points at which a system is linearised at most.
+pub const ITERATIONS: usize = 50;
+/// Dampings tried at one point at most; the last one is below 1e-14.
+const DAMPINGS: usize = 24;
+/// In units of the precision: changes below it are rounding even of an unknown that is zero.
+const ROUNDING: f64 = 64.0;
 
-/// Steps shorter than this are not tried.
-const SHORTEST: f64 = 1e-6;
-
-/// What an iteration has found.
+/// What [`newton`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Solved<T, const K: usize> {
-    /// The last point.
-    pub(super) solution: SVector<T, K>,
-    /// Largest residual there, each in units of its row of the Jacobian and of the unknowns.
-    pub(super) residual: f64,
-    /// Evaluations that it took.
-    pub(super) iterations: usize,
-    /// Whether the residuals are zero but for rounding.
-    pub(super) converged: bool,
+pub struct Solved<T, const K: usize> {
+    /// The unknowns; the last that were tried when the iteration did not converge.
+    pub solution: SVector<T, K>,
+    /// `max |fᵢ| / Σⱼ |Jᵢⱼ| sⱼ` where the equations were evaluated last, with `sⱼ` the largest value that unknown `j`
+    /// took on the way: free of units, and of the order of the precision after convergence.
+    pub residual: T,
+    /// How often the system was linearised.
+    pub iterations: usize,
+    /// Whether the solution can be trusted, in every lane.
+    pub converged: bool,
 }
 
-/// Makes the residuals zero, beginning at `start`.
+/// Solves `f(x) = 0` of `K` equations for `K` unknowns.
 ///
-/// It has converged when the next step is nothing but rounding, or when it is small and the residuals become no smaller
-/// by it. That step is made all the same, so that the slopes of dual numbers are right as well.
-pub(super) fn newton<T: Real, const K: usize>(
+/// `evaluate` gives `f` and its Jacobian `∂f/∂x`. From the solution of the last time a smooth loop takes two or
+/// three linearisations. There are never more than 50, with at most 24 evaluations each.
+///
+/// The iteration is Newton's, damped until the next correction with the *old* Jacobian would be shorter than this one
+/// (natural monotonicity; Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, 3.3.1, with the bound 1 − λ/4).
+/// Unlike the residual, that length does not depend on how the equations are scaled, so that exponential laws with
+/// conductances from 1e-12 to 1e2 do no harm. What is not finite counts as too long. Lengths are relative to the
+/// largest value that each unknown took on the way; an unknown below 64 ε counts as zero.
+///
+/// Converged means that two corrections in a row were below the square root of the precision. The first of them leaves
+/// an error of the order of the precision, the second one, at a converged point, gives [`Dual`](crate::Dual) numbers
+/// the slope of the implicit function theorem, `−J⁻¹ ∂f/∂p`.
+///
+/// It does not converge where there is no solution, where the Jacobian is singular, or from too far away.
+///
+/// # Example
+///
+/// A lamp of 100 ohm behind a diode at 5 V:
+///
+/// ```
+/// use mbg_runtime::solve::newton;
+/// use nalgebra::{SMatrix, SVector};
+///
+/// let solved = newton(SVector::from([0.0]), |x: &SVector<f64, 1>| {
+///     let current = 1e-12 * (x[0] / 0.026).exp();
+///     let residual = SVector::from([(5.0 - x[0]) / 100.0 - (current - 1e-12)]);
+///     (residual, SMatrix::from([[-0.01 - current / 0.026]]))
+/// });
+/// assert!(solved.converged);
+/// assert!((solved.solution[0] - 0.636).abs() < 1e-3);
+/// ```
+#[must_use]
+pub fn newton<T: Real, const K: usize>(
     start: SVector<T, K>,
     evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
 ) -> Solved<T, K> {
-    let mut point = start;
-    let mut scale = start.map(|z| seen(z.abs()));
-    let (mut residual, mut jacobian) = evaluate(&point);
-    let mut iterations = 1;
-    loop {
-        let mut step = divided(jacobian, residual);
-        if residual.iter().all(|value| seen(*value) == 0.0)
-            && step.iter().any(|step| seen(*step).is_nan())
-        {
-            // At a solution where the Jacobian does not exist.
-            step = step.map(|_| T::from_f64(0.0));
+    let mut point = Point::new(start, &evaluate);
+    let mut size = start.map(Real::abs);
+    let mut was_settled = false;
+    for iterations in 1..=ITERATIONS {
+        let factors = Factors::new(&point.jacobian);
+        let correction = factors.solve(&point.residual);
+        let settled = settled(&point.x, &correction, &size);
+        let all_settled = everywhere(settled, |lane| lane == 1.0);
+        if all_settled && was_settled {
+            return Solved {
+                solution: point.x.zip_map(&correction, |x, step| x - step),
+                residual: point.scaled_residual(&size),
+                iterations,
+                converged: true,
+            };
         }
-        scale.zip_apply(&point, |scale, z| *scale = scale.max(seen(z.abs())));
-        let relative = largest(&step, &scale);
-        let end = |converged: bool, iterations: usize| Solved {
-            solution: point - step,
-            residual: relative,
-            iterations,
-            converged,
+        let Some(next) = point.descend(&factors, &correction, settled, &size, &evaluate) else {
+            return point.given_up(&size, iterations);
         };
-        if relative <= 4.0 * T::EPSILON || iterations >= ITERATIONS {
-            return end(relative <= 4.0 * T::EPSILON, iterations);
-        }
-        let before = norm(&residual, &jacobian);
-        let mut factor = 1.0;
-        loop {
-            let trial = point.zip_map(&step, |z, step| z - T::from_f64(factor) * step);
-            let (trial_residual, trial_jacobian) = evaluate(&trial);
-            iterations += 1;
-            if norm(&trial_residual, &jacobian) <= (1.0 - 0.1 * factor) * before {
-                (point, residual, jacobian) = (trial, trial_residual, trial_jacobian);
-                break;
-            }
-            if relative < T::SINGULAR || factor < SHORTEST || iterations >= ITERATIONS {
-                let small = largest(&step, &scale.map(|scale| scale + 1.0)) < T::SINGULAR;
-                return end(small, iterations);
-            }
-            factor *= 0.5;
+        point = next;
+        size.zip_apply(&point.x, |size, x| *size = size.max(x.abs()));
+        was_settled = all_settled;
+    }
+    point.given_up(&size, ITERATIONS)
+}
+
+/// 1 in the lanes where a correction is below the square root of the precision, else 0.
+fn settled<T: Real, const K: usize>(
+    x: &SVector<T, K>,
+    correction: &SVector<T, K>,
+    size: &SVector<T, K>,
+) -> T {
+    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    let rounding = T::from_f64(ROUNDING * T::EPSILON);
+    x.iter()
+        .zip(correction.iter())
+        .zip(size.iter())
+        .fold(one, |settled, ((x, step), size)| {
+            let unseen = x.abs().select_less(rounding, rounding, zero);
+            let bound = T::from_f64(T::SINGULAR) * *size + unseen;
+            // Zero is small enough for the bound zero; NaN is for none.
+            let small = (step.abs() - bound).select_less(one, one, zero);
+            bound.select_less(step.abs(), zero, small * settled)
+        })
+}
+
+/// The equations at a point.
+struct Point<T, const K: usize> {
+    x: SVector<T, K>,
+    residual: SVector<T, K>,
+    jacobian: SMatrix<T, K, K>,
+}
+
+impl<T: Real, const K: usize> Point<T, K> {
+    fn new(
+        x: SVector<T, K>,
+        evaluate: &impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
+    ) -> Self {
+        let (residual, jacobian) = evaluate(&x);
+        Self {
+            x,
+            residual,
+            jacobian,
         }
     }
-}
 
-fn seen<T: Real>(value: T) -> f64 {
-    value.find(|_| true).unwrap_or(f64::NAN)
-}
-
-/// Largest step in units of what the unknown has been; NaN when one is.
-fn largest<T: Real, const K: usize>(step: &SVector<T, K>, scale: &SVector<f64, K>) -> f64 {
-    let mut largest = 0.0;
-    for (step, scale) in step.iter().zip(scale.iter()) {
-        let error = seen(step.abs()) / (scale + f64::MIN_POSITIVE);
-        if error.is_nan() || error > largest {
-            largest = error;
+    /// The next point: the longest damped correction that is monotonic in every lane, if there is one.
+    ///
+    /// At the level of rounding nothing is monotonic: in settled lanes it is enough that the next correction is not ten
+    /// times longer.
+    fn descend(
+        &self,
+        factors: &Factors<T, K>,
+        correction: &SVector<T, K>,
+        settled: T,
+        size: &SVector<T, K>,
+        evaluate: &impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
+    ) -> Option<Self> {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let quarter = T::from_f64(0.25);
+        let unit = size.zip_map(correction, |size, step| {
+            size.max(step.abs()) + T::from_f64(ROUNDING * T::EPSILON)
+        });
+        let square = |step: &SVector<T, K>| {
+            let [relative] = step.zip_map(&unit, |step, unit| step / unit).data.0;
+            dot(&relative, &relative)
+        };
+        let here = square(correction);
+        let mut damping = one;
+        for _ in 0..DAMPINGS {
+            let next = Self::new(
+                self.x.zip_map(correction, |x, step| x - damping * step),
+                evaluate,
+            );
+            let shrunk = one - quarter * damping;
+            let factor = zero.select_less(settled, T::from_f64(100.0), shrunk * shrunk);
+            let there = square(&factors.solve(&next.residual));
+            let monotonic = (factor * here).select_less(there, zero, one);
+            let accepted = there.select_less(T::from_f64(f64::INFINITY), monotonic, zero);
+            if everywhere(accepted, |lane| lane == 1.0) {
+                return Some(next);
+            }
+            damping = T::from_f64(0.5).select_less(accepted, damping, quarter * damping);
         }
-        if error.is_nan() {
-            break;
+        None
+    }
+
+    fn scaled_residual(&self, size: &SVector<T, K>) -> T {
+        let zero = T::from_f64(0.0);
+        let rows = self.jacobian.transpose().data.0;
+        let relative = self.residual.iter().zip(rows).map(|(residual, row)| {
+            let scale = dot(&row.map(Real::abs), &size.data.0[0]);
+            residual.abs() / zero.select_less(scale, scale, T::from_f64(1.0))
+        });
+        largest(relative)
+    }
+
+    fn given_up(&self, size: &SVector<T, K>, iterations: usize) -> Solved<T, K> {
+        Solved {
+            solution: self.x,
+            residual: self.scaled_residual(size),
+            iterations,
+            converged: false,
         }
     }
-    largest
-}
-
-/// Sum of residuals, each over the sum of its row of the Jacobian.
-fn norm<T: Real, const K: usize>(residual: &SVector<T, K>, jacobian: &SMatrix<T, K, K>) -> f64 {
-    let row = |row: usize| {
-        let sum: f64 = jacobian
-            .row(row)
-            .iter()
-            .map(|entry| seen(entry.abs()))
-            .sum();
-        seen(residual[row].abs()) / (sum + f64::MIN_POSITIVE)
-    };
-    (0..K).map(row).sum()
-}
-
-/// `J⁻¹ r` by elimination with row pivots.
-fn divided<T: Real, const K: usize>(
-    mut jacobian: SMatrix<T, K, K>,
-    mut residual: SVector<T, K>,
-) -> SVector<T, K> {
-    for column in 0..K {
-        let mut largest = column;
-        for row in column + 1..K {
-            if seen(jacobian[(row, column)].abs()) > seen(jacobian[(largest, column)].abs()) {
-                largest = row;
-            }
-        }
-        jacobian.swap_rows(column, largest);
-        residual.swap_rows(column, largest);
-        for row in 0..K {
-            if row != column {
-                let factor = jacobian[(row, column)] / jacobian[(column, column)];
-                for inner in column..K {
-                    let above = jacobian[(column, inner)];
-                    jacobian[(row, inner)] -= factor * above;
-                }
-                let above = residual[column];
-                residual[row] -= factor * above;
-            }
-        }
-    }
-    SVector::from_fn(|row, _| residual[row] / jacobian[(row, row)])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Dual;
+    use crate::solve::lanes::Pair;
+
+    /// Kepler's equation `E − e sin E = M`.
+    fn kepler<T: Real>(eccentricity: T, mean: T, start: T) -> Solved<T, 1> {
+        newton(SVector::from([start]), |x| {
+            let (sine, cosine) = x[0].sin_cos();
+            (
+                SVector::from([x[0] - eccentricity * sine - mean]),
+                SMatrix::from([[T::from_f64(1.0) - eccentricity * cosine]]),
+            )
+        })
+    }
 
     #[test]
-    fn exponential_far_from_its_root() {
-        let solved = newton(SVector::from([0.0]), |z: &SVector<f64, 1>| {
-            let exponential = f64::exp(z[0] / 0.025);
-            let residual = 1e-12 * (exponential - 1.0) - (10.0 - z[0]) / 10.0;
+    fn kepler_also_for_comets() {
+        for eccentricity in [0.0, 0.3, 0.9, 0.999] {
+            for k in -30..=30 {
+                let mean = 0.1 * f64::from(k);
+                let solved = kepler(eccentricity, mean, mean);
+                let x = solved.solution[0];
+                assert!(solved.converged, "{eccentricity} {mean} {solved:?}");
+                // The error of the root is that of rounding divided by the slope there.
+                let error = x - eccentricity * x.sin() - mean;
+                assert!(error.abs() < 1e-15 * (1.0 + mean.abs()), "{error:e}");
+                assert!(solved.residual < 1e-14, "{solved:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_warm_start_takes_two_linearisations() {
+        let solved = kepler(0.3, 1.0, kepler(0.3, 1.0, 1.0).solution[0]);
+        assert_eq!((solved.iterations, solved.converged), (2, true));
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_implicit_function_theorem() {
+        // dE/de = sin E / (1 − e cos E), from a start that is not converged and from one that is.
+        for start in [0.2, kepler(0.6, 0.7, 0.7).solution[0]] {
+            let x = kepler(
+                Dual::variable(0.6),
+                Dual::constant(0.7),
+                Dual::constant(start),
+            )
+            .solution[0];
+            let expected = x.value.sin() / (1.0 - 0.6 * x.value.cos());
+            assert!((x.slope - expected).abs() < 1e-14, "{x:?} {expected}");
+        }
+    }
+
+    #[test]
+    fn second_derivatives_by_nesting() {
+        let constant = |value| Dual::constant(Dual::constant(value));
+        let eccentricity = Dual {
+            value: Dual::variable(0.6),
+            slope: Dual::constant(1.0),
+        };
+        let x = kepler(eccentricity, constant(0.7), constant(0.7)).solution[0];
+        let (sine, cosine) = x.value.value.sin_cos();
+        let first = sine / (1.0 - 0.6 * cosine);
+        let second = first * (2.0 * cosine - 0.6 * sine * first) / (1.0 - 0.6 * cosine);
+        assert!((x.slope.slope - second).abs() < 1e-13, "{x:?} {second}");
+    }
+
+    #[test]
+    fn single_precision() {
+        let solved = kepler(0.9_f32, 0.5, 0.5);
+        assert!(solved.converged, "{solved:?}");
+        let x = f64::from(solved.solution[0]);
+        assert!((x - 0.9 * x.sin() - 0.5).abs() < 2e-7);
+    }
+
+    /// `v − u = R i + V ln(1 + i / I)`, a diode with a series resistor, for the current.
+    fn rectifier<T: Real>(difference: T, start: T) -> Solved<T, 1> {
+        let [resistance, thermal, saturation] = [10.0, 0.025852, 1e-12].map(T::from_f64);
+        newton(SVector::from([start]), |i| {
+            let one = T::from_f64(1.0);
+            let law = resistance * i[0] + thermal * (one + i[0] / saturation).ln();
+            let slope = resistance + thermal / (saturation + i[0]);
+            (SVector::from([difference - law]), SMatrix::from([[-slope]]))
+        })
+    }
+
+    #[test]
+    fn rectifier_in_both_directions() {
+        for difference in [5.0, 0.7, 0.1, 1e-3, 0.0, -0.1, -0.2] {
+            let solved = rectifier(difference, 0.0);
+            let current: f64 = solved.solution[0];
+            let law = 10.0 * current + 0.025852 * (current / 1e-12).ln_1p();
+            assert!(solved.converged, "{difference} {solved:?}");
+            assert!((law - difference).abs() < 1e-12, "{difference} {solved:?}");
+        }
+        // The current is that of saturation up to 4e-9 of it; the law is not defined beyond.
+        let blocked = rectifier(-0.5, 0.0);
+        assert!(
+            blocked.converged && (blocked.solution[0] + 1e-12).abs() < 1e-20,
+            "{blocked:?}"
+        );
+    }
+
+    #[test]
+    fn lanes_are_solved_each_for_itself() {
+        let both = rectifier(Pair([5.0, -0.1]), Pair([0.0; 2]));
+        let alone = [5.0, -0.1].map(|difference| rectifier(difference, 0.0).solution[0]);
+        assert!(both.converged);
+        for (lane, alone) in both.solution[0].0.iter().zip(alone) {
+            assert!((lane / alone - 1.0).abs() < 1e-12, "{lane} {alone}");
+        }
+    }
+
+    #[test]
+    fn rosenbrock_from_the_usual_start() {
+        let solved = newton(SVector::from([-1.2, 1.0]), |x: &SVector<f64, 2>| {
             (
-                SVector::from([residual]),
-                SMatrix::from([[1e-12 / 0.025 * exponential + 0.1]]),
+                SVector::from([10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]),
+                SMatrix::from([[-20.0 * x[0], -1.0], [10.0, 0.0]]),
             )
         });
+        assert!(solved.converged);
+        assert!((solved.solution - SVector::from([1.0, 1.0])).norm() < 1e-15);
+    }
+
+    /// Broyden's tridiagonal function `(3 − 2xᵢ) xᵢ − xᵢ₋₁ − 2xᵢ₊₁ + 1`, rows scaled by 10³ⁱ.
+    fn broyden<const K: usize>() {
+        let solved = newton(SVector::from([-1.0; K]), |x: &SVector<f64, K>| {
+            let weight = |i: usize| 1e3_f64.powi(i as i32);
+            let at = |i: Option<usize>| i.and_then(|i| x.get(i)).copied().unwrap_or(0.0);
+            let residual = SVector::from_fn(|i, _| {
+                let row = (3.0 - 2.0 * x[i]) * x[i] - at(i.checked_sub(1)) - 2.0 * at(Some(i + 1));
+                weight(i) * (row + 1.0)
+            });
+            let jacobian = SMatrix::from_fn(|i, j| {
+                weight(i)
+                    * match (i + 1).cmp(&(j + 1)) {
+                        core::cmp::Ordering::Equal => 3.0 - 4.0 * x[i],
+                        core::cmp::Ordering::Greater if i == j + 1 => -1.0,
+                        core::cmp::Ordering::Less if j == i + 1 => -2.0,
+                        _ => 0.0,
+                    }
+            });
+            (residual, jacobian)
+        });
         assert!(solved.converged, "{solved:?}");
-        let current = (10.0 - solved.solution[0]) / 10.0;
-        let expected = 0.025 * f64::ln(current / 1e-12 + 1.0);
-        assert!(f64::abs(solved.solution[0] - expected) < 1e-14);
+        assert!(
+            solved.residual < 1e-14 && solved.iterations < 9,
+            "{solved:?}"
+        );
+    }
+
+    #[test]
+    fn one_to_six_unknowns() {
+        broyden::<1>();
+        broyden::<2>();
+        broyden::<3>();
+        broyden::<4>();
+        broyden::<5>();
+        broyden::<6>();
+    }
+
+    #[test]
+    fn nothing_to_solve() {
+        let solved = newton(SVector::<f64, 0>::from([]), |x| {
+            (*x, SMatrix::from_element(0.0))
+        });
+        assert!(solved.converged);
+    }
+
+    #[test]
+    fn zero_is_a_solution_too() {
+        for start in [0.0, 1e-12, 3.0] {
+            let solved = newton(SVector::from([start]), |x: &SVector<f64, 1>| {
+                // The rounding of 7 that remains at the solution.
+                let residual = (x[0] + 7.1) * (x[0] + 7.1) - 7.1 * 7.1 + 1e-16;
+                (
+                    SVector::from([residual]),
+                    SMatrix::from([[2.0 * (x[0] + 7.1)]]),
+                )
+            });
+            assert!(
+                solved.converged && solved.solution[0].abs() < 1e-15,
+                "{solved:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn without_a_solution_it_says_so() {
+        let parabola = |offset: f64| {
+            newton(SVector::from([0.7]), move |x: &SVector<f64, 1>| {
+                (
+                    SVector::from([x[0] * x[0] + offset]),
+                    SMatrix::from([[2.0 * x[0]]]),
+                )
+            })
+        };
+        assert!(parabola(-1.0).converged);
+        let solved = parabola(1.0);
+        assert!(!solved.converged && solved.residual > 0.1, "{solved:?}");
+        let singular = newton(SVector::from([0.0]), |_: &SVector<f64, 1>| {
+            (SVector::from([1.0]), SMatrix::from([[0.0]]))
+        });
+        assert!(!singular.converged, "{singular:?}");
+        let nan = newton(SVector::from([0.0]), |_: &SVector<f64, 1>| {
+            (SVector::from([f64::NAN]), SMatrix::from([[1.0]]))
+        });
+        assert!(!nan.converged, "{nan:?}");
     }
 }

@@ -1,0 +1,237 @@
+//! Elements and the bonds between them.
+
+use proc_macro2::Span;
+
+use super::model::{State, StateRate};
+use super::scope::Entity;
+use super::{Builder, Pending, component_names};
+use crate::codes;
+use crate::diagnostics::error;
+use crate::graph::{Bond, Element, ElementId, ElementKind, End, Law, Rule};
+use crate::symbolic::Expression;
+use crate::syntax::ast::{self, ChainNode};
+
+impl<'a> Builder<'a> {
+    /// Puts the elements in a junction's braces at the junction.
+    pub(super) fn fill_junction(&mut self, scope: usize, junction: &'a ast::Junction) {
+        let Some(Entity::Junction(id, range)) = self.scopes[scope]
+            .names
+            .get(&junction.name.to_string())
+            .cloned()
+        else {
+            return;
+        };
+        for element in &junction.elements {
+            if is_two_port(element.kind) {
+                let message = format!(
+                    "a {:?} has two ports; put it between two arrows",
+                    element.kind
+                );
+                self.tell(scope, error(codes::UNCONNECTED, element.span, message));
+                continue;
+            }
+            let end = End::Junction(id, range.clone());
+            self.one_port_at(scope, element, end, range.len(), element.name.span());
+        }
+    }
+
+    fn one_port_at(
+        &mut self,
+        scope: usize,
+        element: &'a ast::Element,
+        end: End,
+        dimension: usize,
+        span: Span,
+    ) {
+        if let Some(own) = element.dimension.filter(|own| *own != dimension) {
+            let message = format!(
+                "`{}` has dimension {own}, its junction {dimension}",
+                element.name
+            );
+            self.tell(
+                scope,
+                error(codes::WRONG_DIMENSION, element.name.span(), message),
+            );
+            return;
+        }
+        let id = self.element(scope, element, dimension);
+        let source = matches!(element.kind, ElementKind::Se | ElementKind::Sf);
+        let (from, to) = if source {
+            (End::OnePort(id), end.clone())
+        } else {
+            (end.clone(), End::OnePort(id))
+        };
+        self.bond(scope, from, to, dimension, span);
+        self.gyroscopic(scope, element, id, &end, dimension);
+    }
+
+    /// `gyroscopic` puts the Euler junction structure at the same junction.
+    fn gyroscopic(
+        &mut self,
+        scope: usize,
+        element: &ast::Element,
+        storage: ElementId,
+        end: &End,
+        dimension: usize,
+    ) {
+        let Some(mark) = element
+            .fields
+            .iter()
+            .find(|field| field.name == "gyroscopic")
+        else {
+            return;
+        };
+        if dimension != 3 || !matches!(end, End::Junction(..)) {
+            let message = "`gyroscopic` needs an inertia of dimension 3 at a junction";
+            self.tell(
+                scope,
+                error(codes::WRONG_DIMENSION, mark.name.span(), message),
+            );
+            return;
+        }
+        let name = format!("{}.gyroscopic", self.graph.elements[storage.0].name);
+        let span = self.place(scope, mark.name.span());
+        let origin = self.graph.origins.add(name.clone(), span);
+        let id = ElementId(self.graph.elements.len());
+        self.graph.elements.push(Element {
+            kind: ElementKind::EJS,
+            name,
+            law: Law::EulerJunction(Vec::new()),
+            rule: Rule::Gyroscopic,
+            derivative: false,
+            origin,
+        });
+        self.ports.push((0..0, 3));
+        self.bond(scope, end.clone(), End::OnePort(id), 3, span);
+        self.pending
+            .push(Pending::Gyroscopic { scope, storage, id });
+    }
+
+    /// Adds an element with a law to be read later, and its states.
+    fn element(&mut self, scope: usize, element: &'a ast::Element, dimension: usize) -> ElementId {
+        let path = self.path(scope, &element.name);
+        let span = self.place(scope, element.name.span());
+        let origin = self.graph.origins.add(path.clone(), span);
+        let id = ElementId(self.graph.elements.len());
+        let start = self.states.len();
+        if let Some(letter) = state_letter(element.kind) {
+            for (component, variable) in component_names(&format!("{path}.{letter}"), dimension, "")
+                .into_iter()
+                .enumerate()
+            {
+                let rate = StateRate::Storage(id, component);
+                self.states.push(State {
+                    variable,
+                    initial: Expression::ZERO,
+                    rate,
+                    span,
+                });
+            }
+        }
+        self.graph.elements.push(Element {
+            kind: element.kind,
+            name: path,
+            law: Law::Source(Vec::new()),
+            rule: Rule::Either,
+            derivative: element.derivative.is_some() || self.scopes[scope].derivative,
+            origin,
+        });
+        self.ports.push((start..self.states.len(), dimension));
+        self.name(scope, &element.name, Entity::Element(id));
+        self.pending.push(Pending::Law { scope, element, id });
+        id
+    }
+
+    fn bond(&mut self, scope: usize, from: End, to: End, dimension: usize, span: Span) {
+        let path = format!(
+            "{} -> {}",
+            self.graph.end_name(&from),
+            self.graph.end_name(&to)
+        );
+        let origin = self.graph.origins.add(path, self.place(scope, span));
+        self.graph.bonds.push(Bond {
+            from,
+            to,
+            dimension,
+            origin,
+        });
+    }
+
+    /// Bonds the nodes of a chain.
+    pub(super) fn chain(&mut self, scope: usize, chain: &'a ast::Chain) {
+        let known: Vec<Option<(End, usize)>> = chain
+            .nodes
+            .iter()
+            .map(|node| match node {
+                ChainNode::Reference(reference) => self.resolve(scope, reference),
+                ChainNode::Element(_) => None,
+            })
+            .collect();
+        let ends: Vec<Option<(End, End, usize)>> = (0..chain.nodes.len())
+            .map(|position| match &chain.nodes[position] {
+                ChainNode::Reference(_) => known[position]
+                    .clone()
+                    .map(|(end, size)| self.both_sides(end, size)),
+                ChainNode::Element(element) => {
+                    let neighbour = [position.wrapping_sub(1), position + 1]
+                        .into_iter()
+                        .find_map(|side| known.get(side).cloned().flatten());
+                    self.chain_element(scope, element, neighbour)
+                }
+            })
+            .collect();
+        for (position, arrow) in chain.arrows.iter().enumerate() {
+            if let (Some((_, from, size)), Some((to, _, other))) =
+                (&ends[position], &ends[position + 1])
+            {
+                let size = if *size == 0 { *other } else { *size };
+                self.bond(scope, from.clone(), to.clone(), size, *arrow);
+            }
+        }
+    }
+
+    /// The ends that an arrow arriving and an arrow leaving see, and the dimension (0 while unknown).
+    fn both_sides(&self, end: End, size: usize) -> (End, End, usize) {
+        match end {
+            End::OnePort(id) if is_two_port(self.graph.elements[id.0].kind) => {
+                (End::In(id), End::Out(id), 0)
+            }
+            end => (end.clone(), end, size),
+        }
+    }
+
+    fn chain_element(
+        &mut self,
+        scope: usize,
+        element: &'a ast::Element,
+        neighbour: Option<(End, usize)>,
+    ) -> Option<(End, End, usize)> {
+        let size = neighbour.as_ref().map_or(1, |(_, size)| *size);
+        if is_two_port(element.kind) {
+            let id = self.element(scope, element, size);
+            return Some((End::In(id), End::Out(id), 0));
+        }
+        let size = element.dimension.unwrap_or(size.max(1));
+        let id = self.element(scope, element, size);
+        if let Some((end, _)) = neighbour {
+            self.gyroscopic(scope, element, id, &end, size);
+        }
+        Some((End::OnePort(id), End::OnePort(id), size))
+    }
+}
+
+/// Whether an element has two ports.
+pub(super) fn is_two_port(kind: ElementKind) -> bool {
+    matches!(
+        kind,
+        ElementKind::TF | ElementKind::GY | ElementKind::MTF | ElementKind::MGY
+    )
+}
+
+fn state_letter(kind: ElementKind) -> Option<char> {
+    match kind {
+        ElementKind::I => Some('p'),
+        ElementKind::C => Some('q'),
+        _ => None,
+    }
+}

@@ -1,0 +1,172 @@
+//! Named values: `let`s, the arguments of instances and gravity.
+//!
+//! Each is worked out when it is first needed, so that the order of declaration does not matter. What a value needs is
+//! worked out before it, from a list rather than by recursion: chains of bodies refer to each other link by link, and
+//! the stack must not grow with them.
+
+use proc_macro2::Ident;
+use syn::Expr;
+
+use super::Builder;
+use super::expressions::{Result, Value};
+use super::scope::Entity;
+use crate::codes;
+use crate::diagnostics::error;
+
+/// A named value.
+pub(super) struct Definition<'a> {
+    /// Where the names in its expression get their meaning.
+    pub(super) scope: usize,
+    /// Its name, where it is given.
+    pub(super) name: &'a Ident,
+    /// Its path.
+    pub(super) path: String,
+    /// Dimension, when declared: a number then stands for each component.
+    pub(super) dimension: Option<usize>,
+    /// What it stands for.
+    pub(super) value: &'a Expr,
+    /// How far it is.
+    pub(super) progress: Progress,
+}
+
+/// How far a definition is.
+pub(super) enum Progress {
+    /// Nothing has needed it yet.
+    Unread,
+    /// Worked out.
+    Known(Value),
+    /// It has no value, which has been told.
+    Failed,
+}
+
+/// Why an expression has no value yet.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Missing {
+    /// It needs a definition that has not been read.
+    Definition(usize),
+    /// It needs something that is broken, which has been told.
+    Broken,
+}
+
+/// All of them by number.
+pub(super) type Definitions<'a> = Vec<Definition<'a>>;
+
+impl<'a> Builder<'a> {
+    /// A value called `name` in a scope, whose expression has its names from the scope given with it.
+    pub(super) fn definition(
+        &mut self,
+        scope: usize,
+        name: &'a Ident,
+        dimension: Option<usize>,
+        (names, value): (usize, &'a Expr),
+    ) -> Entity {
+        self.definitions.push(Definition {
+            scope: names,
+            name,
+            path: self.path(scope, name),
+            dimension,
+            value,
+            progress: Progress::Unread,
+        });
+        Entity::Definition(self.definitions.len() - 1)
+    }
+
+    /// Tries again and again, each time with one more definition known, until it works or fails for its own reason.
+    pub(super) fn settle(
+        &mut self,
+        scope: usize,
+        mut attempt: impl FnMut(&mut Self) -> Result<()>,
+    ) {
+        loop {
+            let result = attempt(self);
+            match self.missing.take() {
+                Some(Missing::Definition(missing)) if self.define(missing) => {}
+                // The reason has been told where it lies.
+                Some(_) => return,
+                None => {
+                    if let Err(report) = result {
+                        self.tell(scope, *report);
+                    }
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Works out a definition and all that it needs; false if it has no value.
+    pub(super) fn define(&mut self, wanted: usize) -> bool {
+        let mut open = vec![wanted];
+        while let Some(&current) = open.last() {
+            match self.definitions[current].progress {
+                Progress::Known(_) => {
+                    open.pop();
+                    continue;
+                }
+                Progress::Failed => break,
+                Progress::Unread => {}
+            }
+            let result = self.read(current);
+            match (self.missing.take(), result) {
+                (Some(Missing::Definition(needed)), _) if open.contains(&needed) => {
+                    self.report_cycle(&open, needed);
+                    break;
+                }
+                (Some(Missing::Definition(needed)), _) => open.push(needed),
+                (Some(Missing::Broken), _) => break,
+                (None, Ok(value)) => self.definitions[current].progress = Progress::Known(value),
+                (None, Err(report)) => {
+                    self.tell(self.definitions[current].scope, *report);
+                    break;
+                }
+            }
+        }
+        for failed in &open {
+            self.definitions[*failed].progress = Progress::Failed;
+        }
+        open.is_empty()
+    }
+
+    /// Reports mistakes in what the user has defined and nothing needs.
+    pub(super) fn define_unread(&mut self) {
+        // A value that nothing needs must not make anything measure an effort or a flow.
+        let signals = self.signals.clone();
+        for definition in 0..self.definitions.len() {
+            if self.scopes[self.definitions[definition].scope]
+                .library
+                .is_none()
+            {
+                self.define(definition);
+            }
+        }
+        self.signals = signals;
+    }
+
+    fn read(&mut self, definition: usize) -> Result<Value> {
+        let Definition {
+            scope,
+            name,
+            dimension,
+            value,
+            ..
+        } = self.definitions[definition];
+        let value = self.evaluate(scope, value)?;
+        match (dimension, &value) {
+            (None, _) => Ok(value),
+            (Some(dimension), Value::Scalar(number)) => Ok(Value::column(vec![*number; dimension])),
+            (Some(dimension), _) => self.entries(&value, dimension, name).map(Value::column),
+        }
+    }
+
+    fn report_cycle(&mut self, open: &[usize], needed: usize) {
+        let path = |definition: &usize| format!("`{}`", self.definitions[*definition].path);
+        let cycle = open.iter().skip_while(|definition| **definition != needed);
+        let through: Vec<String> = cycle.chain([&needed]).map(path).collect();
+        let Definition { scope, name, .. } = self.definitions[needed];
+        let message = format!("{} is defined by itself", path(&needed));
+        let report = error(codes::CYCLE, name.span(), message);
+        self.tell(
+            scope,
+            report.note(format!("each needs the next: {}", through.join(", "))),
+        );
+    }
+}

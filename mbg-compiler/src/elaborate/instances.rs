@@ -1,0 +1,136 @@
+//! Components in use.
+
+use proc_macro2::Ident;
+
+use super::Builder;
+use super::scope::{Entity, Scope};
+use crate::codes;
+use crate::diagnostics::{error, listing};
+use crate::graph::End;
+use crate::syntax::{ast, library};
+
+impl<'a> Builder<'a> {
+    /// Puts a component in place.
+    pub(super) fn instance(&mut self, scope: usize, instance: &'a ast::Instance) {
+        let components = self.components;
+        let Some(component) = components.get(&instance.component.to_string()) else {
+            self.unknown_component(scope, &instance.component);
+            self.name(scope, &instance.name, Entity::Opaque);
+            return;
+        };
+        let derivative = self.scopes[scope].derivative
+            || instance.derivative.is_some()
+            || component.derivative.is_some();
+        let around = &self.scopes[scope];
+        let place = (component.name.to_string(), instance.name.span());
+        let inner = self.scopes.add(Scope {
+            prefix: format!("{}.", self.path(scope, &instance.name)),
+            derivative,
+            library: around
+                .library
+                .clone()
+                .or(component.library.then_some(place)),
+            wholes: around.wholes.of_instance(instance, component),
+            ..Scope::default()
+        });
+        self.name(scope, &instance.name, Entity::Instance(inner));
+        self.ports_of(scope, inner, instance, component);
+        self.arguments_of(scope, inner, instance, component);
+        self.declare(inner, &component.statements);
+    }
+
+    fn ports_of(
+        &mut self,
+        scope: usize,
+        inner: usize,
+        instance: &ast::Instance,
+        component: &ast::Component,
+    ) {
+        if instance.connections.len() != component.ports.len() {
+            let message = format!(
+                "`{}` has {} ports, found {} junctions",
+                component.name,
+                component.ports.len(),
+                instance.connections.len()
+            );
+            self.tell(
+                scope,
+                error(codes::UNCONNECTED, instance.name.span(), message),
+            );
+        }
+        for (position, port) in component.ports.iter().enumerate() {
+            let given = instance
+                .connections
+                .get(position)
+                .and_then(|reference| self.resolve(scope, reference));
+            let entity = match given {
+                Some((End::Junction(id, range), size)) if size == port.dimension => {
+                    Entity::Junction(id, range)
+                }
+                Some((_, size)) => {
+                    let message = format!(
+                        "port `{}` has dimension {}, found {size}",
+                        port.name, port.dimension
+                    );
+                    let span = instance.connections[position].span;
+                    self.tell(scope, error(codes::WRONG_DIMENSION, span, message));
+                    Entity::Opaque
+                }
+                None => Entity::Opaque,
+            };
+            self.name(inner, &port.name, entity);
+        }
+    }
+
+    /// Declares the parameters, with the arguments or defaults as their values.
+    fn arguments_of(
+        &mut self,
+        scope: usize,
+        inner: usize,
+        instance: &'a ast::Instance,
+        component: &'a ast::Component,
+    ) {
+        for argument in &instance.arguments {
+            let known = |parameter: &ast::Parameter| parameter.name == argument.name;
+            if !component.parameters().any(known) {
+                let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
+                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+                let names = component.parameters().map(|known| known.name.to_string());
+                let help = format!("its parameters are {}", listing(names));
+                self.tell(scope, report.help(help));
+            }
+        }
+        for parameter in component.parameters() {
+            let name = &parameter.name;
+            let value = match (instance.argument(name), &parameter.default) {
+                (Some((name, argument)), _) => {
+                    self.definition(inner, name, parameter.dimension, (scope, argument))
+                }
+                (None, Some(default)) => {
+                    self.definition(inner, name, parameter.dimension, (inner, default))
+                }
+                (None, None) => {
+                    let message = format!("`{}` needs a value for `{name}`", component.name);
+                    let report = error(codes::MISSING_DEFAULT, instance.name.span(), message);
+                    self.tell(scope, report.help(format!("write `{{ {name}: … }}`")));
+                    Entity::Opaque
+                }
+            };
+            self.name(inner, name, value);
+        }
+    }
+
+    fn unknown_component(&mut self, scope: usize, name: &Ident) {
+        let message = format!("component `{name}` is not declared");
+        let components = self.components;
+        let mut known: Vec<&str> = library::names().collect();
+        known.extend(components.keys().map(String::as_str));
+        let mut report = error(codes::UNKNOWN_NAME, name.span(), message)
+            .did_you_mean(&name.to_string(), &known);
+        if report.helps.is_empty() {
+            let names = listing(library::names().map(str::to_owned));
+            report = report.help(format!("the library has {names}"));
+        }
+        self.tell(scope, report);
+    }
+}

@@ -1,0 +1,151 @@
+//! References to junctions and elements, in chains and in instances.
+
+use std::ops::Range;
+
+use super::Builder;
+use super::expressions::{Result, Step, component_index};
+use super::scope::Entity;
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error, listing};
+use crate::graph::End;
+use crate::syntax::ast::{Reference, Segment, Selection};
+use crate::syntax::dump;
+
+impl Builder<'_> {
+    /// What a reference stands for, and its dimension; none if that is broken, which is told.
+    pub(super) fn resolve(&mut self, scope: usize, reference: &Reference) -> Option<(End, usize)> {
+        self.end_of(scope, reference).unwrap_or_else(|report| {
+            self.tell(scope, *report);
+            None
+        })
+    }
+
+    fn end_of(&self, scope: usize, reference: &Reference) -> Result<Option<(End, usize)>> {
+        let steps: Result<Vec<Step>> = reference
+            .path
+            .iter()
+            .enumerate()
+            .map(|(place, segment)| {
+                let last = place + 1 == reference.path.len();
+                self.step(scope, segment, last)
+            })
+            .collect();
+        let Some((entity, count)) = self.scopes.follow(scope, &steps?)? else {
+            return Err(self.undeclared(scope, reference));
+        };
+        let (selection, rest) = (
+            &reference.path[count - 1].selection,
+            &reference.path[count..],
+        );
+        match (entity, selection, rest) {
+            (Entity::Opaque, _, _) => Ok(None),
+            (Entity::Junction(id, range), None, []) => {
+                Ok(Some((End::Junction(*id, range.clone()), range.len())))
+            }
+            (Entity::Junction(id, range), Some(selection), []) => {
+                let picked = self.range(scope, selection)?;
+                let picked = pick(reference, count, picked, range)?;
+                let size = picked.len();
+                Ok(Some((End::Junction(*id, picked), size)))
+            }
+            (
+                Entity::Junction(id, range),
+                None,
+                [
+                    Segment {
+                        name,
+                        selection: None,
+                    },
+                ],
+            ) => {
+                let index =
+                    component_index(name).ok_or_else(|| self.undeclared(scope, reference))?;
+                let index = index as i64;
+                let picked = pick(reference, count, index..index + 1, range)?;
+                Ok(Some((End::Junction(*id, picked), 1)))
+            }
+            (Entity::Element(id), None, []) => Ok(Some((End::OnePort(*id), self.ports[id.0].1))),
+            (_, _, [_, ..]) => Err(self.undeclared(scope, reference)),
+            _ => {
+                let text = dump::reference(reference);
+                let message = format!("expected a junction or an element, found `{text}`");
+                Err(Box::new(error(
+                    codes::UNKNOWN_NAME,
+                    reference.span,
+                    message,
+                )))
+            }
+        }
+    }
+
+    /// One step of a path; what stands in brackets after the last one selects components.
+    fn step(&self, scope: usize, segment: &Segment, last: bool) -> Result<Step> {
+        let name = segment.name.clone();
+        let index = match &segment.selection {
+            Some(selection) if !last => {
+                if selection.end.is_some() {
+                    let message = format!("a range of `{name}` has no names; give one iteration");
+                    return Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)));
+                }
+                let number = self.scopes[scope].wholes.evaluate(&selection.start)?;
+                Some((number, name.span()))
+            }
+            _ => None,
+        };
+        Ok(Step { name, index })
+    }
+
+    /// The numbers that a selection gives.
+    fn range(&self, scope: usize, selection: &Selection) -> Result<Range<i64>> {
+        let wholes = &self.scopes[scope].wholes;
+        let start = wholes.evaluate(&selection.start)?;
+        let end = match &selection.end {
+            Some(end) => wholes.evaluate(end)?,
+            None => start.saturating_add(1),
+        };
+        Ok(start..end)
+    }
+
+    fn undeclared(&self, scope: usize, reference: &Reference) -> Box<Diagnostic> {
+        let message = format!("`{}` is not declared", dump::reference(reference));
+        let known = self.scopes.visible(scope);
+        let last = reference.path.last().map(|last| last.name.to_string());
+        let report = error(codes::UNKNOWN_NAME, reference.span, message)
+            .did_you_mean(&last.unwrap_or_default(), &known);
+        let junctions: Vec<String> = known
+            .iter()
+            .filter(|name| matches!(self.scopes.find(scope, name), Some(Entity::Junction(..))))
+            .map(|name| (*name).to_owned())
+            .collect();
+        Box::new(if report.helps.is_empty() && !junctions.is_empty() {
+            report.help(format!("junctions here are {}", listing(junctions)))
+        } else {
+            report
+        })
+    }
+}
+
+/// The components picked out of those in `range`, the junction having been found after `count` steps.
+fn pick(
+    reference: &Reference,
+    count: usize,
+    picked: Range<i64>,
+    range: &Range<usize>,
+) -> Result<Range<usize>> {
+    let (text, junction) = (dump::reference(reference), &reference.path[count - 1].name);
+    let message = match (usize::try_from(picked.start), usize::try_from(picked.end)) {
+        (Ok(start), Ok(end)) if start < end && end <= range.len() => {
+            return Ok(range.start + start..range.start + end);
+        }
+        _ if picked.is_empty() => format!("`{text}` selects no component"),
+        _ => format!(
+            "`{junction}` has {} components, `{text}` asks for more",
+            range.len()
+        ),
+    };
+    Err(Box::new(error(
+        codes::WRONG_DIMENSION,
+        reference.span,
+        message,
+    )))
+}

@@ -1,0 +1,91 @@
+//! Components that ship with the compiler, written in the language itself.
+//!
+//! A model uses them by name. A component that the user declares under the same name wins.
+
+use std::collections::BTreeSet;
+
+use super::ast::{Component, Item, Source, Statement};
+use super::items;
+use super::recovery::Sink;
+use crate::diagnostics::Diagnostics;
+
+macro_rules! files {
+    ($($name:literal: $file:literal,)*) => {
+        /// Names and texts, in order of names.
+        const FILES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../library/", $file)))),*];
+    };
+}
+
+files! {
+    "Body": "body.mbg",
+    "Offset": "offset.mbg",
+    "PlanarBody": "planar_body.mbg",
+    "PlanarOffset": "planar_offset.mbg",
+    "PlanarPrismatic": "planar_prismatic.mbg",
+    "PlanarRevolute": "planar_revolute.mbg",
+    "Prismatic": "prismatic.mbg",
+    "Revolute": "revolute.mbg",
+    "Turn": "turn.mbg",
+}
+
+/// The names of all components of the library.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    FILES.iter().map(|(name, _)| *name)
+}
+
+/// The text of a component.
+#[must_use]
+pub fn text(name: &str) -> Option<&'static str> {
+    let file = FILES.iter().find(|(known, _)| *known == name);
+    file.map(|(_, text)| *text)
+}
+
+/// Adds the components that a source uses and does not declare; only these are ever read.
+pub(super) fn complete(source: &mut Source) {
+    let mut known: BTreeSet<String> = BTreeSet::new();
+    let mut used = Vec::new();
+    for item in &source.items {
+        match item {
+            Item::Model(model) => instances(&model.statements, &mut used),
+            Item::Component(component) => {
+                known.insert(component.name.to_string());
+                instances(&component.statements, &mut used);
+            }
+        }
+    }
+    while let Some(name) = used.pop() {
+        if known.contains(&name) {
+            continue;
+        }
+        if let Some(component) = text(&name).and_then(read) {
+            instances(&component.statements, &mut used);
+            source.library.push(component);
+        }
+        known.insert(name);
+    }
+}
+
+/// The names of the components that statements call.
+fn instances(statements: &[Statement], names: &mut Vec<String>) {
+    for statement in statements {
+        match statement {
+            Statement::Instance(instance) => names.push(instance.component.to_string()),
+            Statement::Loop(repeated) => instances(&repeated.statements, names),
+            _ => {}
+        }
+    }
+}
+
+/// Reads one file of the library, in which a test finds no mistakes.
+fn read(text: &str) -> Option<Component> {
+    let tokens = text.parse().ok()?;
+    let mut unheard = Diagnostics::new();
+    let source = items::source(tokens, &mut Sink::new(&mut unheard));
+    source.items.into_iter().find_map(|item| match item {
+        Item::Component(component) => Some(Component {
+            library: true,
+            ..component
+        }),
+        Item::Model(_) => None,
+    })
+}

@@ -1,0 +1,367 @@
+//! Loops, named values and gravity, from the text to the flat graph.
+#![allow(clippy::unwrap_used)]
+
+mod models;
+
+use std::fmt::Write;
+
+use mbg_compiler::graph::BondId;
+use mbg_compiler::symbolic::Symbol;
+use mbg_compiler::symbolic::print::Printer;
+use models::{compiled, elaborated};
+
+/// Bonds, initial states and outputs of the flat graph.
+fn flat(text: &str) -> String {
+    let (model, pool) = elaborated(text).unwrap_or_else(|reported| panic!("{reported}"));
+    let mut text = String::new();
+    for bond in 0..model.graph.bonds.len() {
+        let dimension = model.graph.bonds[bond].dimension;
+        writeln!(
+            text,
+            "{} [{dimension}]",
+            model.graph.bond_name(BondId(bond))
+        )
+        .unwrap();
+    }
+    let name = |symbol| match symbol {
+        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
+        Symbol::State(index) => model.states[index].variable.name.clone(),
+        other => format!("{other:?}"),
+    };
+    let printer = Printer::new(&pool, &name);
+    for state in &model.states {
+        let (name, initial) = (&state.variable.name, printer.text(state.initial));
+        writeln!(text, "state {name} = {initial}").unwrap();
+    }
+    for output in &model.outputs {
+        let (name, value) = (&output.variable.name, printer.text(output.value));
+        writeln!(text, "output {name} = {value}").unwrap();
+    }
+    text
+}
+
+#[test]
+fn a_chain_of_masses_is_written_once() {
+    let text = "model Masses {
+        param stiffness = 2.0;
+        let count = 3;
+        masses: for k in 0..count {
+            1 rate { I body { inertia: k + 1, initial: k } }
+        }
+        springs: for k in 1..count {
+            0 force { C spring { stiffness: k * stiffness } }
+            masses[k-1].rate -> force;
+            force -> masses[k].rate;
+            output between = masses[k].body.p - masses[k-1].body.p;
+        }
+        output last = masses[count-1].body.p + springs[2].spring.q;
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    masses[0].rate -> masses[0].body [1]
+    masses[1].rate -> masses[1].body [1]
+    masses[2].rate -> masses[2].body [1]
+    springs[1].force -> springs[1].spring [1]
+    masses[0].rate -> springs[1].force [1]
+    springs[1].force -> masses[1].rate [1]
+    springs[2].force -> springs[2].spring [1]
+    masses[1].rate -> springs[2].force [1]
+    springs[2].force -> masses[2].rate [1]
+    state masses[0].body.p = 0
+    state masses[1].body.p = 1
+    state masses[2].body.p = 2
+    state springs[1].spring.q = 0
+    state springs[2].spring.q = 0
+    output springs[1].between = masses[1].body.p - masses[0].body.p
+    output springs[2].between = masses[2].body.p - masses[1].body.p
+    output last = masses[2].body.p + springs[2].spring.q
+    ");
+}
+
+#[test]
+fn an_unlabelled_loop_has_a_path_of_its_own() {
+    let text = "model M {
+        1 a[2];
+        for k in 0..2 { a[k] -> I m { inertia: 1.0 }; }
+        for k in 0..2 { for j in k..2 { 1 b { I m { inertia: 1.0 } } } }
+        for k in 5..5 { nowhere -> else_where; }
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    a.x -> k[0].m [1]
+    a.y -> k[1].m [1]
+    k'[0].j[0].b -> k'[0].j[0].m [1]
+    k'[0].j[1].b -> k'[0].j[1].m [1]
+    k'[1].j[1].b -> k'[1].j[1].m [1]
+    state k[0].m.p = 0
+    state k[1].m.p = 0
+    state k'[0].j[0].m.p = 0
+    state k'[0].j[1].m.p = 0
+    state k'[1].j[1].m.p = 0
+    ");
+}
+
+#[test]
+fn a_component_is_repeated_as_often_as_its_parameter_says() {
+    let text = "component Ladder(port a) {
+        param rungs;
+        param half = rungs / 2;
+        for k in 0..half { a -> R rung { resistance: k + 1 }; }
+    }
+    model M {
+        1 a { I m { inertia: 1.0 } }
+        for k in 1..3 { ladder: Ladder { rungs: 2 * k } (a); }
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    a -> m [1]
+    a -> k[1].ladder.k[0].rung [1]
+    a -> k[2].ladder.k[0].rung [1]
+    a -> k[2].ladder.k[1].rung [1]
+    state m.p = 0
+    ");
+}
+
+#[test]
+fn values_are_found_whatever_their_order_and_from_outside() {
+    let text = "component Arm(port a) {
+        param shift[2];
+        param turn = rot_x(0.0);
+        let tip[2] = [base.x + spring.q, base.y];
+        let base = 2 * shift;
+        a -> C spring { stiffness: 1.0 };
+        output height = (turn * [0.0, tip.y, 0.0]).z;
+    }
+    model M {
+        output reach = second.tip.x;
+        output beyond[2] = second.tip[0..2];
+        let quarter = rot_x(1.5);
+        second: Arm { shift: first.tip, turn: quarter } (b);
+        first: Arm { shift: 1.0 } (a);
+        1 a { I m { inertia: 1.0 } }
+        1 b { I n { inertia: 1.0 } }
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    b -> second.spring [1]
+    a -> first.spring [1]
+    a -> m [1]
+    b -> n [1]
+    state second.spring.q = 0
+    state first.spring.q = 0
+    state m.p = 0
+    state n.p = 0
+    output reach = 2 (2 + first.spring.q) + second.spring.q
+    output beyond.x = 2 (2 + first.spring.q) + second.spring.q
+    output beyond.y = 4
+    output second.height = 3.989979946416218
+    output first.height = 0
+    ");
+}
+
+#[test]
+fn a_long_chain_of_values_needs_no_deep_stack() {
+    let text = "model M {
+        output first = links[0].sum;
+        links: for k in 0..3000 { let sum = if k == 2999 { spring.q } else { links[k+1].sum + 1.0 }; }
+        1 a { I m { inertia: 1.0 } C spring { stiffness: 1.0 } }
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    a -> m [1]
+    a -> spring [1]
+    state m.p = 0
+    state spring.q = 0
+    output first = … + … + 1 + 1 + 1 + 1 + 1 + 1 + 1 + 1 + 1 + 1 + 1
+    ");
+}
+
+#[test]
+fn a_value_that_nothing_reads_costs_nothing() {
+    let model = |body: &str| {
+        compiled(&format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} R r {{ resistance: 1.0 }} }} {body} output y = m.p; }}"
+        ))
+    };
+    let (with, without) = (model("let power = r.e * r.f;"), model(""));
+    assert_eq!(
+        with.model.signals.list().len(),
+        without.model.signals.list().len()
+    );
+    assert_eq!(with.states, without.states);
+}
+
+#[test]
+fn a_comparison_of_whole_numbers_chooses_at_compile_time() {
+    let text = "model M {
+        links: for k in 0..3 {
+            let before = if k > 0 { links[k-1].before + 1.0 } else { 0.5 };
+            let turn = if k % 2 == 0 { rot_x(spring.q) } else { rot_y(spring.q) };
+            output first = (turn * [0.0, 1.0, 0.0]).z;
+        }
+        1 a { I m { inertia: 1.0 } C spring { stiffness: 1.0 } }
+        output before = links[2].before;
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    a -> m [1]
+    a -> spring [1]
+    state m.p = 0
+    state spring.q = 0
+    output links[0].first = sin(spring.q)
+    output links[1].first = 0
+    output links[2].first = sin(spring.q)
+    output before = 2.5
+    ");
+}
+
+#[test]
+fn time_yields_to_a_value_of_its_name_and_to_nothing_else() {
+    let text = "model M {
+        1 a { R t { effort: 2.0 * f } I m { inertia: 1.0 } }
+        for t in 3..4 { output declared = t; }
+        output time = t;
+    }";
+    insta::assert_snapshot!(flat(text), @"
+    a -> t [1]
+    a -> m [1]
+    state m.p = 0
+    output t[3].declared = 3
+    output time = Time
+    ");
+}
+
+#[test]
+fn gravity_is_seen_by_every_component() {
+    let text = |statement: &str| {
+        format!(
+            "component Weight(port a[2]) {{
+            param mass;
+            Se weight {{ effort: mass * gravity }} -> a;
+            let down[2] = gravity;
+            output down[2] = down;
+        }}
+        model M {{
+            {statement}
+            param g = 9.81;
+            1 a[2] {{ I m {{ inertia: 2.0 }} }}
+            bodies: for k in 0..1 {{ weight: Weight {{ mass: 2.0 }} (a); }}
+        }}"
+        )
+    };
+    insta::assert_snapshot!(flat(&text("gravity [0.0, -g];")), @"
+    a -> m [2]
+    bodies[0].weight.weight -> a [2]
+    state m.p.x = 0
+    state m.p.y = 0
+    output bodies[0].weight.down.x = 0
+    output bodies[0].weight.down.y = -g
+    ");
+    insta::assert_snapshot!(flat(&text("")), @"
+    a -> m [2]
+    bodies[0].weight.weight -> a [2]
+    state m.p.x = 0
+    state m.p.y = 0
+    output bodies[0].weight.down.x = 0
+    output bodies[0].weight.down.y = 0
+    ");
+}
+
+/// Errors of a model with one mass around the statements given.
+fn mistake(statements: &str) -> String {
+    let text =
+        format!("model M {{ param n = 3.0; 1 a[3] {{ I m {{ inertia: 1.0 }} }}\n{statements} }}");
+    elaborated(&text).err().unwrap_or_default()
+}
+
+#[test]
+fn mistakes_in_loops_are_told() {
+    insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } a.x -> lings[0].b;"), @"
+    2:48 `lings[0].b` is not declared [MBG0203]
+      help: junctions here are `a`
+    ");
+    insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } links[2].b -> a.x;"), @"2:41 `links` runs over 0..2, there is no `links[2]` [MBG0203]");
+    insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = links[k-1].v; }"), @"2:38 `links` runs over 0..2, there is no `links[-1]` [MBG0203]");
+    insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = 1.0; } output y = links.v;"), @"2:50 `links` is a loop; write `links[0]` for its first iteration [MBG0203]");
+    insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = 1.0; } output y = links[a].v;"), @"
+    2:56 expected a whole number that is known while the model is compiled, found `a` [MBG0217]
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(mistake("for k in 0..2 { 1 b; } a.x -> b;"), @"
+    2:31 `b` is not declared [MBG0203]
+      help: junctions here are `a`
+    ");
+    insta::assert_snapshot!(mistake("for k in 0..n { 1 b; }"), @"
+    2:13 expected a whole number that is known while the model is compiled, found `n` [MBG0217]
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(mistake("for k in 0..2.0 { 1 b; }"), @"
+    2:13 expected a whole number that is known while the model is compiled, found `2.0` [MBG0217]
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(mistake("for k in 0..5 / 2 { 1 b; }"), @"
+    2:13 expected a whole number that is known while the model is compiled, found `5 / 2` [MBG0217]
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]");
+    insta::assert_snapshot!(mistake("a[2..1] -> R r { resistance: 1.0 };"), @"2:1 `a[2..1]` selects no component [MBG0204]");
+    insta::assert_snapshot!(mistake("output y = a.f[3];"), @"2:16 component 3 of a vector of 3 does not exist [MBG0204]");
+    insta::assert_snapshot!(mistake("output y[2] = a.f[2..4];"), @"2:19 components 2..4 of a vector of 3 do not exist [MBG0204]");
+    insta::assert_snapshot!(mistake("for k in 0..2 { param p = 1.0; input u; gravity 1.0; }"), @"
+    2:23 a parameter belongs to a model or a component; in a loop, use `let` [MBG0213]
+    2:38 an input belongs to a model; give a component a parameter or a port [MBG0213]
+    2:41 `gravity` belongs to a model, all of whose components see it [MBG0213]
+    ");
+    insta::assert_snapshot!(mistake("for k in 0..2 { 1 k; }"), @"2:19 `k` is declared twice [MBG0202]");
+}
+
+#[test]
+fn mistakes_in_values_are_told() {
+    insta::assert_snapshot!(mistake("let p = q + 1; let q = r; let r = 2 * p; let s = p; output y = s;"), @"
+    2:5 `p` is defined by itself [MBG0218]
+      each needs the next: `p`, `q`, `r`, `p`
+    ");
+    insta::assert_snapshot!(mistake("let p[2] = [1.0, 2.0, 3.0]; output y = p.x;"), @"2:5 `p` has dimension 2, found a vector of 3 [MBG0204]");
+    insta::assert_snapshot!(mistake("let p = nowhere;"), @"2:9 `nowhere` is not declared [MBG0203]");
+    insta::assert_snapshot!(mistake("let p = 1.0; let p = 2.0;"), @"2:18 `p` is declared twice [MBG0202]");
+    insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"2:14 expected a junction or an element, found `p` [MBG0203]");
+    insta::assert_snapshot!(mistake("param p[2] = 1.0;"), @"
+    2:7 `p` is a parameter of a model, which is a number [MBG0204]
+      help: give each component a parameter of its own, and `let p[2] = [first, second];`
+    ");
+}
+
+#[test]
+fn mistakes_with_gravity_are_told() {
+    insta::assert_snapshot!(mistake("gravity [0.0, 1.0]; a -> Se w { effort: 2.0 * gravity };"), @"2:41 expected a number or a vector of 3, found a vector of 2 [MBG0204]");
+    insta::assert_snapshot!(mistake("gravity 1.0; gravity 2.0;"), @"2:14 `gravity` is given twice [MBG0202]");
+    insta::assert_snapshot!(mistake("param gravity = 9.81;"), @"
+    2:7 `gravity` is the acceleration of free fall and names nothing else [MBG0202]
+      help: `gravity [0.0, 0.0, -9.81];` gives it its value
+    ");
+    insta::assert_snapshot!(mistake("gravity [gravity, 1.0];"), @"
+    2:1 `gravity` is defined by itself [MBG0218]
+      each needs the next: `gravity`, `gravity`
+    ");
+}
+
+#[test]
+fn the_size_of_loops_is_known_before_they_are_built() {
+    let nested = "for i in 0..1000000 { for j in 0..1000000 { a.x -> R r { resistance: 1.0 }; } }";
+    insta::assert_snapshot!(mistake(nested), @"
+    1:7 `M` has too many instances and iterations of loops, the limit is 4096 [MBG0601]
+      help: split the scene into models that exchange inputs and outputs
+    ");
+    let dependent = "for i in 0..1000000 { for j in 0..i { for k in 0..j {} } }";
+    insta::assert_snapshot!(mistake(dependent), @"
+    1:7 `M` has too many instances and iterations of loops, the limit is 4096 [MBG0601]
+      help: split the scene into models that exchange inputs and outputs
+    ");
+    let many = "for i in 0..2000 { a.x -> R r { resistance: 1.0 } -> a.y; R s { resistance: 1.0 } -> a.x; }";
+    insta::assert_snapshot!(mistake(many), @"
+    1:7 `M` has 6001 vector bonds, the limit is 4096 [MBG0601]
+      help: split the scene into models that exchange inputs and outputs
+    ");
+    assert_eq!(
+        mistake("for i in 0..0 { for j in 0..1000000000 { 1 b; } }"),
+        ""
+    );
+}

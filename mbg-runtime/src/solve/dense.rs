@@ -1,0 +1,102 @@
+//! Gaussian elimination with partial pivoting.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Order, dot, everywhere, exchanged, largest};
+use crate::Real;
+
+/// A square matrix as `P D A = L U`: rows scaled by `D` to a largest element of one, then exchanged by `P` so that no
+/// multiplier in `L` exceeds one (Golub and Van Loan, *Matrix Computations*, 4th ed., 3.4.1 and 3.5.2).
+///
+/// The scaling makes the pivots independent of the units of the rows. Of a singular matrix the solutions are not
+/// finite.
+pub(super) struct Factors<T, const K: usize> {
+    /// `U` on and above the diagonal, `L` without its unit diagonal below.
+    rows: [[T; K]; K],
+    scale: [T; K],
+    order: Order<T, K>,
+}
+
+impl<T: Real, const K: usize> Factors<T, K> {
+    pub(super) fn new(matrix: &SMatrix<T, K, K>) -> Self {
+        let mut rows = matrix.transpose().data.0;
+        let mut scale = [T::from_f64(1.0); K];
+        for (row, scale) in rows.iter_mut().zip(&mut scale) {
+            *scale = *scale / largest(*row);
+            row.iter_mut()
+                .for_each(|element| *element = *element * *scale);
+        }
+        let mut order = Order::unchanged();
+        for k in 0..K {
+            for i in k + 1..K {
+                let sizes = (rows[k][k].abs(), rows[i][k].abs());
+                if everywhere(sizes.0 - sizes.1, |difference| difference >= 0.0) {
+                    continue;
+                }
+                let (above, below) = rows.split_at_mut(i);
+                for (a, b) in below[0].iter_mut().zip(&mut above[k]) {
+                    (*a, *b) = exchanged(sizes.0, sizes.1, (*a, *b));
+                }
+                order.exchange(sizes, i, k);
+            }
+            let pivot_row = rows[k];
+            for row in &mut rows[k + 1..] {
+                let factor = row[k] / pivot_row[k];
+                row[k] = factor;
+                for (element, pivot) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
+                    *element -= factor * *pivot;
+                }
+            }
+        }
+        Self { rows, scale, order }
+    }
+
+    /// The `x` of `A x = right`.
+    pub(super) fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
+        let scaled = core::array::from_fn(|i| right[i] * self.scale[i]);
+        let mut x = self.order.apply(&scaled);
+        for i in 1..K {
+            x[i] -= dot(&self.rows[i][..i], &x[..i]);
+        }
+        for i in (0..K).rev() {
+            x[i] = (x[i] - dot(&self.rows[i][i + 1..], &x[i + 1..])) / self.rows[i][i];
+        }
+        SVector::from(x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::lanes::{Pair, random};
+
+    #[test]
+    fn solves_what_needs_pivots() {
+        let matrix = SMatrix::from([[0.0, 2.0, 1e20], [1e-20, 1.0, 0.0], [3.0, 0.0, 1e20]]);
+        let x = SVector::from([1.0, -2.0, 3.0]);
+        let found = Factors::new(&matrix).solve(&(matrix * x));
+        assert!((found - x).norm() < 1e-14, "{found}");
+    }
+
+    #[test]
+    fn a_singular_matrix_gives_nothing_finite() {
+        let matrix: SMatrix<f64, 2, 2> = SMatrix::from([[1.0, 2.0], [2.0, 4.0]]);
+        let x = Factors::new(&matrix).solve(&SVector::from([1.0, 1.0]));
+        assert!(x.iter().all(|x| !x.is_finite()), "{x}");
+    }
+
+    #[test]
+    fn lanes_pivot_each_for_itself() {
+        let mut random = random();
+        for _ in 0..100 {
+            let matrix = SMatrix::<_, 5, 5>::from_fn(|_, _| Pair([random(), random()]));
+            let right = SVector::<_, 5>::from_fn(|_, _| Pair([random(), random()]));
+            let both = Factors::new(&matrix).solve(&right);
+            for lane in 0..2 {
+                let alone =
+                    Factors::new(&matrix.map(|it| it.0[lane])).solve(&right.map(|it| it.0[lane]));
+                assert_eq!(both.map(|it| it.0[lane]), alone);
+            }
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! Symmetric positive semidefinite systems, singular ones included.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Order, dot, everywhere, exchanged, largest};
+use crate::Real;
+
+/// In units of precision, size and largest diagonal element: a pivot below it is rounding.
+const RANK: f64 = 8.0;
+
+/// What [`least_norm`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastNorm<T, const K: usize> {
+    /// The solution of least norm.
+    pub solution: SVector<T, K>,
+    /// Rank of the matrix; of several lanes the largest.
+    pub rank: usize,
+    /// `max |b − S λ|`, relative to `max |b|`: of the order of the precision when the system is consistent.
+    pub residual: T,
+}
+
+/// The `λ` of least norm of the consistent system `S λ = b` with `S` symmetric and positive semidefinite.
+///
+/// Such are the multipliers of closed loops, `S = G M⁻¹ Gᵀ`: singular where constraints are redundant or become so in
+/// passing, and then the forces `Gᵀ λ` are the same for every solution. Only the lower triangle of `S` decides on the
+/// rank.
+///
+/// `S` is factorised as `P S Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot (Higham,
+/// *Accuracy and Stability of Numerical Algorithms*, 2nd ed., 10.3). **The rank** is the number of pivots above
+/// `8 K ε max Sᵢᵢ`. That is the level of rounding in `S` and no more, on purpose: near a singular position a smaller
+/// pivot still carries a force, and ignoring it errs more than its rounding does.
+///
+/// With the rank `r`, `λ = L (LᵀL)⁻² Lᵀ b` is the solution of least norm. It is computed without the loss of digits of
+/// that formula: remove from `b` its part in the null space, solve the `r` equations of the pivots, and remove from
+/// `λ` its part in the null space, which `[−L₂₁ L₁₁⁻¹, 1]ᵀ` spans with a good condition. A regular matrix has no null
+/// space and is solved as usual. One step of iterative refinement follows. If `b` is not consistent the result is the
+/// least-squares solution of least norm.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::solve::least_norm;
+/// use nalgebra::{SMatrix, SVector};
+///
+/// // The same constraint twice: each multiplier takes half of the force.
+/// let found = least_norm(&SMatrix::from([[2.0, 2.0], [2.0, 2.0]]), &SVector::from([6.0, 6.0]));
+/// assert_eq!((found.rank, found.solution), (1, SVector::from([1.5, 1.5])));
+/// ```
+#[must_use]
+pub fn least_norm<T: Real, const K: usize>(
+    matrix: &SMatrix<T, K, K>,
+    right: &SVector<T, K>,
+) -> LeastNorm<T, K> {
+    let factors = Semidefinite::new(matrix);
+    let first = factors.solve(right);
+    let refinement = factors.solve(&remainder(matrix, &first, right));
+    let solution = first.zip_map(&refinement, |first, refinement| first + refinement);
+    let zero = T::from_f64(0.0);
+    let size = largest(right.iter().copied());
+    let residual = largest(remainder(matrix, &solution, right).iter().copied());
+    LeastNorm {
+        solution,
+        rank: factors.rank,
+        residual: residual / zero.select_less(size, size, T::from_f64(1.0)),
+    }
+}
+
+/// `b − S λ`.
+fn remainder<T: Real, const K: usize>(
+    matrix: &SMatrix<T, K, K>,
+    solution: &SVector<T, K>,
+    right: &SVector<T, K>,
+) -> SVector<T, K> {
+    let mut remainder = *right;
+    for (column, x) in matrix.data.0.iter().zip(solution.iter()) {
+        for (remainder, element) in remainder.iter_mut().zip(column) {
+            *remainder -= *element * *x;
+        }
+    }
+    remainder
+}
+
+/// A pivoted Cholesky factorisation and the null space.
+struct Semidefinite<T, const K: usize> {
+    /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
+    lower: [[T; K]; K],
+    order: Order<T, K>,
+    /// 1 in the lanes where a pivot counts, else 0.
+    kept: [T; K],
+    /// The first pivot that counts in no lane.
+    rank: usize,
+    /// Orthonormal vectors that span the null space, in the order of the pivots, from index `regular` on. A vector is
+    /// zero in lanes that are regular there.
+    null: [[T; K]; K],
+    /// The first pivot that does not count in every lane.
+    regular: usize,
+}
+
+impl<T: Real, const K: usize> Semidefinite<T, K> {
+    fn new(matrix: &SMatrix<T, K, K>) -> Self {
+        let zero = T::from_f64(0.0);
+        let mut factors = Self {
+            lower: matrix.transpose().data.0,
+            order: Order::unchanged(),
+            kept: [zero; K],
+            rank: K,
+            null: [[zero; K]; K],
+            regular: K,
+        };
+        factors.factorise();
+        factors.span_null_space();
+        factors
+    }
+
+    fn factorise(&mut self) {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let threshold =
+            T::from_f64(RANK * K as f64 * T::EPSILON) * largest((0..K).map(|i| self.lower[i][i]));
+        for k in 0..K {
+            self.bring_largest(k);
+            let pivot = self.lower[k][k];
+            let kept = threshold.select_less(pivot, one, zero);
+            if self.regular == K && !everywhere(kept, |lane| lane == 1.0) {
+                self.regular = k;
+            }
+            if everywhere(kept, |lane| lane == 0.0) {
+                self.rank = k;
+                return;
+            }
+            self.kept[k] = kept;
+            let root = threshold.select_less(pivot, pivot, one).sqrt();
+            self.lower[k][k] = root;
+            let mut column = [zero; K];
+            for i in k + 1..K {
+                column[i] = kept * self.lower[i][k] / root;
+                self.lower[i][k] = column[i];
+                let factor = column[i];
+                let row = self.lower[i][k + 1..=i].iter_mut();
+                for (element, other) in row.zip(&column[k + 1..=i]) {
+                    *element -= factor * *other;
+                }
+            }
+        }
+    }
+
+    /// Exchanges rows and columns so that the largest remaining diagonal element is number `k`.
+    fn bring_largest(&mut self, k: usize) {
+        let top = (k..K).fold(self.lower[k][k], |top, i| top.max(self.lower[i][i]));
+        for i in k + 1..K {
+            let (here, there) = (self.lower[k][k], self.lower[i][i]);
+            let sizes = (here, there.select_less(top, here, there));
+            if everywhere(sizes.0 - sizes.1, |difference| difference >= 0.0) {
+                continue;
+            }
+            let mut exchange =
+                |(row, column): (usize, usize), (other_row, other_column): (usize, usize)| {
+                    let pair = (self.lower[row][column], self.lower[other_row][other_column]);
+                    let (a, b) = exchanged(sizes.0, sizes.1, pair);
+                    self.lower[row][column] = a;
+                    self.lower[other_row][other_column] = b;
+                };
+            exchange((k, k), (i, i));
+            (0..k).for_each(|j| exchange((k, j), (i, j)));
+            (k + 1..i).for_each(|j| exchange((j, k), (i, j)));
+            (i + 1..K).for_each(|j| exchange((j, k), (j, i)));
+            self.order.exchange(sizes, i, k);
+        }
+    }
+
+    /// From `L₁₁ᵀ x = L₂₁ᵀ`, made orthonormal by Gram and Schmidt.
+    fn span_null_space(&mut self) {
+        let one = T::from_f64(1.0);
+        for index in self.regular..K {
+            let mut vector = [T::from_f64(0.0); K];
+            vector[..index.min(self.rank)]
+                .copy_from_slice(&self.lower[index][..index.min(self.rank)]);
+            self.solve_transposed(&mut vector);
+            vector = vector.map(|x| -x);
+            vector[index] = one;
+            for other in &self.null[self.regular..index] {
+                let part = dot(&vector, other);
+                for (x, other) in vector.iter_mut().zip(other) {
+                    *x -= part * *other;
+                }
+            }
+            let active = one - self.kept[index];
+            let scale = active / dot(&vector, &vector).sqrt();
+            self.null[index] = vector.map(|x| x * scale);
+        }
+    }
+
+    /// `L₁₁ᵀ x = y` in place, with zeros for pivots that do not count.
+    fn solve_transposed(&self, x: &mut [T; K]) {
+        for k in (0..self.rank).rev() {
+            let sum =
+                (k + 1..self.rank).fold(T::from_f64(0.0), |sum, i| sum + self.lower[i][k] * x[i]);
+            x[k] = self.kept[k] * (x[k] - sum) / self.lower[k][k];
+        }
+        x[self.rank..].fill(T::from_f64(0.0));
+    }
+
+    fn remove_null_space(&self, x: &mut [T; K]) {
+        for vector in &self.null[self.regular..] {
+            let part = dot(x, vector);
+            for (x, vector) in x.iter_mut().zip(vector) {
+                *x -= part * *vector;
+            }
+        }
+    }
+
+    /// The least-squares solution of least norm.
+    fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
+        let mut x = self.order.apply(&right.data.0[0]);
+        self.remove_null_space(&mut x);
+        for k in 0..self.rank {
+            x[k] = self.kept[k] * (x[k] - dot(&self.lower[k][..k], &x[..k])) / self.lower[k][k];
+        }
+        self.solve_transposed(&mut x);
+        self.remove_null_space(&mut x);
+        SVector::from(self.order.undo(&x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dual;
+    use crate::solve::lanes::{Pair, random};
+
+    /// `B Bᵀ` with `B` of `R` columns, random and well conditioned.
+    fn gram<const K: usize, const R: usize>() -> (SMatrix<f64, K, K>, SMatrix<f64, K, R>) {
+        let mut random = random();
+        let factor = SMatrix::<f64, K, R>::from_fn(|i, j| {
+            random() / R as f64 + if i % R == j { 1.0 } else { 0.0 }
+        });
+        (factor * factor.transpose(), factor)
+    }
+
+    /// A consistent system of rank `R`: the solution of least norm lies in the range.
+    fn check<const K: usize, const R: usize>() {
+        let (matrix, factor) = gram::<K, R>();
+        let expected = factor * SVector::<f64, R>::from_fn(|i, _| (1.0 + i as f64).sin());
+        let found = least_norm(&matrix, &(matrix * expected));
+        assert_eq!(found.rank, R.min(K), "{K} {R}");
+        assert!(found.residual < 1e-13, "{K} {R} {}", found.residual);
+        let error = (found.solution - expected).norm() / expected.norm();
+        assert!(error < 1e-13, "{K} {R} {error:e}");
+    }
+
+    #[test]
+    fn one_to_forty_unknowns() {
+        macro_rules! check_all {
+            ($($size:literal)*) => { $( check::<$size, $size>(); check::<$size, { $size - $size / 2 }>(); )* };
+        }
+        check_all!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20);
+        check_all!(21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40);
+    }
+
+    #[test]
+    fn duplicated_rows_share_the_load() {
+        // Rows 0 and 2 are the same constraint, row 3 is twice that of row 1.
+        let constraint = SMatrix::<f64, 4, 3>::from_row_slice(&[
+            1.0, 2.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 0.0, 0.0, 2.0, 2.0,
+        ]);
+        let matrix = constraint * constraint.transpose();
+        let right = constraint * SVector::from([1.0, -2.0, 0.5]);
+        let found = least_norm(&matrix, &right);
+        let expected = matrix.svd(true, true).solve(&right, 1e-12).unwrap();
+        assert_eq!(found.rank, 2);
+        assert!((found.solution - expected).norm() < 1e-14);
+        assert!((found.solution[0] - found.solution[2]).abs() < 1e-15);
+        assert!((2.0 * found.solution[1] - found.solution[3]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn zero_matrix() {
+        let found = least_norm(&SMatrix::<f64, 3, 3>::zeros(), &SVector::zeros());
+        assert_eq!(
+            (found.rank, found.solution, found.residual),
+            (0, SVector::zeros(), 0.0)
+        );
+        let inconsistent = least_norm(
+            &SMatrix::<f64, 3, 3>::zeros(),
+            &SVector::from([1.0, 0.0, 0.0]),
+        );
+        assert_eq!(
+            (inconsistent.solution, inconsistent.residual),
+            (SVector::zeros(), 1.0)
+        );
+    }
+
+    #[test]
+    fn nothing_to_solve() {
+        assert_eq!(
+            least_norm(&SMatrix::<f64, 0, 0>::zeros(), &SVector::zeros()).rank,
+            0
+        );
+    }
+
+    #[test]
+    fn forces_survive_a_singular_position() {
+        // Two rows at the angle θ; the force of a consistent b is G⁺ b whatever the rank is taken to be.
+        let force = SVector::from([0.3, 0.7]);
+        for exponent in 0..12 {
+            let angle = 10.0_f64.powi(-exponent);
+            let constraint = SMatrix::<f64, 2, 2>::new(1.0, 0.0, angle.cos(), angle.sin());
+            let matrix = constraint * constraint.transpose();
+            let found = least_norm(&matrix, &(constraint * force));
+            let error = (constraint.transpose() * found.solution - force).norm();
+            // Below the rank's level the force across is lost, above it is kept with what rounding leaves.
+            let bound = if exponent < 7 {
+                4e-16 * 10.0_f64.powi(2 * exponent) + 1e-15
+            } else {
+                1.0
+            };
+            assert!(error <= bound, "{angle:e} {error:e}");
+            assert_eq!(found.rank, if exponent < 8 { 2 } else { 1 }, "{angle:e}");
+            assert!(
+                found.solution.norm() < 1.0 / angle,
+                "{angle:e} {}",
+                found.solution
+            );
+        }
+    }
+
+    #[test]
+    fn an_inconsistent_system_gets_least_squares() {
+        let (matrix, _) = gram::<5, 3>();
+        let right = SVector::from([1.0, -1.0, 2.0, 0.5, 0.0]);
+        let found = least_norm(&matrix, &right);
+        let expected = matrix.svd(true, true).solve(&right, 1e-12).unwrap();
+        assert!((found.solution - expected).norm() < 1e-11 * expected.norm());
+        assert!(found.residual > 1e-3);
+    }
+
+    #[test]
+    fn single_precision() {
+        let (matrix, factor) = gram::<12, 7>();
+        let expected = factor * SVector::<f64, 7>::from_element(1.0);
+        let narrow = |x: f64| x as f32;
+        let found = least_norm(&matrix.map(narrow), &(matrix * expected).map(narrow));
+        assert_eq!(found.rank, 7);
+        let error = (found.solution.map(f64::from) - expected).norm() / expected.norm();
+        assert!(error < 1e-4, "{error:e}");
+    }
+
+    #[test]
+    fn slopes_of_a_redundant_system() {
+        // S = [c c; c c], b = [d d]: λ = d / 2c each.
+        let (c, d) = (
+            Dual {
+                value: 2.0_f64,
+                slope: 1.0,
+            },
+            Dual {
+                value: 6.0,
+                slope: 5.0,
+            },
+        );
+        let found = least_norm(
+            &SMatrix::<_, 2, 2>::from_element(c),
+            &SVector::from_element(d),
+        );
+        let expected: f64 = (5.0 * 2.0 - 6.0) / 8.0;
+        for x in found.solution.iter() {
+            assert!(
+                (x.value - 1.5).abs() < 1e-15 && (x.slope - expected).abs() < 1e-15,
+                "{x:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn lanes_of_different_rank() {
+        let (regular, _) = gram::<4, 4>();
+        let (singular, _) = gram::<4, 2>();
+        let x = SVector::from([1.0, 2.0, -1.0, 0.5]);
+        let lanes = [(regular, singular), (singular, regular)];
+        for (first, second) in lanes {
+            let matrix = first.zip_map(&second, |a, b| Pair([a, b]));
+            let right = (first * x).zip_map(&(second * x), |a, b| Pair([a, b]));
+            let both = least_norm(&matrix, &right);
+            for (lane, alone) in [first, second].into_iter().enumerate() {
+                let alone = least_norm(&alone, &(alone * x));
+                let error = both.solution.map(|it| it.0[lane]) - alone.solution;
+                assert!(error.norm() < 1e-12, "{lane} {error}");
+            }
+        }
+    }
+}

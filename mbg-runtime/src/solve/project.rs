@@ -1,0 +1,311 @@
+//! Back onto constraints.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{dot, everywhere, largest, least_norm};
+use crate::Real;
+
+/// Corrections at most.
+const ITERATIONS: usize = 32;
+/// Dampings of one correction tried at most.
+const DAMPINGS: usize = 16;
+
+/// Where a projection ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projected<T, const N: usize> {
+    /// The point, or the velocity.
+    pub point: SVector<T, N>,
+    /// Largest absolute value of a constraint there.
+    pub residual: T,
+    /// The constraint that has it; of several lanes the first that is out of tolerance.
+    pub worst: usize,
+    /// Corrections taken.
+    pub iterations: usize,
+    /// Whether every constraint is within the tolerance, in every lane.
+    pub converged: bool,
+}
+
+/// The point near `start` where `M` constraints `g(q) = 0` hold to `tolerance`.
+///
+/// `evaluate` gives `g` and its Jacobian `G = ∂g/∂q`. `tolerance` is in the units of `g` and must leave room for its
+/// rounding. The correction is that of Gauss and Newton of least norm,
+///
+/// ```text
+/// q ← q − Gᵀ (G Gᵀ)⁺ g
+/// ```
+/// with [`least_norm`] for the pseudoinverse, so that redundant constraints and singular positions do no harm. It is
+/// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
+/// most 32 corrections; after a step of integration it takes one or two.
+///
+/// **Holding a coordinate**: where a column of `G` is set to zero that coordinate stays as it is, so that consistent
+/// initial values can be found from a part of them.
+///
+/// When [`converged`](Projected::converged) is false the constraints cannot be met from there, and
+/// [`worst`](Projected::worst) says which of them is open widest.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::solve::project;
+/// use nalgebra::{SMatrix, SVector};
+///
+/// // Onto the unit circle.
+/// let found = project(SVector::from([3.0, 4.0]), 1e-14, |q: &SVector<f64, 2>| {
+///     let g = q[0] * q[0] + q[1] * q[1] - 1.0;
+///     (SVector::from([g]), SMatrix::from([[2.0 * q[0]], [2.0 * q[1]]]))
+/// });
+/// assert!(found.converged);
+/// assert!((found.point - SVector::from([0.6, 0.8])).norm() < 1e-14);
+/// ```
+#[must_use]
+pub fn project<T: Real, const M: usize, const N: usize>(
+    start: SVector<T, N>,
+    tolerance: f64,
+    evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+) -> Projected<T, N> {
+    let mut point = start;
+    let (mut residual, mut jacobian) = evaluate(&point);
+    let mut iterations = 0;
+    while iterations < ITERATIONS && !holds(&residual, tolerance) {
+        iterations += 1;
+        let step = correction(&jacobian, &residual);
+        let Some((next, values)) = descend(&point, &residual, &step, tolerance, &evaluate) else {
+            break;
+        };
+        point = next;
+        (residual, jacobian) = values;
+    }
+    Projected::new(point, &residual, tolerance, iterations)
+}
+
+/// The velocity next to `velocity` with `G v = b` to `tolerance`: `v ← v − Gᵀ (G Gᵀ)⁺ (G v − b)`.
+///
+/// `b` is zero unless a constraint depends on time. Two corrections are taken at most: the equations are linear.
+#[must_use]
+pub fn project_velocity<T: Real, const M: usize, const N: usize>(
+    velocity: SVector<T, N>,
+    tolerance: f64,
+    jacobian: &SMatrix<T, M, N>,
+    right: &SVector<T, M>,
+) -> Projected<T, N> {
+    let rows = jacobian.transpose().data.0;
+    let open = |velocity: &SVector<T, N>| {
+        SVector::<T, M>::from_fn(|i, _| dot(&rows[i], &velocity.data.0[0]) - right[i])
+    };
+    let mut point = velocity;
+    let mut residual = open(&point);
+    let mut iterations = 0;
+    while iterations < 2 && !holds(&residual, tolerance) {
+        iterations += 1;
+        point.zip_apply(&correction(jacobian, &residual), |v, step| *v -= step);
+        residual = open(&point);
+    }
+    Projected::new(point, &residual, tolerance, iterations)
+}
+
+/// `Gᵀ (G Gᵀ)⁺ g`.
+fn correction<T: Real, const M: usize, const N: usize>(
+    jacobian: &SMatrix<T, M, N>,
+    residual: &SVector<T, M>,
+) -> SVector<T, N> {
+    let rows = jacobian.transpose().data.0;
+    let square = SMatrix::from_fn(|i, j| dot(&rows[i], &rows[j]));
+    let multipliers = least_norm(&square, residual).solution;
+    SVector::from_fn(|j, _| dot(&jacobian.data.0[j], &multipliers.data.0[0]))
+}
+
+/// The next point and what holds there: the longest damped step that lowers `|g|` in every lane that is still out of
+/// tolerance, if there is one.
+#[expect(clippy::type_complexity, reason = "what `evaluate` gives")]
+fn descend<T: Real, const M: usize, const N: usize>(
+    point: &SVector<T, N>,
+    residual: &SVector<T, M>,
+    step: &SVector<T, N>,
+    tolerance: f64,
+    evaluate: &impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+) -> Option<(SVector<T, N>, (SVector<T, M>, SMatrix<T, M, N>))> {
+    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    let square = |g: &SVector<T, M>| dot(&g.data.0[0], &g.data.0[0]);
+    let here = square(residual);
+    let open = largest(residual.iter().copied());
+    let mut damping = one;
+    for _ in 0..DAMPINGS {
+        let next = point.zip_map(step, |q, step| q - damping * step);
+        let values = evaluate(&next);
+        let lower = square(&values.0).select_less(here, one, zero);
+        let accepted = T::from_f64(tolerance).select_less(open, lower, one);
+        if everywhere(accepted, |lane| lane == 1.0) {
+            return Some((next, values));
+        }
+        damping = T::from_f64(0.5).select_less(accepted, damping, T::from_f64(0.5) * damping);
+    }
+    None
+}
+
+fn holds<T: Real, const M: usize>(residual: &SVector<T, M>, tolerance: f64) -> bool {
+    residual
+        .iter()
+        .all(|g| everywhere(*g, |lane| lane.abs() <= tolerance))
+}
+
+impl<T: Real, const N: usize> Projected<T, N> {
+    fn new<const M: usize>(
+        point: SVector<T, N>,
+        residual: &SVector<T, M>,
+        tolerance: f64,
+        iterations: usize,
+    ) -> Self {
+        let size = largest(residual.iter().copied());
+        let worst = residual
+            .iter()
+            .position(|g| !everywhere(g.abs() - size, |difference| difference < 0.0));
+        Self {
+            point,
+            residual: size,
+            worst: worst.unwrap_or(0),
+            iterations,
+            converged: holds(residual, tolerance),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::lanes::Pair;
+
+    fn circle<T: Real>(q: &SVector<T, 2>) -> (SVector<T, 1>, SMatrix<T, 1, 2>) {
+        let two = T::from_f64(2.0);
+        let g = q[0] * q[0] + q[1] * q[1] - T::from_f64(1.0);
+        (
+            SVector::from([g]),
+            SMatrix::from([[two * q[0]], [two * q[1]]]),
+        )
+    }
+
+    #[test]
+    fn point_on_a_circle() {
+        for start in [[1e-3, 0.0], [0.6, 0.8], [100.0, 1.0], [-0.7, 0.9]] {
+            let found = project(SVector::from(start), 1e-14, circle);
+            assert!(found.converged, "{found:?}");
+            // The correction of least norm points at the centre.
+            let start: SVector<f64, 2> = SVector::from(start);
+            assert!(
+                (found.point - start / start.norm()).norm() < 1e-12,
+                "{found:?}"
+            );
+        }
+        assert_eq!(
+            project(SVector::from([0.6, 0.8]), 1e-14, circle).iterations,
+            0
+        );
+    }
+
+    #[test]
+    fn single_precision_and_lanes() {
+        let found = project(SVector::from([3.0_f32, 4.0]), 1e-6, circle);
+        assert!(found.converged && (found.point - SVector::from([0.6, 0.8])).norm() < 1e-6);
+        let both = project(
+            SVector::from([Pair([3.0, 0.6]), Pair([4.0, 0.8])]),
+            1e-14,
+            circle,
+        );
+        assert!(both.converged);
+        assert_eq!(both.point.map(|q| q.0[1]), SVector::from([0.6, 0.8]));
+    }
+
+    #[test]
+    fn where_nothing_helps_it_says_which_constraint() {
+        // The circle, and a line that misses it.
+        let found = project(SVector::from([0.5, 0.5]), 1e-12, |q| {
+            let (g, jacobian) = circle(q);
+            (
+                SVector::from([g[0], q[1] - 3.0]),
+                SMatrix::from([[jacobian[0], 0.0], [jacobian[1], 1.0]]),
+            )
+        });
+        assert!(!found.converged, "{found:?}");
+        assert!(found.residual > 0.1, "{found:?}");
+        // At the centre no direction is better than another.
+        let stuck = project(SVector::from([0.0, 0.0]), 1e-12, circle);
+        assert_eq!(
+            (stuck.converged, stuck.worst, stuck.residual),
+            (false, 0, 1.0)
+        );
+    }
+
+    /// Closing of a parallelogram of crank, coupler and rocker with absolute angles, all lengths 1, `copies` times.
+    fn four_bar<const M: usize>(q: &SVector<f64, 3>) -> (SVector<f64, M>, SMatrix<f64, M, 3>) {
+        let (sine, cosine) = (q.map(f64::sin), q.map(f64::cos));
+        let g = [
+            cosine[0] + cosine[1] - cosine[2] - 1.0,
+            sine[0] + sine[1] - sine[2],
+        ];
+        let rows = [
+            [-sine[0], -sine[1], sine[2]],
+            [cosine[0], cosine[1], -cosine[2]],
+        ];
+        (
+            SVector::from_fn(|i, _| g[i % 2]),
+            SMatrix::from_fn(|i, j| rows[i % 2][j]),
+        )
+    }
+
+    #[test]
+    fn four_bar_through_its_singular_position() {
+        // All links on one line: both rows of G are then (0, 0, 0) and (1, 1, −1).
+        for angle in [0.3, 1e-3, 1e-6, 1e-9, 0.0] {
+            let closed = SVector::from([angle, 0.0, angle]);
+            let disturbed = closed + SVector::from([1e-7, -2e-7, 1e-7]);
+            let found = project(disturbed, 1e-13, four_bar::<2>);
+            assert!(found.converged, "{angle} {found:?}");
+            assert!((found.point - closed).norm() < 1e-6, "{angle} {found:?}");
+        }
+    }
+
+    #[test]
+    fn redundant_closing() {
+        let disturbed = SVector::from([0.8, 0.01, 0.79]);
+        let once = project(disturbed, 1e-13, four_bar::<2>);
+        let thrice = project(disturbed, 1e-13, four_bar::<6>);
+        assert!(once.converged && thrice.converged);
+        assert!((once.point - thrice.point).norm() < 1e-13);
+    }
+
+    #[test]
+    fn a_column_of_zeros_holds_a_coordinate() {
+        let found = project(SVector::from([0.8, 0.4, 0.2]), 1e-13, |q| {
+            let (g, mut jacobian) = four_bar::<2>(q);
+            jacobian.set_column(0, &SVector::zeros());
+            (g, jacobian)
+        });
+        assert!(found.converged);
+        assert!(
+            (found.point - SVector::from([0.8, 0.0, 0.8])).norm() < 1e-12,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn velocities() {
+        let closed = SVector::from([0.8, 0.0, 0.8]);
+        let (_, jacobian) = four_bar::<6>(&closed);
+        let found = project_velocity(
+            SVector::from([1.0, 0.3, 0.5]),
+            1e-14,
+            &jacobian,
+            &SVector::zeros(),
+        );
+        assert!(found.converged, "{found:?}");
+        assert!(
+            (found.point - SVector::from([0.75, 0.0, 0.75])).norm() < 1e-14,
+            "{found:?}"
+        );
+        let driven = jacobian * SVector::from([1.0, 2.0, 3.0]);
+        let found = project_velocity(SVector::zeros(), 1e-14, &jacobian, &driven);
+        assert!(found.converged, "{found:?}");
+        let right = SVector::from([1.0, 1.0, 1.0, 1.0, 4.0, 1.0]);
+        let impossible = project_velocity(SVector::zeros(), 1e-14, &jacobian, &right);
+        assert_eq!((impossible.converged, impossible.worst), (false, 4));
+    }
+}

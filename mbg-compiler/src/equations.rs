@@ -11,7 +11,7 @@ use crate::elaborate::{Elaborated, Place, Quantity};
 use crate::graph::{ElementId, ElementKind, JunctionId, JunctionKind, Law};
 use crate::network::{Network, OnePort, Wire};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Symbol};
+use crate::symbolic::{Expression, Matrix, Pool, Symbol, affine};
 
 /// Who states an equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -630,16 +630,8 @@ pub fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bo
         let Symbol::Signal(number) = symbol else {
             continue;
         };
-        let slope = Differentiator::new(symbol).derivative(pool, equation.constant);
-        if symbols(pool, &[slope])
-            .iter()
-            .any(|symbol| matches!(symbol, Symbol::Signal(_)))
-        {
-            continue;
-        }
-        let mut absent = Substitution::new();
-        absent.set(symbol, Expression::ZERO);
-        let Some(rest) = absent.apply(pool, equation.constant) else {
+        let signal = |symbol: &Symbol| matches!(symbol, Symbol::Signal(_));
+        let Some((slope, rest)) = affine(pool, equation.constant, symbol, signal) else {
             continue;
         };
         let (unknown, reversed) = signals[number];

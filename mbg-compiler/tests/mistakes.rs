@@ -132,7 +132,8 @@ const FIXTURES: &[(Code, &str)] = &[
     (
         codes::NONLINEAR_LOOP,
         beside_a_mass!(
-            "1 b { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 } }"
+            "1 b { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 }
+                 R n { effort: -powi(f, 3) - f } }"
         ),
     ),
     (

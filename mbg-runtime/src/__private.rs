@@ -3,6 +3,7 @@
 pub use core;
 pub use nalgebra::{SMatrix, SVector};
 
+pub use crate::solve::ITERATIONS;
 pub use crate::{
     Bond, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };

@@ -128,6 +128,9 @@ fn system(compiled: &Compiled) -> TokenStream {
         quote!(::mbg_runtime::Power { supplied: #supplied, dissipated: #dissipated })
     });
     let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
+    let [cold_energy, cold_conditioning] =
+        [Routines::ENERGY, Routines::CONDITIONING].map(|routine| cold_memory(compiled, routine));
+    let memory = memory(compiled);
     let arguments = quote! {
         t: T,
         x: &::mbg_runtime::__private::SVector<T, #n>,
@@ -138,31 +141,48 @@ fn system(compiled: &Compiled) -> TokenStream {
         #[allow(clippy::all, unused_variables, unused_parens)]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
             const META: &'static ::mbg_runtime::Meta = #meta;
-            type Memory = ();
+            type Memory = #memory;
             type Conditioning = [T; #k];
 
             #[inline]
             fn initial_state(&self) -> ::mbg_runtime::__private::SVector<T, #n> { #initial }
             #[inline]
-            fn derivative(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SVector<T, #n> {
+            fn derivative(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
                 #derivative
             }
             #[inline]
-            fn output(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
+            fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
             #[inline]
-            fn jacobian_state(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
+            fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
                 #jacobian_state
             }
             #[inline]
-            fn jacobian_input(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
+            fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
                 #jacobian_input
             }
             #[inline]
-            fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #energy }
+            fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }
             #[inline]
-            fn power(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::Power<T> { #power }
+            fn power(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::Power<T> { #power }
             #[inline]
-            fn conditioning(&self, #arguments) -> [T; #k] { #conditioning }
+            fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
         }
     }
+}
+
+/// The type of what is remembered: nothing, or the unknowns of all iterations.
+fn memory(compiled: &Compiled) -> TokenStream {
+    let sizes: Vec<usize> = compiled.iterations().collect();
+    if sizes.is_empty() {
+        return quote!(());
+    }
+    let [loops, unknowns] = [sizes.len(), sizes.iter().sum()].map(Literal::usize_suffixed);
+    quote!(::mbg_runtime::LoopMemory<T, #loops, #unknowns>)
+}
+
+/// What is asked without a memory begins at zero, if it needs an iteration at all.
+fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
+    compiled.program.routines[routine]
+        .iterates()
+        .then(|| quote!(let memory = &mut <Self::Memory as ::core::default::Default>::default();))
 }

@@ -422,7 +422,8 @@ impl Reducer<'_> {
         for symbol in symbols(self.pool, &[expression]) {
             let slope = Differentiator::new(symbol).derivative(self.pool, expression);
             match symbol {
-                Symbol::Parameter(_) => {}
+                // Unknowns are given symbols of their own only where a reduced system is solved.
+                Symbol::Parameter(_) | Symbol::Unknown(_) => {}
                 Symbol::Time => sum.constant = self.pool.add(sum.constant, slope),
                 Symbol::Input(input) => sum.input = Some(input),
                 Symbol::Signal(signal) => {

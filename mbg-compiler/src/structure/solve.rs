@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::congruence::{self, Conjugate};
 use super::eliminate::{System, Vanished};
-use super::{Failure, Inverted, Solution};
+use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
-use crate::equations::{Equation, Inertia, Scalars};
+use crate::equations::{Equation, Inertia, Owner, Scalars};
 type Columns = BTreeSet<usize>;
 
 use crate::symbolic::{
@@ -15,7 +15,7 @@ use crate::symbolic::{
 };
 
 /// Up to this size a block is solved by its adjugate; larger ones are made smaller by pivots that never vanish.
-const ADJUGATE: usize = 3;
+pub(super) const ADJUGATE: usize = 3;
 
 impl From<Vanished> for Failure {
     fn from(_: Vanished) -> Self {
@@ -61,7 +61,7 @@ fn signals_of(scalars: &Scalars) -> Vec<Vec<(usize, bool)>> {
 }
 
 /// Where each unknown stands in its block.
-fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
+pub(super) fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
     unknowns
         .iter()
         .enumerate()
@@ -79,10 +79,10 @@ struct Level {
     last: Option<usize>,
 }
 
-struct Solver<'a> {
-    scalars: &'a Scalars,
-    pool: &'a mut Pool,
-    solution: Solution,
+pub(super) struct Solver<'a> {
+    pub(super) scalars: &'a Scalars,
+    pub(super) pool: &'a mut Pool,
+    pub(super) solution: Solution,
     known: Vec<bool>,
     signals_of: Vec<Vec<(usize, bool)>>,
     substitution: Substitution,
@@ -99,7 +99,7 @@ impl Solver<'_> {
             .iter()
             .any(|row| row.signals.iter().any(|signal| unknowns.contains(signal)))
         {
-            return Err(Failure::Nonlinear(unknowns.to_vec()));
+            return self.by_tearing(equations, unknowns);
         }
         if unknowns
             .iter()
@@ -111,7 +111,7 @@ impl Solver<'_> {
         let mut matrix = Vec::new();
         let mut right = Vec::new();
         let mut norms = Vec::new();
-        for row in rows {
+        for row in &rows {
             let (coefficients, rest) = self.sparse_row(row, &place)?;
             norms.push(self.norm(row)?);
             let entry = |column| {
@@ -127,21 +127,33 @@ impl Solver<'_> {
         let mut divisor = Expression::ONE;
         let values = self.dense(&matrix, &right, &mut divisor)?;
         self.note(divisor, &norms);
-        if unknowns.len() > 1 && self.pool.rate(divisor) != Rate::Constant {
-            self.solution.loops.push(unknowns.to_vec());
+        let by_law = rows
+            .iter()
+            .any(|row| matches!(row.owner, Owner::Element(..)));
+        if unknowns.len() > 1 && (by_law || self.pool.rate(divisor) != Rate::Constant) {
+            self.solution.loops.push(Loop {
+                equations: equations.to_vec(),
+                unknowns: unknowns.to_vec(),
+                iterated: 0,
+            });
         }
         self.store(unknowns, values);
         Ok(())
     }
 
-    fn store(&mut self, unknowns: &[usize], values: Vec<Expression>) {
+    pub(super) fn store(&mut self, unknowns: &[usize], values: Vec<Expression>) {
         for (unknown, value) in unknowns.iter().zip(values) {
             self.solution.values[*unknown] = value;
             self.known[*unknown] = true;
-            for (signal, reversed) in &self.signals_of[*unknown] {
-                self.substitution
-                    .set(Symbol::Signal(*signal), value.flipped(*reversed));
-            }
+            self.show(*unknown, value);
+        }
+    }
+
+    /// Lets the signals that read an unknown have this value.
+    pub(super) fn show(&mut self, unknown: usize, value: Expression) {
+        for (signal, reversed) in &self.signals_of[unknown] {
+            self.substitution
+                .set(Symbol::Signal(*signal), value.flipped(*reversed));
         }
     }
 
@@ -273,7 +285,7 @@ impl Solver<'_> {
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.
-    fn sparse_row(
+    pub(super) fn sparse_row(
         &mut self,
         row: &Equation,
         place: &BTreeMap<usize, usize>,
@@ -324,7 +336,7 @@ impl Solver<'_> {
     }
 
     /// Solves `A x = b`; `divisor` is multiplied by what was divided by.
-    fn dense(
+    pub(super) fn dense(
         &mut self,
         matrix: &Matrix,
         right: &[Expression],
@@ -430,7 +442,7 @@ impl Solver<'_> {
     }
 
     /// Remembers what was divided by.
-    fn note(&mut self, divisor: Expression, norms: &[Expression]) {
+    pub(super) fn note(&mut self, divisor: Expression, norms: &[Expression]) {
         match self.pool.rate(divisor) {
             Rate::Constant => {}
             Rate::Parameter => {

@@ -171,6 +171,23 @@ where
     }
 }
 
+/// Refuses a vector that is not finite; where an algebraic loop was not solved on the way to it, that is the cause.
+fn check_result<T, S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
+    time: T,
+    x: &SVector<T, N>,
+    memory: &S::Memory,
+) -> Result<(), Stopped>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    check_finite(system, time, x).map_err(|stopped| match S::unsolved(memory) {
+        Some(trouble) => Stopped::new(time, Cause::Trouble(trouble)),
+        None => stopped,
+    })
+}
+
 /// `x + h · Σ weight · slope`.
 fn advance<T: Real, const N: usize, const K: usize>(
     x: &SVector<T, N>,

@@ -14,6 +14,7 @@ const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]
         bonds: &[],
         dependent: &[],
         conditioning,
+        loops: &[],
         assumptions: &[],
         notes: &[],
         operations: Operations {

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::compile::Compiled;
-use crate::program::{Operand, Routine, Solve, Source, Step};
+use crate::program::{Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::Symbol;
 
 /// Where a routine finds what it reads.
@@ -121,8 +121,12 @@ impl Writer<'_> {
     /// The runtime's iteration, with residuals and Jacobian as a closure over what comes before.
     fn solve(&self, solve: &Solve, value: usize) -> TokenStream {
         let unknowns = unknowns(solve.number);
-        let [number, first, size] = [solve.number, self.compiled.first(solve.number), solve.size]
-            .map(Literal::usize_suffixed);
+        let number = match solve.solver {
+            Solver::Newton(number) => number,
+            Solver::LeastNorm => return self.least_norm(solve),
+        };
+        let [number, first, size] =
+            [number, self.compiled.first(number), solve.size].map(Literal::usize_suffixed);
         let body = self.lines(&solve.steps, value);
         let operands = |list: &[Operand]| -> Vec<TokenStream> {
             list.iter().map(|operand| self.operand(*operand)).collect()
@@ -140,6 +144,23 @@ impl Writer<'_> {
                     )
                 },
             );
+        }
+    }
+
+    /// The runtime's solution of least norm.
+    fn least_norm(&self, solve: &Solve) -> TokenStream {
+        let (unknowns, size) = (unknowns(solve.number), Literal::usize_suffixed(solve.size));
+        let operands: Vec<TokenStream> = solve
+            .results
+            .iter()
+            .map(|operand| self.operand(*operand))
+            .collect();
+        let (right, matrix) = operands.split_at(solve.size);
+        quote! {
+            let #unknowns = ::mbg_runtime::solve::least_norm(
+                &::mbg_runtime::__private::SMatrix::<T, #size, #size>::from_row_slice(&[#(#matrix),*]),
+                &::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#right),*]),
+            ).solution;
         }
     }
 

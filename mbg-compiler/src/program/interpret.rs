@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::iterate::iterate;
-use super::{Operand, Program, Routine, Source, Step};
+use super::iterate::{consistent, iterate};
+use super::{Operand, Program, Routine, Solver, Source, Step};
 use crate::symbolic::Symbol;
 
 /// What a program is run with.
@@ -60,6 +60,11 @@ impl Machine<'_> {
                     cosine
                 }
                 Step::Call(function, operands) => function.evaluate(&self.results(operands)),
+                Step::Solve(solve) if solve.solver == Solver::LeastNorm => {
+                    let found = consistent(solve.size, &self.results(&solve.results));
+                    self.solved.insert(solve.number, found);
+                    continue;
+                }
                 Step::Solve(solve) => {
                     let found = iterate(solve.size, |unknowns| {
                         let mut inner = self.clone();

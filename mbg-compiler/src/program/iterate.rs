@@ -1,4 +1,5 @@
-//! The iteration of an interpreted program: Newton's, halving steps that do not help.
+//! The solves of an interpreted program: Newton's iteration, halving steps that do not help, and linear equations
+//! that may be singular.
 
 /// Most evaluations.
 const EVALUATIONS: usize = 1000;
@@ -34,6 +35,46 @@ pub(super) fn iterate(size: usize, evaluate: impl Fn(&[f64]) -> Vec<f64>) -> Vec
         }
     }
     vec![f64::NAN; size]
+}
+
+/// A solution of `S z = b` with a symmetric positive semidefinite matrix, zero where it is free. `values` holds right
+/// sides, then the matrix by rows.
+pub(super) fn consistent(size: usize, values: &[f64]) -> Vec<f64> {
+    let mut rows: Vec<Vec<f64>> = (0..size)
+        .map(|row| {
+            let mut entries = values[size + row * size..][..size].to_vec();
+            entries.push(values[row]);
+            entries
+        })
+        .collect();
+    let largest = (0..size).fold(0.0_f64, |largest, k| largest.max(rows[k][k].abs()));
+    let mut open: Vec<usize> = (0..size).collect();
+    let mut solution = vec![0.0; size];
+    let mut pivots = Vec::new();
+    while let Some(place) =
+        (0..open.len()).max_by(|a, b| rows[open[*a]][open[*a]].total_cmp(&rows[open[*b]][open[*b]]))
+    {
+        let pivot = open.swap_remove(place);
+        if rows[pivot][pivot] <= 1e-14 * largest {
+            break;
+        }
+        let above = rows[pivot].clone();
+        for row in &open {
+            let factor = rows[*row][pivot] / above[pivot];
+            for (entry, above) in rows[*row].iter_mut().zip(&above) {
+                *entry -= factor * above;
+            }
+        }
+        pivots.push(pivot);
+    }
+    for (done, pivot) in pivots.iter().enumerate().rev() {
+        let known: f64 = pivots[done + 1..]
+            .iter()
+            .map(|later| rows[*pivot][*later] * solution[*later])
+            .sum();
+        solution[*pivot] = (rows[*pivot][size] - known) / rows[*pivot][*pivot];
+    }
+    solution
 }
 
 fn norm(values: &[f64]) -> f64 {

@@ -59,16 +59,27 @@ pub enum Step {
     Solve(Solve),
 }
 
-/// An iteration that makes residuals zero. What does not depend on the unknowns is worked out before it.
+/// How a solve finds its unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Newton's iteration, with its number among those of the model.
+    Newton(usize),
+    /// Least norm of linear equations that may be singular.
+    LeastNorm,
+}
+
+/// A solve. What does not depend on the unknowns is worked out before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solve {
     /// Number of the definition, see [`Place::number`].
     pub number: usize,
+    /// How.
+    pub solver: Solver,
     /// How many unknowns there are.
     pub size: usize,
     /// Steps of one evaluation; their values go on from those before, and end with it.
     pub steps: Vec<Step>,
-    /// Residuals, then their derivatives by rows.
+    /// Residuals, or right sides where they are linear; then the derivatives of residuals by rows.
     pub results: Vec<Operand>,
 }
 
@@ -135,7 +146,9 @@ impl Routine {
     /// Whether there is an iteration in it.
     #[must_use]
     pub fn iterates(&self) -> bool {
-        self.steps.iter().any(|step| matches!(step, Step::Solve(_)))
+        self.steps
+            .iter()
+            .any(|step| matches!(step, Step::Solve(solve) if solve.solver != Solver::LeastNorm))
     }
 
     /// Angles of which sine or cosine is taken.

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Operand, Program, Routine, Solve, Source, Step};
-use crate::symbolic::{Expression, Implicit, Operation, Pool, Rate, Symbol};
+use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
+use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
 /// Builds one function for each list of results. `state` gives the place in `x` of each candidate state; `names` names nodes.
 #[must_use]
@@ -238,6 +238,15 @@ impl Context<'_> {
         draft.values = outside;
         draft.routine.steps.push(Step::Solve(Solve {
             number,
+            solver: match implicit.method {
+                Method::LeastNorm { .. } => Solver::LeastNorm,
+                Method::Newton { .. } => Solver::Newton(
+                    self.pool.implicit()[..number]
+                        .iter()
+                        .filter(|before| matches!(before.method, Method::Newton { .. }))
+                        .count(),
+                ),
+            },
             size: implicit.unknowns.len(),
             steps,
             results,

@@ -83,6 +83,27 @@ impl System {
         (self.rows[row].len() - 1) * (self.columns[column].len() - 1)
     }
 
+    /// A pivot in none of the rows and columns given: constants before parameters before what varies, then the one that
+    /// fills in least.
+    pub(super) fn pivot_outside(
+        &self,
+        pool: &Pool,
+        rows: &BTreeSet<usize>,
+        columns: &BTreeSet<usize>,
+    ) -> Option<(usize, usize)> {
+        let outside = self.open_rows.iter().filter(|row| !rows.contains(row));
+        outside
+            .flat_map(|row| {
+                self.rows[*row]
+                    .iter()
+                    .map(move |(c, value)| (*row, *c, *value))
+            })
+            .filter(|(_, column, _)| !columns.contains(column))
+            .map(|(row, column, value)| (pool.rate(value), self.fill(row, column), row, column))
+            .min()
+            .map(|(_, _, row, column)| (row, column))
+    }
+
     /// Rows that are left.
     pub(super) fn open(&self) -> &BTreeSet<usize> {
         &self.open_rows

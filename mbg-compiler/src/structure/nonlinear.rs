@@ -12,7 +12,7 @@ use super::solve::{ADJUGATE, Solver, places};
 use super::{Failure, Loop, Undetermined};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
-    Expression, Implicit, Matrix, Pool, Rate, Substitution, Symbol, affine, jacobian,
+    Expression, Implicit, Matrix, Method, Pool, Rate, Substitution, Symbol, affine, jacobian,
 };
 
 impl Solver<'_> {
@@ -126,7 +126,7 @@ impl Solver<'_> {
             unknowns: left,
             residuals,
             jacobian,
-            inverse,
+            method: Method::Newton { inverse },
         });
         Ok(values)
     }

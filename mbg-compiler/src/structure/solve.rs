@@ -11,7 +11,7 @@ use crate::equations::{Equation, Inertia, Owner, Scalars};
 type Columns = BTreeSet<usize>;
 
 use crate::symbolic::{
-    Differentiator, Expression, Function, Matrix, Pool, Rate, Substitution, Symbol,
+    Differentiator, Expression, Function, Implicit, Matrix, Pool, Rate, Substitution, Symbol,
 };
 
 /// Up to this size a block is solved by its adjugate; larger ones are made smaller by pivots that never vanish.
@@ -205,16 +205,78 @@ impl Solver<'_> {
                 system.eliminate(self.pool, *row, *column)?;
             }
         }
-        let (columns, matrix, right) = system.rest();
-        let mut values = Vec::new();
-        if !columns.is_empty() {
-            let mut divisor = Expression::ONE;
-            values = self.dense(&matrix, &right, &mut divisor)?;
-            self.note(divisor, &[]);
-        }
+        let (columns, values) = if scalars.closures.is_empty() {
+            self.rest(&system)?
+        } else {
+            self.multipliers(&mut system, equations, unknowns)?
+        };
         let values = system.back_substitute(self.pool, &columns, &values)?;
         self.store(unknowns, values);
         Ok(())
+    }
+
+    /// What is left when no level has it, solved as a whole: columns and their values.
+    fn rest(&mut self, system: &System) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+        let (columns, matrix, right) = system.rest();
+        if columns.is_empty() {
+            return Ok((columns, Vec::new()));
+        }
+        let mut divisor = Expression::ONE;
+        let values = self.dense(&matrix, &right, &mut divisor)?;
+        self.note(divisor, &[]);
+        Ok((columns, values))
+    }
+
+    /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
+    fn multipliers(
+        &mut self,
+        system: &mut System,
+        equations: &[usize],
+        unknowns: &[usize],
+    ) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+        let place = places(unknowns);
+        let multipliers: Vec<(usize, usize)> = self
+            .scalars
+            .closures
+            .iter()
+            .flat_map(|closure| &closure.multipliers)
+            .filter_map(|unknown| {
+                let constrains = |equation: &usize| {
+                    self.scalars.equations[*equation].about == [*unknown; 2]
+                        && self.scalars.equations[*equation].level.is_none()
+                };
+                Some((equations.iter().position(constrains)?, *place.get(unknown)?))
+            })
+            .collect();
+        let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
+        let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
+        while let Some((row, column)) = system.pivot_outside(self.pool, &rows, &columns) {
+            self.note(system.entry(row, column), &[]);
+            system.eliminate(self.pool, row, column)?;
+        }
+        let mut entries = Vec::with_capacity(multipliers.len() * multipliers.len());
+        for (row, _) in &multipliers {
+            entries.extend(
+                multipliers
+                    .iter()
+                    .map(|(_, column)| system.entry(*row, *column).negated()),
+            );
+        }
+        let matrix = Matrix::new(multipliers.len(), multipliers.len(), entries);
+        let right = multipliers
+            .iter()
+            .map(|(row, _)| system.right(*row).negated())
+            .collect();
+        let columns: Vec<usize> = multipliers.iter().map(|(_, column)| *column).collect();
+        let numbers = columns.iter().map(|column| unknowns[*column]).collect();
+        let implicit = Implicit::least_norm(self.pool, numbers, matrix, right, false);
+        let symbols: Vec<Symbol> = implicit.symbols().collect();
+        self.pool.define(implicit);
+        let values = symbols
+            .into_iter()
+            .map(|symbol| self.pool.symbol(symbol))
+            .collect();
+        Ok((columns, values))
     }
 
     /// For the column of every rate the row that gives it, and the effort that comes with it.

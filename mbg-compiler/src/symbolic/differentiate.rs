@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::implicit::{Implicit, Method};
 use super::matrix::Matrix;
 use super::pool::{Expression, Function, Operation, Pool, Symbol};
 use super::substitute::symbols;
@@ -39,6 +40,9 @@ impl Differentiator {
     fn define(&mut self, pool: &mut Pool) {
         let implicit = pool.implicit()[self.defined].clone();
         self.defined += 1;
+        if let Method::LeastNorm { slope: true, .. } = implicit.method {
+            return;
+        }
         // While the unknowns have no derivative yet, this is the one by everything else.
         let mut others = Rewritten::default();
         let driven: Vec<Expression> = implicit
@@ -46,11 +50,28 @@ impl Differentiator {
             .iter()
             .map(|residual| rewrite(&mut others, &self.slopes, pool, *residual))
             .collect();
-        let slopes = implicit.inverse.times(pool, &Matrix::column(driven));
-        for (symbol, slope) in implicit.symbols().zip(slopes.entries) {
-            self.slopes.insert(symbol, slope.negated());
+        if driven.iter().all(|driven| *driven == Expression::ZERO) {
+            return;
         }
+        let right: Vec<Expression> = driven.into_iter().map(Expression::negated).collect();
+        let slopes = match &implicit.method {
+            Method::Newton { inverse } => inverse.times(pool, &Matrix::column(right)).entries,
+            Method::LeastNorm { .. } => least_norm_slopes(pool, &implicit.jacobian, right),
+        };
+        self.slopes.extend(implicit.symbols().zip(slopes));
     }
+}
+
+/// The slopes of unknowns of least norm solve the same equations with another right side.
+fn least_norm_slopes(pool: &mut Pool, matrix: &Matrix, right: Vec<Expression>) -> Vec<Expression> {
+    let unknowns: Vec<usize> = right.iter().map(|_| pool.fresh_unknown()).collect();
+    let implicit = Implicit::least_norm(pool, unknowns, matrix.clone(), right, true);
+    let symbols: Vec<Symbol> = implicit.symbols().collect();
+    pool.define(implicit);
+    symbols
+        .into_iter()
+        .map(|symbol| pool.symbol(symbol))
+        .collect()
 }
 
 /// Derivatives of expressions, by rows, with respect to symbols, by columns; only what an expression holds is

@@ -5,7 +5,7 @@
 //! theorem, `∂z/∂x = −(∂F/∂z)⁻¹ ∂F/∂x`, whatever way the numbers were found.
 
 use super::matrix::Matrix;
-use super::pool::{Expression, Symbol};
+use super::pool::{Expression, Pool, Symbol};
 
 /// As many equations as unknowns.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,8 +16,26 @@ pub struct Implicit {
     pub residuals: Vec<Expression>,
     /// Derivatives of the residuals, by rows, with respect to the unknowns, by columns.
     pub jacobian: Matrix,
-    /// Its inverse.
-    pub inverse: Matrix,
+    /// How the unknowns are found.
+    pub method: Method,
+}
+
+/// How unknowns are found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// By Newton's iteration.
+    Newton {
+        /// The inverse of the Jacobian.
+        inverse: Matrix,
+    },
+    /// The equations are linear, `S z = b`, with a symmetric positive semidefinite matrix that may be singular: the
+    /// unknowns are those of least norm.
+    LeastNorm {
+        /// The right side `b`.
+        right: Vec<Expression>,
+        /// Whether the unknowns are derivatives of others; they are not differentiated again.
+        slope: bool,
+    },
 }
 
 /// One unknown of one [`Implicit`] of a pool.
@@ -35,9 +53,38 @@ impl Implicit {
         self.unknowns.iter().copied().map(Symbol::Unknown)
     }
 
-    /// Everything an iteration evaluates: residuals, then their derivatives by rows.
+    /// Unknowns of least norm of `matrix · z = right`.
+    pub fn least_norm(
+        pool: &mut Pool,
+        unknowns: Vec<usize>,
+        matrix: Matrix,
+        right: Vec<Expression>,
+        slope: bool,
+    ) -> Self {
+        let symbols = unknowns.iter().copied().map(Symbol::Unknown);
+        let values = symbols.map(|symbol| pool.symbol(symbol)).collect();
+        let product = matrix.times(pool, &Matrix::column(values));
+        let residuals = product
+            .entries
+            .iter()
+            .zip(&right)
+            .map(|(sum, right)| pool.subtract(*sum, *right))
+            .collect();
+        Self {
+            unknowns,
+            residuals,
+            jacobian: matrix,
+            method: Method::LeastNorm { right, slope },
+        }
+    }
+
+    /// Everything a solve evaluates: residuals or right sides, then the derivatives of residuals by rows.
     #[must_use]
     pub fn evaluated(&self) -> Vec<Expression> {
-        [&self.residuals[..], &self.jacobian.entries].concat()
+        let first = match &self.method {
+            Method::Newton { .. } => &self.residuals,
+            Method::LeastNorm { right, .. } => right,
+        };
+        [&first[..], &self.jacobian.entries].concat()
     }
 }

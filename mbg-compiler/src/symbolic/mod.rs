@@ -17,7 +17,7 @@ mod walk;
 pub use affine::affine;
 pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;
-pub use implicit::{Implicit, Place};
+pub use implicit::{Implicit, Method, Place};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::{Expression, Function, Operation, Pool, Rate, Symbol};
 pub use substitute::Substitution;

@@ -233,12 +233,17 @@ struct Node {
     rate: Rate,
 }
 
+/// Unknowns that are none of the graph are numbered from here.
+const FRESH: usize = 1 << 31;
+
 /// All expressions of a model.
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// How many unknowns were made up.
+    fresh: usize,
 }
 
 impl Default for Pool {
@@ -255,6 +260,7 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
         pool.insert(Operation::Constant(1.0), Image::ONE, Rate::Constant);
@@ -410,6 +416,12 @@ impl Pool {
     /// Says which equations give unknowns. They may hold unknowns that were defined before.
     pub fn define(&mut self, implicit: Implicit) {
         self.implicit.push(implicit);
+    }
+
+    /// A number that no unknown has yet.
+    pub fn fresh_unknown(&mut self) -> usize {
+        self.fresh += 1;
+        FRESH + self.fresh
     }
 
     /// Forgets all definitions.

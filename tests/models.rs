@@ -19,6 +19,7 @@ mod run;
 mod models {
     mod amplifier;
     mod behaviour;
+    mod closed;
     mod energy;
     mod loops;
     mod navigation;

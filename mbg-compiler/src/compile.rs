@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use crate::closures;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
@@ -30,6 +31,8 @@ pub struct Compiled {
     pub conditioning: Vec<String>,
     /// Algebraic loops in order of solution.
     pub loops: Vec<AlgebraicLoop>,
+    /// The closure behind each residual of positions and of flows.
+    pub closed: [Vec<usize>; 2],
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
     pub checks: Vec<Check>,
     /// Names of storages that the drawing puts into derivative causality.
@@ -88,6 +91,8 @@ impl Routines {
     pub const CONDITIONING: usize = 6;
     pub const INITIAL: usize = 7;
     pub const CHECKS: usize = 8;
+    pub const CLOSED_POSITIONS: usize = 9;
+    pub const CLOSED_FLOWS: usize = 10;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -219,6 +224,8 @@ struct Answers {
     energy: Expression,
     supplied: Expression,
     dissipated: Expression,
+    /// Displacements of closures: number, component, value.
+    displacements: Vec<(usize, usize, Expression)>,
 }
 
 impl Answers {
@@ -257,7 +264,22 @@ impl Answers {
         let all: Vec<Expression> = all.into_iter().collect::<Option<_>>()?;
         let outputs: Vec<Expression> = outputs.into_iter().collect::<Option<_>>()?;
         let lost = |state: &usize| solved.momenta.contains_key(state);
-        let states = kept(model, pool, &all, &outputs, &lost);
+        let displacements = closures::displacements(model, &mut substitution, pool)?;
+        closures::check(
+            model,
+            scalars,
+            solution,
+            &displacements,
+            &all,
+            pool,
+            diagnostics,
+        );
+        if diagnostics.any() {
+            return None;
+        }
+        let mut read = outputs.clone();
+        read.extend(displacements.iter().map(|(_, _, value)| *value));
+        let states = kept(model, pool, &all, &read, &lost);
         let rates = states.iter().map(|state| all[*state]).collect();
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
         let energies: Vec<Expression> = model
@@ -284,6 +306,7 @@ impl Answers {
             energy,
             supplied,
             dissipated,
+            displacements,
         })
     }
 }
@@ -415,6 +438,8 @@ fn finish(
         .iter()
         .map(|state| model.states[*state].initial)
         .collect();
+    let positions = closures::positions(&answers.displacements, &by_state, &mut pool);
+    let flows = closures::flows(&model, scalars, solution, &by_state, &mut pool);
     let (checks, checked) = checks(&model, scalars, solution, &pool);
     let requests = [
         answers.rates,
@@ -426,6 +451,8 @@ fn finish(
         conditioning.clone(),
         initial,
         checked,
+        [&positions.values[..], &positions.jacobian.entries].concat(),
+        [&flows.values[..], &flows.jacobian.entries].concat(),
     ];
     let places: BTreeMap<usize, usize> = answers
         .states
@@ -458,6 +485,7 @@ fn finish(
         program,
         conditioning,
         loops: loops(&model, scalars, solution),
+        closed: [positions.closures, flows.closures],
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,
@@ -479,8 +507,10 @@ pub(crate) fn text(
         Symbol::Input(index) => model.inputs[index].name.clone(),
         Symbol::Time => "t".to_owned(),
         Symbol::Signal(index) => format!("signal {index}"),
-        Symbol::Unknown(index) if scalars.names[index].is_empty() => format!("unknown {index}"),
-        Symbol::Unknown(index) => scalars.names[index].clone(),
+        Symbol::Unknown(index) => match scalars.names.get(index) {
+            Some(name) if !name.is_empty() => name.clone(),
+            _ => format!("unknown {index}"),
+        },
     };
     Printer::new(pool, &name).text(expression)
 }

@@ -21,6 +21,8 @@ pub struct Meta {
     pub conditioning: &'static [&'static str],
     /// Algebraic loops, in order of solution.
     pub loops: &'static [Loop],
+    /// Loops that are closed by multipliers, as `a -> b`.
+    pub closures: &'static [&'static str],
     /// What the parameters must fulfil, one sentence each.
     pub assumptions: &'static [&'static str],
     /// Things worth knowing that are no mistakes, such as a mark that is not needed.

@@ -103,6 +103,25 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
             })
     }
 
+    /// The state next to `x` at which every loop that multipliers close is closed: positions first, then flows.
+    ///
+    /// The correction is that of least norm in the states, by Gauss and Newton. States numbered in `held` stay as they
+    /// are, so that consistent initial values are found from a part of them. Steppers ask at the start and after each
+    /// step, with nothing held. What is left of each residual g is below 32 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
+    ///
+    /// # Errors
+    ///
+    /// [`Trouble::Open`] with the loop that cannot be closed from there.
+    fn close(
+        &self,
+        _t: T,
+        x: SVector<T, N>,
+        _u: &SVector<T, M>,
+        _held: &[usize],
+    ) -> Result<SVector<T, N>, Trouble> {
+        Ok(x)
+    }
+
     /// The first algebraic loop whose last solve did not converge.
     fn unsolved(memory: &Self::Memory) -> Option<Trouble> {
         let (number, residual) = memory.unsolved()?;
@@ -132,6 +151,13 @@ pub enum Trouble {
         /// Its normalised determinant.
         value: f64,
     },
+    /// A loop that multipliers close could not be closed.
+    Open {
+        /// The closure, as [`Meta::closures`] names it.
+        name: &'static str,
+        /// What is left between its ends.
+        residual: f64,
+    },
     /// A nonlinear algebraic loop was not solved.
     Unsolved {
         /// What it runs through, as [`Meta::loops`] names it.
@@ -146,6 +172,12 @@ impl core::fmt::Display for Trouble {
         match self {
             Self::Singular { name, value } => {
                 write!(formatter, "{name} is {value:e}, too near its singular set")
+            }
+            Self::Open { name, residual } => {
+                write!(
+                    formatter,
+                    "the loop `{name}` cannot be closed, {residual:e} is left"
+                )
             }
             Self::Unsolved { through, residual } => {
                 formatter.write_str("the algebraic loop through ")?;

@@ -95,6 +95,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
         (&compiled.dependent, &compiled.conditioning, &compiled.notes);
     let assumptions = assumptions(compiled);
     let loops = loops(compiled);
+    let closures = model.graph.closures.iter().map(|closure| &closure.name);
     let operations = operations(compiled);
     let diagram = drawing::diagram(&model.graph, &compiled.strokes);
     quote! {
@@ -108,6 +109,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
             dependent: &[#(#dependent),*],
             conditioning: &[#(#conditioning),*],
             loops: &[#(#loops),*],
+            closures: &[#(#closures),*],
             assumptions: &[#(#assumptions),*],
             notes: &[#(#notes),*],
             operations: #operations,

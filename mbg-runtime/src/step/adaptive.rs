@@ -3,8 +3,8 @@
 use nalgebra::SVector;
 
 use super::{
-    Cause, Statistics, Stopped, advance, check_finite, check_result, check_times, less, magnitude,
-    piece_end, same_time, seen, weighted,
+    Cause, Statistics, Stopped, advance, check_finite, check_result, check_times, closed, less,
+    magnitude, piece_end, same_time, seen, weighted,
 };
 use crate::scalar::power;
 use crate::{Input, Real, System};
@@ -268,7 +268,7 @@ impl DormandPrince {
             statistics: Statistics::default(),
             memory: S::Memory::default(),
         };
-        let mut x = x0;
+        let mut x = closed(system, input, t0, x0)?;
         let mut since = t0;
         while less(since, t1) {
             let end = piece_end(input, since, t1, span)?;
@@ -388,6 +388,11 @@ impl DormandPrince {
                 run.statistics.steps += 1;
                 let [.., k7] = &trial.slopes;
                 run.check(next, &trial.x, k7, since)?;
+                let u = run.input.value(next, since);
+                trial.x = run
+                    .system
+                    .close(next, trial.x, &u, &[])
+                    .map_err(|trouble| Stopped::new(next, Cause::Trouble(trouble)))?;
                 observer(&trial.dense((t, next, length), &x));
                 if last {
                     return Ok(trial.x);

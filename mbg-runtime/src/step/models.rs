@@ -15,6 +15,7 @@ const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]
         dependent: &[],
         conditioning,
         loops: &[],
+        closures: &[],
         assumptions: &[],
         notes: &[],
         operations: Operations {

@@ -4,21 +4,36 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::compile::{Compiled, Routines};
+use crate::diagnostics::listing;
 use crate::drawing;
 use crate::elaborate::{Condition, Variable};
 
 /// Lines of documentation that follow the user's own.
 pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
+    let model = &compiled.model;
+    let states: Vec<&Variable> = compiled
+        .states
+        .iter()
+        .map(|state| &model.states[*state].variable)
+        .collect();
+    let inputs: Vec<&Variable> = model.inputs.iter().collect();
+    let outputs: Vec<&Variable> = model.outputs.iter().map(|it| &it.variable).collect();
+    let operations = compiled.program.routines[Routines::DERIVATIVE].operations();
     let mut lines = vec![
         String::new(),
-        format!(
-            "{} states, {} inputs, {} outputs; {} operations per derivative.",
-            compiled.states.len(),
-            compiled.model.inputs.len(),
-            compiled.model.outputs.len(),
-            compiled.program.routines[Routines::DERIVATIVE].operations(),
-        ),
+        format!("{operations} operations per derivative."),
+        String::new(),
+        "| | | names in order |".to_owned(),
+        "|---|---|---|".to_owned(),
     ];
+    for (kind, variables) in [("states", states), ("inputs", inputs), ("outputs", outputs)] {
+        let names = variables.iter().map(|variable| variable.name.clone());
+        let names = match variables.len() {
+            0 => "none".to_owned(),
+            _ => listing(names),
+        };
+        lines.push(format!("| {kind} | {} | {names} |", variables.len()));
+    }
     if !compiled.conditioning.is_empty() {
         lines.push(String::new());
         lines.push(format!(
@@ -43,7 +58,16 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
         lines.push(String::new());
         lines.push(assumption);
     }
-    lines
+    lines.into_iter().map(spaced).collect()
+}
+
+/// As it stands behind `///`.
+pub(super) fn spaced(line: String) -> String {
+    if line.is_empty() {
+        line
+    } else {
+        format!(" {line}")
+    }
 }
 
 fn assumptions(compiled: &Compiled) -> Vec<String> {

@@ -41,6 +41,15 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
             compiled.conditioning.join("`, `")
         ));
     }
+    if !compiled.eliminated.is_empty() {
+        let relations = compiled.eliminated.iter();
+        let relations = relations.map(|(state, value)| format!("{state} = {value}"));
+        lines.push(String::new());
+        lines.push(format!(
+            "No states, because they follow from others: {}.",
+            listing(relations)
+        ));
+    }
     for found in &compiled.loops {
         let through = found.through.join("`, `");
         let size = found.variables;
@@ -119,6 +128,9 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
         (&compiled.dependent, &compiled.conditioning, &compiled.notes);
     let assumptions = assumptions(compiled);
     let loops = loops(compiled);
+    let eliminated = compiled.eliminated.iter().map(|(state, relation)| {
+        quote!(::mbg_runtime::Eliminated { state: #state, relation: #relation })
+    });
     let closures = model.graph.closures.iter().map(|closure| &closure.name);
     let operations = operations(compiled);
     let diagram = drawing::diagram(&model.graph, &compiled.strokes);
@@ -131,6 +143,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
             outputs: &[#(#outputs),*],
             bonds: &[#(#bonds),*],
             dependent: &[#(#dependent),*],
+            eliminated: &[#(#eliminated),*],
             conditioning: &[#(#conditioning),*],
             loops: &[#(#loops),*],
             closures: &[#(#closures),*],

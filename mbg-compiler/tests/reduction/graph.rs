@@ -267,7 +267,18 @@ pub(crate) enum Verdict {
     Dependent(usize),
 }
 
-#[derive(Debug, Default)]
+/// How a graph is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drawing {
+    /// One stroke per multibond.
+    pub(crate) uniform: bool,
+    /// Elements in the opposite order, which is the order of priority.
+    pub(crate) reversed: bool,
+    /// With its marks `coordinate`.
+    pub(crate) coordinates: bool,
+}
+
+#[derive(Default)]
 pub(crate) struct Graph {
     lines: Vec<String>,
     pub(crate) bonds: usize,
@@ -279,11 +290,20 @@ pub(crate) struct Graph {
     /// What a coefficient may depend on.
     pub(crate) variables: Vec<String>,
     pub(crate) gyrators: bool,
+    pub(crate) resistive: bool,
+}
+
+/// Failures are told by the text of the model.
+impl std::fmt::Debug for Graph {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("a graph")
+    }
 }
 
 impl Graph {
-    pub(crate) fn new() -> Self {
+    pub(crate) fn new(resistive: bool) -> Self {
         Self {
+            resistive,
             variables: vec!["t".to_owned(), "u".to_owned()],
             ..Self::default()
         }
@@ -446,12 +466,28 @@ impl Graph {
             .any(|variable| self.variables[variable].starts_with('p'))
     }
 
-    /// Whether every component of every junction has a bond.
-    pub(crate) fn is_connected(&self) -> bool {
-        self.junctions
-            .iter()
-            .flat_map(|junction| &junction.bonds)
-            .all(|bonds| !bonds.is_empty())
+    /// A resistor, or a storage where there are none, that agrees with anything at this junction.
+    pub(crate) fn load(&self, junction: usize) -> Kind {
+        let law = Law::Inverse {
+            diagonal: 2,
+            coupling: 1,
+        };
+        match (self.resistive, self.junctions[junction].zero) {
+            (true, _) => Kind::Resistor(2),
+            (false, true) => Kind::Compliance(law),
+            (false, false) => Kind::Inertia(law),
+        }
+    }
+
+    /// Loads where a component of a junction has no bond, or one that leads nowhere else.
+    pub(crate) fn complete(&mut self) {
+        for junction in 0..self.junctions.len() {
+            for component in 0..self.dimension(junction) {
+                if self.junctions[junction].bonds[component].len() < 2 {
+                    self.port((junction, component, 1), self.load(junction), false);
+                }
+            }
+        }
     }
 
     /// Junctions, two-ports and resistors.
@@ -527,14 +563,14 @@ impl Graph {
     }
 
     /// The model, whose outputs are effort, flow and state of every port and the rate of every integral.
-    pub(crate) fn text(&self, componentwise: bool, reversed: bool) -> String {
+    pub(crate) fn text(&self, drawing: Drawing) -> String {
         let mut text = String::from("#[derivative]\nmodel Random {\n    input u;\n");
-        if componentwise {
+        if !drawing.uniform {
             text.push_str("    causality componentwise;\n");
         }
         for (number, junction) in self.junctions.iter().enumerate() {
             let kind = u8::from(!junction.zero);
-            let mark = if junction.coordinate {
+            let mark = if junction.coordinate && drawing.coordinates {
                 " coordinate"
             } else {
                 ""
@@ -543,7 +579,7 @@ impl Graph {
             writeln!(text, "    {kind} j{number}[{dimension}]{mark};").expect("a string grows");
         }
         let mut lines: Vec<&String> = self.lines.iter().collect();
-        if reversed {
+        if drawing.reversed {
             lines.reverse();
         }
         for line in lines {

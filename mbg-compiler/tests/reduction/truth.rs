@@ -6,7 +6,7 @@ use mbg_compiler::diagnostics::Code;
 use mbg_runtime::Dual;
 
 use super::dual::{Point, evaluate};
-use super::graph::{Graph, Kind, Port, Verdict, effort, flow};
+use super::graph::{Drawing, Graph, Kind, Port, Verdict, effort, flow};
 use crate::models::attempted;
 
 /// By how much an equation between numbers of order one may be broken.
@@ -42,14 +42,14 @@ pub(crate) enum Fate {
 }
 
 /// Checks a graph, and says what is wrong.
-pub(crate) fn hold(graph: &Graph, uniform: bool, reversed: bool) -> Result<Fate, String> {
-    if !graph.is_connected() || !graph.ports.iter().any(Port::is_storage) {
+pub(crate) fn hold(graph: &Graph, drawing: Drawing) -> Result<Fate, String> {
+    if !graph.ports.iter().any(Port::is_storage) {
         return Ok(Fate::NoModel);
     }
     let verdict = graph.verdict();
-    let model = match attempted(&graph.text(!uniform, reversed)) {
+    let model = match attempted(&graph.text(drawing)) {
         Ok(model) => model,
-        Err(reported) => return rejected(graph, verdict, uniform, &reported),
+        Err(reported) => return rejected(graph, verdict, drawing.uniform, &reported),
     };
     match verdict {
         // Dangling bonds vanish when junctions merge.
@@ -82,6 +82,38 @@ pub(crate) fn hold(graph: &Graph, uniform: bool, reversed: bool) -> Result<Fate,
         }
     }
     Ok(Fate::Singular)
+}
+
+/// Without resistors, the ports that give their effort are even in number, or odd, whatever storages are states; without
+/// gyrators they are always as many. False if there is nothing to compare.
+pub(crate) fn is_even(graph: &Graph, uniform: bool) -> Result<bool, String> {
+    let drawing = |reversed| Drawing {
+        uniform,
+        reversed,
+        coordinates: false,
+    };
+    let counts = [false, true].map(|reversed| {
+        let model = attempted(&graph.text(drawing(reversed))).ok()?;
+        let kept = |letter| {
+            names(&model)
+                .filter(|name| !name.starts_with('a') && name.contains(letter))
+                .count()
+        };
+        let inertias = graph
+            .ports
+            .iter()
+            .filter(|port| matches!(port.kind, Kind::Inertia(_)));
+        let inertias: usize = inertias.map(|port| port.dimension).sum();
+        Some(kept(".q") + inertias - kept(".p"))
+    });
+    match counts {
+        [Some(a), Some(b)] if a == b || graph.gyrators && a.abs_diff(b) % 2 == 0 => Ok(true),
+        [Some(a), Some(b)] => Err(format!(
+            "{a} and {b} efforts given\n{}",
+            graph.text(drawing(false))
+        )),
+        _ => Ok(false),
+    }
 }
 
 fn rejected(

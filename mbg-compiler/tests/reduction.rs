@@ -6,10 +6,11 @@
 //! must change by its own effort or flow, and there must be efforts and flows of the inner bonds that satisfy the
 //! junctions and two-ports. Since no state is lost without need, nothing else does.
 
+#[path = "models/dual.rs"]
+mod dual;
 #[allow(dead_code)]
 mod models;
 mod reduction {
-    pub(crate) mod dual;
     pub(crate) mod graph;
     pub(crate) mod truth;
 }

@@ -5,8 +5,8 @@ use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::diagnostics::Code;
 use mbg_runtime::Dual;
 
-use super::dual::{Point, evaluate};
 use super::graph::{Drawing, Graph, Kind, Port, Verdict, effort, flow};
+use crate::dual::{Point, evaluate};
 use crate::models::attempted;
 
 /// By how much an equation between numbers of order one may be broken.
@@ -71,6 +71,7 @@ pub(crate) fn hold(graph: &Graph, drawing: Drawing) -> Result<Fate, String> {
         let state: Vec<f64> = model.states.iter().map(|_| next()).collect();
         let duals: Vec<Dual<f64>> = state.iter().map(|value| Dual::constant(*value)).collect();
         let point = Point {
+            parameters: &[],
             time: Dual::constant(TIME),
             state: &duals,
             input: &[Dual::constant(INPUT)],
@@ -185,6 +186,7 @@ fn check(graph: &Graph, model: &Compiled, state: &[f64]) -> Result<(), String> {
             })
             .collect();
         let point = Point {
+            parameters: &[],
             time: Dual {
                 value: TIME,
                 slope: time,

@@ -5,13 +5,15 @@ use mbg_compiler::symbolic::{Function, Symbol};
 use mbg_runtime::{Dual, Real};
 
 /// Where and along which direction a program runs.
+#[derive(Clone, Copy)]
 pub(crate) struct Point<'a> {
+    pub(crate) parameters: &'a [f64],
     pub(crate) time: Dual<f64>,
     pub(crate) state: &'a [Dual<f64>],
     pub(crate) input: &'a [Dual<f64>],
 }
 
-/// Results of a routine of a model without parameters.
+/// Results of a routine.
 pub(crate) fn evaluate(program: &Program, routine: usize, point: &Point) -> Vec<Dual<f64>> {
     let folded = run(&program.folded, point, &[]);
     run(&program.routines[routine], point, &folded)
@@ -47,9 +49,8 @@ fn read(operand: &Operand, point: &Point, folded: &[Dual<f64>], values: &[Dual<f
         Source::Symbol(Symbol::State(index)) => point.state[index],
         Source::Symbol(Symbol::Input(index)) => point.input[index],
         Source::Symbol(Symbol::Time) => point.time,
-        Source::Symbol(Symbol::Parameter(_) | Symbol::Signal(_)) => {
-            panic!("no model here has a parameter, and no program a signal")
-        }
+        Source::Symbol(Symbol::Parameter(index)) => Dual::constant(point.parameters[index]),
+        Source::Symbol(Symbol::Signal(_)) => panic!("no program reads a signal"),
         Source::Folded(index) => folded[index],
         Source::Value(index) => values[index],
     };

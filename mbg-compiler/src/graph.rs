@@ -73,8 +73,23 @@ pub struct BondGraph {
     pub bonds: Vec<Bond>,
     /// One stroke per bond or one per component.
     pub causality: Causality,
+    /// Loops that are closed by multipliers.
+    pub closures: Vec<Closure>,
     /// Where everything was written.
     pub origins: Origins,
+}
+
+/// Two ends that move together, held by efforts without power: `f_from = f_to`.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    /// `a -> b`, for people.
+    pub name: String,
+    /// The bond that leaves `from` and the one that arrives at `to`. Both end at the border, and their efforts are one.
+    pub bonds: [BondId; 2],
+    /// How far apart both ends are, if it was given.
+    pub displacement: Option<Vec<Expression>>,
+    /// Where it was written.
+    pub origin: OriginId,
 }
 
 /// An array of scalar junctions of one kind.

@@ -26,6 +26,19 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
             compiled.conditioning.join("`, `")
         ));
     }
+    for found in &compiled.loops {
+        let through = found.through.join("`, `");
+        let size = found.variables;
+        let solver = match found.iterated {
+            0 => "linear, unrolled".to_owned(),
+            1 => "Newton iteration on one of them".to_owned(),
+            count => format!("Newton iteration on {count} of them"),
+        };
+        lines.push(String::new());
+        lines.push(format!(
+            "Algebraic loop of {size} variables through `{through}`: {solver}."
+        ));
+    }
     for assumption in assumptions(compiled) {
         lines.push(String::new());
         lines.push(assumption);
@@ -81,6 +94,8 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
     let (dependent, conditioning, notes) =
         (&compiled.dependent, &compiled.conditioning, &compiled.notes);
     let assumptions = assumptions(compiled);
+    let loops = loops(compiled);
+    let closures = model.graph.closures.iter().map(|closure| &closure.name);
     let operations = operations(compiled);
     let diagram = drawing::diagram(&model.graph, &compiled.strokes);
     quote! {
@@ -93,12 +108,32 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
             bonds: &[#(#bonds),*],
             dependent: &[#(#dependent),*],
             conditioning: &[#(#conditioning),*],
+            loops: &[#(#loops),*],
+            closures: &[#(#closures),*],
             assumptions: &[#(#assumptions),*],
             notes: &[#(#notes),*],
             operations: #operations,
             diagram: #diagram,
         }
     }
+}
+
+fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
+    compiled.loops.iter().map(|found| {
+        let (through, variables) = (&found.through, Literal::usize_suffixed(found.variables));
+        let solver = match found.iterated {
+            0 => quote!(Linear),
+            unknowns => {
+                let unknowns = Literal::usize_suffixed(unknowns);
+                quote!(Newton { unknowns: #unknowns, iterations: ::mbg_runtime::__private::ITERATIONS })
+            }
+        };
+        quote! {
+            ::mbg_runtime::Loop {
+                through: &[#(#through),*], variables: #variables, solver: ::mbg_runtime::Solver::#solver,
+            }
+        }
+    })
 }
 
 fn operations(compiled: &Compiled) -> TokenStream {

@@ -256,7 +256,8 @@ impl<'a> Selector<'a> {
                 self.report_storage(*element, *count, causes, diagnostics);
             }
         }
-        let nothing = self.lost.is_empty() && self.sources.is_empty();
+        let nothing =
+            self.lost.is_empty() && self.sources.is_empty() && self.model.graph.closures.is_empty();
         if self.structure || nothing {
             let message = "the junction structure leaves efforts or flows undetermined";
             diagnostics.error(codes::SINGULAR_JUNCTIONS, self.model.name.span(), message);

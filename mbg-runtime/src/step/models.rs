@@ -14,6 +14,8 @@ const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]
         bonds: &[],
         dependent: &[],
         conditioning,
+        loops: &[],
+        closures: &[],
         assumptions: &[],
         notes: &[],
         operations: Operations {

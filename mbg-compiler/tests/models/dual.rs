@@ -36,6 +36,7 @@ fn run(routine: &Routine, point: &Point, folded: &[Dual<f64>]) -> Vec<Dual<f64>>
             }
             Step::Call(Function::Sqrt, operands) => read(&operands[0]).sqrt(),
             Step::Call(function, _) => panic!("no model here calls {function:?}"),
+            Step::Solve(_) => panic!("a loop is iterated"),
         };
         values.push(value);
     }
@@ -53,6 +54,14 @@ fn read(operand: &Operand, point: &Point, folded: &[Dual<f64>], values: &[Dual<f
         Source::Symbol(Symbol::Signal(_)) => panic!("no program reads a signal"),
         Source::Folded(index) => folded[index],
         Source::Value(index) => values[index],
+        Source::Solved(_) | Source::Symbol(Symbol::Unknown(_)) => panic!("a loop is iterated"),
     };
     if operand.negative { -value } else { value }
+}
+
+/// Whether a program iterates, which dual numbers here do not.
+#[allow(dead_code)]
+pub(crate) fn iterates(program: &Program) -> bool {
+    let mut steps = program.routines.iter().flat_map(|routine| &routine.steps);
+    steps.any(|step| matches!(step, Step::Solve(_)))
 }

@@ -311,14 +311,19 @@ fn the_derivative_is_that_of_newton_and_euler() {
                     told.change.fixed_rows::<3>(start),
                     expected.fixed_rows::<3>(start),
                 );
-                worst = worst.max((ours - theirs).amax() / theirs.amax());
+                let error = (ours - theirs).amax() / theirs.amax();
+                assert!(error < 1e-10, "{joint}, {axis}: {error:e}");
+                worst = worst.max(error);
             }
+            assert!(
+                told.imbalance < 1e-12,
+                "{joint}, {axis}: {:e}",
+                told.imbalance
+            );
             balance = balance.max(told.imbalance);
         }
     }
     println!("locked gimbals: derivative {worst:e}, energy {balance:e}");
-    assert!(worst < 1e-10, "{worst:e}");
-    assert!(balance < 1e-12, "{balance:e}");
 }
 
 /// A step of the classical method of Runge and Kutta.
@@ -336,7 +341,7 @@ fn step<const N: usize>(
 
 #[test]
 fn twenty_seconds_of_gust_are_those_of_newton_and_euler() {
-    let h = 2e-3;
+    let h = 4e-3;
     for (joint, axis) in [GIMBALS, REVOLUTES]
         .into_iter()
         .flat_map(|joint| (0..3).map(move |axis| (joint, axis)))
@@ -352,8 +357,8 @@ fn twenty_seconds_of_gust_are_those_of_newton_and_euler() {
             )
         };
         let (mut most, mut worst) = (SVector::<f64, 9>::zeros(), SVector::<f64, 9>::zeros());
-        for number in 0..10_000 {
-            let blowing = (500..550).contains(&number);
+        for number in 0..5000 {
+            let blowing = (250..275).contains(&number);
             let gust = Vector3::new(5000.0, 1000.0, 10000.0) * f64::from(u8::from(blowing));
             ours = step(&ours, h, |x| {
                 SVector::from_column_slice(&rates(&model, x.as_slice(), &gust))
@@ -362,7 +367,7 @@ fn twenty_seconds_of_gust_are_those_of_newton_and_euler() {
                 let (a, b, c) = reference.derivative(&split(x), &gust).0;
                 SVector::from_iterator(a.iter().chain(&b).chain(&c).copied())
             });
-            if number % 50 == 49 {
+            if number % 25 == 24 {
                 let told = told(&model, ours.as_slice(), &gust);
                 let (_, omega, _) = reference.velocities(&split(&theirs));
                 let momentum = reference.inertia * omega;
@@ -373,7 +378,9 @@ fn twenty_seconds_of_gust_are_those_of_newton_and_euler() {
                         _ => (told.angles[row - 6], theirs[row - 1]),
                     };
                     most[row] = most[row].max(expected.abs());
-                    worst[row] = worst[row].max((found - expected).abs());
+                    let error = (found - expected).abs();
+                    assert!(error.is_finite());
+                    worst[row] = worst[row].max(error);
                 }
             }
         }

@@ -6,7 +6,7 @@ use mbg_compiler::diagnostics::Code;
 use mbg_runtime::Dual;
 
 use super::graph::{Drawing, Graph, Kind, Port, Verdict, effort, flow};
-use crate::dual::{Point, evaluate};
+use crate::dual::{Point, evaluate, iterates};
 use crate::models::attempted;
 
 /// By how much an equation between numbers of order one may be broken.
@@ -35,6 +35,8 @@ pub(crate) enum Fate {
     NoModel,
     /// It is rejected, and must or may be.
     Rejected(Verdict, &'static str),
+    /// It has a nonlinear loop, as where a lost compliance modulates.
+    Iterated,
     /// Every state that was tried is too near the singular set.
     Singular,
     /// Its program satisfies it.
@@ -65,6 +67,9 @@ pub(crate) fn hold(graph: &Graph, drawing: Drawing) -> Result<Fate, String> {
                 ));
             }
         }
+    }
+    if iterates(&model.program) {
+        return Ok(Fate::Iterated);
     }
     let mut next = noise();
     for _ in 0..20 {

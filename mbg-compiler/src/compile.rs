@@ -267,7 +267,6 @@ impl Answers {
             .collect();
         let all: Vec<Expression> = all.into_iter().collect::<Option<_>>()?;
         let outputs: Vec<Expression> = outputs.into_iter().collect::<Option<_>>()?;
-        let lost = |state: &usize| solved.momenta.contains_key(state);
         let displacements = closures::displacements(model, &mut substitution, pool)?;
         closures::check(
             model,
@@ -281,10 +280,6 @@ impl Answers {
         if diagnostics.any() {
             return None;
         }
-        let mut read = outputs.clone();
-        read.extend(displacements.iter().map(|(_, _, value)| *value));
-        let states = kept(model, pool, &all, &read, &lost);
-        let rates = states.iter().map(|state| all[*state]).collect();
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
         let energies: Vec<Expression> = model
             .graph
@@ -303,6 +298,13 @@ impl Answers {
             .map(|energy| substitution.apply(pool, energy))
             .collect::<Option<_>>()?;
         let energy = pool.sum(&energies);
+        let mut told = vec![energy, supplied, dissipated];
+        told.extend(&outputs);
+        told.extend(displacements.iter().map(|(_, _, value)| *value));
+        told.extend(solution.conditioning.iter().map(|it| it.normalised));
+        let lost = |state: &usize| solved.momenta.contains_key(state);
+        let states = kept(model, pool, &all, &told, &lost);
+        let rates = states.iter().map(|state| all[*state]).collect();
         Some(Self {
             states,
             rates,
@@ -353,12 +355,12 @@ fn storage_rate(
     }
 }
 
-/// Storages, and the integrals and attitudes that something reads.
+/// Storages, and the integrals and attitudes that their rates read, or what is `told`.
 fn kept(
     model: &Elaborated,
     pool: &Pool,
     rates: &[Expression],
-    outputs: &[Expression],
+    told: &[Expression],
     lost: &dyn Fn(&usize) -> bool,
 ) -> Vec<usize> {
     let mut keep: Vec<bool> = model
@@ -368,7 +370,7 @@ fn kept(
         .map(|(state, entry)| !lost(&state) && !matches!(entry.rate, StateRate::Expression(_)))
         .collect();
     loop {
-        let mut roots: Vec<Expression> = outputs.to_vec();
+        let mut roots: Vec<Expression> = told.to_vec();
         roots.extend(
             rates
                 .iter()

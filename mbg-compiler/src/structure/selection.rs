@@ -105,7 +105,7 @@ fn again(model: &Elaborated, scalars: &Scalars, pool: &Pool, first: Selector) ->
         coordinates: scalars
             .coordinates
             .iter()
-            .filter(|coordinate| chosen.contains(&coordinate.2))
+            .filter(|(junction, component, _)| chosen.contains(&(*junction, *component)))
             .copied()
             .collect(),
     }
@@ -141,7 +141,7 @@ struct Selector<'a> {
     nominal_values: BTreeMap<usize, f64>,
     lost: Vec<Lost>,
     sources: Vec<(ElementId, BTreeSet<Owner>)>,
-    coordinates: BTreeSet<usize>,
+    coordinates: BTreeSet<(JunctionId, usize)>,
     structure: bool,
 }
 
@@ -215,8 +215,8 @@ impl<'a> Selector<'a> {
                 if let Some(reduced) = reduced {
                     self.nominal.insert(reduced);
                 }
-                if let Owner::Coordinate(..) = owner {
-                    self.coordinates.insert(equation.about[0]);
+                if let Owner::Coordinate(junction, component) = owner {
+                    self.coordinates.insert((junction, component));
                 }
             }
             (Some(causes), Owner::Element(element, component)) => {

@@ -10,6 +10,7 @@ mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;
+mod mesh;
 mod nonlinear;
 mod reduction;
 mod resolve;

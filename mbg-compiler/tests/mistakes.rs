@@ -354,6 +354,6 @@ fn a_mesh_of_gain_one_is_shown() {
     };
     assert_eq!(
         report.notes[1],
-        "they form a mesh whose gain is one: 1/n · 2 · 1/(2/n)"
+        "they form a mesh whose gain is one: 1 / (n) · 1 / (0.5) · 1 / (2/n)"
     );
 }

@@ -491,7 +491,11 @@ impl Reducer<'_> {
             }
             Owner::Structure => false,
         };
-        let turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        let mut turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        // What follows from the states alone is known beforehand.
+        for (turn, determined) in turns.iter_mut().zip(&self.determined) {
+            *turn = turn.filter(|_| !determined);
+        }
         for equation in &mut self.scalars.equations {
             let about = equation
                 .about

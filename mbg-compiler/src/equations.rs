@@ -61,6 +61,8 @@ pub struct Scalars {
     pub coordinates: Vec<(JunctionId, usize, usize)>,
     /// For unknowns of a reduced system: the place of each in the order of elimination.
     pub turns: Vec<Option<Turn>>,
+    /// In a reduced system, the unknown that is the rate of an unknown.
+    pub rate_of: BTreeMap<usize, usize>,
     /// The independent rate of each level of a reduced system.
     pub independent: BTreeMap<usize, Independent>,
 }
@@ -459,6 +461,7 @@ impl Former<'_> {
             wires,
             coordinates,
             turns: vec![None; self.classes.count],
+            rate_of: BTreeMap::new(),
             independent: BTreeMap::new(),
         }
     }

@@ -13,6 +13,7 @@ pub mod matching;
 mod reduction;
 mod selection;
 mod solve;
+mod tree;
 
 use std::collections::BTreeMap;
 

@@ -510,6 +510,7 @@ impl Reducer<'_> {
             .all(|inverse| is_definite(model, &inverse.matrix, pool));
         self.independent(model, lost, &turns, definite);
         self.scalars.turns = turns;
+        self.scalars.rate_of = self.rate_of.clone();
     }
 
     /// The independent rate of each level.

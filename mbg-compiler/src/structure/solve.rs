@@ -3,13 +3,12 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::congruence::{self, Conjugate};
+use super::congruence;
 use super::eliminate::{System, Vanished};
+use super::tree::{Columns, Tree};
 use super::{Failure, Inverted, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Scalars};
-type Columns = BTreeSet<usize>;
-
 use crate::symbolic::{
     Differentiator, Expression, Function, Matrix, Pool, Rate, Substitution, Symbol,
 };
@@ -158,41 +157,45 @@ impl Solver<'_> {
             rows.push(coefficients);
             right.push(rest.negated());
         }
-        let rates: BTreeSet<usize> = scalars.equations.iter().filter_map(|e| e.rate).collect();
         let mut system = System::new(rows, right);
-        let conjugates = self.conjugates(equations, &place);
-        // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
-        let admitted = |row: usize, column: usize| match scalars.equations[equations[row]].rate {
-            Some(rate) => rate == unknowns[column],
-            None => !rates.contains(&unknowns[column]),
-        };
+        let tree = Tree::of(scalars, equations, &place);
+        let admitted = |row, column| tree.admits(row, column);
+        let all: Columns = (0..equations.len()).collect();
         for (number, level) in self.levels(equations, unknowns) {
-            let mut rows = level.rows;
-            let mut left = BTreeSet::new();
-            for (_, columns) in level.columns {
-                // Efforts that meet at a junction first, then the rates of the junction, then the effort that comes
-                // with them: so the inertia of all that hangs on the junction is turned as a whole.
-                let is_rate = |column: &usize| conjugates.contains_key(column);
-                let coming =
-                    |column: &usize| conjugates.values().any(|rate| rate.effort == Some(*column));
-                let (turned, efforts): (Columns, Columns) = columns.into_iter().partition(is_rate);
-                let (last, first): (Columns, Columns) = efforts.into_iter().partition(coming);
+            let mut delayed = Columns::new();
+            let moved = level
+                .last
+                .map(|last| tree.moved(&system, last))
+                .unwrap_or_default();
+            for columns in level.columns.into_values() {
+                let (wait, now): (Columns, Columns) = columns.into_iter().partition(|column| {
+                    tree.rate_of(*column).is_some_and(|rate| {
+                        !moved.contains(&rate) && tree.is_turned(self.pool, &system, rate)
+                    })
+                });
+                delayed.extend(wait);
+                let [first, turned, last] = tree.in_order(now);
                 for columns in [first, turned, last] {
-                    congruence::prepare(self.pool, &system, &conjugates, &columns);
-                    let rest = system.eliminate_constants(self.pool, rows, columns, &admitted)?;
-                    rows = rest.0;
-                    left.extend(rest.1);
+                    congruence::prepare(self.pool, &system, &tree, &columns);
+                    system.eliminate_constants(self.pool, &level.rows, &columns, &admitted)?;
                 }
             }
-            left.extend(level.last);
-            if let (Some(row), Some(column), 1, 1) =
-                (rows.first(), left.first(), rows.len(), left.len())
-                && system.entry(*row, *column) != Expression::ZERO
+            if let Some(column) = level.last
+                && let Some(row) = tree.balance(&system, &level.rows, column)
                 && self.is_positive(number)
             {
-                system.eliminate(self.pool, *row, *column)?;
+                delayed.extend(tree.frame(self.pool, &system, row));
+                system.eliminate(self.pool, row, column)?;
+            }
+            let [first, turned, last] = tree.in_order(delayed);
+            for columns in [first, turned, last] {
+                congruence::prepare(self.pool, &system, &tree, &columns);
+                system.eliminate_constants(self.pool, &all, &columns, &admitted)?;
             }
         }
+        system.eliminate_constants(self.pool, &all, &all, &|row, column| {
+            tree.allows(row, column)
+        })?;
         let (columns, matrix, right) = system.rest();
         let mut values = Vec::new();
         if !columns.is_empty() {
@@ -203,22 +206,6 @@ impl Solver<'_> {
         let values = system.back_substitute(self.pool, &columns, &values)?;
         self.store(unknowns, values);
         Ok(())
-    }
-
-    /// For the column of every rate the row that gives it, and the effort that comes with it.
-    fn conjugates(
-        &self,
-        equations: &[usize],
-        place: &BTreeMap<usize, usize>,
-    ) -> BTreeMap<usize, Conjugate> {
-        let given = |(row, equation): (usize, &usize)| {
-            let equation = &self.scalars.equations[*equation];
-            let column = place.get(&equation.rate?)?;
-            let effort = equation.about.iter().find_map(|unknown| place.get(unknown));
-            let effort = effort.copied();
-            Some((*column, Conjugate { row, effort }))
-        };
-        equations.iter().enumerate().filter_map(given).collect()
     }
 
     /// Rows and columns of a block by level.

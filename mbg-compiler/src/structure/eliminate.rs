@@ -87,6 +87,21 @@ impl System {
             .unwrap_or(Expression::ZERO)
     }
 
+    /// What a row is equal to.
+    pub(super) fn right(&self, row: usize) -> Expression {
+        self.right[row]
+    }
+
+    /// Makes a row equal to something else.
+    pub(super) fn set_right(&mut self, row: usize, right: Expression) {
+        self.right[row] = right;
+    }
+
+    /// Open rows.
+    pub(super) fn open(&self) -> impl Iterator<Item = usize> + '_ {
+        self.open_rows.iter().copied()
+    }
+
     /// The entries of a row.
     pub(super) fn row(&self, row: usize) -> impl Iterator<Item = (usize, Expression)> + '_ {
         self.rows[row]

@@ -6,12 +6,14 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
+mod carried;
 mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;
 mod reduction;
 mod selection;
+mod shift;
 mod solve;
 mod tree;
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::congruence;
 use super::eliminate::{System, Vanished};
+use super::shift::Shift;
 use super::tree::{Columns, Tree};
 use super::{Failure, Inverted, Solution};
 use crate::elaborate::Condition;
@@ -159,6 +160,7 @@ impl Solver<'_> {
         }
         let mut system = System::new(rows, right);
         let tree = Tree::of(scalars, equations, &place);
+        let shift = self.shift(&mut system, &tree, unknowns, &place);
         let admitted = |row, column| tree.admits(row, column);
         let all: Columns = (0..equations.len()).collect();
         for (number, level) in self.levels(equations, unknowns) {
@@ -203,9 +205,45 @@ impl Solver<'_> {
             values = self.dense(&matrix, &right, &mut divisor)?;
             self.note(divisor, &[]);
         }
-        let values = system.back_substitute(self.pool, &columns, &values)?;
+        let mut values = system.back_substitute(self.pool, &columns, &values)?;
+        if let Some(shift) = shift {
+            shift.undo(self.pool, &mut values);
+        }
         self.store(unknowns, values);
         Ok(())
+    }
+
+    fn shift(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+        unknowns: &[usize],
+        place: &BTreeMap<usize, usize>,
+    ) -> Option<Shift> {
+        let rate_of = &self.scalars.rate_of;
+        let rate = |pair: &[usize; 2]| {
+            let rates = pair.iter().filter_map(|unknown| rate_of.get(unknown));
+            rates
+                .filter_map(|rate| place.get(rate).copied())
+                .find(|rate| tree.is_given(*rate))
+        };
+        let vectors: BTreeSet<[usize; 3]> = self
+            .scalars
+            .wires
+            .iter()
+            .filter_map(|wire| {
+                let rates: Option<Vec<usize>> = wire.iter().map(rate).collect();
+                rates?.try_into().ok()
+            })
+            .collect();
+        let vectors: Vec<[usize; 3]> = vectors.into_iter().collect();
+        let unknown_of: BTreeMap<usize, usize> = rate_of
+            .iter()
+            .map(|(unknown, rate)| (*rate, *unknown))
+            .collect();
+        let values = &self.solution.values;
+        let velocity = |column: usize| values[unknown_of[&unknowns[column]]];
+        Shift::of(self.pool, system, tree, &vectors, &velocity)
     }
 
     /// Rows and columns of a block by level.

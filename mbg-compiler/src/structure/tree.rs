@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::System;
+use super::shift::Given;
 use crate::equations::{Scalars, Turn};
 use crate::symbolic::{Pool, Rate};
 
@@ -99,6 +100,44 @@ impl Tree {
             conjugates,
             balances,
         }
+    }
+
+    /// Whether a row gives this rate.
+    pub(super) fn is_given(&self, rate: usize) -> bool {
+        self.conjugates.contains_key(&rate)
+    }
+
+    /// The rate that a row gives.
+    pub(super) fn given_by(&self, row: usize) -> Option<usize> {
+        self.given.get(&row).copied()
+    }
+
+    /// The rows that give rates, each after those of the rates from which its own follows. None if there is no such
+    /// order, or a rate has another coefficient than one.
+    pub(super) fn base_to_leaves(&self, system: &System) -> Option<Vec<Given>> {
+        let mut rows = Vec::with_capacity(self.conjugates.len());
+        let mut open: BTreeMap<usize, Given> = BTreeMap::new();
+        for (rate, conjugate) in &self.conjugates {
+            open.insert(*rate, Given::of(system, conjugate.row, *rate)?);
+        }
+        while !open.is_empty() {
+            let is_ready = |given: &Given| {
+                given
+                    .terms
+                    .iter()
+                    .all(|(other, _)| !open.contains_key(other))
+            };
+            let ready: Vec<usize> = open
+                .iter()
+                .filter(|(_, given)| is_ready(given))
+                .map(|(rate, _)| *rate)
+                .collect();
+            if ready.is_empty() {
+                return None;
+            }
+            rows.extend(ready.iter().filter_map(|rate| open.remove(rate)));
+        }
+        Some(rows)
     }
 
     /// Whether a column may be eliminated by a row at all: a rate is eliminated by the equation that gives it.

@@ -324,7 +324,9 @@ impl Pool {
         Expression::new(node, false)
     }
 
-    fn look_up(&self, image: Image) -> Option<Expression> {
+    /// The expression with this image, if there is one.
+    #[must_use]
+    pub fn find(&self, image: Image) -> Option<Expression> {
         if let Some(node) = self.found.get(&image) {
             return Some(Expression::new(*node as usize, false));
         }
@@ -335,7 +337,7 @@ impl Pool {
 
     /// The node with this image, or a new one.
     fn intern(&mut self, operation: Operation, image: Image) -> Expression {
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return expression;
         }
         let rate = operation
@@ -392,7 +394,7 @@ impl Pool {
             Symbol::Signal(index) => (5, index, Rate::Varying),
         };
         let image = Image::unknown(&[kind, index as u64]);
-        self.look_up(image)
+        self.find(image)
             .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
     }
 
@@ -405,7 +407,7 @@ impl Pool {
             return a;
         }
         let image = self.image(a).plus(self.image(b));
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return expression;
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
@@ -479,7 +481,7 @@ impl Pool {
         let image = product(self, &rest, a.is_negative());
         let image = image.plus(product(self, &right, b.is_negative()));
         let varies = |factor: &Expression| self.rate(*factor) == Rate::Varying;
-        let mut whole = match self.look_up(image) {
+        let mut whole = match self.find(image) {
             Some(whole) => whole,
             None if rest.iter().chain(&right).any(varies) => return None,
             None => {
@@ -545,7 +547,7 @@ impl Pool {
             return a;
         }
         let image = self.image(a).times(self.image(b));
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return expression;
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
@@ -573,7 +575,7 @@ impl Pool {
         let (a, b) = (a.magnitude(), b.magnitude());
         let inverse = self.image(b).inverted()?;
         let image = self.image(a).times(inverse);
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return Some(expression.flipped(negative));
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {

@@ -9,14 +9,19 @@ mod ins;
 #[path = "../examples/ins/reference.rs"]
 #[allow(unreachable_pub)]
 mod reference;
+#[path = "references/mod.rs"]
+mod references;
 #[path = "../examples/ins/run.rs"]
 #[allow(unreachable_pub, dead_code)]
 mod run;
 
 #[allow(clippy::unwrap_used)]
 mod models {
+    mod amplifier;
     mod behaviour;
+    mod closed;
     mod energy;
+    mod loops;
     mod navigation;
     mod parameters;
 }

@@ -1,21 +1,22 @@
 //! One model through all stages.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use crate::closures;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
-use crate::elaborate::{self, Condition, Elaborated, StateRate, Variable};
+use crate::elaborate::{self, Condition, Elaborated, State, StateRate, Variable};
 use crate::equations::{self, Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
 use crate::program::{self, Program};
-use crate::structure::{self, Failure, Solution};
+use crate::structure::{self, Failure, Loop, Solution, Undetermined};
 use crate::symbolic::print::Printer;
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Differentiator, Expression, Pool, Rate, Substitution, Symbol};
+use crate::symbolic::{Expression, Pool, Rate, Substitution, Symbol, jacobian};
 use crate::syntax::ast;
 
 /// Everything that emission needs.
@@ -28,6 +29,12 @@ pub struct Compiled {
     pub program: Program,
     /// Names of the inverted blocks.
     pub conditioning: Vec<String>,
+    /// States that follow from others, with what they are.
+    pub eliminated: Vec<(String, String)>,
+    /// Algebraic loops in order of solution.
+    pub loops: Vec<AlgebraicLoop>,
+    /// The closure behind each residual of positions and of flows.
+    pub closed: [Vec<usize>; 2],
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
     pub checks: Vec<Check>,
     /// Names of storages that the drawing puts into derivative causality.
@@ -36,6 +43,30 @@ pub struct Compiled {
     pub strokes: Vec<bool>,
     /// Things worth knowing.
     pub notes: Vec<String>,
+}
+
+impl Compiled {
+    /// How many unknowns each iteration finds, in order of solution.
+    pub fn iterations(&self) -> impl Iterator<Item = usize> {
+        let sizes = self.loops.iter().map(|found| found.iterated);
+        sizes.filter(|size| *size > 0)
+    }
+
+    /// Where the unknowns of an iteration begin among those of all.
+    #[must_use]
+    pub fn first(&self, number: usize) -> usize {
+        self.iterations().take(number).sum()
+    }
+}
+
+/// Variables that depend on each other without a storage between them.
+pub struct AlgebraicLoop {
+    /// Elements whose laws close it, or variables where the junction structure closes it.
+    pub through: Vec<String>,
+    /// Number of variables.
+    pub variables: usize,
+    /// How many of them an iteration finds; none where the loop is linear.
+    pub iterated: usize,
 }
 
 /// A check that `new` makes.
@@ -62,6 +93,8 @@ impl Routines {
     pub const CONDITIONING: usize = 6;
     pub const INITIAL: usize = 7;
     pub const CHECKS: usize = 8;
+    pub const CLOSED_POSITIONS: usize = 9;
+    pub const CLOSED_FLOWS: usize = 10;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -117,8 +150,8 @@ fn solve(
                 momenta: BTreeMap::new(),
             });
         }
-        Err(Failure::Nonlinear(unknowns)) => {
-            report_nonlinear(model, &scalars, &unknowns, diagnostics);
+        Err(Failure::Undetermined(found)) => {
+            report_undetermined(model, &scalars, pool, &found, diagnostics);
             return None;
         }
         Err(Failure::Singular) => {}
@@ -132,8 +165,8 @@ fn solve(
             solution,
             momenta: reduction.momenta,
         }),
-        Err(Failure::Nonlinear(unknowns)) => {
-            report_nonlinear(model, &scalars, &unknowns, diagnostics);
+        Err(Failure::Undetermined(found)) => {
+            report_undetermined(model, &scalars, pool, &found, diagnostics);
             None
         }
         Err(Failure::Singular) => {
@@ -144,23 +177,35 @@ fn solve(
     }
 }
 
-fn report_nonlinear(
+/// A nonlinear loop whose Jacobian is identically singular: its equations, and the slopes that show it.
+fn report_undetermined(
     model: &Elaborated,
     scalars: &Scalars,
-    unknowns: &[usize],
+    pool: &Pool,
+    found: &Undetermined,
     diagnostics: &mut Diagnostics,
 ) {
-    let names = listing(structure::block_names(scalars, unknowns));
-    let message = match unknowns.len() {
-        1 => "a variable depends on itself nonlinearly".to_owned(),
-        count => format!("{count} variables depend on each other nonlinearly"),
-    };
-    let span = nonlinear_law(model, scalars, unknowns);
-    let report = error(codes::NONLINEAR_LOOP, span, message);
-    diagnostics.report(report.note(format!("the loop runs through {names}")).help(
-        "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
-         `C spring { stiffness: … }` at a 0-junction",
-    ));
+    let names = listing(structure::block_names(scalars, &found.unknowns));
+    let message = "a nonlinear algebraic loop does not determine its variables";
+    let span = nonlinear_law(model, scalars, &found.unknowns);
+    let mut report =
+        error(codes::NONLINEAR_LOOP, span, message).note(format!("the loop runs through {names}"));
+    for (row, residual) in found.residuals.iter().enumerate() {
+        report = report.note(format!("0 = {}", text(model, scalars, pool, *residual)));
+        for (column, unknown) in found.left.iter().enumerate() {
+            let slope = text(model, scalars, pool, found.jacobian.at(row, column));
+            let by = &scalars.names[*unknown];
+            report = report.note(format!("  its derivative by `{by}` is {slope}"));
+        }
+    }
+    diagnostics.report(
+        report
+            .note("the determinant of these derivatives is zero, whatever the state")
+            .help(
+                "put a storage into the loop: `I body { inertia: … }` at a 1-junction of it, or \
+                 `C spring { stiffness: … }` at a 0-junction",
+            ),
+    );
 }
 
 /// Where the law stands in which unknowns of a loop enter nonlinearly.
@@ -181,6 +226,10 @@ struct Answers {
     energy: Expression,
     supplied: Expression,
     dissipated: Expression,
+    /// Displacements of closures: number, component, value.
+    displacements: Vec<(usize, usize, Expression)>,
+    /// What each lost state is in terms of the others.
+    eliminated: Vec<(usize, Expression)>,
 }
 
 impl Answers {
@@ -218,9 +267,19 @@ impl Answers {
             .collect();
         let all: Vec<Expression> = all.into_iter().collect::<Option<_>>()?;
         let outputs: Vec<Expression> = outputs.into_iter().collect::<Option<_>>()?;
-        let lost = |state: &usize| solved.momenta.contains_key(state);
-        let states = kept(model, pool, &all, &outputs, &lost);
-        let rates = states.iter().map(|state| all[*state]).collect();
+        let displacements = closures::displacements(model, &mut substitution, pool)?;
+        closures::check(
+            model,
+            scalars,
+            solution,
+            &displacements,
+            &all,
+            pool,
+            diagnostics,
+        );
+        if diagnostics.any() {
+            return None;
+        }
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
         let energies: Vec<Expression> = model
             .graph
@@ -239,6 +298,13 @@ impl Answers {
             .map(|energy| substitution.apply(pool, energy))
             .collect::<Option<_>>()?;
         let energy = pool.sum(&energies);
+        let mut told = vec![energy, supplied, dissipated];
+        told.extend(&outputs);
+        told.extend(displacements.iter().map(|(_, _, value)| *value));
+        told.extend(solution.conditioning.iter().map(|it| it.normalised));
+        let lost = |state: &usize| solved.momenta.contains_key(state);
+        let states = kept(model, pool, &all, &told, &lost);
+        let rates = states.iter().map(|state| all[*state]).collect();
         Some(Self {
             states,
             rates,
@@ -246,6 +312,12 @@ impl Answers {
             energy,
             supplied,
             dissipated,
+            displacements,
+            eliminated: solved
+                .momenta
+                .keys()
+                .filter_map(|state| Some((*state, substitution.get(Symbol::State(*state))?)))
+                .collect(),
         })
     }
 }
@@ -283,12 +355,12 @@ fn storage_rate(
     }
 }
 
-/// Storages, and the integrals and attitudes that something reads.
+/// Storages, and the integrals and attitudes that their rates read, or what is `told`.
 fn kept(
     model: &Elaborated,
     pool: &Pool,
     rates: &[Expression],
-    outputs: &[Expression],
+    told: &[Expression],
     lost: &dyn Fn(&usize) -> bool,
 ) -> Vec<usize> {
     let mut keep: Vec<bool> = model
@@ -298,7 +370,7 @@ fn kept(
         .map(|(state, entry)| !lost(&state) && !matches!(entry.rate, StateRate::Expression(_)))
         .collect();
     loop {
-        let mut roots: Vec<Expression> = outputs.to_vec();
+        let mut roots: Vec<Expression> = told.to_vec();
         roots.extend(
             rates
                 .iter()
@@ -350,20 +422,6 @@ fn powers(
     (supplied, dissipated)
 }
 
-fn jacobian(pool: &mut Pool, rates: &[Expression], symbols: &[Symbol]) -> Vec<Expression> {
-    let mut columns: Vec<Differentiator> = symbols
-        .iter()
-        .map(|symbol| Differentiator::new(*symbol))
-        .collect();
-    let mut entries = Vec::with_capacity(rates.len() * symbols.len());
-    for rate in rates {
-        for column in &mut columns {
-            entries.push(column.derivative(pool, *rate));
-        }
-    }
-    entries
-}
-
 fn finish(
     model: Elaborated,
     scalars: &Scalars,
@@ -379,8 +437,8 @@ fn finish(
         .map(|state| Symbol::State(*state))
         .collect();
     let by_input: Vec<Symbol> = (0..model.inputs.len()).map(Symbol::Input).collect();
-    let jacobian_state = jacobian(&mut pool, &answers.rates, &by_state);
-    let jacobian_input = jacobian(&mut pool, &answers.rates, &by_input);
+    let jacobian_state = jacobian(&mut pool, &answers.rates, &by_state).entries;
+    let jacobian_input = jacobian(&mut pool, &answers.rates, &by_input).entries;
     let conditioning: Vec<Expression> = solution
         .conditioning
         .iter()
@@ -391,7 +449,9 @@ fn finish(
         .iter()
         .map(|state| model.states[*state].initial)
         .collect();
-    let (checks, checked) = checks(&model, solution, &pool);
+    let positions = closures::positions(&answers.displacements, &by_state, &mut pool);
+    let flows = closures::flows(&model, scalars, solution, &by_state, &mut pool);
+    let (checks, checked) = checks(&model, scalars, solution, &pool);
     let requests = [
         answers.rates,
         answers.outputs,
@@ -402,6 +462,8 @@ fn finish(
         conditioning.clone(),
         initial,
         checked,
+        [&positions.values[..], &positions.jacobian.entries].concat(),
+        [&flows.values[..], &flows.jacobian.entries].concat(),
     ];
     let places: BTreeMap<usize, usize> = answers
         .states
@@ -421,7 +483,7 @@ fn finish(
     let program = program::build(&pool, &requests, &place, &names);
     let conditioning = conditioning
         .iter()
-        .map(|value| text(&model, &pool, *value))
+        .map(|value| text(&model, scalars, &pool, *value))
         .collect();
     if !program.is_finite() {
         let message = "numbers of the model multiply to one that is not finite";
@@ -429,38 +491,99 @@ fn finish(
         diagnostics.report(report.help("choose units in which the values are of moderate size"));
         return None;
     }
+    let mut notes = verdict.notes;
+    for (state, _) in &answers.eliminated {
+        let State {
+            variable, initial, ..
+        } = &model.states[*state];
+        if *initial != Expression::ZERO {
+            let name = &variable.name;
+            notes.push(format!(
+                "the initial value of `{name}` is not used: `{name}` follows from other states"
+            ));
+        }
+    }
     Some(Compiled {
         states: answers.states,
         program,
         conditioning,
+        loops: loops(&model, scalars, solution),
+        eliminated: answers
+            .eliminated
+            .iter()
+            .map(|(state, value)| {
+                let name = model.states[*state].variable.name.clone();
+                (name, text(&model, scalars, &pool, *value))
+            })
+            .collect(),
+        closed: [positions.closures, flows.closures],
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,
-        notes: verdict.notes,
+        notes,
         model,
     })
 }
 
 /// An expression with the model's names.
-pub(crate) fn text(model: &Elaborated, pool: &Pool, expression: Expression) -> String {
+pub(crate) fn text(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    expression: Expression,
+) -> String {
     let name = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => model.parameters[index].name.to_string(),
         Symbol::State(index) => model.states[index].variable.name.clone(),
         Symbol::Input(index) => model.inputs[index].name.clone(),
         Symbol::Time => "t".to_owned(),
         Symbol::Signal(index) => format!("signal {index}"),
+        Symbol::Unknown(index) => match scalars.names.get(index) {
+            Some(name) if !name.is_empty() => name.clone(),
+            _ => format!("unknown {index}"),
+        },
     };
     Printer::new(pool, &name).text(expression)
 }
 
+/// The loops, by the names of what closes them.
+fn loops(model: &Elaborated, scalars: &Scalars, solution: &Solution) -> Vec<AlgebraicLoop> {
+    let named = |found: &Loop| {
+        let owners: BTreeSet<ElementId> = found
+            .equations
+            .iter()
+            .filter_map(|equation| match scalars.equations[*equation].owner {
+                Owner::Element(id, _) => Some(id),
+                Owner::Structure | Owner::Coordinate(..) => None,
+            })
+            .collect();
+        let name = |id: &ElementId| model.graph.elements[id.0].name.clone();
+        let mut through: Vec<String> = owners.iter().map(name).collect();
+        if through.is_empty() {
+            through = structure::block_names(scalars, &found.unknowns);
+        }
+        AlgebraicLoop {
+            through,
+            variables: found.unknowns.len(),
+            iterated: found.iterated,
+        }
+    };
+    solution.loops.iter().map(named).collect()
+}
+
 /// What `new` checks beyond that every parameter is finite.
-fn checks(model: &Elaborated, solution: &Solution, pool: &Pool) -> (Vec<Check>, Vec<Expression>) {
+fn checks(
+    model: &Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    pool: &Pool,
+) -> (Vec<Check>, Vec<Expression>) {
     let mut checks = Vec::new();
     let mut checked: Vec<Expression> = Vec::new();
     let mut add = |expression: Expression, condition: Condition, reason: String| {
         if pool.rate(expression) == Rate::Parameter && !checked.contains(&expression) {
             checks.push(Check {
-                name: text(model, pool, expression),
+                name: text(model, scalars, pool, expression),
                 condition,
                 reason,
             });

@@ -11,7 +11,7 @@ use crate::elaborate::{Elaborated, Place, Quantity};
 use crate::graph::{ElementId, ElementKind, JunctionId, JunctionKind, Law};
 use crate::network::{Network, OnePort, Wire};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Symbol};
+use crate::symbolic::{Expression, Matrix, Pool, Symbol, affine};
 
 /// Who states an equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,8 +63,20 @@ pub struct Scalars {
     pub turns: Vec<Option<Turn>>,
     /// In a reduced system, the unknown that is the rate of an unknown.
     pub rate_of: BTreeMap<usize, usize>,
+    /// Loops that are closed by multipliers.
+    pub closures: Vec<Closure>,
     /// The independent rate of each level of a reduced system.
     pub independent: BTreeMap<usize, Independent>,
+}
+
+/// Two ends with one effort, the multiplier, and with flows that are to be equal. No equation says so: that of their
+/// rates belongs to the reduced system.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    /// Multipliers by component.
+    pub multipliers: Vec<usize>,
+    /// Flows of both ends by component.
+    pub flows: Vec<[usize; 2]>,
 }
 
 /// When an unknown of a reduced system is eliminated: level by level, and in a level the deepest first.
@@ -185,6 +197,13 @@ impl Classes {
                         parent[a.max(b)] = a.min(b);
                     }
                 }
+            }
+        }
+        for [from, to] in &network.closures {
+            for component in 0..network.wires[*from].dimension {
+                let (a, b) = (2 * (first[*from] + component), 2 * (first[*to] + component));
+                let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+                parent[a.max(b)] = a.min(b);
             }
         }
         Self::number(first, parent, &live)
@@ -444,6 +463,7 @@ impl Former<'_> {
         }
         let names = self.names(&ports);
         let coordinates = self.coordinates(&ports);
+        let closures = self.closures();
         let live = |pair: &[usize; 2]| pair.iter().all(|class| *class != usize::MAX);
         let wire = |(wire, entry): (usize, &Wire)| -> Vec<[usize; 2]> {
             (0..entry.dimension)
@@ -462,8 +482,25 @@ impl Former<'_> {
             coordinates,
             turns: vec![None; self.classes.count],
             rate_of: BTreeMap::new(),
+            closures,
             independent: BTreeMap::new(),
         }
+    }
+
+    fn closures(&self) -> Vec<Closure> {
+        let closure = |[from, to]: &[usize; 2]| {
+            let components = 0..self.network.wires[*from].dimension;
+            Closure {
+                multipliers: components
+                    .clone()
+                    .map(|component| self.classes.effort(*from, component))
+                    .collect(),
+                flows: components
+                    .map(|component| [from, to].map(|wire| self.classes.flow(*wire, component)))
+                    .collect(),
+            }
+        };
+        self.network.closures.iter().map(closure).collect()
     }
 
     fn coordinates(&self, ports: &BTreeMap<ElementId, Port>) -> Vec<(JunctionId, usize, usize)> {
@@ -596,16 +633,8 @@ pub fn linearise(pool: &mut Pool, equation: &mut Equation, signals: &[(usize, bo
         let Symbol::Signal(number) = symbol else {
             continue;
         };
-        let slope = Differentiator::new(symbol).derivative(pool, equation.constant);
-        if symbols(pool, &[slope])
-            .iter()
-            .any(|symbol| matches!(symbol, Symbol::Signal(_)))
-        {
-            continue;
-        }
-        let mut absent = Substitution::new();
-        absent.set(symbol, Expression::ZERO);
-        let Some(rest) = absent.apply(pool, equation.constant) else {
+        let signal = |symbol: &Symbol| matches!(symbol, Symbol::Signal(_));
+        let Some((slope, rest)) = affine(pool, equation.constant, symbol, signal) else {
             continue;
         };
         let (unknown, reversed) = signals[number];

@@ -80,7 +80,7 @@ fn equation_lines(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> String 
                 match *coefficient {
                     Expression::ONE => unknown,
                     other if other == Expression::ONE.negated() => format!("-{unknown}"),
-                    other => match compile::text(model, pool, other) {
+                    other => match compile::text(model, scalars, pool, other) {
                         sum if sum.contains(' ') => format!("({sum}) {unknown}"),
                         atom => format!("{atom} {unknown}"),
                     },
@@ -88,7 +88,7 @@ fn equation_lines(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> String 
             })
             .collect();
         if equation.constant != Expression::ZERO {
-            terms.push(compile::text(model, pool, equation.constant));
+            terms.push(compile::text(model, scalars, pool, equation.constant));
         }
         text += &format!("0 = {}\n", terms.join(" + ").replace("+ -", "- "));
     }
@@ -99,11 +99,15 @@ fn equation_lines(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> String 
 fn value_lines(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool: &Pool) -> String {
     let mut text = String::new();
     for (unknown, value) in solution.values.iter().enumerate() {
-        let value = compile::text(model, pool, *value);
+        let value = compile::text(model, scalars, pool, *value);
         text += &format!("{} = {value}\n", unknown_name(scalars, unknown));
     }
+    for residual in pool.implicit().iter().flat_map(|it| &it.residuals) {
+        let zero = compile::text(model, scalars, pool, *residual);
+        text += &format!("iterated: 0 = {zero}\n");
+    }
     for inverted in &solution.conditioning {
-        let divisor = compile::text(model, pool, inverted.normalised);
+        let divisor = compile::text(model, scalars, pool, inverted.normalised);
         text += &format!("inverted: {divisor}\n");
     }
     text

@@ -73,8 +73,23 @@ pub struct BondGraph {
     pub bonds: Vec<Bond>,
     /// One stroke per bond or one per component.
     pub causality: Causality,
+    /// Loops that are closed by multipliers.
+    pub closures: Vec<Closure>,
     /// Where everything was written.
     pub origins: Origins,
+}
+
+/// Two ends that move together, held by efforts without power: `f_from = f_to`.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    /// `a -> b`, for people.
+    pub name: String,
+    /// The bond that leaves `from` and the one that arrives at `to`. Both end at the border, and their efforts are one.
+    pub bonds: [BondId; 2],
+    /// How far apart both ends are, if it was given.
+    pub displacement: Option<Vec<Expression>>,
+    /// Where it was written.
+    pub origin: OriginId,
 }
 
 /// An array of scalar junctions of one kind.
@@ -210,6 +225,23 @@ pub struct Storage {
     pub coenergy: Vec<Expression>,
     /// Stored energy.
     pub energy: Expression,
+}
+
+impl Element {
+    /// What to type so that its derivative causality is accepted.
+    #[must_use]
+    pub fn acceptance(&self) -> String {
+        let Some((instance, _)) = self.name.rsplit_once('.') else {
+            let written = format!("{:?} {}", self.kind, self.name);
+            return format!(
+                "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
+            );
+        };
+        let own = instance.rsplit('.').next().unwrap_or(instance);
+        format!(
+            "write `#[derivative]` before `{own}: …`, which makes `{instance}`, or before the model, to accept it"
+        )
+    }
 }
 
 impl BondGraph {

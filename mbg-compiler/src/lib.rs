@@ -9,12 +9,14 @@
 //! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
+//! | closures | [`closures`] | what projection makes zero |
 //! | program | [`program`] | straight-line arithmetic |
 //! | emission | [`emit`] | Rust |
 //!
 //! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`; [`explain`] prints them.
 
 pub mod causality;
+pub mod closures;
 pub mod codes;
 pub mod compile;
 pub mod diagnostics;

@@ -78,6 +78,8 @@ pub struct Network {
     pub two_ports: Vec<TwoPort>,
     /// One-ports by element.
     pub one_ports: Vec<Option<OnePort>>,
+    /// For each closure the wire that leaves one end and the wire that arrives at the other.
+    pub closures: Vec<[usize; 2]>,
 }
 
 impl Network {
@@ -109,6 +111,11 @@ impl Network {
             place: (0..graph.junctions.len()).collect(),
             two_ports: Vec::new(),
             one_ports: vec![None; graph.elements.len()],
+            closures: graph
+                .closures
+                .iter()
+                .map(|closure| closure.bonds.map(|bond| bond.0))
+                .collect(),
         };
         let mut sides = vec![[0usize; 2]; graph.elements.len()];
         for (wire, bond) in graph.bonds.iter().enumerate() {

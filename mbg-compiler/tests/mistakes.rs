@@ -126,13 +126,21 @@ const FIXTURES: &[(Code, &str)] = &[
         beside_a_mass!("1 b { Se s { effort: 1.0 } R r { effort: abs(f) * f } }"),
     ),
     (
+        codes::DISPLACEMENT,
+        beside_a_mass!(
+            "1 b { I n { inertia: 2.0 } } integral x = a.f; integral y = b.f;
+                 close a -> b by multipliers, displacement: x + y;"
+        ),
+    ),
+    (
         codes::SINGULAR_JUNCTIONS,
         beside_a_mass!("1 b; 0 c; b -> c; c -> b;"),
     ),
     (
         codes::NONLINEAR_LOOP,
         beside_a_mass!(
-            "1 b { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 } }"
+            "1 b { Se s { effort: 1.0 } R r { effort: powi(f, 3) } R l { resistance: 1.0 }
+                 R n { effort: -powi(f, 3) - f } }"
         ),
     ),
     (

@@ -4,6 +4,7 @@ use mbg_compiler::{expand, explain::explain};
 
 const OSCILLATOR: &str = include_str!("syntax/oscillator.mbg");
 const ROTOR: &str = include_str!("stages/rotor.mbg");
+const RECTIFIER: &str = include_str!("stages/rectifier.mbg");
 const CARRIAGE: &str = include_str!("stages/slide.mbg");
 
 /// The expansion as a person would have written it.
@@ -29,6 +30,11 @@ fn stages_of_a_gyroscopic_body_behind_a_rotation() {
 #[test]
 fn stages_of_a_component_with_a_direct_sum() {
     insta::assert_snapshot!("stages_carriage", stages(CARRIAGE));
+}
+
+#[test]
+fn stages_of_a_nonlinear_loop() {
+    insta::assert_snapshot!("stages_rectifier", stages(RECTIFIER));
 }
 
 #[test]

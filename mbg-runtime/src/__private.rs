@@ -3,6 +3,9 @@
 pub use core;
 pub use nalgebra::{SMatrix, SVector};
 
+pub use crate::solve::ITERATIONS;
+use crate::solve::project;
+use crate::step::magnitude;
 pub use crate::{
     Bond, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };
@@ -38,6 +41,40 @@ pub fn check<T: Real>(
         }),
         None => Ok(()),
     }
+}
+
+/// How far a projection goes: in units of precision and of what the states contribute to a residual, but at least one.
+const CLOSED: f64 = 32.0;
+
+/// Projects a state onto residuals, whose closures are numbered in `closures`.
+pub fn close<T: Real, const M: usize, const N: usize>(
+    meta: &Meta,
+    closures: &[usize; M],
+    x: SVector<T, N>,
+    held: &[usize],
+    evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+) -> Result<SVector<T, N>, Trouble> {
+    let jacobian = evaluate(&x).1;
+    let largest = (0..M).fold(1.0, |largest: f64, row| {
+        let terms = (0..N).map(|state| magnitude(jacobian[(row, state)] * x[state]));
+        largest.max(terms.sum())
+    });
+    let tolerance = CLOSED * T::EPSILON * largest;
+    let found = project(x, tolerance, |x| {
+        let (residuals, mut jacobian) = evaluate(x);
+        for state in held.iter().filter(|state| **state < N) {
+            jacobian.column_mut(*state).fill(T::from_f64(0.0));
+        }
+        (residuals, jacobian)
+    });
+    if found.converged {
+        return Ok(found.point);
+    }
+    let closure = closures.get(found.worst).copied().unwrap_or(0);
+    Err(Trouble::Open {
+        name: meta.closures.get(closure).copied().unwrap_or(""),
+        residual: found.residual.find(|_| true).unwrap_or(f64::NAN),
+    })
 }
 
 #[cfg(test)]

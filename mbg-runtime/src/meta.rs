@@ -17,8 +17,14 @@ pub struct Meta {
     pub bonds: &'static [Bond],
     /// Storages that the drawing puts into derivative causality, accepted by `#[derivative]`.
     pub dependent: &'static [&'static str],
+    /// Storages' states that follow from others and are none.
+    pub eliminated: &'static [Eliminated],
     /// Names of the inverted blocks, in the order of `conditioning`.
     pub conditioning: &'static [&'static str],
+    /// Algebraic loops, in order of solution.
+    pub loops: &'static [Loop],
+    /// Loops that are closed by multipliers, as `a -> b`.
+    pub closures: &'static [&'static str],
     /// What the parameters must fulfil, one sentence each.
     pub assumptions: &'static [&'static str],
     /// Things worth knowing that are no mistakes, such as a mark that is not needed.
@@ -36,6 +42,15 @@ pub struct Variable {
     pub name: &'static str,
     /// Unit as written, empty when none was.
     pub unit: &'static str,
+}
+
+/// A momentum or displacement that is no state, because the graph lets it follow from others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eliminated {
+    /// Its name, such as `load.p`.
+    pub state: &'static str,
+    /// What it is in terms of states and parameters; a long formula is abbreviated.
+    pub relation: &'static str,
 }
 
 /// A bond as the model draws it.
@@ -60,8 +75,52 @@ pub enum Stroke {
     To,
 }
 
+/// Variables that depend on each other without a storage between them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Loop {
+    /// Resistors and other elements whose laws close the loop, or variables where the junction structure closes it.
+    pub through: &'static [&'static str],
+    /// Number of variables.
+    pub variables: usize,
+    /// How it is solved.
+    pub solver: Solver,
+}
+
+/// How an algebraic loop is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// By straight-line arithmetic.
+    Linear,
+    /// By a bounded Newton iteration with the exact Jacobian.
+    Newton {
+        /// How many of the variables it finds; the others follow from them.
+        unknowns: usize,
+        /// Most evaluations of residual and Jacobian from one start.
+        iterations: usize,
+    },
+}
+
+impl core::fmt::Display for Solver {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Linear => formatter.write_str("linear, unrolled"),
+            Self::Newton {
+                unknowns,
+                iterations,
+            } => {
+                let plural = if *unknowns == 1 { "" } else { "s" };
+                write!(
+                    formatter,
+                    "Newton, {unknowns} unknown{plural}, at most {iterations} iterations"
+                )
+            }
+        }
+    }
+}
+
 /// Arithmetic per call: an addition, subtraction, multiplication, division or elementary function counts one, sine
-/// and cosine of one angle two, negations and whatever `new` has done once count nothing.
+/// and cosine of one angle two, a bounded solve one evaluation of its residual and Jacobian, negations and whatever
+/// `new` has done once count nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operations {
     /// Of `derivative`.

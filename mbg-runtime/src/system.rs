@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Meta, Real};
+use crate::{Loop, Memory, Meta, Real, Solver};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -16,7 +16,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     const META: &'static Meta;
 
     /// Warm start and residual of bounded solves; `()` for a model without any.
-    type Memory: Copy + Default;
+    type Memory: Memory;
 
     /// One value per inverted block; an array.
     type Conditioning: AsRef<[T]> + Copy;
@@ -79,14 +79,18 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// Why the last evaluation at this state must not be trusted, if there is a reason.
     ///
     /// A block is too near its singular set when its normalised determinant is below the square root of the
-    /// scalar's precision. Steppers ask once a step.
+    /// scalar's precision. A nonlinear algebraic loop is in trouble when its last solve did not converge. Steppers ask
+    /// once a step.
     fn trouble(
         &self,
         t: T,
         x: &SVector<T, N>,
         u: &SVector<T, M>,
-        _memory: &Self::Memory,
+        memory: &Self::Memory,
     ) -> Option<Trouble> {
+        if let Some(trouble) = Self::unsolved(memory) {
+            return Some(trouble);
+        }
         let conditioning = self.conditioning(t, x, u);
         Self::META
             .conditioning
@@ -95,8 +99,36 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
             .find_map(|(name, value)| {
                 value
                     .find(|lane| lane.is_nan() || lane.abs() < T::SINGULAR)
-                    .map(|value| Trouble { name, value })
+                    .map(|value| Trouble::Singular { name, value })
             })
+    }
+
+    /// The state next to `x` at which every loop that multipliers close is closed: positions first, then flows.
+    ///
+    /// The correction is that of least norm in the states, by Gauss and Newton. States numbered in `held` stay as they
+    /// are, so that consistent initial values are found from a part of them. Steppers ask at the start and after each
+    /// step, with nothing held. What is left of each residual g is below 32 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
+    ///
+    /// # Errors
+    ///
+    /// [`Trouble::Open`] with the loop that cannot be closed from there.
+    fn close(
+        &self,
+        _t: T,
+        x: SVector<T, N>,
+        _u: &SVector<T, M>,
+        _held: &[usize],
+    ) -> Result<SVector<T, N>, Trouble> {
+        Ok(x)
+    }
+
+    /// The first algebraic loop whose last solve did not converge.
+    fn unsolved(memory: &Self::Memory) -> Option<Trouble> {
+        let (number, residual) = memory.unsolved()?;
+        let iterated = |found: &&Loop| matches!(found.solver, Solver::Newton { .. });
+        let found = Self::META.loops.iter().filter(iterated).nth(number);
+        let through = found.map_or(&[][..], |found| found.through);
+        Some(Trouble::Unsolved { through, residual })
     }
 }
 
@@ -109,22 +141,53 @@ pub struct Power<T> {
     pub dissipated: T,
 }
 
-/// A singular set that is too near.
+/// Why an evaluation must not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Trouble {
-    /// The block, as [`Meta::conditioning`] names it.
-    pub name: &'static str,
-    /// Its normalised determinant.
-    pub value: f64,
+pub enum Trouble {
+    /// A singular set is too near.
+    Singular {
+        /// The block, as [`Meta::conditioning`] names it.
+        name: &'static str,
+        /// Its normalised determinant.
+        value: f64,
+    },
+    /// A loop that multipliers close could not be closed.
+    Open {
+        /// The closure, as [`Meta::closures`] names it.
+        name: &'static str,
+        /// What is left between its ends.
+        residual: f64,
+    },
+    /// A nonlinear algebraic loop was not solved.
+    Unsolved {
+        /// What it runs through, as [`Meta::loops`] names it.
+        through: &'static [&'static str],
+        /// What is left, scaled.
+        residual: f64,
+    },
 }
 
 impl core::fmt::Display for Trouble {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(
-            formatter,
-            "{} is {:e}, too near its singular set",
-            self.name, self.value
-        )
+        match self {
+            Self::Singular { name, value } => {
+                write!(formatter, "{name} is {value:e}, too near its singular set")
+            }
+            Self::Open { name, residual } => {
+                write!(
+                    formatter,
+                    "the loop `{name}` cannot be closed, {residual:e} is left"
+                )
+            }
+            Self::Unsolved { through, residual } => {
+                formatter.write_str("the algebraic loop through ")?;
+                for (index, name) in through.iter().enumerate() {
+                    let comma = if index == 0 { "" } else { ", " };
+                    write!(formatter, "{comma}`{name}`")?;
+                }
+                write!(formatter, " was not solved, {residual:e} is left")
+            }
+        }
     }
 }
 

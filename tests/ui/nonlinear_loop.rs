@@ -1,4 +1,4 @@
-//! Two resistors determine each other, one of them by a cube.
+//! Resistors determine each other, and the last gives back what the others take, so that any flow will do.
 
 use mbg_runtime::mbg;
 
@@ -8,6 +8,7 @@ mbg! {
             Se motor { effort: 1.0 }
             R bearing { effort: powi(f, 3) }
             R winding { resistance: 1.0 }
+            R drive { effort: -powi(f, 3) - f }
         }
         integral angle = shaft.f;
         output turned = angle;

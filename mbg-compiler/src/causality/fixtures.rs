@@ -46,6 +46,7 @@ impl Builder {
             elements: Vec::new(),
             bonds: Vec::new(),
             causality: Causality::Uniform,
+            closures: Vec::new(),
             origins: Origins::default(),
         };
         Self { graph }

@@ -7,7 +7,9 @@ use super::scope::Entity;
 use super::{Builder, Pending, component_names};
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{Bond, Element, ElementId, ElementKind, End, Law, Rule};
+use crate::graph::{
+    Bond, BondId, Closure, Element, ElementId, ElementKind, End, JunctionKind, Law, Rule,
+};
 use crate::symbolic::Expression;
 use crate::syntax::ast::{self, ChainNode};
 
@@ -188,6 +190,52 @@ impl<'a> Builder<'a> {
                 self.bond(scope, from.clone(), to.clone(), size, *arrow);
             }
         }
+    }
+
+    /// Puts a bond to the border at either end of a closure.
+    pub(super) fn closure(&mut self, scope: usize, closure: &'a ast::Closure) {
+        let (from, to) = (
+            self.resolve(scope, &closure.from),
+            self.resolve(scope, &closure.to),
+        );
+        let (Some((from, size)), Some((to, other))) = (from, to) else {
+            return;
+        };
+        let span = closure.name.span();
+        let junctions = [&from, &to].into_iter().all(|end| self.is_common_flow(end));
+        if !junctions || size != other {
+            let message = "a loop is closed between 1-junctions of equal dimension";
+            self.tell(scope, error(codes::WRONG_DIMENSION, span, message));
+            return;
+        }
+        let name = format!(
+            "{} -> {}",
+            self.graph.end_name(&from),
+            self.graph.end_name(&to)
+        );
+        let origin = self
+            .graph
+            .origins
+            .add(name.clone(), self.place(scope, span));
+        let first = BondId(self.graph.bonds.len());
+        self.bond(scope, from, End::Border, size, span);
+        self.bond(scope, End::Border, to, size, span);
+        let number = self.graph.closures.len();
+        self.graph.closures.push(Closure {
+            name,
+            bonds: [first, BondId(first.0 + 1)],
+            displacement: None,
+            origin,
+        });
+        self.pending.push(Pending::Displacement {
+            scope,
+            closure,
+            number,
+        });
+    }
+
+    fn is_common_flow(&self, end: &End) -> bool {
+        matches!(end, End::Junction(id, _) if self.graph.junctions[id.0].kind == JunctionKind::One)
     }
 
     /// The ends that an arrow arriving and an arrow leaving see, and the dimension (0 while unknown).

@@ -28,6 +28,9 @@ impl Builder<'_> {
     fn check_bonds(&mut self) {
         for index in 0..self.graph.bonds.len() {
             let bond = &self.graph.bonds[index];
+            if [&bond.from, &bond.to].contains(&&End::Border) {
+                continue;
+            }
             let (from, to) = (self.size(&bond.from), self.size(&bond.to));
             let span = self.graph.origins.span(bond.origin);
             let name = self.graph.origins.path(bond.origin).to_owned();

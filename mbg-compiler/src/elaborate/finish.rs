@@ -125,7 +125,23 @@ impl<'a> Builder<'a> {
                 states,
             } => self.attitude(scope, attitude, states),
             Pending::Output { scope, output } => self.output(scope, output),
+            Pending::Displacement {
+                scope,
+                closure,
+                number,
+            } => self.displacement(scope, closure, number),
         }
+    }
+
+    fn displacement(&mut self, scope: usize, closure: &ast::Closure, number: usize) -> Result<()> {
+        let Some(value) = &closure.displacement else {
+            return Ok(());
+        };
+        let [bond, _] = self.graph.closures[number].bonds;
+        let dimension = self.graph.bonds[bond.0].dimension;
+        let entries = self.vector(scope, value, dimension, &closure.name)?;
+        self.graph.closures[number].displacement = Some(entries);
+        Ok(())
     }
 
     fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_, 'a>) {

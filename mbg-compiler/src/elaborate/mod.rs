@@ -120,6 +120,11 @@ enum Pending<'a> {
         scope: usize,
         output: &'a ast::Output,
     },
+    Displacement {
+        scope: usize,
+        closure: &'a ast::Closure,
+        number: usize,
+    },
 }
 
 impl Pending<'_> {
@@ -129,7 +134,8 @@ impl Pending<'_> {
             | Self::Gyroscopic { scope, .. }
             | Self::Integral { scope, .. }
             | Self::Attitude { scope, .. }
-            | Self::Output { scope, .. } => *scope,
+            | Self::Output { scope, .. }
+            | Self::Displacement { scope, .. } => *scope,
         }
     }
 }
@@ -186,6 +192,7 @@ impl<'a> Builder<'a> {
                 elements: Vec::new(),
                 bonds: Vec::new(),
                 causality: Causality::Uniform,
+                closures: Vec::new(),
                 origins: Origins::default(),
             },
             ports: Vec::new(),
@@ -212,6 +219,7 @@ impl<'a> Builder<'a> {
             match statement {
                 Statement::Junction(junction) => self.fill_junction(scope, junction),
                 Statement::Chain(chain) => self.chain(scope, chain),
+                Statement::Closure(closure) => self.closure(scope, closure),
                 Statement::Instance(instance) => self.instance(scope, instance),
                 Statement::Loop(repeated) => {
                     let (_, iterations) = loops.next().unwrap_or_default();

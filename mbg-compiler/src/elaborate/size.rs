@@ -90,6 +90,7 @@ impl Counter<'_> {
             let bonds = match statement {
                 Statement::Junction(junction) => junction.elements.iter().map(bonds).sum(),
                 Statement::Chain(chain) => chain.arrows.len(),
+                Statement::Closure(_) => 2,
                 Statement::Instance(instance) => {
                     total.add(self.instance(instance, wholes)?, 1)?;
                     0

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::compile::Compiled;
-use crate::program::{Operand, Routine, Source, Step};
+use crate::program::{Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::Symbol;
 
 /// Where a routine finds what it reads.
@@ -31,12 +31,7 @@ pub(super) fn lines(
         names: names(routine),
         setting,
     };
-    let mut body = TokenStream::new();
-    let mut value = 0;
-    for step in &routine.steps {
-        body.extend(writer.line(step, value));
-        value += step.results();
-    }
+    let body = writer.lines(&routine.steps, 0);
     let results = routine
         .results
         .iter()
@@ -81,8 +76,17 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
+    /// Steps whose values begin with number `value`.
+    fn lines(&self, steps: &[Step], mut value: usize) -> TokenStream {
+        let mut body = TokenStream::new();
+        for step in steps {
+            body.extend(self.line(step, value));
+            value += step.results();
+        }
+        body
+    }
+
     fn line(&self, step: &Step, value: usize) -> TokenStream {
-        let name = &self.names[value];
         let expression = match step {
             Step::Add(a, b) => {
                 let (first, second) = (self.operand(*a), self.operand(Operand::plain(b.source)));
@@ -101,14 +105,63 @@ impl Writer<'_> {
                 quote!(#a / #b)
             }
             Step::SineCosine(a) => {
-                let (a, cosine) = (self.operand(*a), &self.names[value + 1]);
-                return quote!(let (#name, #cosine) = ::mbg_runtime::Real::sin_cos(#a););
+                let (sine, cosine) = (&self.names[value], &self.names[value + 1]);
+                let a = self.operand(*a);
+                return quote!(let (#sine, #cosine) = ::mbg_runtime::Real::sin_cos(#a););
             }
             Step::Sine(a) => self.call("sin", &[*a]),
             Step::Cosine(a) => self.call("cos", &[*a]),
             Step::Call(function, arguments) => self.call(function.name(), arguments),
+            Step::Solve(solve) => return self.solve(solve, value),
         };
+        let name = &self.names[value];
         quote!(let #name = #expression;)
+    }
+
+    /// The runtime's iteration, with residuals and Jacobian as a closure over what comes before.
+    fn solve(&self, solve: &Solve, value: usize) -> TokenStream {
+        let unknowns = unknowns(solve.number);
+        let number = match solve.solver {
+            Solver::Newton(number) => number,
+            Solver::LeastNorm => return self.least_norm(solve),
+        };
+        let [number, first, size] =
+            [number, self.compiled.first(number), solve.size].map(Literal::usize_suffixed);
+        let body = self.lines(&solve.steps, value);
+        let operands = |list: &[Operand]| -> Vec<TokenStream> {
+            list.iter().map(|operand| self.operand(*operand)).collect()
+        };
+        let (residuals, jacobian) = solve.results.split_at(solve.size);
+        let (residuals, jacobian) = (operands(residuals), operands(jacobian));
+        quote! {
+            let #unknowns = ::mbg_runtime::LoopMemory::solve(
+                memory, #number, #first,
+                |#unknowns: &::mbg_runtime::__private::SVector<T, #size>| {
+                    #body
+                    (
+                        ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#residuals),*]),
+                        ::mbg_runtime::__private::SMatrix::<T, #size, #size>::from_row_slice(&[#(#jacobian),*]),
+                    )
+                },
+            );
+        }
+    }
+
+    /// The runtime's solution of least norm.
+    fn least_norm(&self, solve: &Solve) -> TokenStream {
+        let (unknowns, size) = (unknowns(solve.number), Literal::usize_suffixed(solve.size));
+        let operands: Vec<TokenStream> = solve
+            .results
+            .iter()
+            .map(|operand| self.operand(*operand))
+            .collect();
+        let (right, matrix) = operands.split_at(solve.size);
+        quote! {
+            let #unknowns = ::mbg_runtime::solve::least_norm(
+                &::mbg_runtime::__private::SMatrix::<T, #size, #size>::from_row_slice(&[#(#matrix),*]),
+                &::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#right),*]),
+            ).solution;
+        }
     }
 
     fn call(&self, function: &str, arguments: &[Operand]) -> TokenStream {
@@ -131,9 +184,10 @@ impl Writer<'_> {
                     quote!(parameters.#name)
                 }
             }
-            Source::Symbol(Symbol::State(index)) => element("x", index),
-            Source::Symbol(Symbol::Input(index)) => element("u", index),
-            Source::Symbol(Symbol::Time | Symbol::Signal(_)) => quote!(t),
+            Source::Symbol(Symbol::State(index)) => element(&format_ident!("x"), index),
+            Source::Symbol(Symbol::Input(index)) => element(&format_ident!("u"), index),
+            Source::Solved(place) => element(&unknowns(place.number), place.row),
+            Source::Symbol(Symbol::Time | Symbol::Signal(_) | Symbol::Unknown(_)) => quote!(t),
             Source::Folded(index) => {
                 let index = Literal::usize_suffixed(index);
                 if self.setting == Setting::Method {
@@ -155,7 +209,12 @@ impl Writer<'_> {
     }
 }
 
-fn element(array: &str, index: usize) -> TokenStream {
-    let (array, index) = (format_ident!("{}", array), Literal::usize_suffixed(index));
+/// What holds the unknowns of an iteration.
+fn unknowns(number: usize) -> Ident {
+    format_ident!("z{}", number, span = Span::mixed_site())
+}
+
+fn element(array: &Ident, index: usize) -> TokenStream {
+    let index = Literal::usize_suffixed(index);
     quote!(#array[#index])
 }

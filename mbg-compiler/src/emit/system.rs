@@ -7,6 +7,7 @@ use super::meta;
 use super::routine::{Setting, lines};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
+use crate::program::Source;
 
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
@@ -89,6 +90,7 @@ fn constructor(compiled: &Compiled) -> TokenStream {
 
 fn system(compiled: &Compiled) -> TokenStream {
     let name = &compiled.model.name;
+    let close = close(compiled);
     let [n, m, p, k] = [
         compiled.states.len(),
         compiled.model.inputs.len(),
@@ -106,21 +108,14 @@ fn system(compiled: &Compiled) -> TokenStream {
         let result = build(results);
         quote!(#steps #result)
     };
-    let vector = |results: Vec<TokenStream>| {
-        let size = Literal::usize_suffixed(results.len());
-        quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
-    };
-    let matrix = |columns: usize| {
-        let (rows, columns) = (n.clone(), Literal::usize_suffixed(columns));
-        move |results: Vec<TokenStream>| quote!(::mbg_runtime::__private::SMatrix::<T, #rows, #columns>::from_row_slice(&[#(#results),*]))
-    };
     let initial = body(Routines::INITIAL, &vector);
     let derivative = body(Routines::DERIVATIVE, &vector);
     let output = body(Routines::OUTPUT, &vector);
-    let jacobian_state = body(Routines::JACOBIAN_STATE, &matrix(compiled.states.len()));
-    let jacobian_input = body(
+    let jacobian_state = jacobian(compiled, Routines::JACOBIAN_STATE, compiled.states.len());
+    let jacobian_input = jacobian(
+        compiled,
         Routines::JACOBIAN_INPUT,
-        &matrix(compiled.model.inputs.len()),
+        compiled.model.inputs.len(),
     );
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
@@ -128,6 +123,9 @@ fn system(compiled: &Compiled) -> TokenStream {
         quote!(::mbg_runtime::Power { supplied: #supplied, dissipated: #dissipated })
     });
     let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
+    let [cold_energy, cold_conditioning] =
+        [Routines::ENERGY, Routines::CONDITIONING].map(|routine| cold_memory(compiled, routine));
+    let memory = memory(compiled);
     let arguments = quote! {
         t: T,
         x: &::mbg_runtime::__private::SVector<T, #n>,
@@ -138,31 +136,134 @@ fn system(compiled: &Compiled) -> TokenStream {
         #[allow(clippy::all, unused_variables, unused_parens)]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
             const META: &'static ::mbg_runtime::Meta = #meta;
-            type Memory = ();
+            type Memory = #memory;
             type Conditioning = [T; #k];
 
             #[inline]
             fn initial_state(&self) -> ::mbg_runtime::__private::SVector<T, #n> { #initial }
             #[inline]
-            fn derivative(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SVector<T, #n> {
+            fn derivative(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
                 #derivative
             }
             #[inline]
-            fn output(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
+            fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
             #[inline]
-            fn jacobian_state(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
+            fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
                 #jacobian_state
             }
             #[inline]
-            fn jacobian_input(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
+            fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
                 #jacobian_input
             }
             #[inline]
-            fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #energy }
+            fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }
             #[inline]
-            fn power(&self, #arguments, memory: &mut ()) -> ::mbg_runtime::Power<T> { #power }
+            fn power(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::Power<T> { #power }
             #[inline]
-            fn conditioning(&self, #arguments) -> [T; #k] { #conditioning }
+            fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
+            #close
         }
     }
+}
+
+/// A vector of results.
+fn vector(results: Vec<TokenStream>) -> TokenStream {
+    let size = Literal::usize_suffixed(results.len());
+    quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
+}
+
+/// Steps and result of a Jacobian of the derivative: all entries, or where most are zero those that are not.
+fn jacobian(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
+    let routine = &compiled.program.routines[routine];
+    let (steps, results) = lines(compiled, routine, Setting::Method);
+    let size = [compiled.states.len(), columns].map(Literal::usize_suffixed);
+    let [rows, width] = &size;
+    let filled: Vec<usize> = (0..results.len())
+        .filter(|entry| routine.results[*entry].source != Source::Constant(0.0))
+        .collect();
+    if 4 * filled.len() >= results.len() {
+        return quote! {
+            #steps
+            ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_row_slice(&[#(#results),*])
+        };
+    }
+    let entries = filled.into_iter().map(|entry| {
+        let place = [entry / columns, entry % columns].map(Literal::usize_suffixed);
+        let ([row, column], value) = (&place, &results[entry]);
+        quote!(jacobian[(#row, #column)] = #value;)
+    });
+    quote! {
+        #steps
+        let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
+            <T as ::mbg_runtime::Real>::from_f64(0.0),
+        );
+        #(#entries)*
+        jacobian
+    }
+}
+
+/// The projection onto closed loops; nothing for a model without any.
+fn close(compiled: &Compiled) -> Option<TokenStream> {
+    if compiled.model.graph.closures.is_empty() {
+        return None;
+    }
+    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
+    let routines = [Routines::CLOSED_POSITIONS, Routines::CLOSED_FLOWS];
+    let projections = routines
+        .iter()
+        .zip(&compiled.closed)
+        .filter(|(_, closed)| !closed.is_empty());
+    let projections = projections.map(|(routine, closed)| {
+        let (steps, results) = lines(
+            compiled,
+            &compiled.program.routines[*routine],
+            Setting::Method,
+        );
+        let (values, jacobian) = results.split_at(closed.len());
+        let size = Literal::usize_suffixed(closed.len());
+        let closures = closed.iter().copied().map(Literal::usize_suffixed);
+        let memory = cold_memory(compiled, *routine);
+        quote! {
+            let x = ::mbg_runtime::__private::close(
+                Self::META, &[#(#closures),*], x, held,
+                |x: &::mbg_runtime::__private::SVector<T, #n>| {
+                    #memory
+                    #steps
+                    (
+                        ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
+                        ::mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
+                    )
+                },
+            )?;
+        }
+    });
+    Some(quote! {
+        fn close(
+            &self,
+            t: T,
+            x: ::mbg_runtime::__private::SVector<T, #n>,
+            u: &::mbg_runtime::__private::SVector<T, #m>,
+            held: &[usize],
+        ) -> ::core::result::Result<::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::Trouble> {
+            #(#projections)*
+            ::core::result::Result::Ok(x)
+        }
+    })
+}
+
+/// The type of what is remembered: nothing, or the unknowns of all iterations.
+fn memory(compiled: &Compiled) -> TokenStream {
+    let sizes: Vec<usize> = compiled.iterations().collect();
+    if sizes.is_empty() {
+        return quote!(());
+    }
+    let [loops, unknowns] = [sizes.len(), sizes.iter().sum()].map(Literal::usize_suffixed);
+    quote!(::mbg_runtime::LoopMemory<T, #loops, #unknowns>)
+}
+
+/// What is asked without a memory begins at zero, if it needs an iteration at all.
+fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
+    compiled.program.routines[routine]
+        .iterates()
+        .then(|| quote!(let memory = &mut <Self::Memory as ::core::default::Default>::default();))
 }

@@ -1,6 +1,9 @@
 //! Running a program without compiling it, to check it against what it was made from.
 
-use super::{Operand, Program, Routine, Source, Step};
+use std::collections::BTreeMap;
+
+use super::iterate::{consistent, iterate};
+use super::{Operand, Program, Routine, Solver, Source, Step};
 use crate::symbolic::Symbol;
 
 /// What a program is run with.
@@ -23,44 +26,79 @@ pub fn evaluate(program: &Program, routine: usize, arguments: &Arguments) -> Vec
 }
 
 fn run(routine: &Routine, arguments: &Arguments, folded: &[f64]) -> Vec<f64> {
-    let mut values = Vec::new();
-    for step in &routine.steps {
-        let read = |operand: &Operand| read(operand, arguments, folded, &values);
-        let value = match step {
-            Step::Add(a, b) => read(a) + read(b),
-            Step::Multiply(a, b) => read(a) * read(b),
-            Step::Divide(a, b) => read(a) / read(b),
-            Step::Sine(a) => read(a).sin(),
-            Step::Cosine(a) => read(a).cos(),
-            Step::SineCosine(a) => {
-                let (sine, cosine) = read(a).sin_cos();
-                values.push(sine);
-                cosine
-            }
-            Step::Call(function, operands) => {
-                let operands: Vec<f64> = operands.iter().map(read).collect();
-                function.evaluate(&operands)
-            }
-        };
-        values.push(value);
-    }
-    routine
-        .results
-        .iter()
-        .map(|result| read(result, arguments, folded, &values))
-        .collect()
+    let mut machine = Machine {
+        arguments,
+        folded,
+        values: Vec::new(),
+        solved: BTreeMap::new(),
+    };
+    machine.steps(&routine.steps);
+    machine.results(&routine.results)
 }
 
-fn read(operand: &Operand, arguments: &Arguments, folded: &[f64], values: &[f64]) -> f64 {
-    let value = match operand.source {
-        Source::Constant(value) => value,
-        Source::Symbol(Symbol::Parameter(index)) => arguments.parameters[index],
-        Source::Symbol(Symbol::State(index)) => arguments.state[index],
-        Source::Symbol(Symbol::Input(index)) => arguments.input[index],
-        Source::Symbol(Symbol::Time) => arguments.time,
-        Source::Symbol(Symbol::Signal(_)) => f64::NAN,
-        Source::Folded(index) => folded[index],
-        Source::Value(index) => values[index],
-    };
-    if operand.negative { -value } else { value }
+#[derive(Clone)]
+struct Machine<'a> {
+    arguments: &'a Arguments<'a>,
+    folded: &'a [f64],
+    values: Vec<f64>,
+    /// Unknowns by iteration.
+    solved: BTreeMap<usize, Vec<f64>>,
+}
+
+impl Machine<'_> {
+    fn steps(&mut self, steps: &[Step]) {
+        for step in steps {
+            let value = match step {
+                Step::Add(a, b) => self.read(a) + self.read(b),
+                Step::Multiply(a, b) => self.read(a) * self.read(b),
+                Step::Divide(a, b) => self.read(a) / self.read(b),
+                Step::Sine(a) => self.read(a).sin(),
+                Step::Cosine(a) => self.read(a).cos(),
+                Step::SineCosine(a) => {
+                    let (sine, cosine) = self.read(a).sin_cos();
+                    self.values.push(sine);
+                    cosine
+                }
+                Step::Call(function, operands) => function.evaluate(&self.results(operands)),
+                Step::Solve(solve) if solve.solver == Solver::LeastNorm => {
+                    let found = consistent(solve.size, &self.results(&solve.results));
+                    self.solved.insert(solve.number, found);
+                    continue;
+                }
+                Step::Solve(solve) => {
+                    let found = iterate(solve.size, |unknowns| {
+                        let mut inner = self.clone();
+                        inner.solved.insert(solve.number, unknowns.to_vec());
+                        inner.steps(&solve.steps);
+                        inner.results(&solve.results)
+                    });
+                    self.solved.insert(solve.number, found);
+                    // Nobody reads the numbers that values inside have taken.
+                    let taken = self.values.len() + step.results();
+                    self.values.resize(taken, f64::NAN);
+                    continue;
+                }
+            };
+            self.values.push(value);
+        }
+    }
+
+    fn results(&self, operands: &[Operand]) -> Vec<f64> {
+        operands.iter().map(|operand| self.read(operand)).collect()
+    }
+
+    fn read(&self, operand: &Operand) -> f64 {
+        let value = match operand.source {
+            Source::Constant(value) => value,
+            Source::Symbol(Symbol::Parameter(index)) => self.arguments.parameters[index],
+            Source::Symbol(Symbol::State(index)) => self.arguments.state[index],
+            Source::Symbol(Symbol::Input(index)) => self.arguments.input[index],
+            Source::Symbol(Symbol::Time) => self.arguments.time,
+            Source::Symbol(Symbol::Signal(_) | Symbol::Unknown(_)) => f64::NAN,
+            Source::Folded(index) => self.folded[index],
+            Source::Value(index) => self.values[index],
+            Source::Solved(place) => self.solved[&place.number][place.row],
+        };
+        if operand.negative { -value } else { value }
+    }
 }

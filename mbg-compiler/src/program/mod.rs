@@ -3,11 +3,14 @@
 //! Input: expressions for everything a model is asked. Output: a [`Program`]: one list of steps per function, each
 //! with only what it needs, and one list that is worked out once, when a model is built. No error is reported here.
 
+mod dump;
 mod interpret;
+mod iterate;
 mod schedule;
 
-use crate::symbolic::{Function, Symbol};
+use crate::symbolic::{Function, Place, Symbol};
 
+pub use dump::dump;
 pub use interpret::{Arguments, evaluate};
 pub use schedule::build;
 
@@ -22,6 +25,8 @@ pub enum Source {
     Folded(usize),
     /// A value of this function.
     Value(usize),
+    /// What an iteration has found, or inside of it where it stands.
+    Solved(Place),
 }
 
 /// A value with a sign.
@@ -50,16 +55,42 @@ pub enum Step {
     Cosine(Operand),
     /// Another function.
     Call(Function, Vec<Operand>),
+    /// A bounded iteration.
+    Solve(Solve),
+}
+
+/// How a solve finds its unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Newton's iteration, with its number among those of the model.
+    Newton(usize),
+    /// Least norm of linear equations that may be singular.
+    LeastNorm,
+}
+
+/// A solve. What does not depend on the unknowns is worked out before it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solve {
+    /// Number of the definition, see [`Place::number`].
+    pub number: usize,
+    /// How.
+    pub solver: Solver,
+    /// How many unknowns there are.
+    pub size: usize,
+    /// Steps of one evaluation; their values go on from those before, and end with it.
+    pub steps: Vec<Step>,
+    /// Residuals, or right sides where they are linear; then the derivatives of residuals by rows.
+    pub results: Vec<Operand>,
 }
 
 impl Step {
-    /// How many values it gives.
+    /// How many numbers of values it takes.
     #[must_use]
     pub fn results(&self) -> usize {
-        if matches!(self, Self::SineCosine(_)) {
-            2
-        } else {
-            1
+        match self {
+            Self::SineCosine(_) => 2,
+            Self::Solve(solve) => solve.steps.iter().map(Self::results).sum(),
+            _ => 1,
         }
     }
 
@@ -70,13 +101,27 @@ impl Step {
             Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => vec![*a, *b],
             Self::SineCosine(a) | Self::Sine(a) | Self::Cosine(a) => vec![*a],
             Self::Call(_, operands) => operands.clone(),
+            Self::Solve(solve) => {
+                let inner = solve.steps.iter().flat_map(Self::operands);
+                inner.chain(solve.results.iter().copied()).collect()
+            }
         }
     }
 
-    /// How many operations it counts: sine and cosine of one angle two, anything else one.
+    /// How many operations it counts: sine and cosine of one angle two, an iteration those of one evaluation,
+    /// anything else one.
     #[must_use]
     pub fn operations(&self) -> usize {
         self.results()
+    }
+
+    /// Angles of which it takes sine or cosine.
+    fn angles(&self) -> usize {
+        match self {
+            Self::SineCosine(_) | Self::Sine(_) | Self::Cosine(_) => 1,
+            Self::Solve(solve) => solve.steps.iter().map(Self::angles).sum(),
+            _ => 0,
+        }
     }
 }
 
@@ -98,13 +143,18 @@ impl Routine {
         self.steps.iter().map(Step::operations).sum()
     }
 
+    /// Whether there is an iteration in it.
+    #[must_use]
+    pub fn iterates(&self) -> bool {
+        self.steps
+            .iter()
+            .any(|step| matches!(step, Step::Solve(solve) if solve.solver != Solver::LeastNorm))
+    }
+
     /// Angles of which sine or cosine is taken.
     #[must_use]
     pub fn angles(&self) -> usize {
-        self.steps
-            .iter()
-            .filter(|step| matches!(step, Step::SineCosine(_) | Step::Sine(_) | Step::Cosine(_)))
-            .count()
+        self.steps.iter().map(Step::angles).sum()
     }
 }
 
@@ -140,69 +190,5 @@ impl Operand {
             source,
             negative: false,
         }
-    }
-}
-
-/// The routine as text, one step a line.
-#[must_use]
-pub fn dump(routine: &Routine) -> String {
-    use std::fmt::Write;
-    let mut text = String::new();
-    let mut value = 0;
-    for step in &routine.steps {
-        let line = match step {
-            Step::Add(a, b) => {
-                let sign = if b.negative { '-' } else { '+' };
-                format!(
-                    "v{value} = {} {sign} {}",
-                    operand(*a),
-                    operand(Operand::plain(b.source))
-                )
-            }
-            Step::Multiply(a, b) => format!("v{value} = {} * {}", operand(*a), operand(*b)),
-            Step::Divide(a, b) => format!("v{value} = {} / {}", operand(*a), operand(*b)),
-            Step::SineCosine(a) => format!("v{value}, v{} = sin_cos({})", value + 1, operand(*a)),
-            Step::Sine(a) => format!("v{value} = sin({})", operand(*a)),
-            Step::Cosine(a) => format!("v{value} = cos({})", operand(*a)),
-            Step::Call(function, arguments) => {
-                let arguments: Vec<_> = arguments
-                    .iter()
-                    .map(|argument| operand(*argument))
-                    .collect();
-                format!("v{value} = {}({})", function.name(), arguments.join(", "))
-            }
-        };
-        let name = &routine.names[value];
-        let _ = if name.is_empty() {
-            writeln!(text, "{line}")
-        } else {
-            writeln!(text, "{line:<28} {name}")
-        };
-        value += step.results();
-    }
-    let results: Vec<_> = routine
-        .results
-        .iter()
-        .map(|result| operand(*result))
-        .collect();
-    let _ = writeln!(text, "return [{}]", results.join(", "));
-    text
-}
-
-fn operand(operand: Operand) -> String {
-    let text = match operand.source {
-        Source::Constant(value) => crate::symbolic::print::number(value),
-        Source::Symbol(Symbol::Parameter(index)) => format!("k{index}"),
-        Source::Symbol(Symbol::State(index)) => format!("x{index}"),
-        Source::Symbol(Symbol::Input(index)) => format!("u{index}"),
-        Source::Symbol(Symbol::Time) => "t".to_owned(),
-        Source::Symbol(Symbol::Signal(index)) => format!("signal{index}"),
-        Source::Folded(index) => format!("c{index}"),
-        Source::Value(index) => format!("v{index}"),
-    };
-    if operand.negative {
-        format!("-{text}")
-    } else {
-        text
     }
 }

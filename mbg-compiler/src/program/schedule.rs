@@ -1,9 +1,9 @@
 //! From the expression graph to steps in order.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Operand, Program, Routine, Source, Step};
-use crate::symbolic::{Expression, Operation, Pool, Rate, Symbol};
+use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
+use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
 /// Builds one function for each list of results. `state` gives the place in `x` of each candidate state; `names` names nodes.
 #[must_use]
@@ -21,6 +21,9 @@ pub fn build(
         .collect();
     let context = Context {
         pool,
+        captured: (0..pool.implicit().len())
+            .map(|number| captured(pool, number))
+            .collect(),
         folded: &numbers,
         state,
         names,
@@ -44,14 +47,9 @@ fn folded_nodes(pool: &Pool, requests: &[Vec<Expression>]) -> Vec<Expression> {
                 continue;
             }
             match (pool.rate(current), pool.operation(current)) {
-                (Rate::Varying, operation) => {
-                    pending.extend(
-                        operation
-                            .operands()
-                            .into_iter()
-                            .rev()
-                            .map(Expression::magnitude),
-                    );
+                (Rate::Varying, _) => {
+                    let causes = pool.causes(current).into_iter().rev();
+                    pending.extend(causes.map(Expression::magnitude));
                 }
                 (Rate::Parameter, Operation::Symbol(_)) | (Rate::Constant, _) => {}
                 (Rate::Parameter, _) => found.push(current),
@@ -61,8 +59,46 @@ fn folded_nodes(pool: &Pool, requests: &[Vec<Expression>]) -> Vec<Expression> {
     found
 }
 
+/// What an evaluation of an iteration reads and does not depend on its unknowns.
+fn captured(pool: &Pool, number: usize) -> Vec<Expression> {
+    let implicit = &pool.implicit()[number];
+    let depends = dependent(pool, implicit);
+    let mut seen = vec![false; pool.len()];
+    let mut found = Vec::new();
+    let mut pending = implicit.evaluated();
+    pending.reverse();
+    while let Some(current) = pending.pop() {
+        if std::mem::replace(&mut seen[current.node()], true) {
+            continue;
+        }
+        if depends[current.node()] {
+            pending.extend(pool.operation(current).operands().into_iter().rev());
+        } else {
+            found.push(current.magnitude());
+        }
+    }
+    found
+}
+
+/// Whether each node depends on the unknowns; operands come before what uses them.
+fn dependent(pool: &Pool, implicit: &Implicit) -> Vec<bool> {
+    let mut depends = Vec::with_capacity(pool.len());
+    for operation in pool.operations() {
+        depends.push(match operation {
+            Operation::Symbol(Symbol::Unknown(unknown)) => implicit.unknowns.contains(unknown),
+            _ => {
+                let mut operands = operation.operands().into_iter();
+                operands.any(|operand| depends[operand.node()])
+            }
+        });
+    }
+    depends
+}
+
 struct Context<'a> {
     pool: &'a Pool,
+    /// What each iteration needs before it begins.
+    captured: Vec<Vec<Expression>>,
     folded: &'a BTreeMap<usize, usize>,
     state: &'a dyn Fn(usize) -> usize,
     names: &'a BTreeMap<usize, String>,
@@ -73,6 +109,8 @@ struct Draft {
     routine: Routine,
     values: BTreeMap<usize, usize>,
     count: usize,
+    /// Iterations that have been run, and the one that is being written.
+    solved: BTreeSet<usize>,
 }
 
 impl Context<'_> {
@@ -83,11 +121,9 @@ impl Context<'_> {
             routine: Routine::default(),
             values: BTreeMap::new(),
             count: 0,
+            solved: BTreeSet::new(),
         };
-        let paired = self.paired_angles(roots, folding);
-        for root in roots {
-            self.visit(&mut draft, root.magnitude(), folding, &paired);
-        }
+        self.steps(&mut draft, roots, folding);
         draft.routine.results = roots
             .iter()
             .map(|root| self.operand(&draft, *root, folding))
@@ -95,12 +131,32 @@ impl Context<'_> {
         draft.routine
     }
 
+    /// Appends what the roots still need.
+    fn steps(&self, draft: &mut Draft, roots: &[Expression], folding: bool) {
+        let paired = self.paired_angles(roots, folding);
+        for root in roots {
+            self.visit(draft, root.magnitude(), folding, &paired);
+        }
+    }
+
+    /// What must be there before a node.
+    fn before(&self, expression: Expression) -> Vec<Expression> {
+        match self.pool.operation(expression) {
+            Operation::Symbol(symbol) => match self.pool.place(*symbol) {
+                Some(place) => self.captured[place.number].clone(),
+                None => Vec::new(),
+            },
+            operation => operation.operands(),
+        }
+    }
+
     /// Whether a node needs no step here.
     fn is_leaf(&self, expression: Expression, folding: bool) -> bool {
-        matches!(
-            self.pool.operation(expression),
-            Operation::Constant(_) | Operation::Symbol(_)
-        ) || (!folding && self.folded.contains_key(&expression.node()))
+        match self.pool.operation(expression) {
+            Operation::Constant(_) => true,
+            Operation::Symbol(symbol) => self.pool.place(*symbol).is_none(),
+            _ => !folding && self.folded.contains_key(&expression.node()),
+        }
     }
 
     /// Angles of which both sine and cosine are needed, with the two nodes.
@@ -124,7 +180,7 @@ impl Context<'_> {
                 Operation::Cosine(angle) => drop(cosines.insert(angle.node(), current.node())),
                 _ => {}
             }
-            pending.extend(operation.operands());
+            pending.extend(self.before(current));
         }
         sines
             .into_iter()
@@ -145,19 +201,56 @@ impl Context<'_> {
                 continue;
             }
             let operation = self.pool.operation(current);
-            if !ready {
-                pending.push((current, true));
-                pending.extend(
-                    operation
-                        .operands()
-                        .into_iter()
-                        .rev()
-                        .map(|operand| (operand.magnitude(), false)),
-                );
+            let place = match operation {
+                Operation::Symbol(symbol) => self.pool.place(*symbol),
+                _ => None,
+            };
+            if place.is_some_and(|place| draft.solved.contains(&place.number)) {
                 continue;
             }
-            self.step(draft, current, operation, folding, paired);
+            if !ready {
+                pending.push((current, true));
+                let before = self.before(current).into_iter().rev();
+                pending.extend(before.map(|operand| (operand.magnitude(), false)));
+                continue;
+            }
+            match place {
+                Some(place) => self.solve(draft, place.number),
+                None => self.step(draft, current, operation, folding, paired),
+            }
         }
+    }
+
+    /// The iteration, for which everything that it captures is there. Nothing that it works out is seen outside, since
+    /// there the unknowns have their final values.
+    fn solve(&self, draft: &mut Draft, number: usize) {
+        let implicit = &self.pool.implicit()[number];
+        let evaluated = implicit.evaluated();
+        let outside = draft.values.clone();
+        let before = std::mem::take(&mut draft.routine.steps);
+        draft.solved.insert(number);
+        self.steps(draft, &evaluated, false);
+        let results = evaluated
+            .iter()
+            .map(|result| self.operand(draft, *result, false))
+            .collect();
+        let steps = std::mem::replace(&mut draft.routine.steps, before);
+        draft.values = outside;
+        draft.routine.steps.push(Step::Solve(Solve {
+            number,
+            solver: match implicit.method {
+                Method::LeastNorm { .. } => Solver::LeastNorm,
+                Method::Newton { .. } => Solver::Newton(
+                    self.pool.implicit()[..number]
+                        .iter()
+                        .filter(|before| matches!(before.method, Method::Newton { .. }))
+                        .count(),
+                ),
+            },
+            size: implicit.unknowns.len(),
+            steps,
+            results,
+        }));
     }
 
     fn step(
@@ -214,7 +307,10 @@ impl Context<'_> {
             Operation::Symbol(Symbol::State(index)) => {
                 Source::Symbol(Symbol::State((self.state)(*index)))
             }
-            Operation::Symbol(symbol) => Source::Symbol(*symbol),
+            Operation::Symbol(symbol) => match self.pool.place(*symbol) {
+                Some(place) => Source::Solved(place),
+                None => Source::Symbol(*symbol),
+            },
             _ => match (draft.values.get(&node), self.folded.get(&node)) {
                 (_, Some(number)) if !folding => Source::Folded(*number),
                 (Some(value), _) => Source::Value(*value),

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::symbolic::{Expression, Matrix, Pool, Rate};
+use crate::symbolic::{Expression, Matrix, Pool, Rate, Substitution};
 
 /// Linear equations by rows, which shrink as unknowns are eliminated.
 pub(super) struct System {
@@ -73,10 +73,66 @@ impl System {
             })
             .filter(|(row, column, _)| admitted(*row, *column))
             .map(|(row, column, _)| (row, column))
-            .min_by_key(|(row, column)| {
-                let (across, down) = (self.rows[*row].len() - 1, self.columns[*column].len() - 1);
-                (across * down, *row, *column)
+            .min_by_key(|(row, column)| (self.fill(*row, *column), *row, *column))
+    }
+
+    /// How many entries a pivot there fills in at most.
+    pub(super) fn fill(&self, row: usize, column: usize) -> usize {
+        (self.rows[row].len() - 1) * (self.columns[column].len() - 1)
+    }
+
+    /// A pivot in none of the rows and columns given: constants before parameters before what varies, then the one that
+    /// fills in least.
+    pub(super) fn pivot_outside(
+        &self,
+        pool: &Pool,
+        rows: &BTreeSet<usize>,
+        columns: &BTreeSet<usize>,
+    ) -> Option<(usize, usize)> {
+        let outside = self.open_rows.iter().filter(|row| !rows.contains(row));
+        outside
+            .flat_map(|row| {
+                self.rows[*row]
+                    .iter()
+                    .map(move |(c, value)| (*row, *c, *value))
             })
+            .filter(|(_, column, _)| !columns.contains(column))
+            .map(|(row, column, value)| (pool.rate(value), self.fill(row, column), row, column))
+            .min()
+            .map(|(_, _, row, column)| (row, column))
+    }
+
+    /// Rows that are left.
+    pub(super) fn open(&self) -> &BTreeSet<usize> {
+        &self.open_rows
+    }
+
+    /// Rows that are left and hold a column.
+    pub(super) fn holders(&self, column: usize) -> impl Iterator<Item = usize> {
+        self.columns[column].iter().copied()
+    }
+
+    /// Columns of a row with their coefficients.
+    pub(super) fn entries(&self, row: usize) -> impl Iterator<Item = (&usize, &Expression)> {
+        self.rows[row].iter()
+    }
+
+    /// The right side of a row.
+    pub(super) fn right(&self, row: usize) -> Expression {
+        self.right[row]
+    }
+
+    /// Replaces symbols everywhere.
+    pub(super) fn replace(
+        &mut self,
+        pool: &mut Pool,
+        substitution: &mut Substitution,
+    ) -> Result<(), Vanished> {
+        let entries = self.rows.iter_mut().flat_map(BTreeMap::values_mut);
+        for expression in entries.chain(&mut self.right) {
+            *expression = substitution.apply(pool, *expression).ok_or(Vanished)?;
+        }
+        Ok(())
     }
 
     /// The coefficient of an unknown in a row.
@@ -87,19 +143,14 @@ impl System {
             .unwrap_or(Expression::ZERO)
     }
 
-    /// What a row is equal to.
-    pub(super) fn right(&self, row: usize) -> Expression {
-        self.right[row]
-    }
-
     /// Makes a row equal to something else.
     pub(super) fn set_right(&mut self, row: usize, right: Expression) {
         self.right[row] = right;
     }
 
-    /// Open rows.
-    pub(super) fn open(&self) -> impl Iterator<Item = usize> + '_ {
-        self.open_rows.iter().copied()
+    /// Number of unknowns.
+    pub(super) fn size(&self) -> usize {
+        self.rows.len()
     }
 
     /// The entries of a row.

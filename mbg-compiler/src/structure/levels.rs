@@ -6,7 +6,7 @@
 //! another, deepest first, is what recursive algorithms for multibody systems do (Featherstone 1983), and costs as
 //! much for each body however long the chain.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::blocks;
 use crate::equations::{Owner, Scalars, Turn};
@@ -24,6 +24,11 @@ pub(super) fn assign(
     for (unknown, rate) in rate_of {
         turns[*rate] = dependence.turn(*unknown);
     }
+    let multipliers: BTreeSet<usize> = scalars
+        .closures
+        .iter()
+        .flat_map(|closure| closure.multipliers.iter().copied())
+        .collect();
     // The components of a vector stay together, so that no more of a frame is left than it has.
     for wire in &scalars.wires {
         for side in [0, 1] {
@@ -38,6 +43,7 @@ pub(super) fn assign(
             for pair in wire
                 .iter()
                 .filter(|pair| !rate_of.contains_key(&pair[1 - side]))
+                .filter(|pair| !multipliers.contains(&pair[0]))
             {
                 join_turns(&mut turns[pair[1 - side]], common);
             }

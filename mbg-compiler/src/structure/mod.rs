@@ -11,6 +11,7 @@ mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;
+mod nonlinear;
 mod reduction;
 mod selection;
 mod shift;
@@ -21,7 +22,7 @@ use std::collections::BTreeMap;
 
 use crate::elaborate::Condition;
 use crate::equations::Scalars;
-use crate::symbolic::{Expression, Pool};
+use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use reduction::{Reduction, reduce};
 pub use selection::{Lost, Selection, select};
@@ -34,8 +35,19 @@ pub struct Solution {
     pub conditioning: Vec<Inverted>,
     /// Divisors that depend on parameters alone.
     pub assumptions: Vec<(Expression, Condition)>,
-    /// Unknowns of each block with more than one, by number.
-    pub loops: Vec<Vec<usize>>,
+    /// Algebraic loops in order of solution.
+    pub loops: Vec<Loop>,
+}
+
+/// A block of variables that depend on each other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loop {
+    /// Its equations, by number.
+    pub equations: Vec<usize>,
+    /// Its unknowns, by number.
+    pub unknowns: Vec<usize>,
+    /// How many of them an iteration finds; none where the block is linear.
+    pub iterated: usize,
 }
 
 /// A block whose determinant varies.
@@ -49,8 +61,20 @@ pub struct Inverted {
 pub enum Failure {
     /// The equations are dependent: a storage, a source or the junction structure says something twice.
     Singular,
-    /// A block in which unknowns enter nonlinearly, by unknown.
-    Nonlinear(Vec<usize>),
+    /// A block in which unknowns enter nonlinearly, and which does not determine them.
+    Undetermined(Box<Undetermined>),
+}
+
+/// A nonlinear block whose Jacobian is identically singular.
+pub struct Undetermined {
+    /// Its unknowns.
+    pub unknowns: Vec<usize>,
+    /// Those that are left after elimination.
+    pub left: Vec<usize>,
+    /// What they should make zero.
+    pub residuals: Vec<Expression>,
+    /// Derivatives of the residuals by those that are left.
+    pub jacobian: Matrix,
 }
 
 /// Solves the equations.
@@ -60,7 +84,7 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         .iter()
         .map(|equation| equation.terms.keys().copied().collect())
         .collect();
-    let matching = matching::perfect(&incidence, scalars.unknowns).ok_or(Failure::Singular)?;
+    pool.forget();
     let mut all: Vec<Vec<usize>> = scalars
         .equations
         .iter()
@@ -73,6 +97,10 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
                 .collect()
         })
         .collect();
+    // A law is turned round by iteration only where it must be.
+    let matching = matching::perfect(&incidence, scalars.unknowns)
+        .or_else(|| matching::perfect(&all, scalars.unknowns))
+        .ok_or(Failure::Singular)?;
     // What a reduced system eliminates level by level is one block, whatever could be split off.
     let levelled: Vec<usize> = (0..all.len())
         .filter(|row| scalars.turns[matching[*row]].is_some())

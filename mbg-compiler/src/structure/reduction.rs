@@ -56,6 +56,7 @@ pub fn reduce(
     for unknown in &needed {
         reducer.differentiate(model, *unknown, matched[unknown], diagnostics);
     }
+    reducer.constraints();
     reducer.dynamics(model, &selection.lost, &inverses, diagnostics);
     if diagnostics.list().len() > before {
         return None;
@@ -309,23 +310,51 @@ impl Reducer<'_> {
         let mut needed = BTreeSet::new();
         for lost in lost {
             let matrix = &inverses[&lost.element].matrix;
-            let mut open: Vec<usize> = (0..matrix.columns)
+            let open = (0..matrix.columns)
                 .filter(|column| matrix.at(lost.component, *column) != Expression::ZERO)
                 .map(|column| self.coenergy(model, lost.element, column))
                 .collect();
-            while let Some(unknown) = open.pop() {
-                if !needed.insert(unknown) {
-                    continue;
-                }
-                let Some(row) = matched.get(&unknown) else {
-                    report_second_derivative(model, lost.element, diagnostics);
-                    return None;
-                };
-                let equation = &self.scalars.equations[*row];
-                open.extend(equation.terms.keys().chain(&equation.signals));
+            if self.close(&mut needed, open, matched).is_none() {
+                report_second_derivative(model, lost.element, diagnostics);
+                return None;
+            }
+        }
+        for (number, closure) in self.scalars.closures.iter().enumerate() {
+            let open = closure.flows.iter().flatten().copied().collect();
+            if self.close(&mut needed, open, matched).is_none() {
+                report_unmoved(model, number, diagnostics);
+                return None;
             }
         }
         Some(needed)
+    }
+
+    /// Adds unknowns and whatever they follow from; none if one of them follows from a rate.
+    fn close(
+        &self,
+        needed: &mut BTreeSet<usize>,
+        mut open: Vec<usize>,
+        matched: &BTreeMap<usize, usize>,
+    ) -> Option<()> {
+        while let Some(unknown) = open.pop() {
+            if needed.insert(unknown) {
+                let equation = &self.scalars.equations[*matched.get(&unknown)?];
+                open.extend(equation.terms.keys().chain(&equation.signals));
+            }
+        }
+        Some(())
+    }
+
+    /// `ḟ_from = ḟ_to` for every closure.
+    fn constraints(&mut self) {
+        for closure in self.scalars.closures.clone() {
+            for (multiplier, [from, to]) in closure.multipliers.iter().zip(closure.flows) {
+                let mut sum = Linear::default();
+                sum.add(self.pool, self.rate_of[&from], Expression::ONE);
+                sum.add(self.pool, self.rate_of[&to], Expression::ONE.negated());
+                self.push(sum, Owner::Structure, [*multiplier; 2], None);
+            }
+        }
     }
 
     fn declare_rates(&mut self, needed: &BTreeSet<usize>) {
@@ -393,7 +422,8 @@ impl Reducer<'_> {
         for symbol in symbols(self.pool, &[expression]) {
             let slope = Differentiator::new(symbol).derivative(self.pool, expression);
             match symbol {
-                Symbol::Parameter(_) => {}
+                // Unknowns are given symbols of their own only where a reduced system is solved.
+                Symbol::Parameter(_) | Symbol::Unknown(_) => {}
                 Symbol::Time => sum.constant = self.pool.add(sum.constant, slope),
                 Symbol::Input(input) => sum.input = Some(input),
                 Symbol::Signal(signal) => {
@@ -658,6 +688,22 @@ fn report_second_derivative(model: &Elaborated, id: ElementId, diagnostics: &mut
     .note("it would have to be differentiated twice")
     .help("put a spring and a damper, or an inertia, where it is coupled");
     diagnostics.report(report);
+}
+
+fn report_unmoved(model: &Elaborated, closure: usize, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let closure = &graph.closures[closure];
+    let message = format!(
+        "the closure `{}` joins flows that do not follow from the states",
+        closure.name
+    );
+    let report = error(
+        codes::ORDER_LOST_UNSUPPORTED,
+        graph.origins.span(closure.origin),
+        message,
+    );
+    let help = "put an inertia at both ends, or let them move with joints whose rates are states";
+    diagnostics.report(report.help(help));
 }
 
 fn report_input(model: &Elaborated, owner: Owner, input: usize, diagnostics: &mut Diagnostics) {

@@ -105,7 +105,7 @@ fn again(model: &Elaborated, scalars: &Scalars, pool: &Pool, first: Selector) ->
         coordinates: scalars
             .coordinates
             .iter()
-            .filter(|coordinate| chosen.contains(&coordinate.2))
+            .filter(|(junction, component, _)| chosen.contains(&(*junction, *component)))
             .copied()
             .collect(),
     }
@@ -141,7 +141,7 @@ struct Selector<'a> {
     nominal_values: BTreeMap<usize, f64>,
     lost: Vec<Lost>,
     sources: Vec<(ElementId, BTreeSet<Owner>)>,
-    coordinates: BTreeSet<usize>,
+    coordinates: BTreeSet<(JunctionId, usize)>,
     structure: bool,
 }
 
@@ -215,8 +215,8 @@ impl<'a> Selector<'a> {
                 if let Some(reduced) = reduced {
                     self.nominal.insert(reduced);
                 }
-                if let Owner::Coordinate(..) = owner {
-                    self.coordinates.insert(equation.about[0]);
+                if let Owner::Coordinate(junction, component) = owner {
+                    self.coordinates.insert((junction, component));
                 }
             }
             (Some(causes), Owner::Element(element, component)) => {
@@ -256,7 +256,8 @@ impl<'a> Selector<'a> {
                 self.report_storage(*element, *count, causes, diagnostics);
             }
         }
-        let nothing = self.lost.is_empty() && self.sources.is_empty();
+        let nothing =
+            self.lost.is_empty() && self.sources.is_empty() && self.model.graph.closures.is_empty();
         if self.structure || nothing {
             let message = "the junction structure leaves efforts or flows undetermined";
             diagnostics.error(codes::SINGULAR_JUNCTIONS, self.model.name.span(), message);
@@ -315,18 +316,13 @@ impl<'a> Selector<'a> {
             imposed(element.kind),
             self.names(id, causes),
         );
-        let name = element.name.rsplit('.').next().unwrap_or(&element.name);
-        let mark = format!(
-            "write `#[derivative] {:?} {name} {{ … }}` to accept it: its state is then eliminated",
-            element.kind
-        );
         let report = error(
             codes::ORDER_LOST,
             graph.origins.span(element.origin),
             message,
         )
         .note("this is a true loss of order: no choice of strokes makes all of them states")
-        .help(mark)
+        .help(element.acceptance())
         .help("or put a spring and a damper between them, or merge the storages into one");
         diagnostics.report(report);
     }

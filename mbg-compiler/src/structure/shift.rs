@@ -76,6 +76,8 @@ impl Shift {
         }
         for row in system
             .open()
+            .iter()
+            .copied()
             .filter(|row| tree.given_by(*row).is_none())
             .collect::<Vec<_>>()
         {

@@ -7,15 +7,15 @@ use super::congruence;
 use super::eliminate::{System, Vanished};
 use super::shift::Shift;
 use super::tree::{Columns, Tree};
-use super::{Failure, Inverted, Solution};
+use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
-use crate::equations::{Equation, Inertia, Scalars};
+use crate::equations::{Equation, Inertia, Owner, Scalars};
 use crate::symbolic::{
-    Differentiator, Expression, Function, Matrix, Pool, Rate, Substitution, Symbol,
+    Differentiator, Expression, Function, Implicit, Matrix, Pool, Rate, Substitution, Symbol,
 };
 
 /// Up to this size a block is solved by its adjugate; larger ones are made smaller by pivots that never vanish.
-const ADJUGATE: usize = 3;
+pub(super) const ADJUGATE: usize = 3;
 
 impl From<Vanished> for Failure {
     fn from(_: Vanished) -> Self {
@@ -61,7 +61,7 @@ fn signals_of(scalars: &Scalars) -> Vec<Vec<(usize, bool)>> {
 }
 
 /// Where each unknown stands in its block.
-fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
+pub(super) fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
     unknowns
         .iter()
         .enumerate()
@@ -79,10 +79,10 @@ struct Level {
     last: Option<usize>,
 }
 
-struct Solver<'a> {
-    scalars: &'a Scalars,
-    pool: &'a mut Pool,
-    solution: Solution,
+pub(super) struct Solver<'a> {
+    pub(super) scalars: &'a Scalars,
+    pub(super) pool: &'a mut Pool,
+    pub(super) solution: Solution,
     known: Vec<bool>,
     signals_of: Vec<Vec<(usize, bool)>>,
     substitution: Substitution,
@@ -99,7 +99,7 @@ impl Solver<'_> {
             .iter()
             .any(|row| row.signals.iter().any(|signal| unknowns.contains(signal)))
         {
-            return Err(Failure::Nonlinear(unknowns.to_vec()));
+            return self.by_tearing(equations, unknowns);
         }
         if unknowns
             .iter()
@@ -111,7 +111,7 @@ impl Solver<'_> {
         let mut matrix = Vec::new();
         let mut right = Vec::new();
         let mut norms = Vec::new();
-        for row in rows {
+        for row in &rows {
             let (coefficients, rest) = self.sparse_row(row, &place)?;
             norms.push(self.norm(row)?);
             let entry = |column| {
@@ -127,21 +127,33 @@ impl Solver<'_> {
         let mut divisor = Expression::ONE;
         let values = self.dense(&matrix, &right, &mut divisor)?;
         self.note(divisor, &norms);
-        if unknowns.len() > 1 && self.pool.rate(divisor) != Rate::Constant {
-            self.solution.loops.push(unknowns.to_vec());
+        let by_law = rows
+            .iter()
+            .any(|row| matches!(row.owner, Owner::Element(..)));
+        if unknowns.len() > 1 && (by_law || self.pool.rate(divisor) != Rate::Constant) {
+            self.solution.loops.push(Loop {
+                equations: equations.to_vec(),
+                unknowns: unknowns.to_vec(),
+                iterated: 0,
+            });
         }
         self.store(unknowns, values);
         Ok(())
     }
 
-    fn store(&mut self, unknowns: &[usize], values: Vec<Expression>) {
+    pub(super) fn store(&mut self, unknowns: &[usize], values: Vec<Expression>) {
         for (unknown, value) in unknowns.iter().zip(values) {
             self.solution.values[*unknown] = value;
             self.known[*unknown] = true;
-            for (signal, reversed) in &self.signals_of[*unknown] {
-                self.substitution
-                    .set(Symbol::Signal(*signal), value.flipped(*reversed));
-            }
+            self.show(*unknown, value);
+        }
+    }
+
+    /// Lets the signals that read an unknown have this value.
+    pub(super) fn show(&mut self, unknown: usize, value: Expression) {
+        for (signal, reversed) in &self.signals_of[unknown] {
+            self.substitution
+                .set(Symbol::Signal(*signal), value.flipped(*reversed));
         }
     }
 
@@ -195,22 +207,90 @@ impl Solver<'_> {
                 system.eliminate_constants(self.pool, &all, &columns, &admitted)?;
             }
         }
-        system.eliminate_constants(self.pool, &all, &all, &|row, column| {
-            tree.allows(row, column)
-        })?;
-        let (columns, matrix, right) = system.rest();
-        let mut values = Vec::new();
-        if !columns.is_empty() {
-            let mut divisor = Expression::ONE;
-            values = self.dense(&matrix, &right, &mut divisor)?;
-            self.note(divisor, &[]);
-        }
+        let (columns, values) = if scalars.closures.is_empty() {
+            self.rest(&mut system, &tree)?
+        } else {
+            self.multipliers(&mut system, equations, unknowns)?
+        };
         let mut values = system.back_substitute(self.pool, &columns, &values)?;
         if let Some(shift) = shift {
             shift.undo(self.pool, &mut values);
         }
         self.store(unknowns, values);
         Ok(())
+    }
+
+    /// What is left when no level has it, solved as a whole: columns and their values.
+    fn rest(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+    ) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+        let rows = system.open().clone();
+        let columns = (0..system.size()).collect();
+        system.eliminate_constants(self.pool, &rows, &columns, &|row, column| {
+            tree.allows(row, column)
+        })?;
+        let (columns, matrix, right) = system.rest();
+        if columns.is_empty() {
+            return Ok((columns, Vec::new()));
+        }
+        let mut divisor = Expression::ONE;
+        let values = self.dense(&matrix, &right, &mut divisor)?;
+        self.note(divisor, &[]);
+        Ok((columns, values))
+    }
+
+    /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
+    fn multipliers(
+        &mut self,
+        system: &mut System,
+        equations: &[usize],
+        unknowns: &[usize],
+    ) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+        let place = places(unknowns);
+        let multipliers: Vec<(usize, usize)> = self
+            .scalars
+            .closures
+            .iter()
+            .flat_map(|closure| &closure.multipliers)
+            .filter_map(|unknown| {
+                let constrains = |equation: &usize| {
+                    self.scalars.equations[*equation].about == [*unknown; 2]
+                        && self.scalars.equations[*equation].level.is_none()
+                };
+                Some((equations.iter().position(constrains)?, *place.get(unknown)?))
+            })
+            .collect();
+        let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
+        let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
+        while let Some((row, column)) = system.pivot_outside(self.pool, &rows, &columns) {
+            self.note(system.entry(row, column), &[]);
+            system.eliminate(self.pool, row, column)?;
+        }
+        let mut entries = Vec::with_capacity(multipliers.len() * multipliers.len());
+        for (row, _) in &multipliers {
+            entries.extend(
+                multipliers
+                    .iter()
+                    .map(|(_, column)| system.entry(*row, *column).negated()),
+            );
+        }
+        let matrix = Matrix::new(multipliers.len(), multipliers.len(), entries);
+        let right = multipliers
+            .iter()
+            .map(|(row, _)| system.right(*row).negated())
+            .collect();
+        let columns: Vec<usize> = multipliers.iter().map(|(_, column)| *column).collect();
+        let numbers = columns.iter().map(|column| unknowns[*column]).collect();
+        let implicit = Implicit::least_norm(self.pool, numbers, matrix, right, false);
+        let symbols: Vec<Symbol> = implicit.symbols().collect();
+        self.pool.define(implicit);
+        let values = symbols
+            .into_iter()
+            .map(|symbol| self.pool.symbol(symbol))
+            .collect();
+        Ok((columns, values))
     }
 
     fn shift(
@@ -298,7 +378,7 @@ impl Solver<'_> {
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.
-    fn sparse_row(
+    pub(super) fn sparse_row(
         &mut self,
         row: &Equation,
         place: &BTreeMap<usize, usize>,
@@ -349,7 +429,7 @@ impl Solver<'_> {
     }
 
     /// Solves `A x = b`; `divisor` is multiplied by what was divided by.
-    fn dense(
+    pub(super) fn dense(
         &mut self,
         matrix: &Matrix,
         right: &[Expression],
@@ -455,7 +535,7 @@ impl Solver<'_> {
     }
 
     /// Remembers what was divided by.
-    fn note(&mut self, divisor: Expression, norms: &[Expression]) {
+    pub(super) fn note(&mut self, divisor: Expression, norms: &[Expression]) {
         match self.pool.rate(divisor) {
             Rate::Constant => {}
             Rate::Parameter => {

@@ -215,8 +215,11 @@ impl Tree {
         rows: &BTreeSet<usize>,
         rate: usize,
     ) -> Option<usize> {
+        // A multiplier belongs to no level.
         let is_rate = |column: usize| {
-            self.conjugates.contains_key(&column) || self.independent.contains(&column)
+            self.conjugates.contains_key(&column)
+                || self.independent.contains(&column)
+                || !self.turns.contains_key(&column)
         };
         let mut balances = system
             .rows_with(rate)

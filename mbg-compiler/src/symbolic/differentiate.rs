@@ -1,12 +1,20 @@
 //! Derivatives, taken on the graph: each node once, never on an expanded tree.
 
+use std::collections::BTreeMap;
+
+use super::implicit::{Implicit, Method};
+use super::matrix::Matrix;
 use super::pool::{Expression, Function, Operation, Pool, Symbol};
+use super::substitute::symbols;
 use super::walk::Rewritten;
 
 /// Differentiates with respect to one symbol and remembers what it has done.
 pub struct Differentiator {
-    symbol: Symbol,
     known: Rewritten,
+    /// Derivatives of symbols; those that are not there do not depend on the one in question.
+    slopes: BTreeMap<Symbol, Expression>,
+    /// How many of the pool's implicit definitions are in `slopes`.
+    defined: usize,
 }
 
 impl Differentiator {
@@ -14,33 +22,100 @@ impl Differentiator {
     #[must_use]
     pub fn new(symbol: Symbol) -> Self {
         Self {
-            symbol,
             known: Rewritten::default(),
+            slopes: BTreeMap::from([(symbol, Expression::ONE)]),
+            defined: 0,
         }
     }
 
     /// The derivative.
     pub fn derivative(&mut self, pool: &mut Pool, expression: Expression) -> Expression {
-        let symbol = self.symbol;
-        self.known
-            .rewrite(pool, expression, |pool, known, whole, operation| {
-                Some(rule(pool, symbol, known, whole, operation))
-            })
-            .unwrap_or(Expression::ZERO)
+        while self.defined < pool.implicit().len() {
+            self.define(pool);
+        }
+        rewrite(&mut self.known, &self.slopes, pool, expression)
     }
+
+    /// Adds the derivatives of the next unknowns that equations give, by the implicit function theorem.
+    fn define(&mut self, pool: &mut Pool) {
+        let implicit = pool.implicit()[self.defined].clone();
+        self.defined += 1;
+        if let Method::LeastNorm { slope: true, .. } = implicit.method {
+            return;
+        }
+        // While the unknowns have no derivative yet, this is the one by everything else.
+        let mut others = Rewritten::default();
+        let driven: Vec<Expression> = implicit
+            .residuals
+            .iter()
+            .map(|residual| rewrite(&mut others, &self.slopes, pool, *residual))
+            .collect();
+        if driven.iter().all(|driven| *driven == Expression::ZERO) {
+            return;
+        }
+        let right: Vec<Expression> = driven.into_iter().map(Expression::negated).collect();
+        let slopes = match &implicit.method {
+            Method::Newton { inverse } => inverse.times(pool, &Matrix::column(right)).entries,
+            Method::LeastNorm { .. } => least_norm_slopes(pool, &implicit.jacobian, right),
+        };
+        self.slopes.extend(implicit.symbols().zip(slopes));
+    }
+}
+
+/// The slopes of unknowns of least norm solve the same equations with another right side.
+fn least_norm_slopes(pool: &mut Pool, matrix: &Matrix, right: Vec<Expression>) -> Vec<Expression> {
+    let unknowns: Vec<usize> = right.iter().map(|_| pool.fresh_unknown()).collect();
+    let implicit = Implicit::least_norm(pool, unknowns, matrix.clone(), right, true);
+    let symbols: Vec<Symbol> = implicit.symbols().collect();
+    pool.define(implicit);
+    symbols
+        .into_iter()
+        .map(|symbol| pool.symbol(symbol))
+        .collect()
+}
+
+/// Derivatives of expressions, by rows, with respect to symbols, by columns; only what an expression holds is
+/// differentiated.
+pub fn jacobian(pool: &mut Pool, expressions: &[Expression], by: &[Symbol]) -> Matrix {
+    let mut columns: BTreeMap<Symbol, (usize, Differentiator)> = by
+        .iter()
+        .enumerate()
+        .map(|(column, symbol)| (*symbol, (column, Differentiator::new(*symbol))))
+        .collect();
+    let mut entries = vec![Expression::ZERO; expressions.len() * by.len()];
+    for (row, expression) in expressions.iter().enumerate() {
+        for symbol in symbols(pool, &[*expression]) {
+            if let Some((column, derivative)) = columns.get_mut(&symbol) {
+                entries[row * by.len() + *column] = derivative.derivative(pool, *expression);
+            }
+        }
+    }
+    Matrix::new(expressions.len(), by.len(), entries)
+}
+
+fn rewrite(
+    known: &mut Rewritten,
+    slopes: &BTreeMap<Symbol, Expression>,
+    pool: &mut Pool,
+    expression: Expression,
+) -> Expression {
+    known
+        .rewrite(pool, expression, |pool, known, whole, operation| {
+            Some(rule(pool, slopes, known, whole, operation))
+        })
+        .unwrap_or(Expression::ZERO)
 }
 
 fn rule(
     pool: &mut Pool,
-    wrt: Symbol,
+    slopes: &BTreeMap<Symbol, Expression>,
     known: &Rewritten,
     whole: Expression,
     operation: &Operation,
 ) -> Expression {
     match operation {
         Operation::Constant(_) => Expression::ZERO,
-        Operation::Symbol(symbol) if *symbol == wrt => Expression::ONE,
-        Operation::Symbol(_) => Expression::ZERO,
+        Operation::Symbol(symbol) => slopes.get(symbol).copied().unwrap_or(Expression::ZERO),
         Operation::Add(a, b) => pool.add(known.of(*a), known.of(*b)),
         Operation::Multiply(a, b) => {
             let first = pool.multiply(known.of(*a), *b);

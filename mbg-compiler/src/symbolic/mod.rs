@@ -2,18 +2,22 @@
 //!
 //! This is the ground on which the stages from elaboration to the program stand. Nothing in it knows of bond graphs.
 
+pub mod affine;
 pub mod differentiate;
 pub mod evaluate;
 pub mod field;
 pub mod identity;
+pub mod implicit;
 pub mod matrix;
 pub mod pool;
 pub mod print;
 pub mod substitute;
 mod walk;
 
-pub use differentiate::Differentiator;
+pub use affine::affine;
+pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;
+pub use implicit::{Implicit, Method, Place};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::{Expression, Function, Operation, Pool, Rate, Symbol};
 pub use substitute::Substitution;

@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 
 use super::field::Image;
+use super::implicit::{Implicit, Place};
 
 /// A handle to a node of a [`Pool`], with a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -71,6 +72,8 @@ pub enum Symbol {
     Time,
     /// An effort or flow inside the graph, by number, before it is solved for.
     Signal(usize),
+    /// An effort or flow that an iteration finds, by number of the unknown; see [`Implicit`].
+    Unknown(usize),
 }
 
 /// Elementary functions.
@@ -230,11 +233,17 @@ struct Node {
     rate: Rate,
 }
 
+/// Unknowns that are none of the graph are numbered from here.
+const FRESH: usize = 1 << 31;
+
 /// All expressions of a model.
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
+    implicit: Vec<Implicit>,
+    /// How many unknowns were made up.
+    fresh: usize,
 }
 
 impl Default for Pool {
@@ -250,6 +259,8 @@ impl Pool {
         let mut pool = Self {
             nodes: Vec::new(),
             found: HashMap::new(),
+            implicit: Vec::new(),
+            fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
         pool.insert(Operation::Constant(1.0), Image::ONE, Rate::Constant);
@@ -272,6 +283,11 @@ impl Pool {
     #[must_use]
     pub fn operation(&self, expression: Expression) -> &Operation {
         &self.nodes[expression.node()].operation
+    }
+
+    /// How the values of all nodes come about, operands before what uses them.
+    pub fn operations(&self) -> impl Iterator<Item = &Operation> {
+        self.nodes.iter().map(|node| &node.operation)
     }
 
     /// How often it changes.
@@ -392,10 +408,58 @@ impl Pool {
             Symbol::Input(index) => (3, index, Rate::Varying),
             Symbol::Time => (4, 0, Rate::Varying),
             Symbol::Signal(index) => (5, index, Rate::Varying),
+            Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
         let image = Image::unknown(&[kind, index as u64]);
         self.find(image)
             .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
+    }
+
+    /// Says which equations give unknowns. They may hold unknowns that were defined before.
+    pub fn define(&mut self, implicit: Implicit) {
+        self.implicit.push(implicit);
+    }
+
+    /// A number that no unknown has yet.
+    pub fn fresh_unknown(&mut self) -> usize {
+        self.fresh += 1;
+        FRESH + self.fresh
+    }
+
+    /// Forgets all definitions.
+    pub fn forget(&mut self) {
+        self.implicit.clear();
+    }
+
+    /// What is given by equations, in order of definition.
+    #[must_use]
+    pub fn implicit(&self) -> &[Implicit] {
+        &self.implicit
+    }
+
+    /// Where a symbol is defined, if it is an unknown that equations give.
+    #[must_use]
+    pub fn place(&self, symbol: Symbol) -> Option<Place> {
+        let Symbol::Unknown(unknown) = symbol else {
+            return None;
+        };
+        let position = |(number, implicit): (usize, &Implicit)| {
+            let row = implicit.unknowns.iter().position(|own| *own == unknown)?;
+            Some(Place { number, row })
+        };
+        self.implicit.iter().enumerate().find_map(position)
+    }
+
+    /// What the value of a node depends on: its operands, and for an unknown the equations that give it.
+    #[must_use]
+    pub fn causes(&self, expression: Expression) -> Vec<Expression> {
+        match self.operation(expression) {
+            Operation::Symbol(symbol) => match self.place(*symbol) {
+                Some(place) => self.implicit[place.number].residuals.clone(),
+                None => Vec::new(),
+            },
+            operation => operation.operands(),
+        }
     }
 
     /// Sum.

@@ -67,7 +67,7 @@ fn rebuild(
     })
 }
 
-/// The symbols that an expression holds, in order of first sight by depth.
+/// The symbols that expressions depend on, in order of first sight by depth; what an unknown depends on included.
 #[must_use]
 pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
     let mut seen = vec![false; pool.len()];
@@ -77,10 +77,10 @@ pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
         if std::mem::replace(&mut seen[current.node()], true) {
             continue;
         }
-        match pool.operation(current) {
-            Operation::Symbol(symbol) => found.push(*symbol),
-            operation => pending.extend(operation.operands().into_iter().rev()),
+        if let Operation::Symbol(symbol) = pool.operation(current) {
+            found.push(*symbol);
         }
+        pending.extend(pool.causes(current).into_iter().rev());
     }
     found
 }

@@ -84,6 +84,8 @@ pub enum Statement {
     Gravity(Gravity),
     /// `links: for k in 0..4 { … }`
     Loop(Loop),
+    /// `close a -> b by multipliers, displacement: r;`
+    Closure(Closure),
     /// `causality componentwise;`
     Causality(Causality, Span),
     /// A statement that could not be read; its error is reported. It keeps the name, when one was seen, so that
@@ -143,6 +145,18 @@ pub struct Let {
     pub unit: Option<Unit>,
     /// What it stands for.
     pub value: Expr,
+}
+
+/// `close a -> b by multipliers, displacement: r;`
+pub struct Closure {
+    /// The word `close`.
+    pub name: Ident,
+    /// Where positive power comes from.
+    pub from: Reference,
+    /// Where positive power goes to.
+    pub to: Reference,
+    /// How far apart both are: its rate is the flow of `from` less that of `to`.
+    pub displacement: Option<Expr>,
 }
 
 /// `gravity value;`

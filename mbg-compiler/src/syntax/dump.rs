@@ -7,8 +7,8 @@ use quote::ToTokens;
 use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, Visibility};
 
 use super::ast::{
-    Causality, Chain, ChainNode, Component, Element, Field, Instance, Item, Junction, JunctionKind,
-    Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
+    Causality, Chain, ChainNode, Closure, Component, Element, Field, Instance, Item, Junction,
+    JunctionKind, Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
 };
 use super::words;
 
@@ -142,6 +142,7 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         }
         Statement::Gravity(gravity) => writeln!(text, "  gravity {}", expression(&gravity.value)),
         Statement::Loop(it) => write_loop(text, it),
+        Statement::Closure(it) => write_closure(text, it),
         Statement::Causality(Causality::Uniform, _) => writeln!(text, "  causality uniform"),
         Statement::Causality(Causality::Componentwise, _) => {
             writeln!(text, "  causality componentwise")
@@ -241,6 +242,17 @@ fn fields_text(fields: &[Field]) -> String {
         })
         .collect();
     format!("{{ {} }}", fields.join(", "))
+}
+
+fn write_closure(text: &mut String, closure: &Closure) -> fmt::Result {
+    let displacement = closure
+        .displacement
+        .as_ref()
+        .map_or_else(String::new, |value| {
+            format!(", displacement: {}", expression(value))
+        });
+    let (from, to) = (reference(&closure.from), reference(&closure.to));
+    writeln!(text, "  close {from} -> {to} by multipliers{displacement}")
 }
 
 fn chain_text(chain: &Chain) -> String {

@@ -202,7 +202,7 @@ fn name_at(tokens: &[TokenTree], first: bool) -> Option<&Ident> {
 
 /// Whether a statement that begins with this word declares no name of its own.
 fn is_nameless(word: &Ident) -> bool {
-    ["causality", "gravity", "for"]
+    ["causality", "gravity", "for", "close"]
         .iter()
         .any(|nameless| word == nameless)
         || words::LATER.iter().any(|later| word == later)

@@ -4,11 +4,11 @@ use proc_macro2::{Delimiter, Group, Ident};
 use syn::Expr;
 
 use super::ast::{
-    Attitude, Causality, Gravity, Input, Integral, Junction, JunctionKind, Let, Output, Parameter,
-    Statement,
+    Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let, Output,
+    Parameter, Statement,
 };
 use super::attributes::Attributes;
-use super::chains::{chain, instance};
+use super::chains::{chain, instance, reference};
 use super::cursor::{Cursor, Parsed};
 use super::elements::one_ports;
 use super::expressions::expression;
@@ -156,8 +156,34 @@ fn declaration(
         "let" => named_value(cursor, attributes, "let", sink).map(Statement::Let),
         "gravity" => gravity(cursor, word, sink).map(Statement::Gravity),
         "for" => repetition(cursor, None, sink).map(Statement::Loop),
+        "close" => closure(cursor, word, sink).map(Statement::Closure),
         _ => causality(cursor, sink),
     }
+}
+
+/// Reads what follows `close`.
+fn closure(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Closure> {
+    let from = reference(cursor, "a junction after `close`")?;
+    if cursor.take_arrow().is_none() {
+        return Err(cursor.expected(&format!("`->` after {}", cursor.previous())));
+    }
+    let to = reference(cursor, "a junction after `->`")?;
+    for word in ["by", "multipliers"] {
+        if cursor.ident(0).is_none_or(|found| found != word) {
+            let error = *cursor.expected(&format!("`{word}` after {}", cursor.previous()));
+            let help = "a loop is closed by `close a -> b by multipliers;`";
+            return Err(Box::new(error.help(help)));
+        }
+        cursor.advance(1);
+    }
+    let displacement = trailing(cursor, "displacement")?;
+    finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
+    Ok(Closure {
+        name,
+        from,
+        to,
+        displacement,
+    })
 }
 
 fn parameter(
@@ -266,7 +292,7 @@ fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     let unit = unit(cursor, sink);
     equals(cursor, dimension.is_some(), unit.is_some())?;
     let rate = expression(cursor, &format!("the rate of `{name}` after `=`"))?;
-    let initial = initial(cursor)?;
+    let initial = trailing(cursor, "initial")?;
     finish(cursor, sink, &ending(cursor, initial.is_some()))?;
     let dimension = dimension.unwrap_or(1);
     Ok(Integral {
@@ -303,7 +329,7 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     if !inner.ended() {
         return Err(inner.expected("`)` after the angular velocity"));
     }
-    let initial = initial(cursor)?;
+    let initial = trailing(cursor, "initial")?;
     finish(cursor, sink, &ending(cursor, initial.is_some()))?;
     Ok(Attitude {
         documentation: attributes.documentation,
@@ -327,23 +353,23 @@ fn equals(cursor: &mut Cursor, dimension: bool, unit: bool) -> Parsed<()> {
 }
 
 /// Reads `, initial: value`.
-fn initial(cursor: &mut Cursor) -> Parsed<Option<Expr>> {
+fn trailing(cursor: &mut Cursor, wanted: &str) -> Parsed<Option<Expr>> {
     if !cursor.take_punct(',') {
         return Ok(None);
     }
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
-    if word != "initial" {
-        let mut error = *cursor.expected("`initial: value` after `,`");
-        if words::nearest(&word, &["initial"]).is_some() {
-            error = error.help("did you mean `initial`?");
+    if word != wanted {
+        let mut error = *cursor.expected(&format!("`{wanted}: value` after `,`"));
+        if words::nearest(&word, &[wanted]).is_some() {
+            error = error.help(format!("did you mean `{wanted}`?"));
         }
         return Err(Box::new(error));
     }
     cursor.advance(1);
     if !cursor.take_punct(':') {
-        return Err(cursor.expected("`:` after `initial`"));
+        return Err(cursor.expected(&format!("`:` after `{wanted}`")));
     }
-    expression(cursor, "the initial value").map(Some)
+    expression(cursor, &format!("the value of `{wanted}`")).map(Some)
 }
 
 /// What may end a statement that may have an initial value.

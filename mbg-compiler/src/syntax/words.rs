@@ -12,11 +12,12 @@ pub(super) const STATEMENTS: &[&str] = &[
     "let",
     "gravity",
     "for",
+    "close",
     "causality",
 ];
 
 /// Words that will begin a statement one day.
-pub(super) const LATER: &[&str] = &["include", "close"];
+pub(super) const LATER: &[&str] = &["include"];
 
 /// Words that begin an item.
 pub(super) const ITEMS: &[&str] = &["model", "component"];

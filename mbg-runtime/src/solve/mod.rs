@@ -9,11 +9,13 @@ mod dense;
 #[cfg(test)]
 mod lanes;
 mod least_norm;
+mod memory;
 mod newton;
 mod project;
 
 pub use least_norm::{LeastNorm, least_norm};
-pub use newton::{Solved, newton};
+pub use memory::{LoopMemory, Memory, Outcome};
+pub use newton::{ITERATIONS, Solved, newton};
 pub use project::{Projected, project, project_velocity};
 
 use crate::Real;

@@ -7,7 +7,7 @@ use super::{dot, everywhere, largest};
 use crate::Real;
 
 /// Points at which a system is linearised at most.
-const ITERATIONS: usize = 50;
+pub const ITERATIONS: usize = 50;
 /// Dampings tried at one point at most; the last one is below 1e-14.
 const DAMPINGS: usize = 24;
 /// In units of the precision: changes below it are rounding even of an unknown that is zero.

@@ -3,8 +3,8 @@
 use nalgebra::SVector;
 
 use super::{
-    Cause, Statistics, Stopped, advance, check_finite, check_times, less, magnitude, piece_end,
-    same_time, seen, weighted,
+    Cause, Statistics, Stopped, advance, check_finite, check_result, check_times, closed, less,
+    magnitude, piece_end, same_time, seen, weighted,
 };
 use crate::scalar::power;
 use crate::{Input, Real, System};
@@ -268,7 +268,7 @@ impl DormandPrince {
             statistics: Statistics::default(),
             memory: S::Memory::default(),
         };
-        let mut x = x0;
+        let mut x = closed(system, input, t0, x0)?;
         let mut since = t0;
         while less(since, t1) {
             let end = piece_end(input, since, t1, span)?;
@@ -388,6 +388,11 @@ impl DormandPrince {
                 run.statistics.steps += 1;
                 let [.., k7] = &trial.slopes;
                 run.check(next, &trial.x, k7, since)?;
+                let u = run.input.value(next, since);
+                trial.x = run
+                    .system
+                    .close(next, trial.x, &u, &[])
+                    .map_err(|trouble| Stopped::new(next, Cause::Trouble(trouble)))?;
                 observer(&trial.dense((t, next, length), &x));
                 if last {
                     return Ok(trial.x);
@@ -404,7 +409,7 @@ impl DormandPrince {
                 (t, x, k1) = (next, trial.x, *k7);
             } else {
                 run.statistics.rejected += 1;
-                run.memory = memory;
+                let tried = core::mem::replace(&mut run.memory, memory);
                 after_rejection = true;
                 let finite = trial.error.is_finite();
                 h = seen(length)
@@ -418,9 +423,9 @@ impl DormandPrince {
                 // Written so that a step of NaN is refused as well.
                 if h.is_nan() || h <= smallest {
                     if !finite {
-                        check_finite(run.system, t, &trial.x)?;
+                        check_result(run.system, t, &trial.x, &tried)?;
                         for slope in &trial.slopes {
-                            check_finite(run.system, t, slope)?;
+                            check_result(run.system, t, slope, &tried)?;
                         }
                     }
                     return Err(Stopped::new(t, Cause::StepTooSmall));
@@ -523,7 +528,7 @@ mod tests {
 
     use super::*;
     use crate::step::models::{Blocked, Explosion, Oscillator};
-    use crate::{Dual, Pulse, Smooth};
+    use crate::{Dual, Pulse, Smooth, Trouble};
 
     const STRICT: DormandPrince = DormandPrince::new(1e-10, 1e-12);
 
@@ -731,7 +736,10 @@ mod tests {
             .integrate(&Blocked, &(), 0.0, 2.0, start, |_| ())
             .unwrap_err();
         assert!(
-            matches!(stopped.cause, Cause::Trouble(trouble) if trouble.name == "block"),
+            matches!(
+                stopped.cause,
+                Cause::Trouble(Trouble::Singular { name: "block", .. })
+            ),
             "{stopped}"
         );
         assert_eq!(stopped.time, 1.0);

@@ -3,8 +3,8 @@
 use nalgebra::SVector;
 
 use super::{
-    Cause, Statistics, Stopped, advance, check_finite, check_times, less, magnitude, piece_end,
-    same_time, seen,
+    Cause, Statistics, Stopped, advance, check_finite, check_result, check_times, closed, less,
+    magnitude, piece_end, same_time, seen,
 };
 use crate::{Constant, Input, Real, System};
 
@@ -68,7 +68,7 @@ impl Rk4 {
 
         let mut statistics = Statistics::default();
         let mut memory = S::Memory::default();
-        let mut x = x0;
+        let mut x = closed(system, input, t0, x0)?;
         observer(t0, &x);
 
         let mut start = t0;
@@ -103,7 +103,10 @@ impl Rk4 {
                     &k1,
                     &mut memory,
                 );
-                check_finite(system, next, &x)?;
+                check_result(system, next, &x, &memory)?;
+                x = system
+                    .close(next, x, &input.value(next, start), &[])
+                    .map_err(|trouble| Stopped::new(next, Cause::Trouble(trouble)))?;
                 t = next;
                 statistics.steps += 1;
                 statistics.evaluations += 4;
@@ -364,7 +367,7 @@ mod tests {
         .unwrap_err();
         assert_eq!(stopped.time, 1.0);
         assert!(
-            matches!(stopped.cause, Cause::Trouble(Trouble { name: "block", value }) if value.abs() < 1e-15)
+            matches!(stopped.cause, Cause::Trouble(Trouble::Singular { name: "block", value }) if value.abs() < 1e-15)
         );
         assert_eq!(seen, 1.0);
         assert!(std::format!("{stopped}").starts_with("stopped at t = 1: block is "));

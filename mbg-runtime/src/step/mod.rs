@@ -87,6 +87,22 @@ impl Stopped {
     }
 }
 
+/// The initial state with all loops closed.
+fn closed<T, S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
+    input: &impl Input<T, M>,
+    t: T,
+    x: SVector<T, N>,
+) -> Result<SVector<T, N>, Stopped>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    system
+        .close(t, x, &input.value(t, t), &[])
+        .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))
+}
+
 /// The number, seen as `f64`; of several lanes the first.
 fn seen<T: Real>(number: T) -> f64 {
     number.find(|_| true).unwrap_or(f64::NAN)
@@ -98,7 +114,7 @@ pub(crate) fn less<T: Real>(a: T, b: T) -> bool {
 }
 
 /// Largest absolute value of all lanes; NaN when one is.
-fn magnitude<T: Real>(number: T) -> f64 {
+pub(crate) fn magnitude<T: Real>(number: T) -> f64 {
     let largest = Cell::new(0.0_f64);
     number.find(|lane| {
         if lane.is_nan() || lane.abs() > largest.get() {
@@ -169,6 +185,23 @@ where
         }
         None => Ok(()),
     }
+}
+
+/// Refuses a vector that is not finite; where an algebraic loop was not solved on the way to it, that is the cause.
+fn check_result<T, S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
+    time: T,
+    x: &SVector<T, N>,
+    memory: &S::Memory,
+) -> Result<(), Stopped>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    check_finite(system, time, x).map_err(|stopped| match S::unsolved(memory) {
+        Some(trouble) => Stopped::new(time, Cause::Trouble(trouble)),
+        None => stopped,
+    })
 }
 
 /// `x + h · Σ weight · slope`.

@@ -14,6 +14,9 @@ const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]
         bonds: &[],
         dependent: &[],
         conditioning,
+        loops: &[],
+        closures: &[],
+        eliminated: &[],
         assumptions: &[],
         notes: &[],
         operations: Operations {

@@ -1,0 +1,146 @@
+//! Stage 5b, closures: what must be zero for a loop to be closed, in positions and in flows.
+//!
+//! The multipliers hold the rates of the flows together. What integration lets drift apart is put back after a step,
+//! by least norm: the displacement between both ends with the states it depends on, then the difference of the flows
+//! with the states that are velocities or momenta. That the one is the derivative of the other is proven here, for
+//! every state. Errors: `MBG0309`.
+
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error};
+use crate::elaborate::{Elaborated, StateRate};
+use crate::equations::Scalars;
+use crate::graph::ElementKind;
+use crate::structure::Solution;
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Substitution, Symbol, jacobian};
+
+/// One set of residuals with their derivatives by all states.
+#[derive(Clone, Debug)]
+pub struct Residuals {
+    /// What is to be zero.
+    pub values: Vec<Expression>,
+    /// By rows, zero for states that stay as they are.
+    pub jacobian: Matrix,
+    /// The closure of each residual.
+    pub closures: Vec<usize>,
+}
+
+/// Displacements of all closures that have one, in terms of the states.
+#[must_use]
+pub fn displacements(
+    model: &Elaborated,
+    substitution: &mut Substitution,
+    pool: &mut Pool,
+) -> Option<Vec<(usize, usize, Expression)>> {
+    let mut found = Vec::new();
+    for (number, closure) in model.graph.closures.iter().enumerate() {
+        for (component, value) in closure.displacement.iter().flatten().enumerate() {
+            found.push((number, component, substitution.apply(pool, *value)?));
+        }
+    }
+    Some(found)
+}
+
+/// Reports displacements whose rate is not the difference of the flows. `rates` are those of all candidate states.
+pub fn check(
+    model: &Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    displacements: &[(usize, usize, Expression)],
+    rates: &[Expression],
+    pool: &mut Pool,
+    diagnostics: &mut Diagnostics,
+) {
+    let mut reported = None;
+    for (number, component, displacement) in displacements {
+        let [from, to] = scalars.closures[*number].flows[*component];
+        let mut rest = pool.subtract(solution.values[to], solution.values[from]);
+        for symbol in symbols(pool, &[*displacement]) {
+            let rate = match symbol {
+                Symbol::State(state) => rates[state],
+                Symbol::Time => Expression::ONE,
+                _ => continue,
+            };
+            let slope = Differentiator::new(symbol).derivative(pool, *displacement);
+            let term = pool.multiply(slope, rate);
+            rest = pool.add(rest, term);
+        }
+        if rest != Expression::ZERO && reported != Some(number) {
+            reported = Some(number);
+            report(model, *number, *component, diagnostics);
+        }
+    }
+}
+
+fn report(model: &Elaborated, number: usize, component: usize, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let closure = &graph.closures[number];
+    let dimension = graph.bonds[closure.bonds[0].0].dimension;
+    let component = crate::graph::component_name(component, dimension);
+    let message = format!(
+        "the displacement of `{}` does not change as the flows of its ends do",
+        closure.name
+    );
+    let report = error(codes::DISPLACEMENT, graph.origins.span(closure.origin), message)
+        .note(format!("its component {component} has another rate than the flow of `from` less that of `to`"))
+        .help("write `close a -> b by multipliers, displacement: position_of_a - position_of_b;` in the axes of the flows");
+    diagnostics.report(report);
+}
+
+/// Residuals of the positions, with derivatives by the states that displacements depend on.
+#[must_use]
+pub fn positions(
+    displacements: &[(usize, usize, Expression)],
+    by: &[Symbol],
+    pool: &mut Pool,
+) -> Residuals {
+    let values: Vec<Expression> = displacements.iter().map(|(_, _, value)| *value).collect();
+    Residuals {
+        jacobian: jacobian(pool, &values, by),
+        values,
+        closures: displacements.iter().map(|(number, _, _)| *number).collect(),
+    }
+}
+
+/// Residuals of the flows, with derivatives by the states that are velocities or momenta.
+#[must_use]
+pub fn flows(
+    model: &Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    by: &[Symbol],
+    pool: &mut Pool,
+) -> Residuals {
+    let (mut values, mut closures) = (Vec::new(), Vec::new());
+    for (number, closure) in scalars.closures.iter().enumerate() {
+        for [from, to] in &closure.flows {
+            values.push(pool.subtract(solution.values[*from], solution.values[*to]));
+            closures.push(number);
+        }
+    }
+    let mut jacobian = jacobian(pool, &values, by);
+    for (column, symbol) in by.iter().enumerate() {
+        if !moves(model, *symbol) {
+            for row in 0..values.len() {
+                jacobian.entries[row * by.len() + column] = Expression::ZERO;
+            }
+        }
+    }
+    Residuals {
+        values,
+        jacobian,
+        closures,
+    }
+}
+
+/// Whether a state is a velocity or a momentum.
+fn moves(model: &Elaborated, symbol: Symbol) -> bool {
+    let Symbol::State(state) = symbol else {
+        return false;
+    };
+    match model.states[state].rate {
+        StateRate::Unknown(_) => true,
+        StateRate::Storage(id, _) => model.graph.elements[id.0].kind == ElementKind::I,
+        StateRate::Expression(_) => false,
+    }
+}

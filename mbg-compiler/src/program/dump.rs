@@ -1,0 +1,97 @@
+//! A routine as text.
+
+use std::fmt::Write;
+
+use super::{Operand, Routine, Solve, Source, Step};
+use crate::symbolic::{Place, Symbol};
+
+/// The routine as text, one step a line; an iteration is indented.
+#[must_use]
+pub fn dump(routine: &Routine) -> String {
+    let mut text = String::new();
+    steps(&mut text, &routine.steps, &routine.names, 0, 0);
+    let _ = writeln!(text, "return {}", list(&routine.results));
+    text
+}
+
+/// Writes steps whose values begin with number `value`.
+fn steps(text: &mut String, steps: &[Step], names: &[String], mut value: usize, depth: usize) {
+    let indent = "  ".repeat(depth);
+    for step in steps {
+        match step {
+            Step::Solve(solve) => solution(text, solve, names, value, depth),
+            _ => {
+                let line = format!("{indent}{}", line(step, value));
+                let name = &names[value];
+                let _ = if name.is_empty() {
+                    writeln!(text, "{line}")
+                } else {
+                    writeln!(text, "{line:<28} {name}")
+                };
+            }
+        }
+        value += step.results();
+    }
+}
+
+fn solution(text: &mut String, solve: &Solve, names: &[String], value: usize, depth: usize) {
+    let indent = "  ".repeat(depth);
+    let unknowns: Vec<String> = (0..solve.size)
+        .map(|row| {
+            let number = solve.number;
+            operand(Operand::plain(Source::Solved(Place { number, row })))
+        })
+        .collect();
+    let _ = writeln!(text, "{indent}solve {}", unknowns.join(", "));
+    steps(text, &solve.steps, names, value, depth + 1);
+    let (residuals, jacobian) = solve.results.split_at(solve.size);
+    let _ = writeln!(text, "{indent}  zero {}", list(residuals));
+    let _ = writeln!(text, "{indent}  by {}", list(jacobian));
+}
+
+fn line(step: &Step, value: usize) -> String {
+    match step {
+        Step::Add(a, b) => {
+            let sign = if b.negative { '-' } else { '+' };
+            format!(
+                "v{value} = {} {sign} {}",
+                operand(*a),
+                operand(Operand::plain(b.source))
+            )
+        }
+        Step::Multiply(a, b) => format!("v{value} = {} * {}", operand(*a), operand(*b)),
+        Step::Divide(a, b) => format!("v{value} = {} / {}", operand(*a), operand(*b)),
+        Step::SineCosine(a) => format!("v{value}, v{} = sin_cos({})", value + 1, operand(*a)),
+        Step::Sine(a) => format!("v{value} = sin({})", operand(*a)),
+        Step::Cosine(a) => format!("v{value} = cos({})", operand(*a)),
+        Step::Call(function, arguments) => {
+            let arguments: Vec<_> = arguments.iter().copied().map(operand).collect();
+            format!("v{value} = {}({})", function.name(), arguments.join(", "))
+        }
+        Step::Solve(_) => String::new(),
+    }
+}
+
+fn list(operands: &[Operand]) -> String {
+    let operands: Vec<_> = operands.iter().copied().map(operand).collect();
+    format!("[{}]", operands.join(", "))
+}
+
+fn operand(operand: Operand) -> String {
+    let text = match operand.source {
+        Source::Constant(value) => crate::symbolic::print::number(value),
+        Source::Symbol(Symbol::Parameter(index)) => format!("k{index}"),
+        Source::Symbol(Symbol::State(index)) => format!("x{index}"),
+        Source::Symbol(Symbol::Input(index)) => format!("u{index}"),
+        Source::Symbol(Symbol::Time) => "t".to_owned(),
+        Source::Symbol(Symbol::Signal(index) | Symbol::Unknown(index)) => format!("signal{index}"),
+        Source::Folded(index) => format!("c{index}"),
+        Source::Value(index) => format!("v{index}"),
+        Source::Solved(place) => format!("z{}_{}", place.number, place.row),
+    };
+    if operand.negative {
+        format!("-{text}")
+    } else {
+        text
+    }
+}

@@ -1,0 +1,150 @@
+//! Bounded solves of nonlinear algebraic loops, and what a model remembers of them.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Solved, newton};
+use crate::Real;
+
+/// What a model keeps from one evaluation to the next; `()` for a model without bounded solves.
+pub trait Memory: Copy + Default {
+    /// Number of the first loop whose last solve did not converge, in the order of solution, and its residual.
+    fn unsolved(&self) -> Option<(usize, f64)> {
+        None
+    }
+}
+
+impl Memory for () {}
+
+/// How the last solve of a loop ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// What is left, scaled.
+    pub residual: f64,
+    /// Evaluations of residual and Jacobian that it took.
+    pub iterations: usize,
+    /// Whether nothing but rounding is left.
+    pub converged: bool,
+}
+
+/// Memory of a model with nonlinear algebraic loops: the unknowns of all of them, where the next solve begins, and how
+/// the last solve of each ended.
+///
+/// A solve begins where the last one ended, at first at zero. If it fails, it begins again at zero and then at one,
+/// where a law whose slope at zero is infinite has a finite one. A solve that fails all the same gives NaN, so that no
+/// result can be mistaken for a solution, and leaves the start as it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopMemory<T, const LOOPS: usize, const UNKNOWNS: usize> {
+    unknowns: [T; UNKNOWNS],
+    outcomes: [Outcome; LOOPS],
+}
+
+impl<T, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UNKNOWNS> {
+    /// How the last solve of each loop ended, in the order of solution.
+    #[must_use]
+    pub fn outcomes(&self) -> &[Outcome; LOOPS] {
+        &self.outcomes
+    }
+}
+
+impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> Default
+    for LoopMemory<T, LOOPS, UNKNOWNS>
+{
+    fn default() -> Self {
+        let nothing = Outcome {
+            residual: 0.0,
+            iterations: 0,
+            converged: true,
+        };
+        Self {
+            unknowns: [T::from_f64(0.0); UNKNOWNS],
+            outcomes: [nothing; LOOPS],
+        }
+    }
+}
+
+impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> Memory for LoopMemory<T, LOOPS, UNKNOWNS> {
+    fn unsolved(&self) -> Option<(usize, f64)> {
+        let failed = |(number, outcome): (usize, &Outcome)| {
+            (!outcome.converged).then_some((number, outcome.residual))
+        };
+        self.outcomes.iter().enumerate().find_map(failed)
+    }
+}
+
+impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UNKNOWNS> {
+    /// Solves loop `number`, whose `K` unknowns begin at `first`; generated code calls it.
+    #[doc(hidden)]
+    pub fn solve<const K: usize>(
+        &mut self,
+        number: usize,
+        first: usize,
+        evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
+    ) -> SVector<T, K> {
+        let zero = SVector::<T, K>::from_element(T::from_f64(0.0));
+        let mut start = zero;
+        let last = self.unknowns.iter().skip(first);
+        start.iter_mut().zip(last).for_each(|(z, last)| *z = *last);
+        let one = zero.map(|_| T::from_f64(1.0));
+        let mut solved = newton(start, &evaluate);
+        for other in [zero, one] {
+            if !solved.converged && other != start {
+                let again = newton(other, &evaluate);
+                solved = Solved {
+                    iterations: solved.iterations + again.iterations,
+                    ..again
+                };
+            }
+        }
+        if let Some(outcome) = self.outcomes.get_mut(number) {
+            *outcome = Outcome {
+                residual: solved.residual.find(|_| true).unwrap_or(f64::NAN),
+                iterations: solved.iterations,
+                converged: solved.converged,
+            };
+        }
+        if !solved.converged {
+            return SVector::from_element(T::from_f64(f64::NAN));
+        }
+        let next = self.unknowns.iter_mut().skip(first);
+        next.zip(solved.solution.iter())
+            .for_each(|(next, z)| *next = *z);
+        solved.solution
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn root(of: f64, memory: &mut LoopMemory<f64, 2, 3>) -> SVector<f64, 1> {
+        memory.solve(1, 2, |z: &SVector<f64, 1>| {
+            (
+                SVector::from([z[0] * z[0] * z[0] + z[0] - of]),
+                SMatrix::from([[3.0 * z[0] * z[0] + 1.0]]),
+            )
+        })
+    }
+
+    #[test]
+    fn next_solve_begins_where_the_last_one_ended() {
+        let mut memory = LoopMemory::default();
+        assert!(f64::abs(root(10.0, &mut memory)[0] - 2.0) < 1e-15);
+        let cold = memory.outcomes()[1].iterations;
+        root(10.01, &mut memory);
+        assert!(memory.outcomes()[1].iterations < cold);
+        assert_eq!(memory.outcomes()[0].iterations, 0);
+        assert_eq!(memory.unsolved(), None);
+    }
+
+    #[test]
+    fn failure_gives_nan_and_is_remembered() {
+        let mut memory = LoopMemory::default();
+        root(10.0, &mut memory);
+        let before = memory.unknowns;
+        assert!(root(f64::NAN, &mut memory)[0].is_nan());
+        assert!(matches!(memory.unsolved(), Some((1, _))));
+        assert_eq!(memory.unknowns, before);
+        root(10.0, &mut memory);
+        assert_eq!(memory.unsolved(), None);
+    }
+}

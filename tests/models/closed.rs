@@ -1,0 +1,119 @@
+//! Mechanisms whose loops are closed by multipliers.
+
+use mbg_runtime::{Constant, DormandPrince, System, mbg};
+use nalgebra::SVector;
+
+mbg! {
+    /// Crank, coupler and rocker between two fixed hinges 1 m apart.
+    #[derivative]
+    pub(crate) model FourBar {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        param damping: N*m*s/rad = 0.0;
+
+        1 base[3];
+        Sf fixed[3] { flow: 0.0 } -> base;
+        1 crank_foot[3]; 1 crank_middle[3]; 1 crank_tip[3];
+        crank: PlanarRevolute { initial: 1.0, damping: damping } (base, crank_foot);
+        crank_half: PlanarOffset { angle: crank.angle_b, x: 0.15 } (crank_foot, crank_middle);
+        crank_body: PlanarBody { mass: 1.0, inertia: 0.0075 } (crank_middle);
+        crank_rod: PlanarOffset { angle: crank.angle_b, x: 0.3 } (crank_foot, crank_tip);
+
+        1 coupler_foot[3]; 1 coupler_middle[3]; 1 coupler_tip[3];
+        coupler: PlanarRevolute { angle_a: crank.angle_b, damping: damping } (crank_tip, coupler_foot);
+        coupler_half: PlanarOffset { angle: coupler.angle_b, x: 0.45 } (coupler_foot, coupler_middle);
+        coupler_body: PlanarBody { mass: 2.0, inertia: 0.135 } (coupler_middle);
+        coupler_rod: PlanarOffset { angle: coupler.angle_b, x: 0.9, position_a: crank_rod.position_b }
+            (coupler_foot, coupler_tip);
+
+        1 rocker_foot[3]; 1 rocker_middle[3]; 1 rocker_tip[3];
+        rocker: PlanarRevolute { initial: 1.2, damping: damping } (base, rocker_foot);
+        rocker_half: PlanarOffset { angle: rocker.angle_b, x: 0.35 } (rocker_foot, rocker_middle);
+        rocker_body: PlanarBody { mass: 1.5, inertia: 0.06125 } (rocker_middle);
+        rocker_rod: PlanarOffset { angle: rocker.angle_b, x: 0.7, position_a: [1.0, 0.0] } (rocker_foot, rocker_tip);
+
+        close coupler_tip[1..3] -> rocker_tip[1..3] by multipliers,
+            displacement: coupler_rod.position_b - rocker_rod.position_b;
+        output gap[2]: m = coupler_rod.position_b - rocker_rod.position_b;
+        output potential: J = 9.81 * (
+            0.15 * sin(crank.angle_b)
+            + 2.0 * (crank_rod.position_b.y + 0.45 * sin(coupler.angle_b))
+            + 1.5 * 0.35 * sin(rocker.angle_b)
+        );
+    }
+}
+
+/// The state with the crank where the model puts it, and everything else where it must be.
+fn start(model: &FourBar) -> SVector<f64, 6> {
+    let crank = FourBar::<f64>::META
+        .states
+        .iter()
+        .position(|state| state.name == "crank.angle")
+        .unwrap();
+    let guess = model.initial_state();
+    let start = model
+        .close(0.0, guess, &SVector::from([]), &[crank])
+        .unwrap();
+    assert_eq!(start[crank], guess[crank]);
+    start
+}
+
+#[test]
+fn four_bar_stays_closed_and_keeps_its_energy() {
+    let model = FourBar::new(FourBarParameters::default()).unwrap();
+    let u = SVector::from([]);
+    let start = start(&model);
+    let total = |t, x: &SVector<f64, 6>| {
+        let output = model.output(t, x, &u, &mut ());
+        (
+            output[0].abs().max(output[1].abs()),
+            model.energy(t, x) + output[2],
+        )
+    };
+    let (_, first) = total(0.0, &start);
+    let pair = DormandPrince::new(1e-10, 1e-12);
+    let (mut gap, mut drift) = (0.0_f64, 0.0_f64);
+    pair.integrate(&model, &Constant(u), 0.0, 5.0, start, |step| {
+        let (open, energy) = total(step.end(), step.state());
+        gap = gap.max(open);
+        drift = drift.max((energy - first).abs());
+    })
+    .unwrap();
+    assert!(gap < 1e-12, "{gap:e}");
+    assert!(drift < 1e-8 * first.abs(), "{drift:e} of {first}");
+}
+
+#[test]
+fn jacobian_holds_through_the_multipliers() {
+    let model = FourBar::new(FourBarParameters { damping: 0.01 }).unwrap();
+    let mut x = start(&model);
+    x[3] = 2.0;
+    let u = SVector::from([]);
+    let exact = model.jacobian_state(0.0, &x, &u, &mut ());
+    for column in 0..6 {
+        let at = |step: f64| {
+            let mut moved = x;
+            moved[column] += step;
+            model.derivative(0.0, &moved, &u, &mut ())
+        };
+        // Central differences of fourth order.
+        let h = 1e-3;
+        let slope = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
+        let error = (exact.column(column) - slope).amax();
+        assert!(error < 1e-7 * exact.amax(), "{column}: {error:e}");
+    }
+}
+
+#[test]
+fn a_loop_that_cannot_close_is_named() {
+    let model = FourBar::new(FourBarParameters::default()).unwrap();
+    let u = SVector::from([]);
+    // Crank and rocker point away from each other: the gap is longer than the coupler.
+    let apart = SVector::from([3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let trouble = model.close(0.0, apart, &u, &[0, 2]).unwrap_err();
+    assert!(
+        trouble
+            .to_string()
+            .starts_with("the loop `coupler_tip[1..3] -> rocker_tip[1..3]` cannot be closed")
+    );
+}

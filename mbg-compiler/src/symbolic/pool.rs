@@ -492,28 +492,37 @@ impl Pool {
         }
     }
 
-    /// Terms that change seldom are gathered, so that they are added seldom: `(x + a) + b` is `x + (a + b)`.
+    /// Terms that change seldom are gathered and added last: `(x + a) + (y + b)` is `(x + y) + (a + b)`.
     fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
-        let (slow, fast) = if self.rate(a) <= self.rate(b) {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let Operation::Add(first, second) = *self.operation(fast) else {
+        let (first, slow) = self.apart(a);
+        let (second, other) = self.apart(b);
+        if slow == Expression::ZERO && other == Expression::ZERO {
             return None;
-        };
-        let flip = fast.is_negative();
-        let (first, second) = (first.flipped(flip), second.flipped(flip));
-        let (inner, rest) = if self.rate(first) <= self.rate(second) {
-            (first, second)
-        } else {
-            (second, first)
-        };
-        if self.rate(inner) < self.rate(rest) && self.rate(slow) < self.rate(rest) {
-            let gathered = self.add(slow, inner);
-            return Some(self.add(gathered, rest));
         }
-        None
+        if second == Expression::ZERO || first == Expression::ZERO {
+            if slow == Expression::ZERO || other == Expression::ZERO {
+                return None;
+            }
+        }
+        let fast = self.add(first, second);
+        let slow = self.add(slow, other);
+        Some(self.add(fast, slow))
+    }
+
+    /// A sum as what changes often and what changes seldom.
+    fn apart(&self, sum: Expression) -> (Expression, Expression) {
+        if self.rate(sum) != Rate::Varying {
+            return (Expression::ZERO, sum);
+        }
+        if let Operation::Add(first, second) = *self.operation(sum) {
+            let [first, second] = [first, second].map(|term| term.flipped(sum.is_negative()));
+            match (self.rate(first), self.rate(second)) {
+                (Rate::Varying, Rate::Varying) => {}
+                (Rate::Varying, _) => return (first, second),
+                _ => return (second, first),
+            }
+        }
+        (sum, Expression::ZERO)
     }
 
     /// The sum with a common factor taken out, where what remains in the brackets is known already or is computed once

@@ -6,6 +6,7 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
+mod carried;
 mod congruence;
 mod eliminate;
 mod levels;
@@ -15,7 +16,9 @@ mod nonlinear;
 mod reduction;
 mod resolve;
 mod selection;
+mod shift;
 mod solve;
+mod tree;
 
 use std::collections::BTreeMap;
 

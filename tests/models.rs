@@ -24,6 +24,7 @@ mod models {
     mod dependent;
     mod energy;
     mod loops;
+    mod mechanisms;
     mod navigation;
     mod parameters;
 }

@@ -8,7 +8,7 @@ use crate::closures;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::drawing::{self, Drawn};
-use crate::elaborate::{self, Condition, Elaborated, StateRate, Variable};
+use crate::elaborate::{self, Condition, Elaborated, State, StateRate, Variable};
 use crate::equations::{self, Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::network::Network;
@@ -29,6 +29,8 @@ pub struct Compiled {
     pub program: Program,
     /// Names of the inverted blocks.
     pub conditioning: Vec<String>,
+    /// States that follow from others, with what they are.
+    pub eliminated: Vec<(String, String)>,
     /// Algebraic loops in order of solution.
     pub loops: Vec<AlgebraicLoop>,
     /// The closure behind each residual of positions and of flows.
@@ -226,6 +228,8 @@ struct Answers {
     dissipated: Expression,
     /// Displacements of closures: number, component, value.
     displacements: Vec<(usize, usize, Expression)>,
+    /// What each lost state is in terms of the others.
+    eliminated: Vec<(usize, Expression)>,
 }
 
 impl Answers {
@@ -309,6 +313,11 @@ impl Answers {
             supplied,
             dissipated,
             displacements,
+            eliminated: solved
+                .momenta
+                .keys()
+                .filter_map(|state| Some((*state, substitution.get(Symbol::State(*state))?)))
+                .collect(),
         })
     }
 }
@@ -482,16 +491,36 @@ fn finish(
         diagnostics.report(report.help("choose units in which the values are of moderate size"));
         return None;
     }
+    let mut notes = verdict.notes;
+    for (state, _) in &answers.eliminated {
+        let State {
+            variable, initial, ..
+        } = &model.states[*state];
+        if *initial != Expression::ZERO {
+            let name = &variable.name;
+            notes.push(format!(
+                "the initial value of `{name}` is not used: `{name}` follows from other states"
+            ));
+        }
+    }
     Some(Compiled {
         states: answers.states,
         program,
         conditioning,
         loops: loops(&model, scalars, solution),
+        eliminated: answers
+            .eliminated
+            .iter()
+            .map(|(state, value)| {
+                let name = model.states[*state].variable.name.clone();
+                (name, text(&model, scalars, &pool, *value))
+            })
+            .collect(),
         closed: [positions.closures, flows.closures],
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,
-        notes: verdict.notes,
+        notes,
         model,
     })
 }

@@ -316,18 +316,13 @@ impl<'a> Selector<'a> {
             imposed(element.kind),
             self.names(id, causes),
         );
-        let name = element.name.rsplit('.').next().unwrap_or(&element.name);
-        let mark = format!(
-            "write `#[derivative] {:?} {name} {{ … }}` to accept it: its state is then eliminated",
-            element.kind
-        );
         let report = error(
             codes::ORDER_LOST,
             graph.origins.span(element.origin),
             message,
         )
         .note("this is a true loss of order: no choice of strokes makes all of them states")
-        .help(mark)
+        .help(element.acceptance())
         .help("or put a spring and a damper between them, or merge the storages into one");
         diagnostics.report(report);
     }

@@ -521,7 +521,11 @@ impl Reducer<'_> {
             }
             Owner::Structure => false,
         };
-        let turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        let moved: Vec<usize> = lost
+            .iter()
+            .map(|lost| self.coenergy(model, lost.element, lost.component))
+            .collect();
+        let turns = levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
         for equation in &mut self.scalars.equations {
             let about = equation
                 .about

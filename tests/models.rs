@@ -22,6 +22,7 @@ mod models {
     mod closed;
     mod energy;
     mod loops;
+    mod mechanisms;
     mod navigation;
     mod parameters;
 }

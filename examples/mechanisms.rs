@@ -13,9 +13,24 @@ use mechanisms::{Figures, andrews, four_bars};
 fn main() {
     println!(
         "{:18}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9}{:>9}{:>9}{:>9}",
-        "mechanism", "states", "loops", "rank", "operations", "end / s", "steps", "point", "gap", "energy", "time / s"
+        "mechanism",
+        "states",
+        "loops",
+        "rank",
+        "operations",
+        "end / s",
+        "steps",
+        "point",
+        "gap",
+        "energy",
+        "time / s"
     );
-    for run in [andrews::run, four_bars::run1, four_bars::run2, four_bars::run5] {
+    for run in [
+        andrews::run,
+        four_bars::run1,
+        four_bars::run2,
+        four_bars::run5,
+    ] {
         print(&run());
     }
 }

@@ -80,8 +80,14 @@ pub(crate) fn run() -> Figures {
         pair: DormandPrince::new(1e-11, 1e-11),
     };
     task.run(|t, angles| {
-        let instant = REFERENCE.iter().find(|instant| (instant.time - t).abs() < 1e-9).unwrap();
-        let errors = angles.iter().zip(instant.angles).map(|(angle, expected)| angle / expected - 1.0);
+        let instant = REFERENCE
+            .iter()
+            .find(|instant| (instant.time - t).abs() < 1e-9)
+            .unwrap();
+        let errors = angles
+            .iter()
+            .zip(instant.angles)
+            .map(|(angle, expected)| angle / expected - 1.0);
         errors.fold(0.0, |error: f64, next| error.max(next.abs()))
     })
 }

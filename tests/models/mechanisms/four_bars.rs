@@ -61,14 +61,21 @@ mbg! {
     }
 }
 
-fn run<S, const N: usize, const P: usize>(mechanism: &'static str, loops: usize, system: S) -> Figures
+fn run<S, const N: usize, const P: usize>(
+    mechanism: &'static str,
+    loops: usize,
+    system: S,
+) -> Figures
 where
     S: System<f64, N, 0, P>,
 {
     let mut start = system.initial_state();
-    states(S::META, "rate.f").iter().enumerate().for_each(|(link, rate)| {
-        start[*rate] = if link <= loops { RATE } else { -RATE };
-    });
+    states(S::META, "rate.f")
+        .iter()
+        .enumerate()
+        .for_each(|(link, rate)| {
+            start[*rate] = if link <= loops { RATE } else { -RATE };
+        });
     let task = Task {
         mechanism,
         system,
@@ -81,18 +88,33 @@ where
 }
 
 pub(crate) fn run1() -> Figures {
-    run("four-bar", 1, FourBar::new(FourBarParameters::default()).unwrap())
+    run(
+        "four-bar",
+        1,
+        FourBar::new(FourBarParameters::default()).unwrap(),
+    )
 }
 pub(crate) fn run2() -> Figures {
-    run("2 four-bars", 2, FourBars2::new(FourBars2Parameters::default()).unwrap())
+    run(
+        "2 four-bars",
+        2,
+        FourBars2::new(FourBars2Parameters::default()).unwrap(),
+    )
 }
 pub(crate) fn run5() -> Figures {
-    run("5 four-bars", 5, FourBars5::new(FourBars5Parameters::default()).unwrap())
+    run(
+        "5 four-bars",
+        5,
+        FourBars5::new(FourBars5Parameters::default()).unwrap(),
+    )
 }
 
 #[test]
 fn rows_turn_over_through_their_singular_position() {
     for found in [run1(), run2(), run5()] {
-        println!("{} {:e} {:e} {:e}", found.mechanism, found.point, found.gap, found.energy);
+        println!(
+            "{} {:e} {:e} {:e}",
+            found.mechanism, found.point, found.gap, found.energy
+        );
     }
 }

@@ -50,8 +50,12 @@ impl<S, const N: usize> Task<S, N> {
         let meta = S::META;
         let [gap, balance, point] = ["gap", "balance", "point"].map(|name| outputs(meta, name));
         let read = |t, x: &SVector<f64, N>| {
-            let output = self.system.output(t, x, &SVector::zeros(), &mut S::Memory::default());
-            let open = gap.iter().fold(0.0, |open: f64, place| open.max(output[*place].abs()));
+            let output = self
+                .system
+                .output(t, x, &SVector::zeros(), &mut S::Memory::default());
+            let open = gap
+                .iter()
+                .fold(0.0, |open: f64, place| open.max(output[*place].abs()));
             let energy = self.system.energy(t, x) + output[balance[0]];
             let point: Vec<f64> = point.iter().map(|place| output[*place]).collect();
             (open, energy, point)
@@ -73,13 +77,17 @@ impl<S, const N: usize> Task<S, N> {
         for instant in 0..self.instants {
             let (from, to) = (time(instant), time(instant + 1));
             let input = Constant(SVector::zeros());
-            let run = self.pair.integrate(&self.system, &input, from, to, x, |step| {
-                x = *step.state();
-                let (open, energy, _) = read(step.end(), &x);
-                figures.gap = figures.gap.max(open);
-                figures.energy = figures.energy.max(((energy - first) / first).abs());
-            });
-            figures.steps += run.unwrap_or_else(|stopped| panic!("{}: {stopped}", self.mechanism)).steps;
+            let run = self
+                .pair
+                .integrate(&self.system, &input, from, to, x, |step| {
+                    x = *step.state();
+                    let (open, energy, _) = read(step.end(), &x);
+                    figures.gap = figures.gap.max(open);
+                    figures.energy = figures.energy.max(((energy - first) / first).abs());
+                });
+            figures.steps += run
+                .unwrap_or_else(|stopped| panic!("{}: {stopped}", self.mechanism))
+                .steps;
             figures.point = figures.point.max(error(to, &read(to, &x).2));
         }
         figures.closing[1] = self.rank(&x, &gap);
@@ -93,7 +101,8 @@ impl<S, const N: usize> Task<S, N> {
         S: System<f64, N, 0, P>,
     {
         let output = |x: &SVector<f64, N>| {
-            self.system.output(0.0, x, &SVector::zeros(), &mut S::Memory::default())
+            self.system
+                .output(0.0, x, &SVector::zeros(), &mut S::Memory::default())
         };
         let mut slopes = SMatrix::<f64, P, N>::zeros();
         for state in 0..N {
@@ -112,18 +121,26 @@ impl<S, const N: usize> Task<S, N> {
 fn outputs(meta: &Meta, name: &str) -> Vec<usize> {
     let named = |path: &str| path.split(['.', '[']).any(|word| word == name);
     let places = meta.outputs.iter().enumerate();
-    places.filter(|(_, output)| named(output.name)).map(|(place, _)| place).collect()
+    places
+        .filter(|(_, output)| named(output.name))
+        .map(|(place, _)| place)
+        .collect()
 }
 
 /// The places of the states whose names end like this.
 pub(crate) fn states(meta: &Meta, ending: &str) -> Vec<usize> {
     let places = meta.states.iter().enumerate();
-    places.filter(|(_, state)| state.name.ends_with(ending)).map(|(place, _)| place).collect()
+    places
+        .filter(|(_, state)| state.name.ends_with(ending))
+        .map(|(place, _)| place)
+        .collect()
 }
 
 /// The largest difference.
 pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
-    found.iter().zip(expected).fold(0.0, |apart, (a, b)| apart.max((a - b).abs()))
+    found
+        .iter()
+        .zip(expected)
+        .fold(0.0, |apart, (a, b)| apart.max((a - b).abs()))
 }
-

@@ -1,8 +1,8 @@
 //! Andrews' squeezing mechanism: seven bodies, three loops in a plane, a motor and a spring.
 
-use mbg_runtime::{DormandPrince, System, mbg};
+use mbg_runtime::{System, mbg};
 
-use super::{Figures, Task};
+use super::{Figures, Method, Task};
 use crate::references::andrews::REFERENCE;
 
 mbg! {
@@ -77,7 +77,7 @@ pub(crate) fn run() -> Figures {
         start,
         horizon: 0.03,
         instants: 6,
-        pair: DormandPrince::new(1e-11, 1e-11),
+        method: Method::Pair(1e-11),
     };
     task.run(|t, angles| {
         let instant = REFERENCE

@@ -1,8 +1,8 @@
 //! Rows of four-bars, which turn over through the position in which all links lie on one line.
 
-use mbg_runtime::{DormandPrince, System, mbg};
+use mbg_runtime::{System, mbg};
 
-use super::{Figures, Task, apart, states};
+use super::{Figures, Method, Task, apart, states};
 use crate::references::four_bar::{DURATION, RATE, tip};
 
 mbg! {
@@ -82,7 +82,7 @@ where
         start,
         horizon: DURATION,
         instants: 20,
-        pair: DormandPrince::new(1e-10, 1e-10),
+        method: Method::Fixed(1e-3),
     };
     task.run(|t, point| apart(point, &tip(loops, t)[0]))
 }

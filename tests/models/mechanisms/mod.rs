@@ -9,7 +9,7 @@ pub(crate) mod four_bars;
 use std::time::Instant;
 
 use mbg_runtime::solve::least_norm;
-use mbg_runtime::{Constant, DormandPrince, Meta, System};
+use mbg_runtime::{Constant, DormandPrince, Meta, Rk4, Stopped, System};
 use nalgebra::{SMatrix, SVector};
 
 /// What a run shows.
@@ -29,6 +29,14 @@ pub(crate) struct Figures {
     pub(crate) seconds: f64,
 }
 
+/// How a run gets ahead.
+pub(crate) enum Method {
+    /// By the adaptive pair with this tolerance.
+    Pair(f64),
+    /// By the method of Runge and Kutta with this step.
+    Fixed(f64),
+}
+
 /// A mechanism and how it is run.
 pub(crate) struct Task<S, const N: usize> {
     pub(crate) mechanism: &'static str,
@@ -37,7 +45,14 @@ pub(crate) struct Task<S, const N: usize> {
     pub(crate) horizon: f64,
     /// How often the point is compared.
     pub(crate) instants: u32,
-    pub(crate) pair: DormandPrince,
+    pub(crate) method: Method,
+}
+
+/// What is read off a state.
+struct Reading {
+    gap: f64,
+    energy: f64,
+    point: Vec<f64>,
 }
 
 impl<S, const N: usize> Task<S, N> {
@@ -47,24 +62,12 @@ impl<S, const N: usize> Task<S, N> {
         S: System<f64, N, 0, P>,
     {
         let begin = Instant::now();
-        let meta = S::META;
-        let [gap, balance, point] = ["gap", "balance", "point"].map(|name| outputs(meta, name));
-        let read = |t, x: &SVector<f64, N>| {
-            let output = self
-                .system
-                .output(t, x, &SVector::zeros(), &mut S::Memory::default());
-            let open = gap
-                .iter()
-                .fold(0.0, |open: f64, place| open.max(output[*place].abs()));
-            let energy = self.system.energy(t, x) + output[balance[0]];
-            let point: Vec<f64> = point.iter().map(|place| output[*place]).collect();
-            (open, energy, point)
-        };
-        let (_, first, _) = read(0.0, &self.start);
+        let gap = outputs(S::META, "gap");
         let mut x = self.start;
+        let first = self.read(0.0, &x).energy;
         let mut figures = Figures {
             mechanism: self.mechanism,
-            meta,
+            meta: S::META,
             closing: [gap.len(), 0],
             horizon: self.horizon,
             steps: 0,
@@ -76,23 +79,62 @@ impl<S, const N: usize> Task<S, N> {
         let time = |instant: u32| self.horizon * f64::from(instant) / f64::from(self.instants);
         for instant in 0..self.instants {
             let (from, to) = (time(instant), time(instant + 1));
-            let input = Constant(SVector::zeros());
-            let run = self
-                .pair
-                .integrate(&self.system, &input, from, to, x, |step| {
-                    x = *step.state();
-                    let (open, energy, _) = read(step.end(), &x);
-                    figures.gap = figures.gap.max(open);
-                    figures.energy = figures.energy.max(((energy - first) / first).abs());
-                });
-            figures.steps += run
-                .unwrap_or_else(|stopped| panic!("{}: {stopped}", self.mechanism))
-                .steps;
-            figures.point = figures.point.max(error(to, &read(to, &x).2));
+            let steps = self.advance((from, to), x, |t, next| {
+                x = *next;
+                let found = self.read(t, &x);
+                figures.gap = figures.gap.max(found.gap);
+                figures.energy = figures.energy.max((found.energy / first - 1.0).abs());
+            });
+            figures.steps +=
+                steps.unwrap_or_else(|stopped| panic!("{}: {stopped}", self.mechanism));
+            figures.point = figures.point.max(error(to, &self.read(to, &x).point));
         }
         figures.closing[1] = self.rank(&x, &gap);
         figures.seconds = begin.elapsed().as_secs_f64();
         figures
+    }
+
+    fn advance<const P: usize>(
+        &self,
+        (from, to): (f64, f64),
+        x: SVector<f64, N>,
+        mut observer: impl FnMut(f64, &SVector<f64, N>),
+    ) -> Result<u64, Stopped>
+    where
+        S: System<f64, N, 0, P>,
+    {
+        let input = Constant(SVector::zeros());
+        let statistics = match self.method {
+            Method::Pair(tolerance) => DormandPrince::new(tolerance, tolerance).integrate(
+                &self.system,
+                &input,
+                from,
+                to,
+                x,
+                |step| observer(step.end(), step.state()),
+            ),
+            Method::Fixed(step) => Rk4::fixed(&self.system, &input, from, to, step, x, observer),
+        };
+        Ok(statistics?.steps)
+    }
+
+    fn read<const P: usize>(&self, t: f64, x: &SVector<f64, N>) -> Reading
+    where
+        S: System<f64, N, 0, P>,
+    {
+        let output = self
+            .system
+            .output(t, x, &SVector::zeros(), &mut S::Memory::default());
+        let [gap, balance, point] = ["gap", "balance", "point"].map(|name| {
+            outputs(S::META, name)
+                .into_iter()
+                .map(|place| output[place])
+        });
+        Reading {
+            gap: gap.fold(0.0, |gap, open| gap.max(open.abs())),
+            energy: self.system.energy(t, x) + balance.sum::<f64>(),
+            point: point.collect(),
+        }
     }
 
     /// How many of the equations that close the loops are independent.

@@ -496,13 +496,9 @@ impl Pool {
     fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
         let (first, slow) = self.apart(a);
         let (second, other) = self.apart(b);
-        if slow == Expression::ZERO && other == Expression::ZERO {
+        let is_mixed = |fast, slow| fast != Expression::ZERO && slow != Expression::ZERO;
+        if !is_mixed(first, slow) && !is_mixed(second, other) {
             return None;
-        }
-        if second == Expression::ZERO || first == Expression::ZERO {
-            if slow == Expression::ZERO || other == Expression::ZERO {
-                return None;
-            }
         }
         let fast = self.add(first, second);
         let slow = self.add(slow, other);

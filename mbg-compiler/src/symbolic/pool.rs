@@ -508,13 +508,9 @@ impl Pool {
     fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
         let (first, slow) = self.apart(a);
         let (second, other) = self.apart(b);
-        let zeros = [first, second, slow, other].map(|part| part == Expression::ZERO);
-        match zeros {
-            // Neither holds what changes seldom, or both are nothing else.
-            [_, _, true, true] | [true, true, _, _] => return None,
-            // The one changes seldom and the other holds nothing of the kind.
-            [true, _, _, true] | [_, true, true, _] => return None,
-            _ => {}
+        let is_mixed = |fast, slow| fast != Expression::ZERO && slow != Expression::ZERO;
+        if !is_mixed(first, slow) && !is_mixed(second, other) {
+            return None;
         }
         let fast = self.add(first, second);
         let slow = self.add(slow, other);

@@ -6,9 +6,6 @@
 //! must change by its own effort or flow, and there must be efforts and flows of the inner bonds that satisfy the
 //! junctions and two-ports. Since no state is lost without need, nothing else does.
 
-#[path = "models/dual.rs"]
-mod dual;
-#[allow(dead_code)]
 mod models;
 mod reduction {
     pub(crate) mod graph;

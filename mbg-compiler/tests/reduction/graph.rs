@@ -420,34 +420,29 @@ impl Graph {
                 format!("[{}]", row.join(", "))
             })
             .collect();
-        let (number, rows) = (self.bonds, rows.join(", "));
-        let (word, variable, [out, cause], [back, reaction]): (
-            _,
-            _,
-            [fn(usize) -> usize; 2],
-            [fn(usize) -> usize; 2],
-        ) = if kind == Link::Transformer {
-            ("MTF", "flow", [flow, flow], [effort, effort])
+        let transforms = kind == Link::Transformer;
+        let (word, variable) = if transforms {
+            ("MTF", "flow")
         } else {
-            ("MGY", "effort", [effort, flow], [effort, flow])
+            ("MGY", "effort")
         };
-        self.gyrators |= kind == Link::Gyrator;
+        let (number, rows) = (self.bonds, rows.join(", "));
+        self.gyrators |= !transforms;
         self.lines.push(format!(
             "{left} -> {word} m{number} {{ {variable}: [{rows}] }} -> {right};"
         ));
+        // The flow at the input gives a flow or an effort at the output, which acts back as an effort.
+        let given = |bond| if transforms { flow(bond) } else { effort(bond) };
+        let acting = |bond| if transforms { effort(bond) } else { flow(bond) };
+        let entry = |row, column| entries[row * from.2 + column];
         for row in 0..to.2 {
-            let mut law = vec![(out(output + row), ONE, 1)];
-            law.extend(
-                (0..from.2)
-                    .map(|column| (cause(input + column), entries[row * from.2 + column], -1)),
-            );
+            let mut law = vec![(given(output + row), ONE, 1)];
+            law.extend((0..from.2).map(|column| (flow(input + column), entry(row, column), -1)));
             self.laws.push(law);
         }
         for column in 0..from.2 {
-            let mut law = vec![(back(input + column), ONE, 1)];
-            law.extend(
-                (0..to.2).map(|row| (reaction(output + row), entries[row * from.2 + column], -1)),
-            );
+            let mut law = vec![(effort(input + column), ONE, 1)];
+            law.extend((0..to.2).map(|row| (acting(output + row), entry(row, column), -1)));
             self.laws.push(law);
         }
     }

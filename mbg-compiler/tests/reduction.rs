@@ -8,6 +8,7 @@
 
 mod models;
 mod reduction {
+    pub(crate) mod elements;
     pub(crate) mod graph;
     pub(crate) mod truth;
 }
@@ -16,7 +17,8 @@ use std::cell::Cell;
 
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
-use reduction::graph::{Drawing, Entry, Graph, Kind, Law, Link, Verdict};
+use reduction::elements::{Entry, Kind, Law};
+use reduction::graph::{Drawing, Graph, Link, Verdict};
 use reduction::truth::{self, Fate};
 
 fn law(number: usize, inertia: bool, diagonal: i64, coupling: i64) -> Law {

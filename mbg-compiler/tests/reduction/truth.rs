@@ -5,7 +5,8 @@ use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::diagnostics::Code;
 use mbg_runtime::Dual;
 
-use super::graph::{Drawing, Graph, Kind, Port, Verdict, effort, flow};
+use super::elements::{Kind, Port, effort, flow};
+use super::graph::{Drawing, Graph, Verdict};
 use crate::models::attempted;
 use crate::models::dual::{Point, evaluate, iterates};
 

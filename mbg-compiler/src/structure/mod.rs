@@ -6,14 +6,19 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
+mod carried;
 mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;
+mod mesh;
 mod nonlinear;
 mod reduction;
+mod resolve;
 mod selection;
+mod shift;
 mod solve;
+mod tree;
 
 use std::collections::BTreeMap;
 
@@ -22,6 +27,7 @@ use crate::equations::{Inertia, Scalars};
 use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use reduction::{Reduction, reduce};
+pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};
 
 /// Unknowns as expressions.

@@ -37,6 +37,9 @@ pub struct Projected<T, const N: usize> {
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
 /// most 32 corrections; after a step of integration it takes one or two.
 ///
+/// A point that is within the tolerance from the first is corrected once all the same, if that lowers `|g|`: near a
+/// singular position the point is off by far more than its residual, and what is left would grow on the way there.
+///
 /// **Holding a coordinate**: where a column of `G` is set to zero that coordinate stays as it is, so that consistent
 /// initial values can be found from a part of them.
 ///
@@ -66,12 +69,18 @@ pub fn project<T: Real, const M: usize, const N: usize>(
     let mut point = start;
     let (mut residual, mut jacobian) = evaluate(&point);
     let mut iterations = 0;
-    while iterations < ITERATIONS && !holds(&residual, tolerance) {
-        iterations += 1;
+    let goal = |iterations| if iterations == 0 { 0.0 } else { tolerance };
+    while iterations < ITERATIONS && !holds(&residual, goal(iterations)) {
+        let limits = if holds(&residual, tolerance) {
+            (0.0, 1)
+        } else {
+            (tolerance, DAMPINGS)
+        };
         let step = correction(&jacobian, &residual);
-        let Some((next, values)) = descend(&point, &residual, &step, tolerance, &evaluate) else {
+        let Some((next, values)) = descend(&point, &residual, &step, limits, &evaluate) else {
             break;
         };
+        iterations += 1;
         point = next;
         (residual, jacobian) = values;
     }
@@ -121,7 +130,7 @@ fn descend<T: Real, const M: usize, const N: usize>(
     point: &SVector<T, N>,
     residual: &SVector<T, M>,
     step: &SVector<T, N>,
-    tolerance: f64,
+    (tolerance, dampings): (f64, usize),
     evaluate: &impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Option<(SVector<T, N>, (SVector<T, M>, SMatrix<T, M, N>))> {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
@@ -129,7 +138,7 @@ fn descend<T: Real, const M: usize, const N: usize>(
     let here = square(residual);
     let open = largest(residual.iter().copied());
     let mut damping = one;
-    for _ in 0..DAMPINGS {
+    for _ in 0..dampings {
         let next = point.zip_map(step, |q, step| q - damping * step);
         let values = evaluate(&next);
         let lower = square(&values.0).select_less(here, one, zero);
@@ -199,6 +208,13 @@ mod tests {
             project(SVector::from([0.6, 0.8]), 1e-14, circle).iterations,
             0
         );
+    }
+
+    #[test]
+    fn within_the_tolerance_it_is_corrected_once() {
+        let found = project(SVector::from([0.6 + 1e-7, 0.8]), 1e-3, circle);
+        assert_eq!(found.iterations, 1);
+        assert!(found.residual < 1e-13, "{found:?}");
     }
 
     #[test]

@@ -27,4 +27,5 @@ mod models {
     mod mechanisms;
     mod navigation;
     mod parameters;
+    mod pendulums;
 }

@@ -23,9 +23,9 @@ mod models {
     mod closed;
     mod dependent;
     mod energy;
+    mod lagrange;
     mod loops;
     mod mechanisms;
     mod navigation;
     mod parameters;
-    mod pendulums;
 }

@@ -227,6 +227,23 @@ pub struct Storage {
     pub energy: Expression,
 }
 
+impl Element {
+    /// What to type so that its derivative causality is accepted.
+    #[must_use]
+    pub fn acceptance(&self) -> String {
+        let Some((instance, _)) = self.name.rsplit_once('.') else {
+            let written = format!("{:?} {}", self.kind, self.name);
+            return format!(
+                "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
+            );
+        };
+        let own = instance.rsplit('.').next().unwrap_or(instance);
+        format!(
+            "write `#[derivative]` before `{own}: …`, which makes `{instance}`, or before the model, to accept it"
+        )
+    }
+}
+
 impl BondGraph {
     /// The path of an end, for people.
     #[must_use]

@@ -349,26 +349,7 @@ model Pendulum {
 }";
 
 /// A chain of rods with axes in turn about x and y, as a user would write it.
-const CHAIN: &str = "#[derivative]
-model Chain {
-    gravity [0.0, 0.0, -9.81];
-    let rods = 4;
-    ends: for k in 0..rods + 1 { 1 end[6]; }
-    Sf fixed[6] { flow: 0.0 } -> ends[0].end;
-    links: for k in 0..rods {
-        1 rod[6];
-        let down[3] = if k == 0 { gravity } else { links[k-1].hinge.gravity_b };
-        hinge: Revolute { axis: k % 2, damping: 0.1, gravity_a: down } (ends[k].end, rod);
-        body: Body {
-            mass: 1.0,
-            inertia: diag(0.08395833333333334, 0.08395833333333334, 0.00125),
-            centre: [0.0, 0.0, -0.5],
-            gravity_at: hinge.gravity_b
-        } (rod);
-        length: Offset { by: [0.0, 0.0, -1.0] } (rod, ends[k+1].end);
-        output angle: rad = hinge.angle;
-    }
-}";
+const CHAIN: &str = include_str!("stages/chain.mbg");
 
 #[test]
 fn mechanisms_of_any_length_are_written_once() {

@@ -17,6 +17,8 @@ pub struct Meta {
     pub bonds: &'static [Bond],
     /// Storages that the drawing puts into derivative causality, accepted by `#[derivative]`.
     pub dependent: &'static [&'static str],
+    /// Storages' states that follow from others and are none.
+    pub eliminated: &'static [Eliminated],
     /// Names of the inverted blocks, in the order of `conditioning`.
     pub conditioning: &'static [&'static str],
     /// Algebraic loops, in order of solution.
@@ -40,6 +42,15 @@ pub struct Variable {
     pub name: &'static str,
     /// Unit as written, empty when none was.
     pub unit: &'static str,
+}
+
+/// A momentum or displacement that is no state, because the graph lets it follow from others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eliminated {
+    /// Its name, such as `load.p`.
+    pub state: &'static str,
+    /// What it is in terms of states and parameters; a long formula is abbreviated.
+    pub relation: &'static str,
 }
 
 /// A bond as the model draws it.

@@ -113,3 +113,39 @@ fn bonds_out_of_elements_conserve_energy_too() {
     assert!(f64::abs(change + power.dissipated) < 1e-14);
     assert!(f64::abs(power.dissipated - 1.5 * 0.36) < 1e-15);
 }
+
+mbg! {
+    /// Two flywheels on one gearbox: one state.
+    pub(crate) model Gearbox {
+        param ratio = 4.0;
+        param motor: kg*m^2 = 2.0;
+        param load: kg*m^2 = 3.0;
+        input torque: N*m;
+        1 fast { I rotor { inertia: motor } Se drive { effort: torque } }
+        1 slow { #[derivative] I drum { inertia: load, initial_flow: 1.0 } }
+        fast -> TF gear { flow: ratio } -> slow;
+        output momentum = drum.p;
+        output effort = drum.e;
+    }
+}
+
+#[test]
+fn a_storage_that_follows_from_another_is_told() {
+    let model = Gearbox::<f64>::new(GearboxParameters::default()).unwrap();
+    let meta = Gearbox::<f64>::META;
+    assert_eq!(meta.states.len(), 1);
+    assert_eq!(meta.eliminated[0].state, "drum.p");
+    assert_eq!(meta.eliminated[0].relation, "load ratio 1/motor rotor.p");
+    assert_eq!(
+        meta.notes[0],
+        "the initial value of `drum.p` is not used: `drum.p` follows from other states"
+    );
+    // Seen from the rotor the drum weighs load ratio².
+    let (x, u) = (SVector::from([5.0]), SVector::from([7.0]));
+    let acceleration = 7.0 / (2.0 + 3.0 * 16.0);
+    let rate = model.derivative(0.0, &x, &u, &mut ());
+    assert!(f64::abs(rate[0] - 2.0 * acceleration) < 1e-15);
+    let output = model.output(0.0, &x, &u, &mut ());
+    assert!(f64::abs(output[0] - 3.0 * 4.0 * 2.5) < 1e-13);
+    assert!(f64::abs(output[1] - 3.0 * 4.0 * acceleration) < 1e-14);
+}

@@ -118,9 +118,7 @@ fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain, soluble: b
                 .to_owned(),
         );
     }
-    helps.push(format!(
-        "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
-    ));
+    helps.push(element.acceptance());
     if !soluble && !chain.integral.is_empty() {
         helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
     }

@@ -4,26 +4,50 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::compile::{Compiled, Routines};
+use crate::diagnostics::listing;
 use crate::drawing;
 use crate::elaborate::{Condition, Variable};
 
 /// Lines of documentation that follow the user's own.
 pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
+    let model = &compiled.model;
+    let states: Vec<&Variable> = compiled
+        .states
+        .iter()
+        .map(|state| &model.states[*state].variable)
+        .collect();
+    let inputs: Vec<&Variable> = model.inputs.iter().collect();
+    let outputs: Vec<&Variable> = model.outputs.iter().map(|it| &it.variable).collect();
+    let operations = compiled.program.routines[Routines::DERIVATIVE].operations();
     let mut lines = vec![
         String::new(),
-        format!(
-            "{} states, {} inputs, {} outputs; {} operations per derivative.",
-            compiled.states.len(),
-            compiled.model.inputs.len(),
-            compiled.model.outputs.len(),
-            compiled.program.routines[Routines::DERIVATIVE].operations(),
-        ),
+        format!("{operations} operations per derivative."),
+        String::new(),
+        "| | | names in order |".to_owned(),
+        "|---|---|---|".to_owned(),
     ];
+    for (kind, variables) in [("states", states), ("inputs", inputs), ("outputs", outputs)] {
+        let names = variables.iter().map(|variable| variable.name.clone());
+        let names = match variables.len() {
+            0 => "none".to_owned(),
+            _ => listing(names),
+        };
+        lines.push(format!("| {kind} | {} | {names} |", variables.len()));
+    }
     if !compiled.conditioning.is_empty() {
         lines.push(String::new());
         lines.push(format!(
             "Singular where one of these is zero: `{}`.",
             compiled.conditioning.join("`, `")
+        ));
+    }
+    if !compiled.eliminated.is_empty() {
+        let relations = compiled.eliminated.iter();
+        let relations = relations.map(|(state, value)| format!("{state} = {value}"));
+        lines.push(String::new());
+        lines.push(format!(
+            "No states, because they follow from others: {}.",
+            listing(relations)
         ));
     }
     for found in &compiled.loops {
@@ -43,7 +67,16 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
         lines.push(String::new());
         lines.push(assumption);
     }
-    lines
+    lines.into_iter().map(spaced).collect()
+}
+
+/// As it stands behind `///`.
+pub(super) fn spaced(line: String) -> String {
+    if line.is_empty() {
+        line
+    } else {
+        format!(" {line}")
+    }
 }
 
 fn assumptions(compiled: &Compiled) -> Vec<String> {
@@ -95,6 +128,9 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
         (&compiled.dependent, &compiled.conditioning, &compiled.notes);
     let assumptions = assumptions(compiled);
     let loops = loops(compiled);
+    let eliminated = compiled.eliminated.iter().map(|(state, relation)| {
+        quote!(::mbg_runtime::Eliminated { state: #state, relation: #relation })
+    });
     let closures = model.graph.closures.iter().map(|closure| &closure.name);
     let operations = operations(compiled);
     let diagram = drawing::diagram(&model.graph, &compiled.strokes);
@@ -107,6 +143,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
             outputs: &[#(#outputs),*],
             bonds: &[#(#bonds),*],
             dependent: &[#(#dependent),*],
+            eliminated: &[#(#eliminated),*],
             conditioning: &[#(#conditioning),*],
             loops: &[#(#loops),*],
             closures: &[#(#closures),*],

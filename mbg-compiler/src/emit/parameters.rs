@@ -3,6 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::meta::spaced;
 use crate::compile::Compiled;
 
 /// `NameParameters` with its `Default`.
@@ -12,21 +13,21 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     let fields = model.parameters.iter().map(|parameter| {
         let (name, documentation) = (&parameter.name, &parameter.documentation);
         let unit = if parameter.unit.is_empty() {
-            "no unit".to_owned()
+            "Without unit".to_owned()
         } else {
-            format!("in {}", parameter.unit)
+            format!("In {}", parameter.unit)
         };
-        let line = format!(
-            "{unit}, {} by default.",
+        let line = spaced(format!(
+            "{unit}; {} by default.",
             crate::symbolic::print::number(parameter.default)
-        );
+        ));
         quote!(#(#documentation)* #[doc = #line] pub #name: T)
     });
     let defaults = model.parameters.iter().map(|parameter| {
         let (name, value) = (&parameter.name, number(parameter.default));
         quote!(#name: #value)
     });
-    let documentation = format!("Parameters of [`{}`].", model.name);
+    let documentation = spaced(format!("Parameters of [`{}`].", model.name));
     let phantom = model.parameters.is_empty();
     let (field, default) = if phantom {
         (

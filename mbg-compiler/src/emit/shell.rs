@@ -60,7 +60,7 @@ fn behaviour(name: &Ident, sizes: Sizes) -> TokenStream {
     quote! {
         const META: &'static ::mbg_runtime::Meta = &::mbg_runtime::Meta {
             name: #name, parameters: &[], states: &[], inputs: &[], outputs: &[], bonds: &[], dependent: &[],
-            conditioning: &[], closures: &[], loops: &[], assumptions: &[], notes: &[], diagram: "",
+            conditioning: &[], eliminated: &[], closures: &[], loops: &[], assumptions: &[], notes: &[], diagram: "",
             operations: ::mbg_runtime::Operations {
                 derivative: 0, output: 0, jacobian_state: 0, jacobian_input: 0, energy: 0, power: 0, angles: 0,
             },

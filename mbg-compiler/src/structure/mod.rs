@@ -10,8 +10,10 @@ mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;
+mod mesh;
 mod nonlinear;
 mod reduction;
+mod resolve;
 mod selection;
 mod solve;
 
@@ -22,6 +24,7 @@ use crate::equations::Scalars;
 use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use reduction::{Reduction, reduce};
+pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};
 
 /// Unknowns as expressions.

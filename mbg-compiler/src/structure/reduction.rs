@@ -527,8 +527,15 @@ impl Reducer<'_> {
                 .about
                 .iter()
                 .find_map(|unknown| self.rate_of.get(unknown));
-            let rate = equation.rate.as_ref().or(about);
-            equation.level = rate.and_then(|rate| turns[*rate]).map(|turn| turn.level);
+            // What is loose, such as the end of the last link, has no rate that anything needs.
+            let turn = match equation.rate.as_ref().or(about) {
+                Some(rate) => turns[*rate],
+                None => {
+                    let turns = equation.terms.keys().filter_map(|unknown| turns[*unknown]);
+                    turns.min_by_key(|turn| turn.level)
+                }
+            };
+            equation.level = turn.map(|turn| turn.level);
         }
         let pool = &mut *self.pool;
         let definite = inverses

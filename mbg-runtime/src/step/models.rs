@@ -16,6 +16,7 @@ const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]
         conditioning,
         loops: &[],
         closures: &[],
+        eliminated: &[],
         assumptions: &[],
         notes: &[],
         operations: Operations {

@@ -1,0 +1,609 @@
+//! Graphs of vector bonds, in the language and as equations between the effort `2 b` and the flow `2 b + 1` of every
+//! component b of every bond.
+
+use std::fmt::Write;
+
+/// Arithmetic of ranks is modulo this prime.
+const PRIME: i64 = 2_147_483_647;
+
+/// A coefficient of a transformer, a gyrator or a source.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Entry {
+    Whole(i64),
+    Shifted(i64, usize),
+    Sine(usize),
+    Cosine(usize),
+}
+
+impl Entry {
+    fn text(self, variables: &[String]) -> String {
+        match self {
+            Self::Whole(value) => format!("{value}.0"),
+            Self::Shifted(value, variable) => format!("{value}.0 + {}", variables[variable]),
+            Self::Sine(variable) => format!("sin({})", variables[variable]),
+            Self::Cosine(variable) => format!("cos({})", variables[variable]),
+        }
+    }
+
+    /// With the values of the variables.
+    pub(crate) fn value(self, variables: &[f64]) -> f64 {
+        match self {
+            Self::Whole(value) => value as f64,
+            Self::Shifted(value, variable) => value as f64 + variables[variable],
+            Self::Sine(variable) => variables[variable].sin(),
+            Self::Cosine(variable) => variables[variable].cos(),
+        }
+    }
+
+    /// With some values of the variables, each with a sine and a cosine that lie on the circle.
+    fn image(self) -> i64 {
+        let some = |variable: usize, factor: i64| (variable as i64 + 2) * factor % PRIME;
+        let half = |variable| some(variable, 1_234_577);
+        let square = |variable| half(variable) * half(variable) % PRIME;
+        match self {
+            Self::Whole(value) => value,
+            Self::Shifted(value, variable) => value + some(variable, 7_654_321),
+            Self::Sine(variable) => {
+                2 * half(variable) % PRIME * invert(1 + square(variable)) % PRIME
+            }
+            Self::Cosine(variable) => {
+                (1 - square(variable)).rem_euclid(PRIME) * invert(1 + square(variable)) % PRIME
+            }
+        }
+    }
+}
+
+fn invert(value: i64) -> i64 {
+    let (mut base, mut power, mut inverse) = (value.rem_euclid(PRIME), PRIME - 2, 1);
+    while power > 0 {
+        if power % 2 == 1 {
+            inverse = inverse * base % PRIME;
+        }
+        base = base * base % PRIME;
+        power /= 2;
+    }
+    inverse
+}
+
+/// Unknowns with coefficients and signs; the sum is zero.
+pub(crate) type Row = Vec<(usize, Entry, i64)>;
+
+const ONE: Entry = Entry::Whole(1);
+
+pub(crate) const fn effort(bond: usize) -> usize {
+    2 * bond
+}
+
+pub(crate) const fn flow(bond: usize) -> usize {
+    2 * bond + 1
+}
+
+/// How a storage's co-energy variable y follows from its state s.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Law {
+    /// `M y = s`, with `diagonal` on the diagonal and ones beside it.
+    Inverse { diagonal: i64, coupling: i64 },
+    /// `y = K s`.
+    Direct { diagonal: i64, coupling: i64 },
+    /// `y = k s + c` for each component.
+    Affine { factor: i64, offset: i64 },
+    /// `y = k s + s³` for each component.
+    Cubic { factor: i64 },
+}
+
+impl Law {
+    fn text(self, inertia: bool, dimension: usize) -> String {
+        let matrix = |diagonal, coupling| {
+            let entry = |row, column| {
+                if row == column {
+                    diagonal + row as i64
+                } else {
+                    coupling
+                }
+            };
+            let row = |row| {
+                let entries: Vec<String> = (0..dimension)
+                    .map(|column| format!("{}.0", entry(row, column)))
+                    .collect();
+                format!("[{}]", entries.join(", "))
+            };
+            let rows: Vec<String> = (0..dimension).map(row).collect();
+            if dimension == 1 {
+                format!("{diagonal}.0")
+            } else {
+                format!("[{}]", rows.join(", "))
+            }
+        };
+        let (state, word) = if inertia {
+            ("p", "flow")
+        } else {
+            ("q", "effort")
+        };
+        match self {
+            Self::Inverse { diagonal, coupling } => {
+                let word = if inertia { "inertia" } else { "compliance" };
+                format!("{word}: {}", matrix(diagonal, coupling))
+            }
+            Self::Direct { diagonal, coupling } => {
+                format!("stiffness: {}", matrix(diagonal, coupling))
+            }
+            Self::Affine { factor, offset } => {
+                format!("{word}: {factor}.0 * {state} + {offset}.0")
+            }
+            Self::Cubic { factor } => {
+                format!("{word}: {factor}.0 * {state} + {state} * {state} * {state}")
+            }
+        }
+    }
+
+    fn coupled(diagonal: i64, coupling: i64, vector: &[f64], component: usize) -> f64 {
+        let entry = |(place, value): (usize, &f64)| {
+            let factor = if place == component {
+                diagonal + component as i64
+            } else {
+                coupling
+            };
+            factor as f64 * value
+        };
+        vector.iter().enumerate().map(entry).sum()
+    }
+
+    /// By how much the law is broken.
+    pub(crate) fn residual(self, state: &[f64], coenergy: &[f64], component: usize) -> f64 {
+        let (s, y) = (state[component], coenergy[component]);
+        match self {
+            Self::Inverse { diagonal, coupling } => {
+                Self::coupled(diagonal, coupling, coenergy, component) - s
+            }
+            Self::Direct { diagonal, coupling } => {
+                Self::coupled(diagonal, coupling, state, component) - y
+            }
+            Self::Affine { factor, offset } => factor as f64 * s + offset as f64 - y,
+            Self::Cubic { factor } => factor as f64 * s + s * s * s - y,
+        }
+    }
+
+    /// What a component contributes to the energy.
+    pub(crate) fn energy(self, state: f64, coenergy: f64) -> f64 {
+        match self {
+            Self::Inverse { .. } | Self::Direct { .. } => state * coenergy / 2.0,
+            Self::Affine { factor, offset } => {
+                (factor as f64 * state / 2.0 + offset as f64) * state
+            }
+            Self::Cubic { factor } => (factor as f64 / 2.0 + state * state / 4.0) * state * state,
+        }
+    }
+}
+
+/// An element on one bond.
+#[derive(Clone, Debug)]
+pub(crate) struct Port {
+    pub(crate) kind: Kind,
+    /// Its bond's first component, and how many there are.
+    pub(crate) bond: usize,
+    pub(crate) dimension: usize,
+    /// −1 where the bond leads away from it.
+    pub(crate) sign: i64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    Inertia(Law),
+    Compliance(Law),
+    Resistor(i64),
+    Effort(Entry),
+    Flow(Entry),
+}
+
+impl Port {
+    fn text(&self, number: usize, variables: &[String]) -> String {
+        match self.kind {
+            Kind::Inertia(law) => format!("I p{number} {{ {} }}", law.text(true, self.dimension)),
+            Kind::Compliance(law) => {
+                format!(
+                    "C p{number} {{ {}, initial: 0.3 }}",
+                    law.text(false, self.dimension)
+                )
+            }
+            Kind::Resistor(value) if value % 2 == 0 => {
+                format!("R p{number} {{ resistance: {value}.0 }}")
+            }
+            Kind::Resistor(value) => format!("R p{number} {{ conductance: {value}.0 }}"),
+            Kind::Effort(entry) => format!("Se p{number} {{ effort: {} }}", entry.text(variables)),
+            Kind::Flow(entry) => format!("Sf p{number} {{ flow: {} }}", entry.text(variables)),
+        }
+    }
+
+    /// The unknowns that it fixes, as a storage in integral causality.
+    pub(crate) fn fixed(&self, component: usize) -> usize {
+        let bond = self.bond + component;
+        match self.kind {
+            Kind::Inertia(_) | Kind::Flow(_) => flow(bond),
+            _ => effort(bond),
+        }
+    }
+
+    /// What the model tells of it, in this order.
+    pub(crate) fn variables(&self) -> &'static [&'static str] {
+        match self.kind {
+            Kind::Inertia(_) => &["e", "f", "p"],
+            Kind::Compliance(_) => &["e", "f", "q"],
+            _ => &["e", "f"],
+        }
+    }
+
+    pub(crate) fn is_storage(&self) -> bool {
+        matches!(self.kind, Kind::Inertia(_) | Kind::Compliance(_))
+    }
+}
+
+#[derive(Debug)]
+struct Junction {
+    zero: bool,
+    coordinate: bool,
+    /// Bonds of each component, with 1 where power goes into it.
+    bonds: Vec<Vec<(usize, i64)>>,
+}
+
+/// Where a bond ends: a junction, its first component, and how many.
+pub(crate) type Place = (usize, usize, usize);
+
+/// A two-port between junctions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Link {
+    Bond,
+    Transformer,
+    Gyrator,
+}
+
+/// What a graph is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Verdict {
+    /// Junctions, two-ports and resistors say something twice, and something else not at all.
+    Undetermined,
+    /// A source fixes what is fixed already.
+    Contradictory,
+    /// So many components of storages are no states.
+    Dependent(usize),
+}
+
+/// How a graph is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drawing {
+    /// One stroke per multibond.
+    pub(crate) uniform: bool,
+    /// Elements in the opposite order, which is the order of priority.
+    pub(crate) reversed: bool,
+    /// With its marks `coordinate`.
+    pub(crate) coordinates: bool,
+}
+
+#[derive(Default)]
+pub(crate) struct Graph {
+    lines: Vec<String>,
+    pub(crate) bonds: usize,
+    junctions: Vec<Junction>,
+    laws: Vec<Row>,
+    pub(crate) ports: Vec<Port>,
+    /// Junctions whose flow is integrated.
+    pub(crate) integrals: Vec<usize>,
+    /// What a coefficient may depend on.
+    pub(crate) variables: Vec<String>,
+    pub(crate) gyrators: bool,
+    pub(crate) resistive: bool,
+}
+
+/// Failures are told by the text of the model.
+impl std::fmt::Debug for Graph {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("a graph")
+    }
+}
+
+impl Graph {
+    pub(crate) fn new(resistive: bool) -> Self {
+        Self {
+            resistive,
+            variables: vec!["t".to_owned(), "u".to_owned()],
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn junction(&mut self, zero: bool, dimension: usize, coordinate: bool) {
+        let coordinate = coordinate && !zero;
+        self.junctions.push(Junction {
+            zero,
+            coordinate,
+            bonds: vec![Vec::new(); dimension],
+        });
+    }
+
+    pub(crate) fn dimension(&self, junction: usize) -> usize {
+        self.junctions[junction].bonds.len()
+    }
+
+    fn name(&self, (junction, start, count): Place) -> String {
+        match count {
+            _ if count == self.dimension(junction) => format!("j{junction}"),
+            1 => format!("j{junction}[{start}]"),
+            _ => format!("j{junction}[{start}..{}]", start + count),
+        }
+    }
+
+    fn attach(&mut self, (junction, start, count): Place, first: usize, sign: i64) {
+        for component in 0..count {
+            self.junctions[junction].bonds[start + component].push((first + component, sign));
+        }
+    }
+
+    fn bond(&mut self, dimension: usize) -> usize {
+        self.bonds += dimension;
+        self.bonds - dimension
+    }
+
+    /// Components of a vector as the language names them.
+    pub(crate) fn components(name: &str, dimension: usize) -> Vec<String> {
+        match dimension {
+            1 => vec![name.to_owned()],
+            _ => (0..dimension)
+                .map(|k| format!("{name}.{}", ["x", "y", "z"][k]))
+                .collect(),
+        }
+    }
+
+    /// A one-port whose bond leads away from it, or towards it.
+    pub(crate) fn port(&mut self, at: Place, kind: Kind, outward: bool) {
+        let (dimension, number) = (at.2, self.ports.len());
+        let bond = self.bond(dimension);
+        let port = Port {
+            kind,
+            bond,
+            dimension,
+            sign: if outward { -1 } else { 1 },
+        };
+        self.attach(at, bond, -port.sign);
+        if let Kind::Resistor(value) = kind {
+            for component in bond..bond + dimension {
+                let (one, other) = if value % 2 == 0 {
+                    (effort(component), flow(component))
+                } else {
+                    (flow(component), effort(component))
+                };
+                let law = vec![(one, ONE, 1), (other, Entry::Whole(value), -port.sign)];
+                self.laws.push(law);
+            }
+        }
+        let (place, text) = (self.name(at), port.text(number, &self.variables));
+        self.lines.push(if outward {
+            format!("{text} -> {place};")
+        } else {
+            format!("{place} -> {text};")
+        });
+        if let Kind::Compliance(_) = kind {
+            let names = Self::components(&format!("p{number}.q"), dimension);
+            self.variables.extend(names);
+        }
+        self.ports.push(port);
+    }
+
+    pub(crate) fn integral(&mut self, junction: usize) {
+        if self.junctions[junction].zero || self.integrals.contains(&junction) {
+            return;
+        }
+        let (name, dimension) = (
+            format!("a{}", self.integrals.len()),
+            self.dimension(junction),
+        );
+        self.lines
+            .push(format!("integral {name}[{dimension}] = j{junction}.f;"));
+        self.variables.extend(Self::components(&name, dimension));
+        self.integrals.push(junction);
+    }
+
+    /// A link from one place to another; `entries` by rows has as many rows as `to` has components.
+    pub(crate) fn link(&mut self, kind: Link, from: Place, to: Place, entries: &[Entry]) {
+        let (left, right) = (self.name(from), self.name(to));
+        if kind == Link::Bond {
+            let bond = self.bond(from.2);
+            self.attach(from, bond, -1);
+            self.attach(to, bond, 1);
+            self.lines.push(format!("{left} -> {right};"));
+            return;
+        }
+        let (input, output) = (self.bond(from.2), self.bond(to.2));
+        self.attach(from, input, -1);
+        self.attach(to, output, 1);
+        let rows: Vec<String> = entries
+            .chunks(from.2)
+            .map(|row| {
+                let row: Vec<String> = row.iter().map(|it| it.text(&self.variables)).collect();
+                format!("[{}]", row.join(", "))
+            })
+            .collect();
+        let (number, rows) = (self.bonds, rows.join(", "));
+        let (word, variable, [out, cause], [back, reaction]): (
+            _,
+            _,
+            [fn(usize) -> usize; 2],
+            [fn(usize) -> usize; 2],
+        ) = if kind == Link::Transformer {
+            ("MTF", "flow", [flow, flow], [effort, effort])
+        } else {
+            ("MGY", "effort", [effort, flow], [effort, flow])
+        };
+        self.gyrators |= kind == Link::Gyrator;
+        self.lines.push(format!(
+            "{left} -> {word} m{number} {{ {variable}: [{rows}] }} -> {right};"
+        ));
+        for row in 0..to.2 {
+            let mut law = vec![(out(output + row), ONE, 1)];
+            law.extend(
+                (0..from.2)
+                    .map(|column| (cause(input + column), entries[row * from.2 + column], -1)),
+            );
+            self.laws.push(law);
+        }
+        for column in 0..from.2 {
+            let mut law = vec![(back(input + column), ONE, 1)];
+            law.extend(
+                (0..to.2).map(|row| (reaction(output + row), entries[row * from.2 + column], -1)),
+            );
+            self.laws.push(law);
+        }
+    }
+
+    /// Whether a transformer or gyrator depends on the state of a storage.
+    pub(crate) fn is_modulated_by_storages(&self) -> bool {
+        let entries = self.laws.iter().flatten().map(|(_, entry, _)| entry);
+        let variables = entries.filter_map(|entry| match entry {
+            Entry::Whole(_) => None,
+            Entry::Shifted(_, variable) | Entry::Sine(variable) | Entry::Cosine(variable) => {
+                Some(*variable)
+            }
+        });
+        variables
+            .into_iter()
+            .any(|variable| self.variables[variable].starts_with('p'))
+    }
+
+    /// A resistor, or a storage where there are none, that agrees with anything at this junction.
+    pub(crate) fn load(&self, junction: usize) -> Kind {
+        let law = Law::Inverse {
+            diagonal: 2,
+            coupling: 1,
+        };
+        match (self.resistive, self.junctions[junction].zero) {
+            (true, _) => Kind::Resistor(2),
+            (false, true) => Kind::Compliance(law),
+            (false, false) => Kind::Inertia(law),
+        }
+    }
+
+    /// Loads where a component of a junction has no bond, or one that leads nowhere else.
+    pub(crate) fn complete(&mut self) {
+        for junction in 0..self.junctions.len() {
+            for component in 0..self.dimension(junction) {
+                if self.junctions[junction].bonds[component].len() < 2 {
+                    self.port((junction, component, 1), self.load(junction), false);
+                }
+            }
+        }
+    }
+
+    /// Junctions, two-ports and resistors.
+    pub(crate) fn structure(&self) -> Vec<Row> {
+        let mut rows = self.laws.clone();
+        for junction in &self.junctions {
+            let common = usize::from(!junction.zero);
+            for bonds in &junction.bonds {
+                for pair in bonds.windows(2) {
+                    let [a, b] = [0, 1].map(|place| 2 * pair[place].0 + common);
+                    rows.push(vec![(a, ONE, 1), (b, ONE, -1)]);
+                }
+                let summed = |(bond, sign): &(usize, i64)| (2 * bond + 1 - common, ONE, *sign);
+                rows.push(bonds.iter().map(summed).collect());
+            }
+        }
+        rows
+    }
+
+    fn fixed(&self, which: impl Fn(&Port) -> bool) -> Vec<Row> {
+        let ports = self.ports.iter().filter(|port| which(port));
+        ports
+            .flat_map(|port| {
+                (0..port.dimension).map(|component| vec![(port.fixed(component), ONE, 1)])
+            })
+            .collect()
+    }
+
+    fn rank(&self, rows: &[Row]) -> usize {
+        let mut matrix: Vec<Vec<i64>> = rows
+            .iter()
+            .map(|row| {
+                let mut dense = vec![0; 2 * self.bonds];
+                for (unknown, entry, sign) in row {
+                    dense[*unknown] = (dense[*unknown] + sign * entry.image()).rem_euclid(PRIME);
+                }
+                dense
+            })
+            .collect();
+        let mut rank = 0;
+        for column in 0..2 * self.bonds {
+            let Some(pivot) = (rank..matrix.len()).find(|row| matrix[*row][column] != 0) else {
+                continue;
+            };
+            matrix.swap(rank, pivot);
+            let top = matrix[rank].clone();
+            for row in &mut matrix[rank + 1..] {
+                let (keep, take) = (top[column], row[column]);
+                for (entry, above) in row.iter_mut().zip(&top) {
+                    *entry = (*entry * keep % PRIME - take * above % PRIME).rem_euclid(PRIME);
+                }
+            }
+            rank += 1;
+        }
+        rank
+    }
+
+    /// What the ranks of the equations say.
+    pub(crate) fn verdict(&self) -> Verdict {
+        let mut rows = self.structure();
+        if self.rank(&rows) < rows.len() {
+            return Verdict::Undetermined;
+        }
+        rows.extend(self.fixed(|port| matches!(port.kind, Kind::Effort(_) | Kind::Flow(_))));
+        let fixed = self.rank(&rows);
+        if fixed < rows.len() {
+            return Verdict::Contradictory;
+        }
+        let storages = self.fixed(Port::is_storage);
+        let count = storages.len();
+        rows.extend(storages);
+        Verdict::Dependent(count - (self.rank(&rows) - fixed))
+    }
+
+    /// The model, whose outputs are effort, flow and state of every port and the rate of every integral.
+    pub(crate) fn text(&self, drawing: Drawing) -> String {
+        let mut text = String::from("#[derivative]\nmodel Random {\n    input u;\n");
+        if !drawing.uniform {
+            text.push_str("    causality componentwise;\n");
+        }
+        for (number, junction) in self.junctions.iter().enumerate() {
+            let kind = u8::from(!junction.zero);
+            let mark = if junction.coordinate && drawing.coordinates {
+                " coordinate"
+            } else {
+                ""
+            };
+            let dimension = junction.bonds.len();
+            writeln!(text, "    {kind} j{number}[{dimension}]{mark};").expect("a string grows");
+        }
+        let mut lines: Vec<&String> = self.lines.iter().collect();
+        if drawing.reversed {
+            lines.reverse();
+        }
+        for line in lines {
+            writeln!(text, "    {line}").expect("a string grows");
+        }
+        for (number, port) in self.ports.iter().enumerate() {
+            for variable in port.variables() {
+                let dimension = port.dimension;
+                writeln!(
+                    text,
+                    "    output {variable}{number}[{dimension}] = p{number}.{variable};"
+                )
+                .expect("a string grows");
+            }
+        }
+        for (number, junction) in self.integrals.iter().enumerate() {
+            let dimension = self.dimension(*junction);
+            writeln!(
+                text,
+                "    output rate{number}[{dimension}] = j{junction}.f;"
+            )
+            .expect("a string grows");
+        }
+        text.push_str("}\n");
+        text
+    }
+}

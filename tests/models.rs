@@ -18,8 +18,10 @@ mod run;
 #[allow(clippy::unwrap_used)]
 mod models {
     mod amplifier;
+    mod audit;
     mod behaviour;
     mod closed;
+    mod dependent;
     mod energy;
     mod loops;
     mod mechanisms;

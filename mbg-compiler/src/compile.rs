@@ -10,7 +10,7 @@ use crate::diagnostics::{Diagnostics, error};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
-use crate::graph::ElementId;
+use crate::graph::{ElementId, ElementKind};
 use crate::network::Network;
 use crate::program::{self, Program};
 use crate::structure::{self, Failure, Loop, Solution, Solved};
@@ -62,6 +62,8 @@ impl Compiled {
 pub struct AlgebraicLoop {
     /// Elements whose laws close it, or variables where the junction structure closes it.
     pub through: Vec<String>,
+    /// Whether resistors close it, and not the junction structure alone.
+    pub resistive: bool,
     /// Number of variables.
     pub variables: usize,
     /// How many of them an iteration finds; none where the loop is linear.
@@ -241,6 +243,9 @@ fn loops(model: &Elaborated, scalars: &Scalars, solution: &Solution) -> Vec<Alge
         }
         AlgebraicLoop {
             through,
+            resistive: owners
+                .iter()
+                .any(|id| model.graph.elements[id.0].kind == ElementKind::R),
             variables: found.unknowns.len(),
             iterated: found.iterated,
         }

@@ -61,6 +61,8 @@ pub struct Scalars {
     pub coordinates: Vec<(JunctionId, usize, usize)>,
     /// For unknowns of a reduced system: the place of each in the order of elimination.
     pub turns: Vec<Option<Turn>>,
+    /// In a reduced system, the unknown that is the rate of an unknown.
+    pub rate_of: BTreeMap<usize, usize>,
     /// Loops that are closed by multipliers.
     pub closures: Vec<Closure>,
     /// The independent rate of each level of a reduced system.
@@ -479,6 +481,7 @@ impl Former<'_> {
             wires,
             coordinates,
             turns: vec![None; self.classes.count],
+            rate_of: BTreeMap::new(),
             closures,
             independent: BTreeMap::new(),
         }

@@ -8,23 +8,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::System;
+use super::tree::{Conjugate, Tree};
 use crate::symbolic::{Expression, Pool};
 
-/// What belongs to the column of a rate.
-pub(super) struct Conjugate {
-    /// The row that gives the rate.
-    pub(super) row: usize,
-    /// The column of the effort that comes with it.
-    pub(super) effort: Option<usize>,
-}
-
 /// Prepares whatever is turned when the columns given are eliminated.
-pub(super) fn prepare(
-    pool: &mut Pool,
-    system: &System,
-    conjugates: &BTreeMap<usize, Conjugate>,
-    columns: &BTreeSet<usize>,
-) {
+pub(super) fn prepare(pool: &mut Pool, system: &System, tree: &Tree, columns: &BTreeSet<usize>) {
+    let conjugates = &tree.conjugates;
     let turned: Vec<(usize, Turned)> = columns
         .iter()
         .filter_map(|column| {

@@ -41,20 +41,18 @@ impl System {
     }
 
     /// Eliminates, among the rows and columns given, whatever an admitted constant pivot can: the one that fills in
-    /// least first (Markowitz 1957). Gives the rows and columns that are left of them.
+    /// least first (Markowitz 1957).
     pub(super) fn eliminate_constants(
         &mut self,
         pool: &mut Pool,
-        mut rows: BTreeSet<usize>,
-        mut columns: BTreeSet<usize>,
+        rows: &BTreeSet<usize>,
+        columns: &BTreeSet<usize>,
         admitted: &dyn Fn(usize, usize) -> bool,
-    ) -> Result<(BTreeSet<usize>, BTreeSet<usize>), Vanished> {
-        while let Some((row, column)) = self.constant_pivot(pool, &rows, &columns, admitted) {
+    ) -> Result<(), Vanished> {
+        while let Some((row, column)) = self.constant_pivot(pool, rows, columns, admitted) {
             self.eliminate(pool, row, column)?;
-            rows.remove(&row);
-            columns.remove(&column);
         }
-        Ok((rows, columns))
+        Ok(())
     }
 
     fn constant_pivot(
@@ -64,7 +62,7 @@ impl System {
         columns: &BTreeSet<usize>,
         admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
-        rows.iter()
+        rows.intersection(&self.open_rows)
             .flat_map(|row| {
                 self.rows[*row]
                     .iter()
@@ -143,6 +141,16 @@ impl System {
             .get(&column)
             .copied()
             .unwrap_or(Expression::ZERO)
+    }
+
+    /// Makes a row equal to something else.
+    pub(super) fn set_right(&mut self, row: usize, right: Expression) {
+        self.right[row] = right;
+    }
+
+    /// Number of unknowns.
+    pub(super) fn size(&self) -> usize {
+        self.rows.len()
     }
 
     /// The entries of a row.

@@ -17,7 +17,7 @@ type Combination = BTreeMap<usize, u64>;
 pub(super) fn report(
     model: &Elaborated,
     scalars: &Scalars,
-    pool: &mut Pool,
+    pool: &Pool,
     diagnostics: &mut Diagnostics,
 ) {
     let message = "the junction structure leaves efforts or flows undetermined";
@@ -37,9 +37,13 @@ pub(super) fn report(
             mesh.len(),
             listing(names)
         ));
-        if let Some(gains) = gains(scalars, pool, &mesh) {
-            let gains = gains.iter().map(|gain| text(model, scalars, pool, *gain));
-            let gains: Vec<String> = gains.collect();
+        if let Some(gains) = gains(scalars, &mesh) {
+            let written = |value| text(model, scalars, pool, value);
+            let ratio = |(top, bottom)| match (top, bottom) {
+                (top, Expression::ONE) => written(top),
+                (top, bottom) => format!("{} / ({})", written(top), written(bottom)),
+            };
+            let gains: Vec<String> = gains.into_iter().map(ratio).collect();
             report = report.note(format!(
                 "they form a mesh whose gain is one: {}",
                 gains.join(" · ")
@@ -86,7 +90,7 @@ fn subtract(row: &mut Combination, other: &Combination, factor: u64) {
 }
 
 /// The ratios along a mesh in which every equation joins two variables, without those that are one.
-fn gains(scalars: &Scalars, pool: &mut Pool, mesh: &[usize]) -> Option<Vec<Expression>> {
+fn gains(scalars: &Scalars, mesh: &[usize]) -> Option<Vec<(Expression, Expression)>> {
     let mut left: Vec<&BTreeMap<usize, Expression>> = mesh
         .iter()
         .map(|row| &scalars.equations[*row].terms)
@@ -99,8 +103,13 @@ fn gains(scalars: &Scalars, pool: &mut Pool, mesh: &[usize]) -> Option<Vec<Expre
         let ((next, coefficient), None) = (others.next()?, others.next()) else {
             return None;
         };
-        let gain = pool.divide(terms[&current], *coefficient)?.negated();
-        if gain != Expression::ONE {
+        // `c x + d y = 0` is `y = −(c/d) x`.
+        let negative = coefficient.is_negative();
+        let gain = (
+            terms[&current].negated().flipped(negative),
+            coefficient.flipped(negative),
+        );
+        if gain.0 != gain.1 {
             gains.push(gain);
         }
         current = *next;

@@ -6,6 +6,7 @@
 //! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
 
 pub mod blocks;
+mod carried;
 mod congruence;
 mod eliminate;
 mod levels;
@@ -15,12 +16,14 @@ mod nonlinear;
 mod reduction;
 mod resolve;
 mod selection;
+mod shift;
 mod solve;
+mod tree;
 
 use std::collections::BTreeMap;
 
 use crate::elaborate::Condition;
-use crate::equations::Scalars;
+use crate::equations::{Inertia, Scalars};
 use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use reduction::{Reduction, reduce};
@@ -107,6 +110,14 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         .collect();
     for (row, next) in levelled.iter().zip(levelled.iter().cycle().skip(1)) {
         all[*row].push(matching[*next]);
+    }
+    // What it divides by is proven by what moves, which must be known by then.
+    if let Some(row) = levelled.first() {
+        for rate in scalars.independent.values() {
+            if let Inertia::Moved { storages, .. } = &rate.inertia {
+                all[*row].extend(storages.iter().flatten());
+            }
+        }
     }
     let order = blocks::ordered(&all, &matching);
     solve::blocks(scalars, &matching, &order, pool)

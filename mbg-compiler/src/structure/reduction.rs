@@ -521,21 +521,22 @@ impl Reducer<'_> {
             }
             Owner::Structure => false,
         };
-        let turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        let moved: Vec<usize> = lost
+            .iter()
+            .map(|lost| self.coenergy(model, lost.element, lost.component))
+            .collect();
+        let mut turns = levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
+        // What follows from the states alone is known beforehand.
+        for (turn, determined) in turns.iter_mut().zip(&self.determined) {
+            *turn = turn.filter(|_| !determined);
+        }
         for equation in &mut self.scalars.equations {
             let about = equation
                 .about
                 .iter()
                 .find_map(|unknown| self.rate_of.get(unknown));
-            // What is loose, such as the end of the last link, has no rate that anything needs.
-            let turn = match equation.rate.as_ref().or(about) {
-                Some(rate) => turns[*rate],
-                None => {
-                    let turns = equation.terms.keys().filter_map(|unknown| turns[*unknown]);
-                    turns.min_by_key(|turn| turn.level)
-                }
-            };
-            equation.level = turn.map(|turn| turn.level);
+            let rate = equation.rate.as_ref().or(about);
+            equation.level = rate.and_then(|rate| turns[*rate]).map(|turn| turn.level);
         }
         let pool = &mut *self.pool;
         let definite = inverses
@@ -543,6 +544,7 @@ impl Reducer<'_> {
             .all(|inverse| is_definite(model, &inverse.matrix, pool));
         self.independent(model, lost, &turns, definite);
         self.scalars.turns = turns;
+        self.scalars.rate_of = self.rate_of.clone();
     }
 
     /// The independent rate of each level.

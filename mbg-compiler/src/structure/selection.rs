@@ -41,7 +41,7 @@ pub struct Lost {
 pub fn select(
     model: &Elaborated,
     scalars: &Scalars,
-    pool: &mut Pool,
+    pool: &Pool,
     diagnostics: &mut Diagnostics,
 ) -> Option<Selection> {
     let mut first = Selector::new(model, scalars, pool);

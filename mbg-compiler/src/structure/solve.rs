@@ -3,13 +3,13 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::congruence::{self, Conjugate};
+use super::congruence;
 use super::eliminate::{System, Vanished};
+use super::shift::Shift;
+use super::tree::{Columns, Tree};
 use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Owner, Scalars};
-type Columns = BTreeSet<usize>;
-
 use crate::symbolic::{
     Differentiator, Expression, Function, Implicit, Matrix, Pool, Rate, Substitution, Symbol,
 };
@@ -170,53 +170,67 @@ impl Solver<'_> {
             rows.push(coefficients);
             right.push(rest.negated());
         }
-        let rates: BTreeSet<usize> = scalars.equations.iter().filter_map(|e| e.rate).collect();
         let mut system = System::new(rows, right);
-        let conjugates = self.conjugates(equations, &place);
-        // A rate is eliminated by the equation that gives it, so that rates run down the tree and efforts up.
-        let admitted = |row: usize, column: usize| match scalars.equations[equations[row]].rate {
-            Some(rate) => rate == unknowns[column],
-            None => !rates.contains(&unknowns[column]),
-        };
+        let tree = Tree::of(scalars, equations, &place);
+        let shift = self.shift(&mut system, &tree, unknowns, &place);
+        let admitted = |row, column| tree.admits(row, column);
+        let all: Columns = (0..equations.len()).collect();
         for (number, level) in self.levels(equations, unknowns) {
-            let mut rows = level.rows;
-            let mut left = BTreeSet::new();
-            for (_, columns) in level.columns {
-                // Efforts that meet at a junction first, then the rates of the junction, then the effort that comes
-                // with them: so the inertia of all that hangs on the junction is turned as a whole.
-                let is_rate = |column: &usize| conjugates.contains_key(column);
-                let coming =
-                    |column: &usize| conjugates.values().any(|rate| rate.effort == Some(*column));
-                let (turned, efforts): (Columns, Columns) = columns.into_iter().partition(is_rate);
-                let (last, first): (Columns, Columns) = efforts.into_iter().partition(coming);
+            let mut delayed = Columns::new();
+            let moved = level
+                .last
+                .map(|last| tree.moved(&system, last))
+                .unwrap_or_default();
+            for columns in level.columns.into_values() {
+                let (wait, now): (Columns, Columns) = columns.into_iter().partition(|column| {
+                    tree.rate_of(*column).is_some_and(|rate| {
+                        !moved.contains(&rate) && tree.is_turned(self.pool, &system, rate)
+                    })
+                });
+                delayed.extend(wait);
+                let [first, turned, last] = tree.in_order(now);
                 for columns in [first, turned, last] {
-                    congruence::prepare(self.pool, &system, &conjugates, &columns);
-                    let rest = system.eliminate_constants(self.pool, rows, columns, &admitted)?;
-                    rows = rest.0;
-                    left.extend(rest.1);
+                    congruence::prepare(self.pool, &system, &tree, &columns);
+                    system.eliminate_constants(self.pool, &level.rows, &columns, &admitted)?;
                 }
             }
-            left.extend(level.last);
-            if let (Some(row), Some(column), 1, 1) =
-                (rows.first(), left.first(), rows.len(), left.len())
-                && system.entry(*row, *column) != Expression::ZERO
+            if let Some(column) = level.last
+                && let Some(row) = tree.balance(&system, &level.rows, column)
                 && self.is_positive(number)
             {
-                system.eliminate(self.pool, *row, *column)?;
+                delayed.extend(tree.frame(self.pool, &system, row));
+                system.eliminate(self.pool, row, column)?;
+            }
+            let [first, turned, last] = tree.in_order(delayed);
+            for columns in [first, turned, last] {
+                congruence::prepare(self.pool, &system, &tree, &columns);
+                system.eliminate_constants(self.pool, &all, &columns, &admitted)?;
             }
         }
         let (columns, values) = if scalars.closures.is_empty() {
-            self.rest(&system)?
+            self.rest(&mut system, &tree)?
         } else {
             self.multipliers(&mut system, equations, unknowns)?
         };
-        let values = system.back_substitute(self.pool, &columns, &values)?;
+        let mut values = system.back_substitute(self.pool, &columns, &values)?;
+        if let Some(shift) = shift {
+            shift.undo(self.pool, &mut values);
+        }
         self.store(unknowns, values);
         Ok(())
     }
 
     /// What is left when no level has it, solved as a whole: columns and their values.
-    fn rest(&mut self, system: &System) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+    fn rest(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+    ) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+        let rows = system.open().clone();
+        let columns = (0..system.size()).collect();
+        system.eliminate_constants(self.pool, &rows, &columns, &|row, column| {
+            tree.allows(row, column)
+        })?;
         let (columns, matrix, right) = system.rest();
         if columns.is_empty() {
             return Ok((columns, Vec::new()));
@@ -279,20 +293,37 @@ impl Solver<'_> {
         Ok((columns, values))
     }
 
-    /// For the column of every rate the row that gives it, and the effort that comes with it.
-    fn conjugates(
-        &self,
-        equations: &[usize],
+    fn shift(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+        unknowns: &[usize],
         place: &BTreeMap<usize, usize>,
-    ) -> BTreeMap<usize, Conjugate> {
-        let given = |(row, equation): (usize, &usize)| {
-            let equation = &self.scalars.equations[*equation];
-            let column = place.get(&equation.rate?)?;
-            let effort = equation.about.iter().find_map(|unknown| place.get(unknown));
-            let effort = effort.copied();
-            Some((*column, Conjugate { row, effort }))
+    ) -> Option<Shift> {
+        let rate_of = &self.scalars.rate_of;
+        let rate = |pair: &[usize; 2]| {
+            let rates = pair.iter().filter_map(|unknown| rate_of.get(unknown));
+            rates
+                .filter_map(|rate| place.get(rate).copied())
+                .find(|rate| tree.is_given(*rate))
         };
-        equations.iter().enumerate().filter_map(given).collect()
+        let vectors: BTreeSet<[usize; 3]> = self
+            .scalars
+            .wires
+            .iter()
+            .filter_map(|wire| {
+                let rates: Option<Vec<usize>> = wire.iter().map(rate).collect();
+                rates?.try_into().ok()
+            })
+            .collect();
+        let vectors: Vec<[usize; 3]> = vectors.into_iter().collect();
+        let unknown_of: BTreeMap<usize, usize> = rate_of
+            .iter()
+            .map(|(unknown, rate)| (*rate, *unknown))
+            .collect();
+        let values = &self.solution.values;
+        let velocity = |column: usize| values[unknown_of[&unknowns[column]]];
+        Shift::of(self.pool, system, tree, &vectors, &velocity)
     }
 
     /// Rows and columns of a block by level.

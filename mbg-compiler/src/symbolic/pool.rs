@@ -340,7 +340,9 @@ impl Pool {
         Expression::new(node, false)
     }
 
-    fn look_up(&self, image: Image) -> Option<Expression> {
+    /// The expression with this image, if there is one.
+    #[must_use]
+    pub fn find(&self, image: Image) -> Option<Expression> {
         if let Some(node) = self.found.get(&image) {
             return Some(Expression::new(*node as usize, false));
         }
@@ -351,7 +353,7 @@ impl Pool {
 
     /// The node with this image, or a new one.
     fn intern(&mut self, operation: Operation, image: Image) -> Expression {
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return expression;
         }
         let rate = operation
@@ -409,7 +411,7 @@ impl Pool {
             Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
         let image = Image::unknown(&[kind, index as u64]);
-        self.look_up(image)
+        self.find(image)
             .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
     }
 
@@ -469,7 +471,7 @@ impl Pool {
             return a;
         }
         let image = self.image(a).plus(self.image(b));
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return expression;
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
@@ -490,28 +492,37 @@ impl Pool {
         }
     }
 
-    /// Terms that change seldom are gathered, so that they are added seldom: `(x + a) + b` is `x + (a + b)`.
+    /// Terms that change seldom are gathered and added last: `(x + a) + (y + b)` is `(x + y) + (a + b)`.
     fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
-        let (slow, fast) = if self.rate(a) <= self.rate(b) {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let Operation::Add(first, second) = *self.operation(fast) else {
+        let (first, slow) = self.apart(a);
+        let (second, other) = self.apart(b);
+        if slow == Expression::ZERO && other == Expression::ZERO {
             return None;
-        };
-        let flip = fast.is_negative();
-        let (first, second) = (first.flipped(flip), second.flipped(flip));
-        let (inner, rest) = if self.rate(first) <= self.rate(second) {
-            (first, second)
-        } else {
-            (second, first)
-        };
-        if self.rate(inner) < self.rate(rest) && self.rate(slow) < self.rate(rest) {
-            let gathered = self.add(slow, inner);
-            return Some(self.add(gathered, rest));
         }
-        None
+        if second == Expression::ZERO || first == Expression::ZERO {
+            if slow == Expression::ZERO || other == Expression::ZERO {
+                return None;
+            }
+        }
+        let fast = self.add(first, second);
+        let slow = self.add(slow, other);
+        Some(self.add(fast, slow))
+    }
+
+    /// A sum as what changes often and what changes seldom.
+    fn apart(&self, sum: Expression) -> (Expression, Expression) {
+        if self.rate(sum) != Rate::Varying {
+            return (Expression::ZERO, sum);
+        }
+        if let Operation::Add(first, second) = *self.operation(sum) {
+            let [first, second] = [first, second].map(|term| term.flipped(sum.is_negative()));
+            match (self.rate(first), self.rate(second)) {
+                (Rate::Varying, Rate::Varying) => {}
+                (Rate::Varying, _) => return (first, second),
+                _ => return (second, first),
+            }
+        }
+        (sum, Expression::ZERO)
     }
 
     /// The sum with a common factor taken out, where what remains in the brackets is known already or is computed once
@@ -543,7 +554,7 @@ impl Pool {
         let image = product(self, &rest, a.is_negative());
         let image = image.plus(product(self, &right, b.is_negative()));
         let varies = |factor: &Expression| self.rate(*factor) == Rate::Varying;
-        let mut whole = match self.look_up(image) {
+        let mut whole = match self.find(image) {
             Some(whole) => whole,
             None if rest.iter().chain(&right).any(varies) => return None,
             None => {
@@ -609,7 +620,7 @@ impl Pool {
             return a;
         }
         let image = self.image(a).times(self.image(b));
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return expression;
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
@@ -637,7 +648,7 @@ impl Pool {
         let (a, b) = (a.magnitude(), b.magnitude());
         let inverse = self.image(b).inverted()?;
         let image = self.image(a).times(inverse);
-        if let Some(expression) = self.look_up(image) {
+        if let Some(expression) = self.find(image) {
             return Some(expression.flipped(negative));
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {

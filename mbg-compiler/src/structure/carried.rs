@@ -1,0 +1,349 @@
+//! Accelerations in space.
+//!
+//! A force acts on the acceleration in space, `dv/dt + ω × v − g`, which is cheaper than `dv/dt` in axes that turn: it
+//! needs no linear velocity, and `g` enters at the base alone. So the rate of each linear velocity is counted from the
+//! value at which the efforts that are known at the masses vanish. What a turn or an arm adds on the way from mass to
+//! mass is nothing, or `ω × (ω × r)`.
+//!
+//! A shift by anything known is right. It is made if what it leaves in the rows is nothing or a product that is known,
+//! and therefore passed on as a bare value ([`Image`]).
+
+use std::collections::BTreeMap;
+
+use super::eliminate::System;
+use super::shift::Given;
+use super::tree::Tree;
+use crate::symbolic::field::Image;
+use crate::symbolic::{Expression, Pool};
+
+type Triple = [usize; 3];
+
+/// Rates that are counted from accelerations in space.
+#[derive(Default)]
+pub(super) struct Carried {
+    /// What is left in the rows that give rates, where it is not what was there.
+    pub(super) left: BTreeMap<usize, Expression>,
+    /// Balances of which nothing is left, and the effort of the mass in each.
+    pub(super) masses: Vec<(usize, Given)>,
+}
+
+/// How the rate of a vector follows from that of another.
+#[derive(Clone, Copy)]
+enum Origin {
+    /// From none, but for what an arm adds.
+    Base { arm: Option<Arm> },
+    /// In the same axes, but for what an arm adds.
+    Moved { from: Triple, arm: Option<Arm> },
+    /// In other axes.
+    Turned { from: Triple },
+}
+
+/// What an arm adds to a vector.
+#[derive(Clone, Copy)]
+struct Arm {
+    /// The velocity with which the arm turns.
+    omega: [Expression; 3],
+    /// What its end has of velocity more.
+    velocity: [Expression; 3],
+}
+
+struct Carrier<'a> {
+    system: &'a System,
+    tree: &'a Tree,
+    given: BTreeMap<usize, &'a Given>,
+    vectors: &'a [Triple],
+    velocity: &'a dyn Fn(usize) -> Expression,
+    /// Value that each rate is counted from.
+    values: BTreeMap<usize, Image>,
+    left: BTreeMap<usize, Expression>,
+}
+
+impl Carried {
+    /// None if nothing is gained.
+    pub(super) fn of(
+        pool: &mut Pool,
+        system: &System,
+        tree: &Tree,
+        vectors: &[Triple],
+        rows: &[Given],
+        velocity: &dyn Fn(usize) -> Expression,
+    ) -> Option<Self> {
+        let mut carrier = Carrier {
+            system,
+            tree,
+            given: rows.iter().map(|given| (given.unknown, given)).collect(),
+            vectors,
+            velocity,
+            values: BTreeMap::new(),
+            left: BTreeMap::new(),
+        };
+        let mut masses = Vec::new();
+        let mut path: Vec<(Triple, Origin)> = Vec::new();
+        for vector in vectors {
+            if let Some(mass) = carrier.mass(pool, vector)
+                && let Some(branch) = carrier.branch(pool, *vector, &path)
+            {
+                path.extend(branch);
+                for (rate, value, balance, law) in mass {
+                    carrier.values.insert(rate, value);
+                    masses.push((balance, law));
+                }
+            }
+        }
+        for (vector, origin) in &path {
+            carrier.pass(pool, &path, *vector, *origin)?;
+        }
+        let left = std::mem::take(&mut carrier.left);
+        let moves_more = |rate: &usize| {
+            let mut rows = system
+                .rows_with(*rate)
+                .filter_map(|row| match tree.given_by(row) {
+                    Some(given) => (!left.contains_key(&given)).then_some(()),
+                    None => (!masses.iter().any(|mass: &(usize, Given)| {
+                        system.entry(row, mass.1.unknown) != Expression::ZERO
+                    }))
+                    .then_some(()),
+                });
+            rows.next().is_some()
+        };
+        (!masses.is_empty() && !left.keys().any(moves_more)).then_some(Self { left, masses })
+    }
+}
+
+impl Carrier<'_> {
+    /// If every component of a vector moves a mass: its rate, the value at which the efforts known there vanish, the
+    /// balance of these efforts, and the law of the mass.
+    fn mass(&self, pool: &Pool, vector: &Triple) -> Option<Vec<(usize, Image, usize, Given)>> {
+        let component = |rate: &usize| {
+            let others = self.system.rows_with(*rate);
+            let inertia = only(others.filter(|row| self.tree.given_by(*row).is_none()))?;
+            let effort = only(
+                self.system
+                    .row(inertia)
+                    .filter(|(column, _)| column != rate),
+            )?
+            .0;
+            let law = Given::of(self.system, inertia, effort)?;
+            let balance = only(self.system.rows_with(effort).filter(|row| *row != inertia))?;
+            let factor = pool.image(self.system.entry(balance, effort));
+            let factor = factor.times(pool.image(law.terms[0].1)).inverted()?;
+            let value = pool
+                .image(self.system.right(balance))
+                .times(factor)
+                .negated();
+            (law.constant == Expression::ZERO).then_some((*rate, value, balance, law))
+        };
+        vector.iter().map(component).collect()
+    }
+
+    /// The vectors from which a vector follows, and how, from the base on, but for those that are known already.
+    fn branch(
+        &self,
+        pool: &mut Pool,
+        vector: Triple,
+        known: &[(Triple, Origin)],
+    ) -> Option<Vec<(Triple, Origin)>> {
+        let mut branch = Vec::new();
+        let mut next = Some(vector);
+        while let Some(vector) =
+            next.filter(|vector| known.iter().all(|(other, _)| other != vector))
+        {
+            let origin = self.origin(pool, &vector)?;
+            branch.push((vector, origin));
+            next = match origin {
+                Origin::Base { .. } => None,
+                Origin::Moved { from, .. } | Origin::Turned { from } => Some(from),
+            };
+        }
+        branch.reverse();
+        Some(branch)
+    }
+
+    /// How the rate of a vector follows; none if in no such way.
+    fn origin(&self, pool: &mut Pool, vector: &Triple) -> Option<Origin> {
+        let mut causes = Vec::new();
+        for rate in vector {
+            causes.extend(self.given[rate].terms.iter().map(|(column, _)| *column));
+        }
+        let mut origins = self.vectors.iter().filter_map(|other| {
+            let is_whole = causes.iter().all(|cause| other.contains(cause));
+            match is_orthonormal(&self.images(pool, vector, other))? {
+                true if self.is_moved_itself(pool, other) => Some((*other, true)),
+                false if is_whole => Some((*other, false)),
+                _ => None,
+            }
+        });
+        let origin = match (origins.next(), origins.next()) {
+            (Some((from, true)), None) => Origin::Moved {
+                from,
+                arm: self.arm(pool, vector, &from)?,
+            },
+            (Some((from, false)), None) => Origin::Turned { from },
+            (None, _) => Origin::Base {
+                arm: self.arm(pool, vector, &[usize::MAX; 3])?,
+            },
+            _ => return None,
+        };
+        Some(origin)
+    }
+
+    /// Whether a vector is at the base, or follows from another with its length.
+    fn is_moved_itself(&self, pool: &Pool, vector: &Triple) -> bool {
+        let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
+        let mut others = self.vectors.iter().filter(|other| *other != vector);
+        terms().next().is_none()
+            || others.any(|other| is_orthonormal(&self.images(pool, vector, other)).is_some())
+    }
+
+    /// Coefficients of one vector in the rows of another.
+    fn coefficients(&self, vector: &Triple, other: &Triple) -> [[Expression; 3]; 3] {
+        vector.map(|rate| {
+            let terms = &self.given[&rate].terms;
+            other.map(|column| {
+                let term = terms.iter().find(|(cause, _)| *cause == column);
+                term.map_or(Expression::ZERO, |(_, value)| *value)
+            })
+        })
+    }
+
+    fn images(&self, pool: &Pool, vector: &Triple, other: &Triple) -> [[Image; 3]; 3] {
+        self.coefficients(vector, other)
+            .map(|row| row.map(|entry| pool.image(entry)))
+    }
+
+    /// Passes the value on to a vector.
+    fn pass(
+        &mut self,
+        pool: &mut Pool,
+        path: &[(Triple, Origin)],
+        vector: Triple,
+        origin: Origin,
+    ) -> Option<()> {
+        let (values, left) = match origin {
+            Origin::Base { arm } => {
+                let values = self.above(pool, path, vector)?;
+                let product = convection(pool, arm);
+                let mut left = [Expression::ZERO; 3];
+                for k in 0..3 {
+                    let constant = pool.image(self.given[&vector[k]].constant);
+                    let rest = constant.plus(values[k]).minus(pool.image(product[k]));
+                    let rest = pool.find(rest)?;
+                    left[k] = pool.add(rest, product[k]);
+                }
+                (values, left)
+            }
+            Origin::Moved { from, arm } => {
+                let product = convection(pool, arm);
+                let values = [0, 1, 2].map(|k| self.values[&from[k]].plus(pool.image(product[k])));
+                let left = [0, 1, 2].map(|k| pool.add(self.given[&vector[k]].constant, product[k]));
+                (values, left)
+            }
+            Origin::Turned { from } => {
+                let matrix = self.images(pool, &vector, &from);
+                let value = |k: usize| {
+                    let start = pool.image(self.given[&vector[k]].constant).negated();
+                    (0..3).fold(start, |sum, j| {
+                        sum.plus(matrix[k][j].times(self.values[&from[j]]))
+                    })
+                };
+                ([0, 1, 2].map(value), [Expression::ZERO; 3])
+            }
+        };
+        for k in 0..3 {
+            if *self.values.entry(vector[k]).or_insert(values[k]) != values[k] {
+                return None;
+            }
+            self.left.insert(vector[k], left[k]);
+        }
+        Some(())
+    }
+
+    /// The value of a vector, from that of a mass that follows from it.
+    fn above(
+        &self,
+        pool: &mut Pool,
+        path: &[(Triple, Origin)],
+        vector: Triple,
+    ) -> Option<[Image; 3]> {
+        if self.values.contains_key(&vector[0]) {
+            return Some(vector.map(|rate| self.values[&rate]));
+        }
+        let follows = |(_, origin): &&(Triple, Origin)| match origin {
+            Origin::Base { .. } => false,
+            Origin::Moved { from, .. } | Origin::Turned { from } => *from == vector,
+        };
+        let (next, origin) = path.iter().find(follows)?;
+        let values = self.above(pool, path, *next)?;
+        if let Origin::Moved { arm, .. } = origin {
+            let product = convection(pool, *arm);
+            return Some([0, 1, 2].map(|k| values[k].minus(pool.image(product[k]))));
+        }
+        let matrix = self.images(pool, next, &vector);
+        let ahead = [0, 1, 2].map(|k| values[k].plus(pool.image(self.given[&next[k]].constant)));
+        let value =
+            |k: usize| (0..3).fold(Image::ZERO, |sum, j| sum.plus(matrix[j][k].times(ahead[j])));
+        Some([0, 1, 2].map(value))
+    }
+
+    /// What is added to a vector beyond another one; none if it does not follow from the turning of an arm.
+    fn arm(&self, pool: &mut Pool, vector: &Triple, from: &Triple) -> Option<Option<Arm>> {
+        let mut causes = Vec::new();
+        let mut velocity = [Expression::ZERO; 3];
+        for (rate, sum) in vector.iter().zip(&mut velocity) {
+            let terms = self.given[rate].terms.iter();
+            for (column, coefficient) in terms.filter(|(column, _)| !from.contains(column)) {
+                causes.extend(
+                    self.given
+                        .get(column)?
+                        .terms
+                        .iter()
+                        .map(|(cause, _)| *cause),
+                );
+                let term = pool.multiply(*coefficient, (self.velocity)(*column));
+                *sum = pool.add(*sum, term);
+            }
+        }
+        if causes.is_empty() {
+            return Some(None);
+        }
+        let holds_all = |other: &&Triple| causes.iter().all(|cause| other.contains(cause));
+        let omega = *self.vectors.iter().find(holds_all)?;
+        Some(Some(Arm {
+            omega: omega.map(self.velocity),
+            velocity,
+        }))
+    }
+}
+
+/// `ω × ṙ`.
+fn convection(pool: &mut Pool, arm: Option<Arm>) -> [Expression; 3] {
+    let Some(Arm { omega, velocity }) = arm else {
+        return [Expression::ZERO; 3];
+    };
+    [0, 1, 2].map(|k| {
+        let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+        let first = pool.multiply(omega[next], velocity[last]);
+        let second = pool.multiply(omega[last], velocity[next]);
+        pool.subtract(first, second)
+    })
+}
+
+/// The one item.
+fn only<T>(mut items: impl Iterator<Item = T>) -> Option<T> {
+    let item = items.next()?;
+    items.next().is_none().then_some(item)
+}
+
+/// Whether rows of length one at right angles are those of the identity; none if they are not such rows.
+fn is_orthonormal(matrix: &[[Image; 3]; 3]) -> Option<bool> {
+    let unit = |a: usize, b: usize| if a == b { Image::ONE } else { Image::ZERO };
+    let dot = |a: usize, b: usize| {
+        (0..3).fold(Image::ZERO, |sum, k| {
+            sum.plus(matrix[a][k].times(matrix[b][k]))
+        })
+    };
+    let pairs = || (0..3).flat_map(|a| (0..3).map(move |b| (a, b)));
+    pairs()
+        .all(|(a, b)| dot(a, b) == unit(a, b))
+        .then(|| pairs().all(|(a, b)| matrix[a][b] == unit(a, b)))
+}

@@ -1,0 +1,106 @@
+//! Rates counted from a motion that is known beforehand.
+//!
+//! With no acceleration of any independent rate a system still moves by its velocity products. That motion follows
+//! from the base to the leaves by the rows that give the rates; counted from it those rows have no right side, and no
+//! velocity product is carried along on the way back.
+
+use std::collections::BTreeMap;
+
+use super::carried::Carried;
+use super::eliminate::System;
+use super::tree::Tree;
+use crate::symbolic::{Expression, Pool};
+
+/// What the shifted unknowns were: each as a sum of others and what is known, in order.
+pub(super) struct Shift {
+    rows: Vec<Given>,
+}
+
+/// `unknown = Σ coefficient · other + constant`.
+pub(super) struct Given {
+    pub(super) unknown: usize,
+    pub(super) terms: Vec<(usize, Expression)>,
+    pub(super) constant: Expression,
+}
+
+impl Given {
+    /// Solves a row for a column that is there once, with or without a sign.
+    pub(super) fn of(system: &System, row: usize, unknown: usize) -> Option<Self> {
+        let own = system.entry(row, unknown);
+        (own.magnitude() == Expression::ONE).then(|| Self {
+            unknown,
+            terms: system
+                .row(row)
+                .filter(|(other, _)| *other != unknown)
+                .map(|(other, value)| (other, value.flipped(!own.is_negative())))
+                .collect(),
+            constant: system.right(row).flipped(own.is_negative()),
+        })
+    }
+
+    fn value(&self, pool: &mut Pool, values: &dyn Fn(usize) -> Expression) -> Expression {
+        self.terms
+            .iter()
+            .fold(self.constant, |sum, (other, coefficient)| {
+                let product = pool.multiply(*coefficient, values(*other));
+                pool.add(sum, product)
+            })
+    }
+}
+
+impl Shift {
+    /// Shifts all rates of a block. None, and nothing is done, if a rate is not given with the coefficient one, or if
+    /// rates follow from each other in a circle.
+    pub(super) fn of(
+        pool: &mut Pool,
+        system: &mut System,
+        tree: &Tree,
+        vectors: &[[usize; 3]],
+        velocity: &dyn Fn(usize) -> Expression,
+    ) -> Option<Self> {
+        let mut rows = tree.base_to_leaves(system)?;
+        let carried = Carried::of(pool, system, tree, vectors, &rows, velocity).unwrap_or_default();
+        let mut motion: BTreeMap<usize, Expression> = BTreeMap::new();
+        let known = |motion: &BTreeMap<usize, Expression>, column: usize| {
+            motion.get(&column).copied().unwrap_or(Expression::ZERO)
+        };
+        for given in &rows {
+            let row = Given {
+                unknown: given.unknown,
+                terms: given.terms.clone(),
+                constant: *carried.left.get(&given.unknown).unwrap_or(&given.constant),
+            };
+            let value = row.value(pool, &|column| known(&motion, column));
+            motion.insert(given.unknown, value);
+            system.set_right(tree.conjugates[&given.unknown].row, Expression::ZERO);
+        }
+        for row in system
+            .open()
+            .iter()
+            .copied()
+            .filter(|row| tree.given_by(*row).is_none())
+            .collect::<Vec<_>>()
+        {
+            let entries: Vec<(usize, Expression)> = system.row(row).collect();
+            let right = entries
+                .iter()
+                .fold(system.right(row), |right, (column, value)| {
+                    let product = pool.multiply(*value, known(&motion, *column));
+                    pool.subtract(right, product)
+                });
+            system.set_right(row, right);
+        }
+        for (balance, inertia) in carried.masses {
+            system.set_right(balance, Expression::ZERO);
+            rows.push(inertia);
+        }
+        Some(Self { rows })
+    }
+
+    /// Counts the solution from zero again.
+    pub(super) fn undo(&self, pool: &mut Pool, solution: &mut [Expression]) {
+        for given in &self.rows {
+            solution[given.unknown] = given.value(pool, &|column| solution[column]);
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! The rates of a reduced system, as the tree in which each follows from others.
+//!
+//! A joint is released, that is its rate eliminated, before the frame that it carries is turned into that of its
+//! parent: the row and the column of its axis are zero by then, and are not turned.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::eliminate::System;
+use super::shift::Given;
+use crate::equations::{Scalars, Turn};
+use crate::symbolic::{Pool, Rate};
+
+pub(super) type Columns = BTreeSet<usize>;
+
+/// The rates of a block.
+pub(super) struct Tree {
+    /// What belongs to the column of every rate that is given by a row.
+    pub(super) conjugates: BTreeMap<usize, Conjugate>,
+    /// The rate that each of these rows gives.
+    given: BTreeMap<usize, usize>,
+    /// The rate with which each effort comes.
+    coming: BTreeMap<usize, usize>,
+    /// Rates that no row gives.
+    independent: Columns,
+    turns: BTreeMap<usize, Turn>,
+    /// Rows that balance efforts at a junction, and the effort that each gives, if it is not known.
+    balances: BTreeMap<usize, Option<usize>>,
+    /// Efforts that these rows give.
+    balanced: Columns,
+}
+
+/// What belongs to the column of a rate.
+pub(super) struct Conjugate {
+    /// The row that gives the rate.
+    pub(super) row: usize,
+    /// The column of the effort that comes with it.
+    pub(super) effort: Option<usize>,
+}
+
+impl Tree {
+    /// Of a block's equations; `place` gives the column of each unknown.
+    pub(super) fn of(
+        scalars: &Scalars,
+        equations: &[usize],
+        place: &BTreeMap<usize, usize>,
+    ) -> Self {
+        let unknown_of: BTreeMap<usize, usize> = scalars
+            .rate_of
+            .iter()
+            .map(|(unknown, rate)| (*rate, *unknown))
+            .collect();
+        let mut conjugates = BTreeMap::new();
+        let mut efforts = BTreeMap::new();
+        for (row, equation) in equations.iter().enumerate() {
+            let equation = &scalars.equations[*equation];
+            let Some(rate) = equation.rate.filter(|rate| place.contains_key(rate)) else {
+                continue;
+            };
+            let unknown = unknown_of[&rate];
+            let effort = equation.about.into_iter().find(|about| *about != unknown);
+            let column = effort.and_then(|effort| place.get(&effort).copied());
+            conjugates.insert(
+                place[&rate],
+                Conjugate {
+                    row,
+                    effort: column,
+                },
+            );
+            efforts.extend(effort.map(|effort| (unknown, effort)));
+        }
+        let mut balances = BTreeMap::new();
+        for (row, equation) in equations.iter().enumerate() {
+            let equation = &scalars.equations[*equation];
+            let [about, same] = equation.about;
+            if let Some(effort) = efforts.get(&about)
+                && about == same
+                && equation.terms.contains_key(effort)
+            {
+                balances.insert(row, place.get(effort).copied());
+            }
+        }
+        let independent = scalars.independent.values();
+        Self {
+            given: conjugates
+                .iter()
+                .map(|(rate, of)| (of.row, *rate))
+                .collect(),
+            coming: conjugates
+                .iter()
+                .filter_map(|(rate, of)| Some((of.effort?, *rate)))
+                .collect(),
+            independent: independent
+                .filter_map(|rate| place.get(&rate.unknown).copied())
+                .collect(),
+            balanced: balances.values().flatten().copied().collect(),
+            turns: place
+                .iter()
+                .filter_map(|(unknown, column)| Some((*column, scalars.turns[*unknown]?)))
+                .collect(),
+            conjugates,
+            balances,
+        }
+    }
+
+    /// Whether a row gives this rate.
+    pub(super) fn is_given(&self, rate: usize) -> bool {
+        self.conjugates.contains_key(&rate)
+    }
+
+    /// The rate that a row gives.
+    pub(super) fn given_by(&self, row: usize) -> Option<usize> {
+        self.given.get(&row).copied()
+    }
+
+    /// The rows that give rates, each after those of the rates from which its own follows. None if there is no such
+    /// order, or a rate has another coefficient than one.
+    pub(super) fn base_to_leaves(&self, system: &System) -> Option<Vec<Given>> {
+        let mut rows = Vec::with_capacity(self.conjugates.len());
+        let mut open: BTreeMap<usize, Given> = BTreeMap::new();
+        for (rate, conjugate) in &self.conjugates {
+            open.insert(*rate, Given::of(system, conjugate.row, *rate)?);
+        }
+        while !open.is_empty() {
+            let is_ready = |given: &Given| {
+                given
+                    .terms
+                    .iter()
+                    .all(|(other, _)| !open.contains_key(other))
+            };
+            let ready: Vec<usize> = open
+                .iter()
+                .filter(|(_, given)| is_ready(given))
+                .map(|(rate, _)| *rate)
+                .collect();
+            if ready.is_empty() {
+                return None;
+            }
+            rows.extend(ready.iter().filter_map(|rate| open.remove(rate)));
+        }
+        Some(rows)
+    }
+
+    /// Whether a column may be eliminated by a row at all: a rate is eliminated by the equation that gives it.
+    pub(super) fn allows(&self, row: usize, column: usize) -> bool {
+        match self.given.get(&row) {
+            Some(rate) => *rate == column,
+            None => !self.conjugates.contains_key(&column),
+        }
+    }
+
+    /// Whether a column is eliminated by a row, so that rates run down the tree and efforts up: the balance at a
+    /// junction gives the effort that comes from the base, and nothing else.
+    pub(super) fn admits(&self, row: usize, column: usize) -> bool {
+        let is_balance = match self.balances.get(&row) {
+            Some(effort) => *effort == Some(column),
+            None => !self.balanced.contains(&column),
+        };
+        is_balance && self.allows(row, column)
+    }
+
+    /// The rate itself, or that with which an effort comes.
+    pub(super) fn rate_of(&self, column: usize) -> Option<usize> {
+        if self.conjugates.contains_key(&column) {
+            return Some(column);
+        }
+        self.coming.get(&column).copied()
+    }
+
+    /// Efforts that meet at a junction first, then the rates of the junction, then the effort that comes with them: so
+    /// the inertia of all that hangs on the junction is turned as a whole.
+    pub(super) fn in_order(&self, columns: Columns) -> [Columns; 3] {
+        let is_rate = |column: &usize| self.conjugates.contains_key(column);
+        let (turned, efforts): (Columns, Columns) = columns.into_iter().partition(is_rate);
+        let is_coming = |column: &usize| self.coming.contains_key(column);
+        let (last, first) = efforts.into_iter().partition(is_coming);
+        [first, turned, last]
+    }
+
+    /// Rates that open rows give by a column.
+    fn followers<'a>(
+        &'a self,
+        system: &'a System,
+        column: usize,
+    ) -> impl Iterator<Item = usize> + 'a {
+        let rates = system
+            .rows_with(column)
+            .filter_map(|row| self.given.get(&row));
+        rates.copied().filter(move |rate| *rate != column)
+    }
+
+    /// All open rates that follow from a rate.
+    pub(super) fn moved(&self, system: &System, rate: usize) -> Columns {
+        let mut found = Columns::new();
+        let mut pending = vec![rate];
+        while let Some(current) = pending.pop() {
+            let new = self
+                .followers(system, current)
+                .filter(|rate| found.insert(*rate));
+            pending.extend(new.collect::<Vec<_>>());
+        }
+        found
+    }
+
+    /// Whether a rate is that of a frame that turns: its coefficients vary.
+    pub(super) fn is_turned(&self, pool: &Pool, system: &System, rate: usize) -> bool {
+        let mut entries = system.row(self.conjugates[&rate].row);
+        entries.any(|(_, value)| pool.rate(value) == Rate::Varying)
+    }
+
+    /// The one row, among those given, that balances the efforts on an independent rate and holds no effort any more,
+    /// when nothing is left that follows from the rate.
+    pub(super) fn balance(
+        &self,
+        system: &System,
+        rows: &BTreeSet<usize>,
+        rate: usize,
+    ) -> Option<usize> {
+        // A multiplier belongs to no level.
+        let is_rate = |column: usize| {
+            self.conjugates.contains_key(&column)
+                || self.independent.contains(&column)
+                || !self.turns.contains_key(&column)
+        };
+        let mut balances = system
+            .rows_with(rate)
+            .filter(|row| rows.contains(row))
+            .filter(|row| system.row(*row).all(|(column, _)| is_rate(column)));
+        let row = balances.next()?;
+        let is_only = balances.next().is_none() && self.followers(system, rate).next().is_none();
+        is_only.then_some(row)
+    }
+
+    /// Turned rates in a row, and those that are turned together with them, from which nothing follows any more; and
+    /// the efforts that come with them.
+    pub(super) fn frame(&self, pool: &Pool, system: &System, row: usize) -> Columns {
+        let is_leaf = |rate: &usize| self.followers(system, *rate).next().is_none();
+        let together = |rate: usize| {
+            let turn = self.turns.get(&rate);
+            let open = |other: &usize| system.rows_with(*other).next().is_some();
+            let group = self.conjugates.keys().copied();
+            group.filter(move |other| self.turns.get(other) == turn && open(other))
+        };
+        let mut frame = Columns::new();
+        for (rate, _) in system.row(row) {
+            let turns = self.conjugates.contains_key(&rate) && self.is_turned(pool, system, rate);
+            if !turns || !together(rate).all(|other| is_leaf(&other)) {
+                continue;
+            }
+            let causes = self.causes(system, rate);
+            frame.extend(together(rate).filter(|other| self.causes(system, *other) == causes));
+        }
+        let efforts = frame.iter().filter_map(|rate| self.conjugates[rate].effort);
+        let efforts: Vec<usize> = efforts.collect();
+        frame.extend(efforts);
+        frame
+    }
+
+    fn causes(&self, system: &System, rate: usize) -> Vec<usize> {
+        let row = system.row(self.conjugates[&rate].row);
+        row.map(|(column, _)| column)
+            .filter(|column| *column != rate)
+            .collect()
+    }
+}

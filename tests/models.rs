@@ -23,6 +23,7 @@ mod models {
     mod closed;
     mod dependent;
     mod energy;
+    mod lagrange;
     mod loops;
     mod mechanisms;
     mod navigation;

@@ -1,9 +1,9 @@
-//! Turning a symmetric block with half the operations.
+//! Turning a block with half the operations.
 //!
-//! Where two rates are those of a turned frame, `x = R k`, elimination turns the block `Z` between them and the efforts
-//! that do work on them into `Rᵀ Z R`. As two products that costs 21 operations. With `w = σ (d − a) − 2 c b` it costs
-//! ten: `a' = a + σ w`, `b' = −c w − b`, `d' = d − σ w`. These forms are put into the pool beforehand, where elimination
-//! finds them by their values.
+//! Where rates are those of a turned frame, `x = R k`, elimination turns a block `Z` between such rates and efforts
+//! into `Rᵀ Z R`. As two products that costs 24 operations, 21 if `Z` is symmetric. For `Z = [a b; c d]` and with
+//! `w = s (d − a) − cos (b + c)` it costs eleven, or ten: `a' = a + s w`, `b' = −cos w − c`, `c' = −cos w − b`,
+//! `d' = d − s w`. These forms are put into the pool beforehand, where elimination finds them by their values.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,14 +21,17 @@ pub(super) fn prepare(pool: &mut Pool, system: &System, tree: &Tree, columns: &B
             Some((*column, Turned::of(pool, system, row, *column)?))
         })
         .collect();
-    for (position, (x, first)) in turned.iter().enumerate() {
-        for (y, second) in &turned[position + 1..] {
-            if first.columns == second.columns
-                && first.first == second.second
-                && first.second == second.first.negated()
-            {
-                block(pool, system, conjugates, [*x, *y], first);
-            }
+    let planes: Vec<Plane> = turned
+        .iter()
+        .flat_map(|first| {
+            turned
+                .iter()
+                .filter_map(move |second| Plane::of(first, second))
+        })
+        .collect();
+    for rows in &planes {
+        for columns in planes.iter().filter(|columns| columns.turn == rows.turn) {
+            block(pool, system, conjugates, [rows, columns]);
         }
     }
 }
@@ -58,20 +61,40 @@ impl Turned {
     }
 }
 
+/// Two rates that turn in their plane: `x = c k + s l`, `y = c l − s k`.
+struct Plane {
+    rates: [usize; 2],
+    /// `c` and `s`, the latter without a sign.
+    turn: [Expression; 2],
+}
+
+impl Plane {
+    fn of((x, first): &(usize, Turned), (y, second): &(usize, Turned)) -> Option<Self> {
+        let is_turn = first.columns == second.columns
+            && first.first == second.second
+            && first.second == second.first.negated();
+        let is_forward = !first.second.is_negative();
+        let rates = if is_forward { [*x, *y] } else { [*y, *x] };
+        is_turn.then_some(Self {
+            rates,
+            turn: [first.first, first.second.magnitude()],
+        })
+    }
+}
+
+/// The block between the efforts that come with the rates of one plane, and the rates of another.
 fn block(
     pool: &mut Pool,
     system: &System,
     conjugates: &BTreeMap<usize, Conjugate>,
-    [x, y]: [usize; 2],
-    turned: &Turned,
+    [rows, columns]: [&Plane; 2],
 ) {
-    let firsts = balances(system, &conjugates[&x], [x, y]);
-    let seconds = balances(system, &conjugates[&y], [x, y]);
-    for [a, b] in firsts {
-        for [symmetric, d] in &seconds {
-            if b == *symmetric && a != *d {
-                forms(pool, turned, a, b, *d);
-            }
+    let [x, y] = rows.rates;
+    let firsts = balances(system, &conjugates[&x], columns.rates);
+    let seconds = balances(system, &conjugates[&y], columns.rates);
+    for upper in firsts {
+        for lower in &seconds {
+            forms(pool, rows.turn, [upper, *lower]);
         }
     }
 }
@@ -92,16 +115,21 @@ fn balances(system: &System, conjugate: &Conjugate, columns: [usize; 2]) -> Vec<
         .collect()
 }
 
-fn forms(pool: &mut Pool, turned: &Turned, a: Expression, b: Expression, d: Expression) {
-    let (c, sigma) = (turned.first, turned.second);
+fn forms(pool: &mut Pool, [cosine, sine]: [Expression; 2], [[a, b], [c, d]]: [[Expression; 2]; 2]) {
     let difference = pool.subtract(d, a);
-    let across = pool.multiply(sigma, difference);
-    let double = pool.add(b, b);
-    let along = pool.multiply(c, double);
+    let across = pool.multiply(sine, difference);
+    let along = if b == c {
+        let double = pool.add(cosine, cosine);
+        pool.multiply(double, b)
+    } else {
+        let sum = pool.add(b, c);
+        pool.multiply(cosine, sum)
+    };
     let w = pool.subtract(across, along);
-    let lift = pool.multiply(sigma, w);
+    let lift = pool.multiply(sine, w);
     pool.add(a, lift);
     pool.subtract(d, lift);
-    let mixed = pool.multiply(c, w);
+    let mixed = pool.multiply(cosine, w);
     pool.add(mixed, b);
+    pool.add(mixed, c);
 }

@@ -483,6 +483,18 @@ impl Pool {
         if let Some(gathered) = self.gather(a, b) {
             return gathered;
         }
+        self.put_sum(a, b)
+    }
+
+    /// The sum in this form, if there is none in another.
+    fn put_sum(&mut self, a: Expression, b: Expression) -> Expression {
+        if a == Expression::ZERO {
+            return b;
+        }
+        if b == Expression::ZERO {
+            return a;
+        }
+        let image = self.image(a).plus(self.image(b));
         match (a.is_negative(), b.is_negative()) {
             (true, true) => self
                 .intern(Operation::Add(a.negated(), b.negated()), image.negated())
@@ -496,17 +508,14 @@ impl Pool {
     fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
         let (first, slow) = self.apart(a);
         let (second, other) = self.apart(b);
-        if slow == Expression::ZERO && other == Expression::ZERO {
+        let is_mixed = |fast, slow| fast != Expression::ZERO && slow != Expression::ZERO;
+        if !is_mixed(first, slow) && !is_mixed(second, other) {
             return None;
-        }
-        if second == Expression::ZERO || first == Expression::ZERO {
-            if slow == Expression::ZERO || other == Expression::ZERO {
-                return None;
-            }
         }
         let fast = self.add(first, second);
         let slow = self.add(slow, other);
-        Some(self.add(fast, slow))
+        // Put down as it is: what is known under another form need not come apart again.
+        Some(self.put_sum(fast, slow))
     }
 
     /// A sum as what changes often and what changes seldom.

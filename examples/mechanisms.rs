@@ -8,7 +8,7 @@ mod mechanisms;
 #[path = "../tests/references/mod.rs"]
 mod references;
 
-use mechanisms::{Figures, andrews, four_bars};
+use mechanisms::{Figures, andrews, bricard, four_bars, governor, slider_crank};
 
 fn main() {
     println!(
@@ -30,6 +30,10 @@ fn main() {
         four_bars::run1,
         four_bars::run2,
         four_bars::run5,
+        slider_crank::planar,
+        slider_crank::spatial,
+        bricard::run,
+        governor::run,
     ] {
         print(&run());
     }

@@ -20,7 +20,7 @@ mod shift;
 mod solve;
 mod tree;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::elaborate::Condition;
 use crate::equations::{Inertia, Scalars};
@@ -104,9 +104,18 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
     let matching = matching::perfect(&incidence, scalars.unknowns)
         .or_else(|| matching::perfect(&all, scalars.unknowns))
         .ok_or(Failure::Singular)?;
-    // What a reduced system eliminates level by level is one block, whatever could be split off.
+    // What a reduced system eliminates level by level is one block, whatever could be split off: a multiplier, too, even
+    // where one end of its loop is fixed and its effort comes last.
+    let multipliers: BTreeSet<usize> = scalars
+        .closures
+        .iter()
+        .flat_map(|closure| closure.multipliers.iter().copied())
+        .collect();
     let levelled: Vec<usize> = (0..all.len())
-        .filter(|row| scalars.turns[matching[*row]].is_some())
+        .filter(|row| {
+            let unknown = matching[*row];
+            scalars.turns[unknown].is_some() || multipliers.contains(&unknown)
+        })
         .collect();
     for (row, next) in levelled.iter().zip(levelled.iter().cycle().skip(1)) {
         all[*row].push(matching[*next]);

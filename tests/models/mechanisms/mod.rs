@@ -4,7 +4,10 @@
 //! the sum with the energy stored constant, and `point` is compared with the reference.
 
 pub(crate) mod andrews;
+pub(crate) mod bricard;
 pub(crate) mod four_bars;
+pub(crate) mod governor;
+pub(crate) mod slider_crank;
 
 use std::time::Instant;
 

@@ -12,7 +12,7 @@ use mechanisms::{Figures, andrews, bricard, four_bars, governor, slider_crank};
 
 fn main() {
     println!(
-        "{:18}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9}{:>9}{:>9}{:>9}",
+        "{:21}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9}{:>9}{:>9}{:>9}",
         "mechanism",
         "states",
         "loops",
@@ -41,7 +41,7 @@ fn main() {
 
 fn print(found: &Figures) {
     println!(
-        "{:18}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.2}",
+        "{:21}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.2}",
         found.mechanism,
         found.meta.states.len(),
         found.closing[0],

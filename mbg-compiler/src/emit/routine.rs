@@ -9,6 +9,10 @@ use crate::compile::Compiled;
 use crate::program::{Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::Symbol;
 
+/// Steps in one block at most. Each `let` opens a scope in those before it, and describing many thousands of nested
+/// scopes to a debugger takes more stack than rustc has.
+const SECTION: usize = 256;
+
 /// Where a routine finds what it reads.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Setting {
@@ -31,7 +35,11 @@ pub(super) fn lines(
         names: names(routine),
         setting,
     };
-    let body = writer.lines(&routine.steps, 0);
+    let body = if routine.steps.len() > SECTION {
+        writer.sections(routine)
+    } else {
+        writer.lines(&routine.steps, 0)
+    };
     let results = routine
         .results
         .iter()
@@ -76,6 +84,37 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
+    /// The steps of a routine in blocks, each of which gives what is read after it.
+    fn sections(&self, routine: &Routine) -> TokenStream {
+        let mut read: BTreeSet<Ident> = self.locals(&routine.results).collect();
+        let mut end = routine.steps.iter().map(Step::results).sum();
+        let mut sections = Vec::new();
+        for steps in routine.steps.rchunks(SECTION) {
+            let start = end - steps.iter().map(Step::results).sum::<usize>();
+            let solved = steps.iter().filter_map(|step| match step {
+                Step::Solve(solve) => Some(unknowns(solve.number)),
+                _ => None,
+            });
+            let made = self.names[start..end].iter().cloned().chain(solved);
+            let given: Vec<Ident> = made.filter(|name| read.contains(name)).collect();
+            let body = self.lines(steps, start);
+            sections.push(quote!(let (#(#given,)*) = { #body (#(#given,)*) };));
+            let operands = steps.iter().flat_map(Step::operands).collect::<Vec<_>>();
+            read.extend(self.locals(&operands));
+            end = start;
+        }
+        sections.into_iter().rev().collect()
+    }
+
+    /// The names of those operands that a routine makes itself.
+    fn locals(&self, operands: &[Operand]) -> impl Iterator<Item = Ident> {
+        operands.iter().filter_map(|operand| match operand.source {
+            Source::Value(value) => Some(self.names[value].clone()),
+            Source::Solved(place) => Some(unknowns(place.number)),
+            _ => None,
+        })
+    }
+
     /// Steps whose values begin with number `value`.
     fn lines(&self, steps: &[Step], mut value: usize) -> TokenStream {
         let mut body = TokenStream::new();

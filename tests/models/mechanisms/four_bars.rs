@@ -108,13 +108,3 @@ pub(crate) fn run5() -> Figures {
         FourBars5::new(FourBars5Parameters::default()).unwrap(),
     )
 }
-
-#[test]
-fn rows_turn_over_through_their_singular_position() {
-    for found in [run1(), run2(), run5()] {
-        println!(
-            "{} {:e} {:e} {:e}",
-            found.mechanism, found.point, found.gap, found.energy
-        );
-    }
-}

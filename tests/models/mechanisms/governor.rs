@@ -42,7 +42,6 @@ mbg! {
         between -> foot[3..6];
         between -> MTF along { flow: [[span.x / length, 0.0, span.z / length]] } -> stretch;
         integral lost: J = damper.e * damper.f;
-        output gap: m = length - 0.5 - spring.q;
         output balance: J = lost - 9.81 * moment * sin(hinge.angle);
     }
 
@@ -59,7 +58,10 @@ mbg! {
         right: Arm { side: diag(1.0, 1.0, 1.0), height: slide.travel } (shaft, slider);
         left: Arm { side: diag(-1.0, -1.0, 1.0), height: slide.travel } (shaft, slider);
         output balance: J = 9.81 * 3.0 * slide.travel;
-        output point: m = slide.travel;
+        // The springs must go along with the rods.
+        output point[3]: m = [
+            slide.travel, right.length - 0.5 - right.spring.q, left.length - 0.5 - left.spring.q
+        ];
     }
 }
 
@@ -80,6 +82,6 @@ pub(crate) fn run() -> Figures {
         let (before, x) = reference.get();
         let x = motion(x, (before, t)).0;
         reference.set((t, x));
-        apart(point, &x[1..2])
+        apart(point, &[x[1], 0.0, 0.0])
     })
 }

@@ -8,6 +8,8 @@ pub(crate) mod bricard;
 pub(crate) mod four_bars;
 pub(crate) mod governor;
 pub(crate) mod slider_crank;
+#[cfg(test)]
+mod tests;
 
 use std::time::Instant;
 
@@ -16,6 +18,7 @@ use mbg_runtime::{Constant, DormandPrince, Meta, Rk4, Stopped, System};
 use nalgebra::{SMatrix, SVector};
 
 /// What a run shows.
+#[allow(dead_code, reason = "tests read less than the example prints")]
 pub(crate) struct Figures {
     pub(crate) mechanism: &'static str,
     pub(crate) meta: &'static Meta,

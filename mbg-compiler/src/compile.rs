@@ -16,7 +16,7 @@ use crate::program::{self, Program};
 use crate::structure::{self, Failure, Loop, Solution, Undetermined};
 use crate::symbolic::print::Printer;
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Pool, Rate, Substitution, Symbol, jacobian};
+use crate::symbolic::{Expression, Pool, Rate, Substitution, Symbol, jacobian, share};
 use crate::syntax::ast;
 
 /// Everything that emission needs.
@@ -480,6 +480,7 @@ fn finish(
                 .or_insert_with(|| scalars.names[unknown].clone());
         }
     }
+    share(&mut pool, &requests[Routines::DERIVATIVE]);
     let program = program::build(&pool, &requests, &place, &names);
     let conditioning = conditioning
         .iter()

@@ -167,7 +167,7 @@ fn a_long_chain_of_values_needs_no_deep_stack() {
     a -> spring [1]
     state m.p = 0
     state spring.q = 0
-    output first = 2999 + spring.q
+    output first = spring.q + 2999
     ");
 }
 

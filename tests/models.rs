@@ -18,10 +18,15 @@ mod run;
 #[allow(clippy::unwrap_used)]
 mod models {
     mod amplifier;
+    mod audit;
     mod behaviour;
     mod closed;
+    mod dependent;
     mod energy;
+    mod lagrange;
     mod loops;
+    #[allow(dead_code, reason = "the example prints more of it")]
+    mod mechanisms;
     mod navigation;
     mod parameters;
 }

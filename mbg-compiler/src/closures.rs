@@ -25,6 +25,14 @@ pub struct Residuals {
     pub closures: Vec<usize>,
 }
 
+impl Residuals {
+    /// Values, then derivatives by rows.
+    #[must_use]
+    pub fn evaluated(&self) -> Vec<Expression> {
+        [&self.values[..], &self.jacobian.entries].concat()
+    }
+}
+
 /// Displacements of all closures that have one, in terms of the states.
 #[must_use]
 pub fn displacements(

@@ -9,13 +9,15 @@
 //! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
-//! | closures | [`closures`] | what projection makes zero |
+//! | answers | [`answers`], [`closures`], [`checks`] | what functions return, projection makes zero, `new` asks |
 //! | program | [`program`] | straight-line arithmetic |
 //! | emission | [`emit`] | Rust |
 //!
 //! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`; [`explain`] prints them.
 
+pub mod answers;
 pub mod causality;
+pub mod checks;
 pub mod closures;
 pub mod codes;
 pub mod compile;

@@ -340,3 +340,20 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_mesh_of_gain_one_is_shown() {
+    let text = beside_a_mass(
+        "causality componentwise; param n = 2.0; 0 j0; 0 j1; 0 j2; j0 -> R r { resistance: 1.0 };
+         j0 -> TF up { flow: n } -> j1; j1 -> TF down { flow: 0.5 } -> j2; j2 -> TF back { flow: 2.0 / n } -> j0;",
+    );
+    let mut diagnostics = Diagnostics::new();
+    let _ = mbg_compiler::items(text.parse().unwrap(), &mut diagnostics);
+    let [report] = diagnostics.list() else {
+        panic!("one mistake, found {:?}", diagnostics.list())
+    };
+    assert_eq!(
+        report.notes[1],
+        "they form a mesh whose gain is one: 1 / (n) · 1 / (0.5) · 1 / (2/n)"
+    );
+}

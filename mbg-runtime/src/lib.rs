@@ -29,7 +29,7 @@ mod system;
 
 pub use dual::Dual;
 pub use input::{Constant, Input, Pulse, Smooth, Sum};
-pub use meta::{Bond, Eliminated, Loop, Meta, Operations, Solver, Stroke, Variable};
+pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
 pub use real::Real;
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use step::{Cause, Dense, DormandPrince, Rk4, Statistics, Stopped};

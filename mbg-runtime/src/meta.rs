@@ -80,10 +80,22 @@ pub enum Stroke {
 pub struct Loop {
     /// Resistors and other elements whose laws close the loop, or variables where the junction structure closes it.
     pub through: &'static [&'static str],
+    /// What closes it.
+    pub class: LoopClass,
     /// Number of variables.
     pub variables: usize,
     /// How it is solved.
     pub solver: Solver,
+}
+
+/// What closes an algebraic loop, by the zero-order causal paths of van Dijk and Breedveld, J. Franklin Inst. 328
+/// (1991).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopClass {
+    /// Resistors: class 2.
+    Resistive,
+    /// Junctions, transformers and gyrators alone: classes 3 and 4. Class 5, with a gain of one, is no model.
+    Structural,
 }
 
 /// How an algebraic loop is solved.

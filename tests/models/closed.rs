@@ -11,34 +11,25 @@ mbg! {
         gravity [0.0, -9.81];
         param damping: N*m*s/rad = 0.0;
 
-        1 base[3];
+        1 base[3]; 1 crank_tip[3]; 1 coupler_tip[3]; 1 rocker_tip[3];
         Sf fixed[3] { flow: 0.0 } -> base;
-        1 crank_foot[3]; 1 crank_middle[3]; 1 crank_tip[3];
-        crank: PlanarRevolute { initial: 1.0, damping: damping } (base, crank_foot);
-        crank_half: PlanarOffset { angle: crank.angle_b, x: 0.15 } (crank_foot, crank_middle);
-        crank_body: PlanarBody { mass: 1.0, inertia: 0.0075 } (crank_middle);
-        crank_rod: PlanarOffset { angle: crank.angle_b, x: 0.3 } (crank_foot, crank_tip);
+        crank: PlanarLink {
+            mass: 1.0, inertia: 0.0075, centre: [0.15, 0.0], end: [0.3, 0.0], initial: 1.0, damping: damping
+        } (base, crank_tip);
+        coupler: PlanarLink {
+            mass: 2.0, inertia: 0.135, centre: [0.45, 0.0], end: [0.9, 0.0], damping: damping,
+            angle_a: crank.angle_b, position_a: crank.position_b
+        } (crank_tip, coupler_tip);
+        rocker: PlanarLink {
+            mass: 1.5, inertia: 0.06125, centre: [0.35, 0.0], end: [0.7, 0.0], initial: 1.2, damping: damping,
+            position_a: [1.0, 0.0]
+        } (base, rocker_tip);
 
-        1 coupler_foot[3]; 1 coupler_middle[3]; 1 coupler_tip[3];
-        coupler: PlanarRevolute { angle_a: crank.angle_b, damping: damping } (crank_tip, coupler_foot);
-        coupler_half: PlanarOffset { angle: coupler.angle_b, x: 0.45 } (coupler_foot, coupler_middle);
-        coupler_body: PlanarBody { mass: 2.0, inertia: 0.135 } (coupler_middle);
-        coupler_rod: PlanarOffset { angle: coupler.angle_b, x: 0.9, position_a: crank_rod.position_b }
-            (coupler_foot, coupler_tip);
-
-        1 rocker_foot[3]; 1 rocker_middle[3]; 1 rocker_tip[3];
-        rocker: PlanarRevolute { initial: 1.2, damping: damping } (base, rocker_foot);
-        rocker_half: PlanarOffset { angle: rocker.angle_b, x: 0.35 } (rocker_foot, rocker_middle);
-        rocker_body: PlanarBody { mass: 1.5, inertia: 0.06125 } (rocker_middle);
-        rocker_rod: PlanarOffset { angle: rocker.angle_b, x: 0.7, position_a: [1.0, 0.0] } (rocker_foot, rocker_tip);
-
-        close coupler_tip[1..3] -> rocker_tip[1..3] by multipliers,
-            displacement: coupler_rod.position_b - rocker_rod.position_b;
-        output gap[2]: m = coupler_rod.position_b - rocker_rod.position_b;
+        let open = coupler.position_b - rocker.position_b;
+        close coupler_tip[1..3] -> rocker_tip[1..3] by multipliers, displacement: open;
+        output gap[2]: m = open;
         output potential: J = 9.81 * (
-            0.15 * sin(crank.angle_b)
-            + 2.0 * (crank_rod.position_b.y + 0.45 * sin(coupler.angle_b))
-            + 1.5 * 0.35 * sin(rocker.angle_b)
+            crank.position_centre.y + 2.0 * coupler.position_centre.y + 1.5 * rocker.position_centre.y
         );
     }
 }
@@ -48,7 +39,7 @@ fn start(model: &FourBar) -> SVector<f64, 6> {
     let crank = FourBar::<f64>::META
         .states
         .iter()
-        .position(|state| state.name == "crank.angle")
+        .position(|state| state.name == "crank.hinge.angle")
         .unwrap();
     let guess = model.initial_state();
     let start = model

@@ -8,8 +8,8 @@ use crate::dc_motor::{Motor, MotorParameters, brake};
 use crate::ins::{Ins, InsParameters, gust};
 
 /// Runs RK4 with the energies supplied and dissipated as two more states; the input is constant in each step.
-/// Gives the largest imbalance as a part of the energy supplied.
-fn imbalance<const N: usize, const M: usize, const P: usize>(
+/// Gives the largest imbalance as a part of the energy supplied, or of that at the start if this is more.
+pub(super) fn imbalance<const N: usize, const M: usize, const P: usize>(
     model: &impl System<f64, N, M, P>,
     input: &impl Input<f64, M>,
     h: f64,
@@ -18,7 +18,7 @@ fn imbalance<const N: usize, const M: usize, const P: usize>(
     let mut x = model.initial_state();
     let start = model.energy(0.0, &x);
     let (mut supplied, mut dissipated) = (0.0, 0.0);
-    let (mut most, mut worst) = (0.0_f64, 0.0_f64);
+    let (mut most, mut worst) = (start.abs(), 0.0_f64);
     for step in 0..steps {
         let t = f64::from(step) * h;
         let u = input.at(t + h / 2.0);

@@ -158,6 +158,11 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
 fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
     compiled.loops.iter().map(|found| {
         let (through, variables) = (&found.through, Literal::usize_suffixed(found.variables));
+        let class = if found.resistive {
+            quote!(Resistive)
+        } else {
+            quote!(Structural)
+        };
         let solver = match found.iterated {
             0 => quote!(Linear),
             unknowns => {
@@ -167,7 +172,7 @@ fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
         };
         quote! {
             ::mbg_runtime::Loop {
-                through: &[#(#through),*], variables: #variables, solver: ::mbg_runtime::Solver::#solver,
+                through: &[#(#through),*], class: ::mbg_runtime::LoopClass::#class, variables: #variables, solver: ::mbg_runtime::Solver::#solver,
             }
         }
     })

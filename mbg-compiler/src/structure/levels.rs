@@ -1,25 +1,28 @@
 //! The order in which a reduced system is eliminated: from the leaves of its tree to the base.
 //!
 //! Every rate depends on some independent rates: those of coordinates and of the storages that are states. It belongs
-//! to the deepest of them, the one on which the fewest depend; an effort belongs where the flow of its wire does, and
+//! to the deepest of them, the one that moves nothing but in company; an effort belongs where the flow of its wire does, and
 //! an equation where the unknown that it is about does. Eliminating what belongs to one independent rate after
 //! another, deepest first, is what recursive algorithms for multibody systems do (Featherstone 1983), and costs as
 //! much for each body however long the chain.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::blocks;
 use crate::equations::{Owner, Scalars, Turn};
 
-/// The turn of every unknown; none for those that belong to the base.
+/// The turn of every unknown; none for those that belong to the base. `moved` are the co-energy variables of the lost
+/// states.
 #[must_use]
 pub(super) fn assign(
     scalars: &Scalars,
     matched: &BTreeMap<usize, usize>,
     rate_of: &BTreeMap<usize, usize>,
+    moved: &[usize],
     is_state: &dyn Fn(Owner) -> bool,
 ) -> Vec<Option<Turn>> {
-    let dependence = Dependence::of(scalars, matched, rate_of, is_state);
+    let dependence = Dependence::of(scalars, matched, rate_of, moved, is_state);
     let mut turns = vec![None; scalars.unknowns];
     for (unknown, rate) in rate_of {
         turns[*rate] = dependence.turn(*unknown);
@@ -76,6 +79,7 @@ impl Dependence {
         scalars: &Scalars,
         matched: &BTreeMap<usize, usize>,
         rate_of: &BTreeMap<usize, usize>,
+        moved: &[usize],
         is_state: &dyn Fn(Owner) -> bool,
     ) -> Self {
         let unknowns: Vec<usize> = rate_of.keys().copied().collect();
@@ -112,8 +116,16 @@ impl Dependence {
         for (set, _) in &sets {
             members(set).for_each(|k| weight[k] += 1);
         }
+        // A rate on which the storage that it moves with the fewest others depends is as far from the base as these are
+        // many.
+        let mut company = vec![usize::MAX; independent];
+        let places = moved.iter().filter_map(|unknown| place.get(unknown));
+        for (set, _) in places.map(|place| &sets[*place]) {
+            let size = members(set).count();
+            members(set).for_each(|k| company[k] = company[k].min(size));
+        }
         let mut order: Vec<usize> = (0..independent).collect();
-        order.sort_by_key(|k| (weight[*k], std::cmp::Reverse(*k)));
+        order.sort_by_key(|k| (Reverse(company[*k]), weight[*k], Reverse(*k)));
         let mut rank = vec![0; independent];
         for (level, k) in order.into_iter().enumerate() {
             rank[k] = level;

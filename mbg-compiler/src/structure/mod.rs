@@ -11,20 +11,23 @@ mod congruence;
 mod eliminate;
 mod levels;
 pub mod matching;
+mod mesh;
 mod nonlinear;
 mod reduction;
+mod resolve;
 mod selection;
 mod shift;
 mod solve;
 mod tree;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::elaborate::Condition;
-use crate::equations::Scalars;
+use crate::equations::{Inertia, Scalars};
 use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use reduction::{Reduction, reduce};
+pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};
 
 /// Unknowns as expressions.
@@ -101,12 +104,29 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
     let matching = matching::perfect(&incidence, scalars.unknowns)
         .or_else(|| matching::perfect(&all, scalars.unknowns))
         .ok_or(Failure::Singular)?;
-    // What a reduced system eliminates level by level is one block, whatever could be split off.
+    // What a reduced system eliminates level by level is one block, whatever could be split off: a multiplier, too, even
+    // where one end of its loop is fixed and its effort comes last.
+    let multipliers: BTreeSet<usize> = scalars
+        .closures
+        .iter()
+        .flat_map(|closure| closure.multipliers.iter().copied())
+        .collect();
     let levelled: Vec<usize> = (0..all.len())
-        .filter(|row| scalars.turns[matching[*row]].is_some())
+        .filter(|row| {
+            let unknown = matching[*row];
+            scalars.turns[unknown].is_some() || multipliers.contains(&unknown)
+        })
         .collect();
     for (row, next) in levelled.iter().zip(levelled.iter().cycle().skip(1)) {
         all[*row].push(matching[*next]);
+    }
+    // What it divides by is proven by what moves, which must be known by then.
+    if let Some(row) = levelled.first() {
+        for rate in scalars.independent.values() {
+            if let Inertia::Moved { storages, .. } = &rate.inertia {
+                all[*row].extend(storages.iter().flatten());
+            }
+        }
     }
     let order = blocks::ordered(&all, &matching);
     solve::blocks(scalars, &matching, &order, pool)

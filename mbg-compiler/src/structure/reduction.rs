@@ -521,7 +521,11 @@ impl Reducer<'_> {
             }
             Owner::Structure => false,
         };
-        let mut turns = levels::assign(&self.scalars, matched, &self.rate_of, &is_state);
+        let moved: Vec<usize> = lost
+            .iter()
+            .map(|lost| self.coenergy(model, lost.element, lost.component))
+            .collect();
+        let mut turns = levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
         // What follows from the states alone is known beforehand.
         for (turn, determined) in turns.iter_mut().zip(&self.determined) {
             *turn = turn.filter(|_| !determined);

@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::mesh;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
@@ -49,10 +50,24 @@ pub fn select(
     for row in order {
         first.take(&scalars.equations[row], row, false);
     }
-    if !first.report(diagnostics) {
-        return None;
+    match first.report(diagnostics) {
+        Verdict::Accepted => Some(again(model, scalars, pool, first)),
+        Verdict::Refused => None,
+        Verdict::Undetermined => {
+            mesh::report(model, scalars, pool, diagnostics);
+            None
+        }
     }
-    Some(again(model, scalars, pool, first))
+}
+
+/// What the first choice shows.
+enum Verdict {
+    /// Every dependent storage is accepted as such.
+    Accepted,
+    /// Something was reported.
+    Refused,
+    /// The structure itself leaves something open.
+    Undetermined,
 }
 
 /// The second choice, among the storages that take part in a dependence.
@@ -239,8 +254,8 @@ impl<'a> Selector<'a> {
         true
     }
 
-    /// Reports what cannot be accepted; true if there is nothing of the kind.
-    fn report(&self, diagnostics: &mut Diagnostics) -> bool {
+    /// Reports storages and sources that cannot be accepted.
+    fn report(&self, diagnostics: &mut Diagnostics) -> Verdict {
         let before = diagnostics.list().len();
         for (source, causes) in &self.sources {
             self.report_source(*source, causes, diagnostics);
@@ -258,11 +273,12 @@ impl<'a> Selector<'a> {
         }
         let nothing =
             self.lost.is_empty() && self.sources.is_empty() && self.model.graph.closures.is_empty();
-        if self.structure || nothing {
-            let message = "the junction structure leaves efforts or flows undetermined";
-            diagnostics.error(codes::SINGULAR_JUNCTIONS, self.model.name.span(), message);
+        let reported = diagnostics.list().len() > before;
+        match (self.structure || nothing, reported) {
+            (true, _) => Verdict::Undetermined,
+            (false, true) => Verdict::Refused,
+            (false, false) => Verdict::Accepted,
         }
-        diagnostics.list().len() == before
     }
 
     fn names(&self, own: ElementId, causes: &BTreeSet<Owner>) -> String {
@@ -323,7 +339,12 @@ impl<'a> Selector<'a> {
         )
         .note("this is a true loss of order: no choice of strokes makes all of them states")
         .help(element.acceptance())
-        .help("or put a spring and a damper between them, or merge the storages into one");
+        .help(match element.kind {
+            ElementKind::I => {
+                "or put a spring and a damper between them, or merge the storages into one"
+            }
+            _ => "or put a resistor between them, or merge the storages into one",
+        });
         diagnostics.report(report);
     }
 }

@@ -502,6 +502,18 @@ impl Pool {
         if let Some(gathered) = self.gather(a, b) {
             return gathered;
         }
+        self.put_sum(a, b)
+    }
+
+    /// The sum in this form, if there is none in another.
+    fn put_sum(&mut self, a: Expression, b: Expression) -> Expression {
+        if a == Expression::ZERO {
+            return b;
+        }
+        if b == Expression::ZERO {
+            return a;
+        }
+        let image = self.image(a).plus(self.image(b));
         match (a.is_negative(), b.is_negative()) {
             (true, true) => self
                 .intern(Operation::Add(a.negated(), b.negated()), image.negated())
@@ -521,7 +533,8 @@ impl Pool {
         }
         let fast = self.add(first, second);
         let slow = self.add(slow, other);
-        Some(self.add(fast, slow))
+        // Put down as it is: what is known under another form need not come apart again.
+        Some(self.put_sum(fast, slow))
     }
 
     /// A sum as what changes often and what changes seldom.

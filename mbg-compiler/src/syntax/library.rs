@@ -20,6 +20,7 @@ files! {
     "Body": "body.mbg",
     "Offset": "offset.mbg",
     "PlanarBody": "planar_body.mbg",
+    "PlanarLink": "planar_link.mbg",
     "PlanarOffset": "planar_offset.mbg",
     "PlanarPrismatic": "planar_prismatic.mbg",
     "PlanarRevolute": "planar_revolute.mbg",

@@ -1,4 +1,7 @@
 //! Models from texts, as far as a stage, or everything that was reported with its place.
+#![allow(dead_code, clippy::unwrap_used)]
+
+pub(crate) mod dual;
 
 use mbg_compiler::compile::{Compiled, compile};
 use mbg_compiler::diagnostics::Diagnostics;
@@ -26,6 +29,7 @@ pub(crate) fn compiled(text: &str) -> Compiled {
 }
 
 /// The last model of a text after all stages, or the codes of what was reported.
+#[allow(dead_code, reason = "not every test file tries what may fail")]
 pub(crate) fn attempted(text: &str) -> Result<Compiled, Vec<&'static str>> {
     let (model, diagnostics) = run(text, |model, source, diagnostics| {
         compile(model, &elaborate::component_table(source), diagnostics)

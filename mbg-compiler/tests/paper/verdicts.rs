@@ -260,6 +260,21 @@ fn a_frictionless_revolute_is_a_conflict_under_one_stroke_only() {
 }
 
 #[test]
+fn coulomb_friction_is_a_conflict_on_the_axis_of_a_revolute_only() {
+    let dry = "rel.x -> R dry { effort: 2.0 * sign(f) };";
+    let found = refused(&revolute("", dry));
+    println!("{:?}", texts(&found));
+    assert_eq!(found[0].code, codes::FIXED_RESISTOR, "{:?}", texts(&found));
+    assert!(found[0].text().contains("`dry`"), "{}", found[0].text());
+    assert!(compiled("", &revolute(COMPONENTWISE, dry)).is_ok());
+    let library = library().replace(
+        "R damper { resistance: damping }",
+        "R damper { effort: damping * sign(f) }",
+    );
+    assert!(compiled(&library, &System::free(GIMBALS).text()).is_ok());
+}
+
+#[test]
 fn dry_friction_fits_the_new_joint_and_costs_the_classic_one_its_springs() {
     let dry = library().replace(
         "R damper { resistance: damping }",

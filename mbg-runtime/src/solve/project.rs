@@ -1,5 +1,7 @@
 //! Back onto constraints.
 
+use core::iter;
+
 use nalgebra::{SMatrix, SVector};
 
 use super::{dot, everywhere, largest, least_norm};
@@ -7,6 +9,8 @@ use crate::Real;
 
 /// Corrections at most.
 const ITERATIONS: usize = 32;
+/// What the first correction adds to `G Gᵀ`, in units of a bound of its eigenvalues.
+const SOFTENING: f64 = 1e-4;
 /// Dampings of one correction tried at most.
 const DAMPINGS: usize = 16;
 
@@ -37,6 +41,12 @@ pub struct Projected<T, const N: usize> {
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
 /// most 32 corrections; after a step of integration it takes one or two.
 ///
+/// **Near a singular position** rounding in `g` divided by a small singular value `σ` of `G` moves the point by far
+/// more than `g` itself, and the velocities that fit the point by as much over `σ²`. So the first correction is softened:
+/// with 1e-4 of a bound of its eigenvalues added to `G Gᵀ` it leaves alone what cannot be told from rounding, and takes
+/// away all but some 1e-4 of the rest. A point that is within the tolerance from the first gets this
+/// correction, too, if it lowers `|g|`, or what is left would grow on the way to such a position.
+///
 /// **Holding a coordinate**: where a column of `G` is set to zero that coordinate stays as it is, so that consistent
 /// initial values can be found from a part of them.
 ///
@@ -66,14 +76,20 @@ pub fn project<T: Real, const M: usize, const N: usize>(
     let mut point = start;
     let (mut residual, mut jacobian) = evaluate(&point);
     let mut iterations = 0;
-    while iterations < ITERATIONS && !holds(&residual, tolerance) {
-        iterations += 1;
-        let step = correction(&jacobian, &residual);
-        let Some((next, values)) = descend(&point, &residual, &step, tolerance, &evaluate) else {
+    for softening in iter::once(SOFTENING).chain(iter::repeat_n(0.0, ITERATIONS - 1)) {
+        let met = holds(&residual, tolerance);
+        if holds(&residual, 0.0) || (met && softening == 0.0) {
             break;
-        };
-        point = next;
-        (residual, jacobian) = values;
+        }
+        let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
+        let step = correction(&jacobian, &residual, softening);
+        if let Some((next, values)) = descend(&point, &residual, &step, limits, &evaluate) {
+            iterations += 1;
+            point = next;
+            (residual, jacobian) = values;
+        } else if met || softening == 0.0 {
+            break;
+        }
     }
     Projected::new(point, &residual, tolerance, iterations)
 }
@@ -97,19 +113,26 @@ pub fn project_velocity<T: Real, const M: usize, const N: usize>(
     let mut iterations = 0;
     while iterations < 2 && !holds(&residual, tolerance) {
         iterations += 1;
-        point.zip_apply(&correction(jacobian, &residual), |v, step| *v -= step);
+        point.zip_apply(&correction(jacobian, &residual, 0.0), |v, step| *v -= step);
         residual = open(&point);
     }
     Projected::new(point, &residual, tolerance, iterations)
 }
 
-/// `Gᵀ (G Gᵀ)⁺ g`.
+/// `Gᵀ (G Gᵀ + s)⁺ g`, where `s` is `softening` times the largest sum of the absolute values in a row, which no eigenvalue
+/// exceeds.
 fn correction<T: Real, const M: usize, const N: usize>(
     jacobian: &SMatrix<T, M, N>,
     residual: &SVector<T, M>,
+    softening: f64,
 ) -> SVector<T, N> {
     let rows = jacobian.transpose().data.0;
-    let square = SMatrix::from_fn(|i, j| dot(&rows[i], &rows[j]));
+    let mut square = SMatrix::<T, M, M>::from_fn(|i, j| dot(&rows[i], &rows[j]));
+    let softening = T::from_f64(softening)
+        * largest(
+            (0..M).map(|i| (0..M).fold(T::from_f64(0.0), |sum, j| sum + square[(i, j)].abs())),
+        );
+    (0..M).for_each(|i| square[(i, i)] += softening);
     let multipliers = least_norm(&square, residual).solution;
     SVector::from_fn(|j, _| dot(&jacobian.data.0[j], &multipliers.data.0[0]))
 }
@@ -121,7 +144,7 @@ fn descend<T: Real, const M: usize, const N: usize>(
     point: &SVector<T, N>,
     residual: &SVector<T, M>,
     step: &SVector<T, N>,
-    tolerance: f64,
+    (tolerance, dampings): (f64, usize),
     evaluate: &impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Option<(SVector<T, N>, (SVector<T, M>, SMatrix<T, M, N>))> {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
@@ -129,7 +152,7 @@ fn descend<T: Real, const M: usize, const N: usize>(
     let here = square(residual);
     let open = largest(residual.iter().copied());
     let mut damping = one;
-    for _ in 0..DAMPINGS {
+    for _ in 0..dampings {
         let next = point.zip_map(step, |q, step| q - damping * step);
         let values = evaluate(&next);
         let lower = square(&values.0).select_less(here, one, zero);
@@ -199,6 +222,13 @@ mod tests {
             project(SVector::from([0.6, 0.8]), 1e-14, circle).iterations,
             0
         );
+    }
+
+    #[test]
+    fn within_the_tolerance_it_is_corrected_once() {
+        let found = project(SVector::from([0.6 + 1e-7, 0.8]), 1e-3, circle);
+        assert_eq!(found.iterations, 1);
+        assert!(found.residual < 1e-10, "{found:?}");
     }
 
     #[test]

@@ -15,7 +15,7 @@ use crate::network::Network;
 use crate::program::{self, Program};
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
-use crate::symbolic::{Expression, Pool, Symbol, jacobian};
+use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
 use crate::syntax::ast;
 
 /// Everything that emission needs.
@@ -141,6 +141,7 @@ fn finish(
         positions.evaluated(),
         flows.evaluated(),
     ];
+    share(&mut pool, &requests[Routines::DERIVATIVE]);
     let program = build(&pool, scalars, solution, &answers, &requests);
     if !program.is_finite() {
         let message = "numbers of the model multiply to one that is not finite";

@@ -11,6 +11,7 @@ pub mod implicit;
 pub mod matrix;
 pub mod pool;
 pub mod print;
+mod share;
 pub mod substitute;
 mod walk;
 
@@ -20,4 +21,5 @@ pub use evaluate::Evaluation;
 pub use implicit::{Implicit, Method, Place};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::{Expression, Function, Operation, Pool, Rate, Symbol};
+pub use share::share;
 pub use substitute::Substitution;

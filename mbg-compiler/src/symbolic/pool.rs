@@ -290,6 +290,25 @@ impl Pool {
         self.nodes.iter().map(|node| &node.operation)
     }
 
+    /// All nodes, operands before what uses them.
+    pub fn nodes(&self) -> impl Iterator<Item = Expression> + use<> {
+        (0..self.nodes.len()).map(|node| Expression::new(node, false))
+    }
+
+    /// Makes a sum or product one of two other parts with the same value, if it can be written so.
+    pub fn reform(&mut self, expression: Expression, a: Expression, b: Expression) -> bool {
+        let operation = match self.operation(expression) {
+            Operation::Add(..) if !a.is_negative() => Operation::Add(a, b),
+            Operation::Add(..) if !b.is_negative() => Operation::Add(b, a),
+            Operation::Multiply(..) if !a.is_negative() && !b.is_negative() => {
+                Operation::Multiply(a, b)
+            }
+            _ => return false,
+        };
+        self.nodes[expression.node()].operation = operation;
+        true
+    }
+
     /// How often it changes.
     #[must_use]
     pub fn rate(&self, expression: Expression) -> Rate {
@@ -563,7 +582,7 @@ impl Pool {
         let image = product(self, &rest, a.is_negative());
         let image = image.plus(product(self, &right, b.is_negative()));
         let varies = |factor: &Expression| self.rate(*factor) == Rate::Varying;
-        let mut whole = match self.find(image) {
+        let whole = match self.find(image) {
             Some(whole) => whole,
             None if rest.iter().chain(&right).any(varies) => return None,
             None => {
@@ -578,10 +597,18 @@ impl Pool {
                 self.add(left, right)
             }
         };
-        for factor in common {
-            whole = self.multiply(whole, factor);
-        }
-        Some(whole)
+        // A product with one of them that is there is not made again.
+        let is_known = |factor: &Expression| {
+            let image = self.image(whole).times(self.image(*factor));
+            self.find(image).is_some()
+        };
+        let known = common.iter().position(is_known);
+        let first = known.map(|position| common.swap_remove(position));
+        let whole = first.map_or(whole, |first| self.multiply(whole, first));
+        let common = common.into_iter().fold(Expression::ONE, |product, factor| {
+            self.multiply(product, factor)
+        });
+        Some(self.multiply(whole, common))
     }
 
     /// Factors of a product, without their signs.
@@ -611,7 +638,8 @@ impl Pool {
             .fold(Expression::ZERO, |sum, term| self.add(sum, *term))
     }
 
-    /// Product. Factors that change seldom are gathered, so that they are computed seldom.
+    /// Product. Factors that change seldom are gathered: `a (b x)` is `(a b) x`, and `(a x) y` is `a (x y)` if `x y` is
+    /// there.
     pub fn multiply(&mut self, a: Expression, b: Expression) -> Expression {
         let negative = a.is_negative() != b.is_negative();
         let (a, b) = (a.magnitude(), b.magnitude());
@@ -640,14 +668,30 @@ impl Pool {
         } else {
             (b, a)
         };
-        if let Operation::Multiply(inner, rest) = *self.operation(fast)
-            && self.rate(inner) < self.rate(rest)
-            && self.rate(slow) < self.rate(rest)
-        {
-            let gathered = self.multiply(slow, inner);
-            return self.multiply(gathered, rest);
+        let (inner, first) = self.scaled(slow);
+        let (outer, second) = self.scaled(fast);
+        let is_mixed = |slow, fast| slow != Expression::ONE && fast != Expression::ONE;
+        let product = match first {
+            Expression::ONE => is_mixed(outer, second).then_some(second),
+            _ if !is_mixed(inner, first) && !is_mixed(outer, second) => None,
+            _ => self.find(self.image(first).times(self.image(second))),
+        };
+        if let Some(product) = product {
+            let gathered = self.multiply(inner, outer);
+            return self.multiply(gathered, product);
         }
         self.intern(Operation::Multiply(slow, fast), image)
+    }
+
+    /// A product as the factors that change seldom, and those that change often.
+    fn scaled(&self, product: Expression) -> (Expression, Expression) {
+        if self.rate(product) != Rate::Varying {
+            return (product, Expression::ONE);
+        }
+        match *self.operation(product) {
+            Operation::Multiply(slow, fast) if self.rate(slow) != Rate::Varying => (slow, fast),
+            _ => (Expression::ONE, product),
+        }
     }
 
     /// Quotient; none if the divisor is identically zero.

@@ -30,9 +30,6 @@ const RUNS: [(fn() -> Figures, &str); 8] = [
 
 fn main() {
     println!(
-        "                              equations                               largest error of"
-    );
-    println!(
         "mechanism              states  closing  rank  operations  end / s   steps    point      gap   energy  time / s"
     );
     let found = RUNS.map(|(run, point)| (run(), point));

@@ -25,6 +25,7 @@ mod models {
     mod energy;
     mod lagrange;
     mod loops;
+    #[allow(dead_code, reason = "the example prints more of it")]
     mod mechanisms;
     mod navigation;
     mod parameters;

@@ -1,10 +1,6 @@
 //! A cart with rods in a plane, of components of the library, against Lagrange's equations for any number of rods.
 #![allow(clippy::unwrap_used)]
 
-#[path = "models/dual.rs"]
-#[allow(dead_code)]
-mod dual;
-#[allow(dead_code)]
 mod models;
 #[path = "../../tests/references"]
 #[allow(dead_code)]
@@ -17,9 +13,9 @@ mod references {
 
 use std::f64::consts::FRAC_PI_2;
 
-use dual::{Point, evaluate};
 use mbg_compiler::compile::{Compiled, Routines};
 use mbg_runtime::Dual;
+use models::dual::{Point, evaluate};
 use references::cart::Cart;
 
 const CART: &str = "#[derivative]

@@ -2,9 +2,6 @@
 //! the bond graph against recursions that know nothing of it.
 #![allow(clippy::unwrap_used)]
 
-#[path = "models/dual.rs"]
-mod dual;
-#[allow(dead_code)]
 mod models;
 #[path = "../../tests/references"]
 #[allow(dead_code)]
@@ -15,9 +12,9 @@ mod references {
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use dual::{Point, evaluate};
 use mbg_compiler::compile::{Compiled, Routines};
 use mbg_runtime::Dual;
+use models::dual::{Point, evaluate};
 use references::chain::{DAMPING, LENGTH, articulated, composite, sample};
 
 const CHAIN: &str = include_str!("stages/chain.mbg");

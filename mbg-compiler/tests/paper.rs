@@ -1,8 +1,7 @@
 //! The paper's theorem by the compiler's identity test: eq. (5) equals eq. (11), and no mutation of either does. Its
 //! figures as models: the ground, which drawings are accepted, and that all of them are one program.
 
-#[path = "models/dual.rs"]
-mod dual;
+mod models;
 mod paper {
     mod grounded;
     mod language;

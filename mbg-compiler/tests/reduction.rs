@@ -6,11 +6,9 @@
 //! must change by its own effort or flow, and there must be efforts and flows of the inner bonds that satisfy the
 //! junctions and two-ports. Since no state is lost without need, nothing else does.
 
-#[path = "models/dual.rs"]
-mod dual;
-#[allow(dead_code)]
 mod models;
 mod reduction {
+    pub(crate) mod elements;
     pub(crate) mod graph;
     pub(crate) mod truth;
 }
@@ -19,7 +17,8 @@ use std::cell::Cell;
 
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
-use reduction::graph::{Drawing, Entry, Graph, Kind, Law, Link, Verdict};
+use reduction::elements::{Entry, Kind, Law};
+use reduction::graph::{Drawing, Graph, Link, Verdict};
 use reduction::truth::{self, Fate};
 
 fn law(number: usize, inertia: bool, diagonal: i64, coupling: i64) -> Law {

@@ -109,6 +109,8 @@ carts! {
     Cart1, Cart1Parameters, one_rod_swings_on_a_cart, 1;
     Cart2, Cart2Parameters, two_rods_swing_on_a_cart, 2;
     Cart3, Cart3Parameters, three_rods_swing_on_a_cart, 3;
+    Cart4, Cart4Parameters, four_rods_swing_on_a_cart, 4;
+    Cart5, Cart5Parameters, five_rods_swing_on_a_cart, 5;
 }
 
 /// Angles against the horizontal with the rates of the hinges, rod by rod, then travel and speed of the cart.

@@ -1,6 +1,6 @@
 //! Steps as `let` bindings.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -8,10 +8,6 @@ use quote::{format_ident, quote};
 use crate::compile::Compiled;
 use crate::program::{Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::Symbol;
-
-/// Steps in one block at most. Each `let` opens a scope in those before it, and describing many thousands of nested
-/// scopes to a debugger takes more stack than rustc has.
-const SECTION: usize = 256;
 
 /// Where a routine finds what it reads.
 #[derive(Clone, Copy, PartialEq)]
@@ -35,11 +31,7 @@ pub(super) fn lines(
         names: names(routine),
         setting,
     };
-    let body = if routine.steps.len() > SECTION {
-        writer.sections(routine)
-    } else {
-        writer.lines(&routine.steps, 0)
-    };
+    let body = writer.lines(&routine.steps, 0, &routine.results);
     let results = routine
         .results
         .iter()
@@ -77,6 +69,27 @@ fn names(routine: &Routine) -> Vec<Ident> {
         .collect()
 }
 
+/// Most lines in one block. Each `let` is a scope inside the one before, and debuggers' tables of thousands of them
+/// overflow the stack of `rustc`.
+const PART: usize = 256;
+
+/// What a step makes.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Made {
+    Value(usize),
+    Solved(usize),
+}
+
+impl Made {
+    fn of(source: Source) -> Option<Self> {
+        match source {
+            Source::Value(value) => Some(Self::Value(value)),
+            Source::Solved(place) => Some(Self::Solved(place.number)),
+            Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => None,
+        }
+    }
+}
+
 struct Writer<'a> {
     compiled: &'a Compiled,
     names: Vec<Ident>,
@@ -84,45 +97,46 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The steps of a routine in blocks, each of which gives what is read after it.
-    fn sections(&self, routine: &Routine) -> TokenStream {
-        let mut read: BTreeSet<Ident> = self.locals(&routine.results).collect();
-        let mut end = routine.steps.iter().map(Step::results).sum();
-        let mut sections = Vec::new();
-        for steps in routine.steps.rchunks(SECTION) {
-            let start = end - steps.iter().map(Step::results).sum::<usize>();
-            let solved = steps.iter().filter_map(|step| match step {
-                Step::Solve(solve) => Some(unknowns(solve.number)),
-                _ => None,
-            });
-            let made = self.names[start..end].iter().cloned().chain(solved);
-            let given: Vec<Ident> = made.filter(|name| read.contains(name)).collect();
-            let body = self.lines(steps, start);
-            sections.push(quote!(let (#(#given,)*) = { #body (#(#given,)*) };));
-            let operands = steps.iter().flat_map(Step::operands).collect::<Vec<_>>();
-            read.extend(self.locals(&operands));
-            end = start;
-        }
-        sections.into_iter().rev().collect()
-    }
-
-    /// The names of those operands that a routine makes itself.
-    fn locals(&self, operands: &[Operand]) -> impl Iterator<Item = Ident> {
-        operands.iter().filter_map(|operand| match operand.source {
-            Source::Value(value) => Some(self.names[value].clone()),
-            Source::Solved(place) => Some(unknowns(place.number)),
-            _ => None,
-        })
-    }
-
-    /// Steps whose values begin with number `value`.
-    fn lines(&self, steps: &[Step], mut value: usize) -> TokenStream {
+    /// Steps whose values begin with number `value`, of which `results` are read afterwards.
+    fn lines(&self, steps: &[Step], mut value: usize, results: &[Operand]) -> TokenStream {
+        let parts: Vec<&[Step]> = steps.chunks(PART).collect();
         let mut body = TokenStream::new();
-        for step in steps {
-            body.extend(self.line(step, value));
-            value += step.results();
+        for (number, part) in parts.iter().enumerate() {
+            let mut lines = TokenStream::new();
+            let mut made = BTreeMap::new();
+            for step in *part {
+                lines.extend(self.line(step, value));
+                self.make(step, value, &mut made);
+                value += step.results();
+            }
+            if parts.len() == 1 {
+                return lines;
+            }
+            let later = parts[number + 1..].iter().copied().flatten();
+            let read: BTreeSet<Made> = later
+                .flat_map(Step::operands)
+                .chain(results.iter().copied())
+                .filter_map(|operand| Made::of(operand.source))
+                .collect();
+            let live: Vec<&Ident> = made
+                .iter()
+                .filter(|(made, _)| read.contains(made))
+                .map(|(_, name)| name)
+                .collect();
+            body.extend(quote!(let (#(#live,)*) = { #lines (#(#live,)*) };));
         }
         body
+    }
+
+    /// The names that a step gives to what it makes.
+    fn make(&self, step: &Step, value: usize, made: &mut BTreeMap<Made, Ident>) {
+        if let Step::Solve(solve) = step {
+            made.insert(Made::Solved(solve.number), unknowns(solve.number));
+            return;
+        }
+        for value in value..value + step.results() {
+            made.insert(Made::Value(value), self.names[value].clone());
+        }
     }
 
     fn line(&self, step: &Step, value: usize) -> TokenStream {
@@ -166,7 +180,7 @@ impl Writer<'_> {
         };
         let [number, first, size] =
             [number, self.compiled.first(number), solve.size].map(Literal::usize_suffixed);
-        let body = self.lines(&solve.steps, value);
+        let body = self.lines(&solve.steps, value, &solve.results);
         let operands = |list: &[Operand]| -> Vec<TokenStream> {
             list.iter().map(|operand| self.operand(*operand)).collect()
         };

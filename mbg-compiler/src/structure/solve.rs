@@ -69,6 +69,13 @@ pub(super) fn places(unknowns: &[usize]) -> BTreeMap<usize, usize> {
         .collect()
 }
 
+/// What is known of a divisor.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Positive,
+    NotNegative,
+}
+
 /// What is eliminated together with one independent rate.
 #[derive(Default)]
 struct Level {
@@ -196,8 +203,12 @@ impl Solver<'_> {
             }
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &level.rows, column)
-                && self.is_positive(number)
+                && let Some(sign) = self.sign(number)
+                && system.entry(row, column) != Expression::ZERO
             {
+                if sign == Sign::NotNegative {
+                    self.note(system.entry(row, column), &[]);
+                }
                 delayed.extend(tree.frame(self.pool, &system, row));
                 system.eliminate(self.pool, row, column)?;
             }
@@ -350,19 +361,19 @@ impl Solver<'_> {
         levels
     }
 
-    /// Whether what a level divides by is positive at every state: some storage with a positive definite law moves
-    /// with the level's own rate, however the state, while all levels below are held.
-    fn is_positive(&mut self, level: usize) -> bool {
-        let inertia = self
-            .scalars
-            .independent
-            .get(&level)
-            .map(|rate| &rate.inertia);
-        let Some(Inertia::Moved { state, storages }) = inertia else {
-            return matches!(inertia, Some(Inertia::Own));
+    /// What is known of the inertia that a level divides by. It is positive at every state where some storage with a
+    /// positive definite law moves with the level's own rate, however the state, while all levels below are held. Where
+    /// all laws are definite it is never negative, and zero only where the whole block is singular: a semidefinite
+    /// matrix with a singular leading part is singular.
+    fn sign(&mut self, level: usize) -> Option<Sign> {
+        let (state, storages) = match &self.scalars.independent.get(&level)?.inertia {
+            Inertia::Unknown => return None,
+            Inertia::Own => return Some(Sign::Positive),
+            Inertia::Moved { state, storages } => (*state, storages),
         };
-        let mut slope = Differentiator::new(Symbol::State(*state));
-        storages.iter().any(|unknowns| {
+        let mut slope = Differentiator::new(Symbol::State(state));
+        let mut always = false;
+        for unknowns in storages {
             let squares: Vec<Expression> = unknowns
                 .iter()
                 .map(|unknown| {
@@ -371,9 +382,12 @@ impl Solver<'_> {
                 })
                 .collect();
             let sum = self.pool.sum(&squares);
-            self.pool
-                .constant_value(sum)
-                .is_some_and(|value| value > 0.0)
+            always |= self.pool.constant_value(sum).is_some_and(|sum| sum > 0.0);
+        }
+        Some(if always {
+            Sign::Positive
+        } else {
+            Sign::NotNegative
         })
     }
 

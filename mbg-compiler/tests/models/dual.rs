@@ -60,7 +60,6 @@ fn read(operand: &Operand, point: &Point, folded: &[Dual<f64>], values: &[Dual<f
 }
 
 /// Whether a program iterates, which dual numbers here do not.
-#[allow(dead_code)]
 pub(crate) fn iterates(program: &Program) -> bool {
     let mut steps = program.routines.iter().flat_map(|routine| &routine.steps);
     steps.any(|step| matches!(step, Step::Solve(_)))

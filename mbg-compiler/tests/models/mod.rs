@@ -1,4 +1,7 @@
 //! Models from texts, as far as a stage, or everything that was reported with its place.
+#![allow(dead_code, clippy::unwrap_used)]
+
+pub(crate) mod dual;
 
 use mbg_compiler::compile::{Compiled, compile};
 use mbg_compiler::diagnostics::Diagnostics;

@@ -7,7 +7,7 @@ use mbg_runtime::Dual;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use super::language::{GIMBALS, REVOLUTES, System, compiled, library, texts};
-use crate::dual::{Point, evaluate};
+use crate::models::dual::{Point, evaluate};
 
 const COMPONENTS: [&str; 3] = ["x", "y", "z"];
 

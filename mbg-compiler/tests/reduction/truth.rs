@@ -5,9 +5,10 @@ use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::diagnostics::Code;
 use mbg_runtime::Dual;
 
-use super::graph::{Drawing, Graph, Kind, Port, Verdict, effort, flow};
-use crate::dual::{Point, evaluate, iterates};
+use super::elements::{Kind, Port, effort, flow};
+use super::graph::{Drawing, Graph, Verdict};
 use crate::models::attempted;
+use crate::models::dual::{Point, evaluate, iterates};
 
 /// By how much an equation between numbers of order one may be broken.
 const TOLERANCE: f64 = 1e-9;
@@ -308,15 +309,10 @@ fn laws(told: &[Told], scale: f64) -> Result<(), String> {
             _ => continue,
         };
         let (state, coenergy) = (Told::values(&told.state), Told::values(coenergy));
-        for component in 0..told.port.dimension {
+        for (component, (own, rate)) in told.state.iter().zip(rate).enumerate() {
             let residual = law.residual(&state, &coenergy, component);
             near(&format!("law of p{number}"), residual, 0.0, scale)?;
-            near(
-                &format!("rate of p{number}"),
-                told.state[component].slope,
-                rate[component].value,
-                scale,
-            )?;
+            near(&format!("rate of p{number}"), own.slope, rate.value, scale)?;
         }
     }
     Ok(())

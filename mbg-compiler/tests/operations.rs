@@ -1,0 +1,69 @@
+//! What a derivative costs: chains in space, with as many operations for each link however many there are.
+
+use mbg_compiler::compile::Routines;
+
+mod models;
+
+/// The articulated-body recursion written by hand for this chain of seven links, each expression once; counted by
+/// `tests/references/chain/counting.rs`.
+const BY_HAND: usize = 909;
+
+/// Links on hinges about x and y in turn, one below the other, out of the library.
+fn chain(links: usize) -> String {
+    format!(
+        "#[derivative]
+        model Chain {{
+            causality componentwise;
+            gravity [0.0, 0.0, -9.81];
+            let rods = {links};
+            input tau[{links}];
+            ends: for k in 0..rods + 1 {{ 1 end[6]; }}
+            Sf fixed[6] {{ flow: 0.0 }} -> ends[0].end;
+            links: for k in 0..rods {{
+                1 rod[6];
+                let down[3] = if k == 0 {{ gravity }} else {{ links[k-1].hinge.gravity_b }};
+                hinge: Revolute {{ axis: k % 2, damping: 0.1, torque: tau[k], gravity_a: down }} (ends[k].end, rod);
+                body: Body {{
+                    mass: 1.0,
+                    inertia: diag(0.08395833333333334, 0.08395833333333334, 0.00125),
+                    centre: [0.0, 0.0, -0.5],
+                    gravity_at: hinge.gravity_b
+                }} (rod);
+                length: Offset {{ by: [0.0, 0.0, -1.0] }} (rod, ends[k+1].end);
+            }}
+            output y = links[0].hinge.angle;
+        }}"
+    )
+}
+
+fn operations(links: usize) -> usize {
+    let compiled = models::compiled(&chain(links));
+    compiled.program.routines[Routines::DERIVATIVE].operations()
+}
+
+#[test]
+fn seven_links_cost_less_than_the_recursion_by_hand() {
+    let count = operations(7);
+    println!("chain of seven links: {count} operations, {BY_HAND} by hand");
+    assert!(count <= BY_HAND, "{count}");
+}
+
+/// The ends of the chain cost less than its middle, by the same number for any length; so growth is measured on what
+/// the second half of the links adds.
+#[test]
+fn operations_grow_linearly() {
+    let counts = [4, 8, 16, 32].map(operations);
+    let added: Vec<f64> = counts
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]) as f64)
+        .collect();
+    let exponents: Vec<f64> = added
+        .windows(2)
+        .map(|pair| (pair[1] / pair[0]).log2())
+        .collect();
+    println!("chains of 4, 8, 16, 32 links: {counts:?}, growth {exponents:?}");
+    assert!(
+        exponents.iter().all(|exponent| *exponent < 1.1),
+        "{counts:?}"
+    );
+}

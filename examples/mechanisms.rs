@@ -10,8 +10,10 @@ mod references;
 
 use mechanisms::{Figures, andrews, bricard, four_bars, governor, slider_crank};
 
+type Run = fn() -> Figures;
+
 /// Each mechanism, and what its point is.
-const RUNS: [(fn() -> Figures, &str); 8] = [
+const RUNS: [(Run, &str); 8] = [
     (andrews::run, "seven angles / rad"),
     (four_bars::run1, "tip of the first crank / m"),
     (four_bars::run2, "tip of the first crank / m"),

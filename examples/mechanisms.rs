@@ -1,4 +1,4 @@
-//! Published mechanisms with closed loops over their published horizons.
+//! Published mechanisms with closed loops over their published horizons: what each run shows, and the way of its point.
 //!
 //! `cargo run --release --example mechanisms`
 
@@ -10,38 +10,46 @@ mod references;
 
 use mechanisms::{Figures, andrews, bricard, four_bars, governor, slider_crank};
 
+type Run = fn() -> Figures;
+
+/// Each mechanism, and what its point is.
+const RUNS: [(Run, &str); 8] = [
+    (andrews::run, "seven angles / rad"),
+    (four_bars::run1, "tip of the first crank / m"),
+    (four_bars::run2, "tip of the first crank / m"),
+    (four_bars::run5, "tip of the first crank / m"),
+    (slider_crank::planar, "angle of the crank / rad, slider / m"),
+    (
+        slider_crank::spatial,
+        "angle of the crank / rad, slider / m",
+    ),
+    (bricard::run, "joint P3 / m"),
+    (
+        governor::run,
+        "slider / m, stretch less that of the geometry / m",
+    ),
+];
+
 fn main() {
     println!(
-        "{:21}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9}{:>9}{:>9}{:>9}",
-        "mechanism",
-        "states",
-        "loops",
-        "rank",
-        "operations",
-        "end / s",
-        "steps",
-        "point",
-        "gap",
-        "energy",
-        "time / s"
+        "mechanism              states  closing  rank  operations  end / s   steps    point      gap   energy  time / s"
     );
-    for run in [
-        andrews::run,
-        four_bars::run1,
-        four_bars::run2,
-        four_bars::run5,
-        slider_crank::planar,
-        slider_crank::spatial,
-        bricard::run,
-        governor::run,
-    ] {
-        print(&run());
+    let found = RUNS.map(|(run, point)| (run(), point));
+    for (figures, _) in &found {
+        print(figures);
+    }
+    for (figures, point) in &found {
+        println!("\n{}: {point}", figures.mechanism);
+        for (time, values) in &figures.trajectory {
+            let values: String = values.iter().map(|value| format!("{value:13.8}")).collect();
+            println!("{time:8.3} s{values}");
+        }
     }
 }
 
 fn print(found: &Figures) {
     println!(
-        "{:21}{:>7}{:>6}{:>5}{:>11}{:>8}{:>8}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.2}",
+        "{:22}{:>7}{:>9}{:>6}{:>12}{:>9}{:>8}{:>9.1e}{:>9.1e}{:>9.1e}{:>10.2}",
         found.mechanism,
         found.meta.states.len(),
         found.closing[0],

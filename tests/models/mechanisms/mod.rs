@@ -32,6 +32,8 @@ pub(crate) struct Figures {
     pub(crate) energy: f64,
     /// Largest error of the point.
     pub(crate) point: f64,
+    /// The point at each time at which it is compared.
+    pub(crate) trajectory: Vec<(f64, Vec<f64>)>,
     pub(crate) seconds: f64,
 }
 
@@ -80,6 +82,7 @@ impl<S, const N: usize> Task<S, N> {
             gap: 0.0,
             energy: 0.0,
             point: 0.0,
+            trajectory: Vec::new(),
             seconds: 0.0,
         };
         let time = |instant: u32| self.horizon * f64::from(instant) / f64::from(self.instants);
@@ -93,7 +96,9 @@ impl<S, const N: usize> Task<S, N> {
             });
             figures.steps +=
                 steps.unwrap_or_else(|stopped| panic!("{}: {stopped}", self.mechanism));
-            figures.point = figures.point.max(error(to, &self.read(to, &x).point));
+            let point = self.read(to, &x).point;
+            figures.point = figures.point.max(error(to, &point));
+            figures.trajectory.push((to, point));
         }
         figures.closing[1] = self.rank(&x, &gap);
         figures.seconds = begin.elapsed().as_secs_f64();

@@ -36,14 +36,14 @@ pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
             #scalar
         }
         impl<T> ::core::default::Default for #parameters<T> {
-            fn default() -> Self { ::core::unimplemented!() }
+            fn default() -> Self { loop {} }
         }
         #[allow(missing_docs)]
         impl<T: ::mbg_runtime::Real> #name<T> {
             pub fn new(_: #parameters<T>) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> {
-                ::core::unimplemented!()
+                loop {}
             }
-            pub fn parameters(&self) -> &#parameters<T> { ::core::unimplemented!() }
+            pub fn parameters(&self) -> &#parameters<T> { loop {} }
         }
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> { #behaviour }
     }
@@ -67,13 +67,13 @@ fn behaviour(name: &Ident, sizes: Sizes) -> TokenStream {
         };
         type Memory = ();
         type Conditioning = [T; 0];
-        fn initial_state(&self) -> #x { ::core::unimplemented!() }
-        fn derivative(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #x { ::core::unimplemented!() }
-        fn output(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #y { ::core::unimplemented!() }
-        fn jacobian_state(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #by_state { ::core::unimplemented!() }
-        fn jacobian_input(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #by_input { ::core::unimplemented!() }
-        fn energy(&self, _: T, _: &#x) -> T { ::core::unimplemented!() }
-        fn power(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> ::mbg_runtime::Power<T> { ::core::unimplemented!() }
-        fn conditioning(&self, _: T, _: &#x, _: &#u) -> [T; 0] { ::core::unimplemented!() }
+        fn initial_state(&self) -> #x { loop {} }
+        fn derivative(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #x { loop {} }
+        fn output(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #y { loop {} }
+        fn jacobian_state(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #by_state { loop {} }
+        fn jacobian_input(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #by_input { loop {} }
+        fn energy(&self, _: T, _: &#x) -> T { loop {} }
+        fn power(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> ::mbg_runtime::Power<T> { loop {} }
+        fn conditioning(&self, _: T, _: &#x, _: &#u) -> [T; 0] { loop {} }
     }
 }

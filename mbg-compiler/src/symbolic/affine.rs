@@ -1,7 +1,8 @@
 //! Taking apart what is affine in a symbol.
 
 use super::differentiate::Differentiator;
-use super::pool::{Expression, Pool, Symbol};
+use super::expression::{Expression, Symbol};
+use super::pool::Pool;
 use super::substitute::{Substitution, symbols};
 
 /// `(slope, rest)` with `expression = slope · symbol + rest`; none unless the slope is free of all symbols that are

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::expression::{Expression, Function, Operation, Symbol};
 use super::implicit::{Implicit, Method};
 use super::matrix::Matrix;
-use super::pool::{Expression, Function, Operation, Pool, Symbol};
+use super::pool::Pool;
 use super::substitute::symbols;
 use super::walk::Rewritten;
 

@@ -1,6 +1,7 @@
 //! Numeric values at one point.
 
-use super::pool::{Expression, Operation, Pool, Symbol};
+use super::expression::{Expression, Operation, Symbol};
+use super::pool::Pool;
 
 /// Evaluates expressions at one point and remembers what it has done.
 pub struct Evaluation<'a> {

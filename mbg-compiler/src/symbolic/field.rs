@@ -187,12 +187,6 @@ impl Image {
         Some(Self(image))
     }
 
-    /// Whether it is identically zero.
-    #[must_use]
-    pub fn is_zero(self) -> bool {
-        self == Self::ZERO
-    }
-
     /// Cosine and sine of a base angle: a random point of the circle, by its rational parametrisation.
     #[must_use]
     pub fn circle(angle: Image) -> (Self, Self) {

@@ -4,8 +4,9 @@
 //! unknowns `z` are symbols on which later expressions stand, and their derivatives follow from the implicit function
 //! theorem, `∂z/∂x = −(∂F/∂z)⁻¹ ∂F/∂x`, whatever way the numbers were found.
 
+use super::expression::{Expression, Symbol};
 use super::matrix::Matrix;
-use super::pool::{Expression, Pool, Symbol};
+use super::pool::Pool;
 
 /// As many equations as unknowns.
 #[derive(Clone, Debug, PartialEq, Eq)]

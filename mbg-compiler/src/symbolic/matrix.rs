@@ -3,7 +3,8 @@
 //! A rotation is known as a rotation: a [`Product`] keeps its factors, so that it can be applied axis by axis,
 //! turned round by changing signs of angles, or split into transformers in a row.
 
-use super::pool::{Expression, Pool};
+use super::expression::Expression;
+use super::pool::Pool;
 
 /// A dense matrix, by rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -384,7 +385,7 @@ fn apply_jacobian(
 
 #[cfg(test)]
 mod tests {
-    use super::super::pool::Symbol;
+    use super::super::Symbol;
     use super::*;
 
     fn angles(pool: &mut Pool) -> [Expression; 3] {

@@ -3,8 +3,10 @@
 //! This is the ground on which the stages from elaboration to the program stand. Nothing in it knows of bond graphs.
 
 pub mod affine;
+mod arithmetic;
 pub mod differentiate;
 pub mod evaluate;
+pub mod expression;
 pub mod field;
 pub mod identity;
 pub mod implicit;
@@ -18,8 +20,9 @@ mod walk;
 pub use affine::affine;
 pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;
+pub use expression::{Expression, Function, Operation, Rate, Symbol};
 pub use implicit::{Implicit, Method, Place};
 pub use matrix::{Factor, Matrix, Product};
-pub use pool::{Expression, Function, Operation, Pool, Rate, Symbol};
+pub use pool::Pool;
 pub use share::share;
 pub use substitute::Substitution;

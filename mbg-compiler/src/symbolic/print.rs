@@ -1,6 +1,7 @@
 //! Expressions as text, for documentation, messages and dumps.
 
-use super::pool::{Expression, Operation, Pool, Symbol};
+use super::expression::{Expression, Operation, Symbol};
+use super::pool::Pool;
 
 /// Prints expressions with the names that a model gives to symbols.
 pub struct Printer<'a> {

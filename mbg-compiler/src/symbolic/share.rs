@@ -3,7 +3,8 @@
 //! A node keeps the first form in which its function was built. Where it is `(a + b) + d`, nothing else needs `a + b`,
 //! and `a + d` is computed anyway, it becomes `(a + d) + b`, and one addition is saved; products likewise.
 
-use super::pool::{Expression, Operation, Pool, Rate};
+use super::expression::{Expression, Operation, Rate};
+use super::pool::Pool;
 
 /// Reorders, again and again, whatever is computed for the roots.
 pub fn share(pool: &mut Pool, roots: &[Expression]) {

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::pool::{Expression, Operation, Pool, Symbol};
+use super::expression::{Expression, Operation, Symbol};
+use super::pool::Pool;
 use super::walk::Rewritten;
 
 /// Replaces symbols; what it does not know stays.

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::pool::{Expression, Operation, Pool};
+use super::expression::{Expression, Operation};
+use super::pool::Pool;
 
 /// What nodes were rewritten to.
 #[derive(Default)]

@@ -1,0 +1,267 @@
+//! Sums, products, quotients and powers in the forms that cost least at an evaluation.
+//!
+//! What is there already is found by its value, what changes seldom is gathered, and common factors are taken out where
+//! that saves work.
+
+use super::expression::{Expression, Operation, Rate};
+use super::field::Image;
+use super::pool::Pool;
+
+impl Pool {
+    /// Sum.
+    pub fn add(&mut self, a: Expression, b: Expression) -> Expression {
+        if a == Expression::ZERO {
+            return b;
+        }
+        if b == Expression::ZERO {
+            return a;
+        }
+        let image = self.image(a).plus(self.image(b));
+        if let Some(expression) = self.find(image) {
+            return expression;
+        }
+        if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
+            return self.constant(x + y, image);
+        }
+        if let Some(collected) = self.collect(a, b) {
+            return collected;
+        }
+        if let Some(gathered) = self.gather(a, b) {
+            return gathered;
+        }
+        self.put_sum(a, b)
+    }
+
+    /// The sum in this form, if there is none in another.
+    fn put_sum(&mut self, a: Expression, b: Expression) -> Expression {
+        if a == Expression::ZERO {
+            return b;
+        }
+        if b == Expression::ZERO {
+            return a;
+        }
+        let image = self.image(a).plus(self.image(b));
+        match (a.is_negative(), b.is_negative()) {
+            (true, true) => self
+                .intern(Operation::Add(a.negated(), b.negated()), image.negated())
+                .negated(),
+            (true, false) => self.intern(Operation::Add(b, a), image),
+            _ => self.intern(Operation::Add(a, b), image),
+        }
+    }
+
+    /// Terms that change seldom are gathered and added last: `(x + a) + (y + b)` is `(x + y) + (a + b)`.
+    fn gather(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        let (first, slow) = self.apart(a);
+        let (second, other) = self.apart(b);
+        let is_mixed = |fast, slow| fast != Expression::ZERO && slow != Expression::ZERO;
+        if !is_mixed(first, slow) && !is_mixed(second, other) {
+            return None;
+        }
+        let fast = self.add(first, second);
+        let slow = self.add(slow, other);
+        // Put down as it is: what is known under another form need not come apart again.
+        Some(self.put_sum(fast, slow))
+    }
+
+    /// A sum as what changes often and what changes seldom.
+    fn apart(&self, sum: Expression) -> (Expression, Expression) {
+        if self.rate(sum) != Rate::Varying {
+            return (Expression::ZERO, sum);
+        }
+        if let Operation::Add(first, second) = *self.operation(sum) {
+            let [first, second] = [first, second].map(|term| term.flipped(sum.is_negative()));
+            match (self.rate(first), self.rate(second)) {
+                (Rate::Varying, Rate::Varying) => {}
+                (Rate::Varying, _) => return (first, second),
+                _ => return (second, first),
+            }
+        }
+        (sum, Expression::ZERO)
+    }
+
+    /// The sum with a common factor taken out, where what remains in the brackets is known already or is computed once
+    /// when a model is built: that is how `m cos² + m sin²` becomes `m`, and `a x y − b x y` becomes `(a − b) x y`.
+    fn collect(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        let left = self.factors(a);
+        let mut right = self.factors(b);
+        let mut common = Vec::new();
+        let mut rest = Vec::new();
+        for factor in left {
+            match right.iter().position(|other| *other == factor) {
+                Some(position) => common.push(right.swap_remove(position)),
+                None => rest.push(factor),
+            }
+        }
+        if common.is_empty() {
+            return None;
+        }
+        let product = |pool: &Self, factors: &[Expression], negative: bool| {
+            let start = if negative {
+                Image::ONE.negated()
+            } else {
+                Image::ONE
+            };
+            factors
+                .iter()
+                .fold(start, |image, factor| image.times(pool.image(*factor)))
+        };
+        let image = product(self, &rest, a.is_negative());
+        let image = image.plus(product(self, &right, b.is_negative()));
+        let varies = |factor: &Expression| self.rate(*factor) == Rate::Varying;
+        let whole = match self.find(image) {
+            Some(whole) => whole,
+            None if rest.iter().chain(&right).any(varies) => return None,
+            None => {
+                let multiply = |pool: &mut Self, factors: Vec<Expression>, negative: bool| {
+                    let start = Expression::ONE.flipped(negative);
+                    factors
+                        .into_iter()
+                        .fold(start, |product, factor| pool.multiply(product, factor))
+                };
+                let left = multiply(self, rest, a.is_negative());
+                let right = multiply(self, right, b.is_negative());
+                self.add(left, right)
+            }
+        };
+        // A product with one of them that is there is not made again.
+        let is_known = |factor: &Expression| {
+            let image = self.image(whole).times(self.image(*factor));
+            self.find(image).is_some()
+        };
+        let known = common.iter().position(is_known);
+        let first = known.map(|position| common.swap_remove(position));
+        let whole = first.map_or(whole, |first| self.multiply(whole, first));
+        let common = common.into_iter().fold(Expression::ONE, |product, factor| {
+            self.multiply(product, factor)
+        });
+        Some(self.multiply(whole, common))
+    }
+
+    /// Factors of a product, without their signs.
+    fn factors(&self, product: Expression) -> Vec<Expression> {
+        let mut factors = Vec::new();
+        let mut pending = vec![product.magnitude()];
+        while let Some(current) = pending.pop() {
+            match self.operation(current) {
+                Operation::Multiply(a, b) if factors.len() + pending.len() < 16 => {
+                    pending.extend([*a, *b]);
+                }
+                _ => factors.push(current),
+            }
+        }
+        factors
+    }
+
+    /// Difference.
+    pub fn subtract(&mut self, a: Expression, b: Expression) -> Expression {
+        self.add(a, b.negated())
+    }
+
+    /// Sum of several, from the left.
+    pub fn sum(&mut self, terms: &[Expression]) -> Expression {
+        terms
+            .iter()
+            .fold(Expression::ZERO, |sum, term| self.add(sum, *term))
+    }
+
+    /// Product. Factors that change seldom are gathered: `a (b x)` is `(a b) x`, and `(a x) y` is `a (x y)` if `x y` is
+    /// there.
+    pub fn multiply(&mut self, a: Expression, b: Expression) -> Expression {
+        let negative = a.is_negative() != b.is_negative();
+        let (a, b) = (a.magnitude(), b.magnitude());
+        self.multiply_magnitudes(a, b).flipped(negative)
+    }
+
+    fn multiply_magnitudes(&mut self, a: Expression, b: Expression) -> Expression {
+        if a == Expression::ZERO || b == Expression::ZERO {
+            return Expression::ZERO;
+        }
+        if a == Expression::ONE {
+            return b;
+        }
+        if b == Expression::ONE {
+            return a;
+        }
+        let image = self.image(a).times(self.image(b));
+        if let Some(expression) = self.find(image) {
+            return expression;
+        }
+        if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
+            return self.constant(x * y, image);
+        }
+        let (slow, fast) = if self.rate(a) <= self.rate(b) {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        let (inner, first) = self.scaled(slow);
+        let (outer, second) = self.scaled(fast);
+        let is_mixed = |slow, fast| slow != Expression::ONE && fast != Expression::ONE;
+        let product = match first {
+            Expression::ONE => is_mixed(outer, second).then_some(second),
+            _ if !is_mixed(inner, first) && !is_mixed(outer, second) => None,
+            _ => self.find(self.image(first).times(self.image(second))),
+        };
+        if let Some(product) = product {
+            let gathered = self.multiply(inner, outer);
+            return self.multiply(gathered, product);
+        }
+        self.intern(Operation::Multiply(slow, fast), image)
+    }
+
+    /// A product as the factors that change seldom, and those that change often.
+    fn scaled(&self, product: Expression) -> (Expression, Expression) {
+        if self.rate(product) != Rate::Varying {
+            return (product, Expression::ONE);
+        }
+        match *self.operation(product) {
+            Operation::Multiply(slow, fast) if self.rate(slow) != Rate::Varying => (slow, fast),
+            _ => (Expression::ONE, product),
+        }
+    }
+
+    /// Quotient; none if the divisor is identically zero.
+    #[must_use]
+    pub fn divide(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        let negative = a.is_negative() != b.is_negative();
+        let (a, b) = (a.magnitude(), b.magnitude());
+        let inverse = self.image(b).inverted()?;
+        let image = self.image(a).times(inverse);
+        if let Some(expression) = self.find(image) {
+            return Some(expression.flipped(negative));
+        }
+        if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
+            return Some(self.constant(x / y, image).flipped(negative));
+        }
+        let quotient = if self.rate(b) < self.rate(a) {
+            let reciprocal = self.divide(Expression::ONE, b)?;
+            self.multiply(reciprocal, a)
+        } else {
+            self.intern(Operation::Divide(a, b), image)
+        };
+        Some(quotient.flipped(negative))
+    }
+
+    /// Integer power by repeated squaring; none for a negative power of zero.
+    #[must_use]
+    pub fn power(&mut self, base: Expression, exponent: i32) -> Option<Expression> {
+        let mut result = Expression::ONE;
+        let mut square = base;
+        let mut rest = exponent.unsigned_abs();
+        while rest > 0 {
+            if rest & 1 == 1 {
+                result = self.multiply(result, square);
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = self.multiply(square, square);
+            }
+        }
+        if exponent < 0 {
+            self.divide(Expression::ONE, result)
+        } else {
+            Some(result)
+        }
+    }
+}

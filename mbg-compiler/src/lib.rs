@@ -65,6 +65,12 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
             Some(compiled) => emit::model(compiled),
             None => emit::shell(model, elaborate::sizes(model, &components)),
         });
+        // A shell without an error would build, and never return.
+        if compiled.is_none() && !diagnostics.any() {
+            let message =
+                "the equations of the model could not be brought into an order of solution";
+            diagnostics.error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
+        }
     }
     output
 }

@@ -4,6 +4,8 @@
 //! The comparison shares nothing with the compiler: it states every bond's effort and flow as unknowns, every
 //! junction, two-port and one-port as equations, and tries all subsets of storages.
 
+mod rank;
+
 use mbg_compiler::codes;
 use mbg_compiler::compile::{Compiled, Routines, compile};
 use mbg_compiler::diagnostics::{Code, Diagnostics};
@@ -11,9 +13,7 @@ use mbg_compiler::program::{Arguments, evaluate};
 use mbg_compiler::syntax::ast::Item;
 use mbg_compiler::{elaborate, syntax};
 use proptest::prelude::*;
-
-/// Arithmetic is modulo this prime; the coefficients are small integers.
-const PRIME: i64 = 2_147_483_647;
+use rank::rank;
 
 type Row = Vec<(usize, i64)>;
 
@@ -159,33 +159,7 @@ impl Graph {
     }
 
     fn rank(&self, rows: &[Row]) -> usize {
-        let mut matrix: Vec<Vec<i64>> = rows
-            .iter()
-            .map(|row| {
-                let mut dense = vec![0; 2 * self.bonds];
-                for (unknown, value) in row {
-                    dense[*unknown] = (dense[*unknown] + value).rem_euclid(PRIME);
-                }
-                dense
-            })
-            .collect();
-        let mut rank = 0;
-        for column in 0..2 * self.bonds {
-            let Some(pivot) = (rank..matrix.len()).find(|row| matrix[*row][column] != 0) else {
-                continue;
-            };
-            matrix.swap(rank, pivot);
-            let top = matrix[rank].clone();
-            for row in &mut matrix[rank + 1..] {
-                // Cross multiplication instead of an inverse.
-                let (keep, take) = (top[column], row[column]);
-                for (entry, above) in row.iter_mut().zip(&top) {
-                    *entry = (*entry * keep % PRIME - take * above % PRIME).rem_euclid(PRIME);
-                }
-            }
-            rank += 1;
-        }
-        rank
+        rank(2 * self.bonds, rows.iter().cloned())
     }
 
     /// Whether structure and resistors say something twice; sources that do; the fewest storages that must.

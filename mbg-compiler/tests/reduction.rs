@@ -7,6 +7,7 @@
 //! junctions and two-ports. Since no state is lost without need, nothing else does.
 
 mod models;
+mod rank;
 mod reduction {
     pub(crate) mod elements;
     pub(crate) mod graph;

@@ -1,7 +1,6 @@
 //! Elements of random graphs, in the language and as numbers: coefficients, laws of storages, one-ports.
 
-/// Arithmetic of ranks is modulo this prime.
-pub(crate) const PRIME: i64 = 2_147_483_647;
+use crate::rank::PRIME;
 
 /// A coefficient of a transformer, a gyrator or a source.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,8 @@
 
 use std::fmt::Write;
 
-use super::elements::{Entry, Kind, Law, ONE, PRIME, Port, Row, effort, flow};
+use super::elements::{Entry, Kind, Law, ONE, Port, Row, effort, flow};
+use crate::rank::rank;
 
 #[derive(Debug)]
 struct Junction {
@@ -280,32 +281,9 @@ impl Graph {
     }
 
     fn rank(&self, rows: &[Row]) -> usize {
-        let mut matrix: Vec<Vec<i64>> = rows
-            .iter()
-            .map(|row| {
-                let mut dense = vec![0; 2 * self.bonds];
-                for (unknown, entry, sign) in row {
-                    dense[*unknown] = (dense[*unknown] + sign * entry.image()).rem_euclid(PRIME);
-                }
-                dense
-            })
-            .collect();
-        let mut rank = 0;
-        for column in 0..2 * self.bonds {
-            let Some(pivot) = (rank..matrix.len()).find(|row| matrix[*row][column] != 0) else {
-                continue;
-            };
-            matrix.swap(rank, pivot);
-            let top = matrix[rank].clone();
-            for row in &mut matrix[rank + 1..] {
-                let (keep, take) = (top[column], row[column]);
-                for (entry, above) in row.iter_mut().zip(&top) {
-                    *entry = (*entry * keep % PRIME - take * above % PRIME).rem_euclid(PRIME);
-                }
-            }
-            rank += 1;
-        }
-        rank
+        let value = |(unknown, entry, sign): &(usize, Entry, i64)| (*unknown, sign * entry.image());
+        let rows = rows.iter().map(|row| row.iter().map(value).collect());
+        rank(2 * self.bonds, rows)
     }
 
     /// What the ranks of the equations say.

@@ -44,5 +44,8 @@ codes! {
     SINGULAR_JUNCTIONS = "MBG0401", "a junction structure that leaves variables undetermined";
     NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop that does not determine its variables";
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
+    UNIT_MISMATCH = "MBG0501", "units that do not agree";
+    UNIT_NAME = "MBG0502", "a name that is no unit of SI";
+    UNIT_SCALE = "MBG0503", "a unit that would scale values";
     TOO_LARGE = "MBG0601", "a model over the size limit";
 }

@@ -17,6 +17,7 @@ use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
 use crate::syntax::ast;
+use crate::units;
 
 /// Everything that emission needs.
 pub struct Compiled {
@@ -97,6 +98,11 @@ pub fn compile(
 ) -> Option<Compiled> {
     let mut pool = Pool::new();
     let mut elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
+    let before = diagnostics.list().len();
+    units::check(model, components, &elaborated, diagnostics);
+    if diagnostics.list().len() > before {
+        return None;
+    }
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
     let first = structure::solve(&scalars, &mut pool);

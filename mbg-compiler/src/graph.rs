@@ -103,6 +103,8 @@ pub struct Junction {
     pub dimension: usize,
     /// Marked `coordinate`.
     pub coordinate: bool,
+    /// Marked `pseudo`: effort times flow is no power.
+    pub pseudo: bool,
     /// Where it was written.
     pub origin: OriginId,
 }

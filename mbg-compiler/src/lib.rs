@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | syntax | [`syntax`] | a tree |
 //! | elaboration | [`elaborate`] | a flat [`graph::BondGraph`] with laws |
+//! | units | [`units`] | the verdict on units |
 //! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
@@ -33,6 +34,7 @@ pub mod program;
 pub mod structure;
 pub mod symbolic;
 pub mod syntax;
+pub mod units;
 
 use proc_macro2::TokenStream;
 

@@ -147,6 +147,12 @@ const FIXTURES: &[(Code, &str)] = &[
         codes::ORDER_LOST_UNSUPPORTED,
         beside_a_mass!("input u; 1 b { Sf s { flow: u } #[derivative] I n { inertia: 2.0 } }"),
     ),
+    (
+        codes::UNIT_MISMATCH,
+        beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
+    ),
+    (codes::UNIT_NAME, beside_a_mass!("param x: furlong = 1.0;")),
+    (codes::UNIT_SCALE, beside_a_mass!("param x: N/mm = 1.0;")),
 ];
 
 /// More bonds than a model may have.

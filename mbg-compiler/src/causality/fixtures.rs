@@ -66,6 +66,7 @@ impl Builder {
             name,
             dimension,
             coordinate,
+            pseudo: false,
             origin,
         });
         JunctionId(self.graph.junctions.len() - 1)

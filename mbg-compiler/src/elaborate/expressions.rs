@@ -40,6 +40,14 @@ pub trait Names {
 
     /// Every plain name.
     fn all(&self) -> Vec<&str>;
+
+    /// Is told the value of each operator, function and `if`, with the place of its sign or name.
+    fn seen(&mut self, _pool: &mut Pool, _place: Span, _value: &Value) {}
+
+    /// What a number with a decimal point stands for, which may carry a unit.
+    fn measured(&mut self, _pool: &mut Pool, value: Expression, _text: &str) -> Expression {
+        value
+    }
 }
 
 impl Value {
@@ -98,6 +106,9 @@ impl<N: Names> Evaluator<'_, N> {
     /// The value of an expression.
     pub fn evaluate(&mut self, expression: &Expr) -> Result<Value> {
         let value = self.any_value(expression)?;
+        if let Some(place) = sign(expression) {
+            self.names.seen(self.pool, place, &value);
+        }
         match &value {
             Value::Scalar(scalar)
                 if self.pool.rate(*scalar) == Rate::Constant
@@ -161,7 +172,14 @@ impl<N: Names> Evaluator<'_, N> {
             _ => return fail(literal.span(), "expected a number"),
         };
         match self.pool.literal(&text) {
-            Some(value) if suffix.is_empty() || suffix == "f64" => Ok(Value::Scalar(value)),
+            Some(value) if suffix.is_empty() || suffix == "f64" => {
+                let measured = matches!(literal, Lit::Float(_)) && value != Expression::ZERO;
+                Ok(Value::Scalar(if measured {
+                    self.names.measured(self.pool, value, &text)
+                } else {
+                    value
+                }))
+            }
             Some(_) => fail(
                 literal.span(),
                 format!("expected a number without suffix, found `{suffix}`"),
@@ -660,6 +678,17 @@ fn number(value: &Value, span: Span) -> Result<Expression> {
     match value {
         Value::Scalar(value) => Ok(*value),
         other => mismatch(span, format!("expected a number, found {}", other.shape())),
+    }
+}
+
+/// Where the sign of an operator or the name of a function stands.
+fn sign(expression: &Expr) -> Option<Span> {
+    match expression {
+        Expr::Binary(binary) => Some(binary.op.span()),
+        Expr::Call(call) => Some(call.func.span()),
+        Expr::MethodCall(call) => Some(call.method.span()),
+        Expr::If(choice) => Some(choice.if_token.span),
+        _ => None,
     }
 }
 

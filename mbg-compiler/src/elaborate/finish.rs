@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use proc_macro2::Ident;
+use syn::spanned::Spanned;
 
+use super::claims::Subject;
 use super::expressions::{Evaluator, Result, Value};
 use super::laws::{Reader, law_words, other_words};
 use super::model::{Elaborated, Output, State, StateRate};
@@ -59,6 +61,7 @@ impl<'a> Builder<'a> {
                 _ => continue,
             };
             let start = self.states.len();
+            self.claim_unit(scope, (start..start + dimension).map(Symbol::State), unit);
             let unit = unit.map_or("", |unit| unit.text.as_str());
             let path = self.path(scope, name);
             let span = self.place(scope, name.span());
@@ -140,11 +143,12 @@ impl<'a> Builder<'a> {
         let [bond, _] = self.graph.closures[number].bonds;
         let dimension = self.graph.bonds[bond.0].dimension;
         let entries = self.vector(scope, value, dimension, &closure.name)?;
+        self.claim(scope, Subject::Displacement(number), &entries, value.span());
         self.graph.closures[number].displacement = Some(entries);
         Ok(())
     }
 
-    fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_, 'a>) {
+    pub(super) fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_, 'a>) {
         let lookup = Lookup {
             scopes: &self.scopes,
             scope,
@@ -154,6 +158,7 @@ impl<'a> Builder<'a> {
             missing: &mut self.missing,
             signals: &mut self.signals,
             own: None,
+            claims: self.claims.as_mut(),
         };
         (self.pool, lookup)
     }
@@ -219,6 +224,9 @@ impl<'a> Builder<'a> {
 
     fn law(&mut self, scope: usize, element: &ast::Element, id: ElementId) -> Result<()> {
         let field = law_field(element)?;
+        if self.claims.is_some() {
+            return self.claim_words(scope, element, id);
+        }
         let (states, dimension) = self.ports[id.0].clone();
         let own = Own {
             element: id,
@@ -244,7 +252,7 @@ impl<'a> Builder<'a> {
     }
 
     fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
-        if self.pool.rate(initial) == crate::symbolic::Rate::Varying {
+        if self.claims.is_none() && self.pool.rate(initial) == crate::symbolic::Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
             return Err(Box::new(error(
                 codes::EXPRESSION,
@@ -267,6 +275,20 @@ impl<'a> Builder<'a> {
             Some(value) => self.vector(scope, value, integral.dimension, &integral.name)?,
             None => vec![Expression::ZERO; integral.dimension],
         };
+        self.claim(
+            scope,
+            Subject::Rate(states.clone()),
+            &rates,
+            integral.rate.span(),
+        );
+        if let Some(value) = &integral.initial {
+            self.claim(
+                scope,
+                Subject::Start(states.clone()),
+                &initial,
+                value.span(),
+            );
+        }
         for ((state, rate), initial) in states.zip(rates).zip(initial) {
             self.states[state].rate = StateRate::Expression(rate);
             self.initial_value(state, initial)?;
@@ -282,6 +304,12 @@ impl<'a> Builder<'a> {
         states: std::ops::Range<usize>,
     ) -> Result<()> {
         let omega = self.vector(scope, &attitude.angular_velocity, 3, &attitude.name)?;
+        self.claim(
+            scope,
+            Subject::Turning,
+            &omega,
+            attitude.angular_velocity.span(),
+        );
         let initial = match &attitude.initial {
             Some(value) => self.vector(scope, value, 4, &attitude.name)?,
             None => vec![
@@ -318,6 +346,13 @@ impl<'a> Builder<'a> {
 
     fn output(&mut self, scope: usize, output: &ast::Output) -> Result<()> {
         let values = self.vector(scope, &output.value, output.dimension, &output.name)?;
+        self.claim_value(
+            scope,
+            &output.name,
+            output.unit.as_ref(),
+            &values,
+            output.value.span(),
+        );
         let unit = output.unit.as_ref().map_or("", |unit| unit.text.as_str());
         let path = self.path(scope, &output.name);
         let variables = component_names(&path, output.dimension, unit);

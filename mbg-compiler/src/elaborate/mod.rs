@@ -6,6 +6,7 @@
 
 mod bonds;
 mod check;
+pub mod claims;
 mod declare;
 mod definitions;
 pub mod expressions;
@@ -32,6 +33,7 @@ pub use model::{
 };
 pub use size::LIMIT;
 
+use self::claims::Claims;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
@@ -162,6 +164,8 @@ struct Builder<'a> {
     assumptions: Vec<Assumption>,
     pending: Vec<Pending<'a>>,
     integrals: Vec<(usize, &'a Statement)>,
+    /// What the checker of units is told, while it is asked for.
+    claims: Option<Claims>,
 }
 
 impl<'a> Builder<'a> {
@@ -204,6 +208,7 @@ impl<'a> Builder<'a> {
             assumptions: Vec::new(),
             pending: Vec::new(),
             integrals: Vec::new(),
+            claims: None,
         }
     }
 
@@ -264,9 +269,7 @@ impl<'a> Builder<'a> {
     fn tell(&mut self, scope: usize, mut report: Diagnostic) {
         if let Some((component, instance)) = &self.scopes[scope].library {
             report.span = *instance;
-            report = report.note(format!(
-                "this is inside `{component}`, a component of the library"
-            ));
+            report = report.note(claims::inside(component));
         }
         // Each iteration of a loop makes the same mistake.
         let place = |report: &Diagnostic| format!("{:?}", report.span);

@@ -7,6 +7,7 @@ use proc_macro2::{Ident, Span};
 use syn::Expr;
 
 use super::bonds::is_two_port;
+use super::claims::{Claim, Claims, Site, Subject};
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Place, Quantity, Signals};
@@ -101,6 +102,20 @@ impl Scopes {
         None
     }
 
+    /// Where something in a scope stands in the user's text, and in which component of the library if in one.
+    pub(super) fn place(&self, scope: usize, span: Span) -> Site {
+        match &self.0[scope].library {
+            Some((component, instance)) => Site {
+                span: *instance,
+                library: Some(component.clone()),
+            },
+            None => Site {
+                span,
+                library: None,
+            },
+        }
+    }
+
     /// Every plain name that a scope sees.
     pub(super) fn visible(&self, scope: usize) -> Vec<&str> {
         let mut names = Vec::new();
@@ -185,6 +200,8 @@ pub(super) struct Lookup<'a, 'm> {
     pub(super) missing: &'a mut Option<Missing>,
     pub(super) signals: &'a mut Signals,
     pub(super) own: Option<Own>,
+    /// What the checker of units is told, while it is asked for.
+    pub(super) claims: Option<&'a mut Claims>,
 }
 
 impl Names for Lookup<'_, '_> {
@@ -235,6 +252,29 @@ impl Names for Lookup<'_, '_> {
 
     fn all(&self) -> Vec<&str> {
         self.scopes.visible(self.scope)
+    }
+
+    fn seen(&mut self, pool: &mut Pool, place: Span, value: &Value) {
+        let Some(claims) = &mut self.claims else {
+            return;
+        };
+        // A product of matrices is looked at where it meets a vector or a law.
+        let Some(entries) = value.entries(pool) else {
+            return;
+        };
+        claims.list.push(Claim {
+            subject: Subject::Part,
+            entries,
+            columns: 1,
+            place: self.scopes.place(self.scope, place),
+        });
+    }
+
+    fn measured(&mut self, pool: &mut Pool, value: Expression, text: &str) -> Expression {
+        match &mut self.claims {
+            Some(claims) => pool.symbol(claims.hide(text, true)),
+            None => value,
+        }
     }
 }
 

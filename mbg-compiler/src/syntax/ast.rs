@@ -209,7 +209,7 @@ pub struct Attitude {
     pub initial: Option<Expr>,
 }
 
-/// `1 name[n] coordinate { elements }`
+/// `1 name[n] coordinate { elements }`, `0 name pseudo;`
 pub struct Junction {
     /// Zero or one.
     pub kind: JunctionKind,
@@ -221,6 +221,8 @@ pub struct Junction {
     pub dimension: usize,
     /// Set by the word `coordinate`.
     pub coordinate: bool,
+    /// Set by the word `pseudo`: effort times flow is no power.
+    pub pseudo: bool,
     /// One-ports in the braces.
     pub elements: Vec<Element>,
 }
@@ -352,7 +354,15 @@ pub struct Unit {
     /// As shown to users, `N*m*s/rad`.
     pub text: String,
     /// Names with their integer exponents, in order of writing.
-    pub factors: Vec<(String, i32)>,
+    pub factors: Vec<(Ident, i32)>,
+}
+
+impl Unit {
+    /// Where it begins; none where nobody wrote it.
+    #[must_use]
+    pub fn span(&self) -> Option<Span> {
+        self.factors.first().map(|(name, _)| name.span())
+    }
 }
 
 impl Component {

@@ -184,6 +184,7 @@ fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
         JunctionKind::Zero => '0',
         JunctionKind::One => '1',
     };
+    let pseudo = if junction.pseudo { " pseudo" } else { "" };
     let coordinate = if junction.coordinate {
         " coordinate"
     } else {
@@ -191,7 +192,7 @@ fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
     };
     writeln!(
         text,
-        "  {digit} {}[{}]{coordinate}",
+        "  {digit} {}[{}]{coordinate}{pseudo}",
         junction.name, junction.dimension
     )?;
     junction

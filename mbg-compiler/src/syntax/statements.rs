@@ -415,12 +415,15 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         cursor.advance(1);
         cursor.name(&format!("the name of the junction after {digit}"))?
     };
-    let (mut dimension, mut coordinate) = (None, false);
+    let (mut dimension, mut coordinate, mut pseudo) = (None, false, false);
     loop {
         if dimension.is_none() && cursor.group(0, Delimiter::Bracket).is_some() {
             dimension = cursor.dimension()?;
         } else if !coordinate && cursor.ident(0).is_some_and(|word| word == "coordinate") {
             coordinate = true;
+            cursor.advance(1);
+        } else if !pseudo && cursor.ident(0).is_some_and(|word| word == "pseudo") {
+            pseudo = true;
             cursor.advance(1);
         } else {
             break;
@@ -438,7 +441,12 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
             elements
         }
         None => {
-            undelimited(cursor, dimension.is_some(), coordinate, sink)?;
+            let words = [
+                ("[", dimension.is_some()),
+                ("coordinate", coordinate),
+                ("pseudo", pseudo),
+            ];
+            undelimited(cursor, &words, sink)?;
             Vec::new()
         }
     };
@@ -448,34 +456,24 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         name,
         dimension: dimension.unwrap_or(1),
         coordinate,
+        pseudo,
         elements,
     })
 }
 
-/// Ends a junction without braces.
-fn undelimited(
-    cursor: &mut Cursor,
-    dimension: bool,
-    coordinate: bool,
-    sink: &mut Sink<'_>,
-) -> Parsed<()> {
-    let mut wanted = Vec::new();
-    if !dimension {
-        wanted.push("[");
-    }
-    if !coordinate {
-        wanted.push("coordinate");
-    }
-    wanted.extend(["{", ";"]);
+/// Ends a junction without braces; with each word that may stand before the end comes whether it was read.
+fn undelimited(cursor: &mut Cursor, words: &[(&str, bool)], sink: &mut Sink<'_>) -> Parsed<()> {
+    let missing = words.iter().filter(|(_, read)| !read);
+    let missing: Vec<&str> = missing.map(|(word, _)| *word).collect();
     let wanted = format!(
         "{} after {}",
-        words::alternatives(&wanted),
+        words::alternatives(&[missing.as_slice(), &["{", ";"]].concat()),
         cursor.previous()
     );
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
-    if !coordinate && words::nearest(&word, &["coordinate"]).is_some() {
+    if let Some(near) = words::nearest(&word, &missing) {
         return Err(Box::new(
-            (*cursor.expected(&wanted)).help("did you mean `coordinate`?"),
+            (*cursor.expected(&wanted)).help(format!("did you mean `{near}`?")),
         ));
     }
     finish(cursor, sink, &wanted)

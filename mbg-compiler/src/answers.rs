@@ -21,7 +21,7 @@ pub struct Answers {
     pub rates: Vec<Expression>,
     /// Outputs in order.
     pub outputs: Vec<Expression>,
-    /// Stored energy.
+    /// Stored energy, that of pseudo bonds left out, as their power is.
     pub energy: Expression,
     /// Power from the sources.
     pub supplied: Expression,
@@ -87,12 +87,12 @@ impl Answers {
             .graph
             .elements
             .iter()
-            .filter_map(|element| {
-                if let Law::Storage(storage) = &element.law {
+            .enumerate()
+            .filter_map(|(id, element)| match &element.law {
+                Law::Storage(storage) if !model.graph.is_pseudo(ElementId(id)) => {
                     Some(storage.energy)
-                } else {
-                    None
                 }
+                _ => None,
             })
             .collect();
         let energies: Vec<Expression> = energies
@@ -209,7 +209,7 @@ fn powers(
     for (id, port) in &scalars.ports {
         let kind = model.graph.elements[id.0].kind;
         let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
-        if !source && kind != ElementKind::R {
+        if (!source && kind != ElementKind::R) || model.graph.is_pseudo(*id) {
             continue;
         }
         for (effort, flow) in port.effort.iter().zip(&port.flow) {

@@ -171,7 +171,7 @@ fn a_unit_that_would_scale_values_is_answered_with_the_text_to_type() {
         ("uF", "uF", "write `F`, and each value times 1e-6"),
         ("g", "g", "write `kg`, and each value times 0.001"),
         ("mg", "mg", "write `kg`, and each value times 1e-6"),
-        ("bar", "bar", "write `Pa`, and each value times 100000"),
+        ("bar", "bar", "write `Pa`, and each value times 1e5"),
         (
             "deg",
             "deg",

@@ -17,15 +17,28 @@ macro_rules! files {
 }
 
 files! {
+    "Accumulator": "accumulator.mbg",
     "Body": "body.mbg",
+    "Capacitor": "capacitor.mbg",
+    "Conduction": "conduction.mbg",
+    "Cylinder": "cylinder.mbg",
+    "DcMotor": "dc_motor.mbg",
+    "Diode": "diode.mbg",
+    "HeatCapacity": "heat_capacity.mbg",
+    "HeatSource": "heat_source.mbg",
+    "Inductor": "inductor.mbg",
     "Offset": "offset.mbg",
+    "Orifice": "orifice.mbg",
     "PlanarBody": "planar_body.mbg",
     "PlanarLink": "planar_link.mbg",
     "PlanarOffset": "planar_offset.mbg",
     "PlanarPrismatic": "planar_prismatic.mbg",
     "PlanarRevolute": "planar_revolute.mbg",
     "Prismatic": "prismatic.mbg",
+    "Pump": "pump.mbg",
+    "Resistor": "resistor.mbg",
     "Revolute": "revolute.mbg",
+    "Transformer": "transformer.mbg",
     "Turn": "turn.mbg",
 }
 

@@ -50,14 +50,16 @@ mbg! {
     }
 }
 
-const NONE: Constant<f64, 0> = Constant(SVector::<f64, 0>::new());
+fn none() -> Constant<f64, 0> {
+    Constant(SVector::zeros())
+}
 
 #[test]
 fn two_bodies_reach_one_temperature() {
     let model = Pair::<f64>::new(PairParameters::default()).unwrap();
     let end = 300.0;
     let mut last = model.initial_state();
-    Rk4::fixed(&model, &NONE, 0.0, end, 0.1, last, |_, x| last = *x).unwrap();
+    Rk4::fixed(&model, &none(), 0.0, end, 0.1, last, |_, x| last = *x).unwrap();
     let found = model.output(end, &last, &SVector::zeros(), &mut Default::default());
     // The mean stays, the difference decays.
     let mean = (400.0 * 360.0 + 900.0 * 290.0) / 1300.0;
@@ -90,7 +92,7 @@ fn what_a_resistor_loses_heats_its_case() {
     let model = Heater::<f64>::new(HeaterParameters::default()).unwrap();
     let end = 40.0;
     let mut last = model.initial_state();
-    Rk4::fixed(&model, &NONE, 0.0, end, 0.05, last, |_, x| last = *x).unwrap();
+    Rk4::fixed(&model, &none(), 0.0, end, 0.05, last, |_, x| last = *x).unwrap();
     let found = model.output(end, &last, &SVector::zeros(), &mut Default::default())[0];
     let expected = 293.15 + 24.0 / 0.8 * (1.0 - f64::exp(-0.8 / 50.0 * end));
     assert!((found - expected).abs() < 1e-9, "{found} {expected}");
@@ -104,7 +106,7 @@ fn a_wall_of_layers_comes_to_its_straight_line() {
     let model = Layers::<f64>::new(LayersParameters::default()).unwrap();
     let mut last = model.initial_state();
     let mut found = [Vec::new(), Vec::new()];
-    Rk4::fixed(&model, &NONE, 0.0, 3000.0, 0.5, last, |t, x| {
+    Rk4::fixed(&model, &none(), 0.0, 3000.0, 0.5, last, |t, x| {
         last = *x;
         let output = model.output(t, x, &SVector::zeros(), &mut Default::default());
         found[0].push(output[0]);

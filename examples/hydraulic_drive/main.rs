@@ -6,8 +6,8 @@ mod model;
 
 use std::error::Error;
 
-use mbg_runtime::{DormandPrince, System};
-use model::{Drive, DriveParameters, load};
+use mbg_runtime::{DormandPrince, Pulse, System};
+use model::{Drive, DriveParameters};
 use nalgebra::SVector;
 
 const TIMES: [f64; 12] = [
@@ -42,6 +42,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         },
     )?;
     Ok(())
+}
+
+/// The rod meets 5 kN between 0.6 s and 1 s.
+fn load() -> Pulse<f64, 1> {
+    Pulse {
+        amplitude: SVector::from([5e3]),
+        start: 0.6,
+        end: 1.0,
+    }
 }
 
 /// Cells of one width.

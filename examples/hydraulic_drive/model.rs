@@ -1,7 +1,6 @@
 //! The drive.
 
-use mbg_runtime::{Pulse, mbg};
-use nalgebra::SVector;
+use mbg_runtime::mbg;
 
 mbg! {
     /// A pump with an accumulator drives a cylinder through a valve; the piston pushes a mass against a spring, and the
@@ -59,14 +58,5 @@ mbg! {
         output back_pressure: Pa = back.e;
         output travel: m = cylinder.travel;
         output velocity: m/s = rod.f;
-    }
-}
-
-/// The rod meets 5 kN between 0.6 s and 1 s.
-pub(crate) fn load() -> Pulse<f64, 1> {
-    Pulse {
-        amplitude: SVector::from([5e3]),
-        start: 0.6,
-        end: 1.0,
     }
 }

@@ -121,7 +121,7 @@ fn a_wall_of_layers_comes_to_its_straight_line() {
     let time = 20.0;
     let mode = |m: f64| {
         let start: f64 = (1..10)
-            .map(|k| f64::from(k))
+            .map(f64::from)
             .map(|k| (-20.0 + 2.0 * k) * f64::sin(m * pi * k / 10.0) / 5.0)
             .sum();
         let decay = f64::exp(-4.0 / 30.0 * (2.0 - 2.0 * f64::cos(m * pi / 10.0)) * time);

@@ -105,6 +105,8 @@ pub struct Junction {
     pub coordinate: bool,
     /// Marked `pseudo`: effort times flow is no power.
     pub pseudo: bool,
+    /// The flow of a coordinate at the start, zero where nothing is given.
+    pub initial_flow: Vec<Expression>,
     /// Where it was written.
     pub origin: OriginId,
 }

@@ -67,6 +67,7 @@ impl Builder {
             dimension,
             coordinate,
             pseudo: false,
+            initial_flow: Vec::new(),
             origin,
         });
         JunctionId(self.graph.junctions.len() - 1)

@@ -16,7 +16,7 @@ use super::laws::Reader;
 use super::model::Signals;
 use super::scope::{GRAVITY, Own};
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::graph::ElementId;
+use crate::graph::{ElementId, JunctionId};
 use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Symbol};
 use crate::syntax::ast::{self, Unit};
 use crate::units;
@@ -78,6 +78,8 @@ pub enum Subject {
     Rate(Range<usize>),
     /// States at the start.
     Start(Range<usize>),
+    /// The flow of a junction at the start.
+    Flow(JunctionId),
     /// An angular velocity.
     Turning,
     /// What a closure makes zero.
@@ -98,15 +100,10 @@ impl Site {
     #[must_use]
     pub fn locate(&self, report: Diagnostic) -> Diagnostic {
         match &self.library {
-            Some(component) => report.note(inside(component)),
+            Some(component) => report.inside(component, self.span),
             None => report,
         }
     }
-}
-
-/// Says that a mistake lies in a component of the library.
-pub(super) fn inside(component: &str) -> String {
-    format!("this is inside `{component}`, a component of the library")
 }
 
 /// The claims of a sound model.

@@ -13,8 +13,8 @@ use super::scope::{Entity, Lookup, Own};
 use super::{Builder, Pending, component_names};
 use crate::codes;
 use crate::diagnostics::{error, listing};
-use crate::graph::{ElementId, Law};
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::graph::{ElementId, JunctionId, Law};
+use crate::symbolic::{Expression, Pool, Rate, Symbol};
 use crate::syntax::ast::{self, Statement};
 
 impl<'a> Builder<'a> {
@@ -127,6 +127,16 @@ impl<'a> Builder<'a> {
                 attitude,
                 states,
             } => self.attitude(scope, attitude, states),
+            Pending::Coordinate {
+                scope,
+                junction,
+                value,
+                id,
+            } => {
+                let initial = self.start(scope, (junction, id), value)?;
+                self.graph.junctions[id.0].initial_flow = initial;
+                Ok(())
+            }
             Pending::Output { scope, output } => self.output(scope, output),
             Pending::Displacement {
                 scope,
@@ -251,8 +261,26 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// The flow of a coordinate at the start.
+    fn start(
+        &mut self,
+        scope: usize,
+        (junction, id): (&ast::Junction, JunctionId),
+        value: &syn::Expr,
+    ) -> Result<Vec<Expression>> {
+        let initial = self.vector(scope, value, junction.dimension, &junction.name)?;
+        let flow = Subject::Flow(id);
+        self.claim(scope, flow, &initial, value.span());
+        let varies = |initial: &Expression| self.pool.rate(*initial) == Rate::Varying;
+        if self.claims.is_none() && initial.iter().any(varies) {
+            let message = "expected an initial value of numbers and parameters alone";
+            return Err(Box::new(error(codes::EXPRESSION, value.span(), message)));
+        }
+        Ok(initial)
+    }
+
     fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
-        if self.claims.is_none() && self.pool.rate(initial) == crate::symbolic::Rate::Varying {
+        if self.claims.is_none() && self.pool.rate(initial) == Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
             return Err(Box::new(error(
                 codes::EXPRESSION,

@@ -6,17 +6,12 @@
 
 use super::expression::{Expression, Symbol};
 use super::matrix::Matrix;
-use super::pool::Pool;
 
 /// As many equations as unknowns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Implicit {
     /// Numbers of the unknowns, which are [`Symbol::Unknown`]s.
     pub unknowns: Vec<usize>,
-    /// What the unknowns make zero.
-    pub residuals: Vec<Expression>,
-    /// Derivatives of the residuals, by rows, with respect to the unknowns, by columns.
-    pub jacobian: Matrix,
     /// How the unknowns are found.
     pub method: Method,
 }
@@ -26,16 +21,28 @@ pub struct Implicit {
 pub enum Method {
     /// By Newton's iteration.
     Newton {
+        /// What the unknowns make zero.
+        residuals: Vec<Expression>,
+        /// Derivatives of the residuals, by rows, with respect to the unknowns, by columns.
+        jacobian: Matrix,
         /// The inverse of the Jacobian.
         inverse: Matrix,
     },
     /// The equations are linear, `S z = b`, with a symmetric positive semidefinite matrix that may be singular: the
     /// unknowns are those of least norm.
     LeastNorm {
+        /// The matrix `S`.
+        matrix: Matrix,
         /// The right side `b`.
         right: Vec<Expression>,
-        /// Whether the unknowns are derivatives of others; they are not differentiated again.
-        slope: bool,
+    },
+    /// The equations have the matrix of an earlier definition of the kind before, and a right side of their own. Such
+    /// are the derivatives of its unknowns; they are not differentiated again.
+    Slope {
+        /// Number of the earlier definition.
+        of: usize,
+        /// The right side.
+        right: Vec<Expression>,
     },
 }
 
@@ -54,38 +61,27 @@ impl Implicit {
         self.unknowns.iter().copied().map(Symbol::Unknown)
     }
 
-    /// Unknowns of least norm of `matrix · z = right`.
-    pub fn least_norm(
-        pool: &mut Pool,
-        unknowns: Vec<usize>,
-        matrix: Matrix,
-        right: Vec<Expression>,
-        slope: bool,
-    ) -> Self {
-        let symbols = unknowns.iter().copied().map(Symbol::Unknown);
-        let values = symbols.map(|symbol| pool.symbol(symbol)).collect();
-        let product = matrix.times(pool, &Matrix::column(values));
-        let residuals = product
-            .entries
-            .iter()
-            .zip(&right)
-            .map(|(sum, right)| pool.subtract(*sum, *right))
-            .collect();
-        Self {
-            unknowns,
-            residuals,
-            jacobian: matrix,
-            method: Method::LeastNorm { right, slope },
+    /// Everything a solve evaluates: residuals, then their derivatives by rows; or right sides, then the matrix by rows
+    /// unless an earlier definition has it.
+    #[must_use]
+    pub fn evaluated(&self) -> Vec<Expression> {
+        match &self.method {
+            Method::Newton {
+                residuals,
+                jacobian,
+                ..
+            } => [&residuals[..], &jacobian.entries].concat(),
+            Method::LeastNorm { matrix, right } => [&right[..], &matrix.entries].concat(),
+            Method::Slope { right, .. } => right.clone(),
         }
     }
 
-    /// Everything a solve evaluates: residuals or right sides, then the derivatives of residuals by rows.
+    /// The earlier definition whose matrix it uses.
     #[must_use]
-    pub fn evaluated(&self) -> Vec<Expression> {
-        let first = match &self.method {
-            Method::Newton { .. } => &self.residuals,
-            Method::LeastNorm { right, .. } => right,
-        };
-        [&first[..], &self.jacobian.entries].concat()
+    pub fn earlier(&self) -> Option<usize> {
+        match self.method {
+            Method::Slope { of, .. } => Some(of),
+            Method::Newton { .. } | Method::LeastNorm { .. } => None,
+        }
     }
 }

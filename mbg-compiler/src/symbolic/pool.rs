@@ -5,11 +5,13 @@
 //! zero. The first form in which a function was built is the one that is kept. Negation is a bit of the handle and
 //! costs nothing.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
 use super::implicit::{Implicit, Place};
+use super::linear::Linear;
 
 struct Node {
     operation: Operation,
@@ -20,12 +22,25 @@ struct Node {
 /// Unknowns that are none of the graph are numbered from here.
 const FRESH: usize = 1 << 31;
 
+/// Equations that give something.
+#[derive(Clone)]
+pub(super) enum Definition {
+    /// Unknowns for which symbols stand, by number.
+    Implicit(usize),
+    /// Unknowns that are expressions.
+    Linear(Rc<Linear>),
+}
+
 /// All expressions of a model.
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// What equations give, in order.
+    definitions: Vec<Definition>,
+    /// Where each unknown is defined.
+    places: BTreeMap<usize, Place>,
     /// How many unknowns were made up.
     fresh: usize,
 }
@@ -44,6 +59,8 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            definitions: Vec::new(),
+            places: BTreeMap::new(),
             fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
@@ -211,7 +228,22 @@ impl Pool {
 
     /// Says which equations give unknowns. They may hold unknowns that were defined before.
     pub fn define(&mut self, implicit: Implicit) {
+        let number = self.implicit.len();
+        for (row, unknown) in implicit.unknowns.iter().enumerate() {
+            self.places.insert(*unknown, Place { number, row });
+        }
+        self.definitions.push(Definition::Implicit(number));
         self.implicit.push(implicit);
+    }
+
+    /// Remembers equations with their solution.
+    pub fn solved(&mut self, linear: Linear) {
+        self.definitions.push(Definition::Linear(Rc::new(linear)));
+    }
+
+    /// What equations give, in order.
+    pub(super) fn definitions(&self) -> &[Definition] {
+        &self.definitions
     }
 
     /// A number that no unknown has yet.
@@ -223,6 +255,8 @@ impl Pool {
     /// Forgets all definitions.
     pub fn forget(&mut self) {
         self.implicit.clear();
+        self.definitions.clear();
+        self.places.clear();
     }
 
     /// What is given by equations, in order of definition.
@@ -234,14 +268,10 @@ impl Pool {
     /// Where a symbol is defined, if it is an unknown that equations give.
     #[must_use]
     pub fn place(&self, symbol: Symbol) -> Option<Place> {
-        let Symbol::Unknown(unknown) = symbol else {
-            return None;
-        };
-        let position = |(number, implicit): (usize, &Implicit)| {
-            let row = implicit.unknowns.iter().position(|own| *own == unknown)?;
-            Some(Place { number, row })
-        };
-        self.implicit.iter().enumerate().find_map(position)
+        match symbol {
+            Symbol::Unknown(unknown) => self.places.get(&unknown).copied(),
+            _ => None,
+        }
     }
 
     /// What the value of a node depends on: its operands, and for an unknown the equations that give it.
@@ -249,11 +279,18 @@ impl Pool {
     pub fn causes(&self, expression: Expression) -> Vec<Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.implicit[place.number].residuals.clone(),
+                Some(place) => self.evaluated(place.number),
                 None => Vec::new(),
             },
             operation => operation.operands(),
         }
+    }
+
+    /// What a definition evaluates, with what the one evaluates whose matrix it uses.
+    fn evaluated(&self, number: usize) -> Vec<Expression> {
+        let implicit = &self.implicit[number];
+        let earlier = implicit.earlier().map(|of| self.implicit[of].evaluated());
+        [implicit.evaluated(), earlier.unwrap_or_default()].concat()
     }
 
     /// Sine.

@@ -254,6 +254,11 @@ impl Checker<'_> {
                 let wanted = self.state_units(states.clone(), Ratio::new(0, 1));
                 self.expect(claim, "`initial`", &wanted, &measures);
             }
+            Subject::Flow(id) => {
+                let flows = self.ports.junctions[id.0].iter();
+                let wanted: Vec<Dimension> = flows.map(|[_, flow]| flow.clone()).collect();
+                self.expect(claim, "`initial_flow`", &wanted, &measures);
+            }
             Subject::Turning => {
                 let wanted = vec![Dimension::pure().over(&second()); measures.len()];
                 self.expect(claim, "an angular velocity", &wanted, &measures);

@@ -69,10 +69,7 @@ impl<'a> Reporter<'a> {
 
     /// Reports a mistake at a place.
     pub(super) fn tell(&mut self, place: &Site, report: Diagnostic) {
-        let mut report = place.locate(report);
-        if place.library.is_some() {
-            report.span = place.span;
-        }
+        let report = place.locate(report);
         // Each iteration of a loop makes the same mistake.
         let span = |report: &Diagnostic| format!("{:?}", report.span);
         let told = &self.diagnostics.list()[self.before..];

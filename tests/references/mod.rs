@@ -18,3 +18,4 @@ pub(crate) mod planar;
 pub(crate) mod rectifier;
 pub(crate) mod slider_crank;
 pub(crate) mod transistor_amplifier;
+pub(crate) mod tree;

@@ -7,6 +7,7 @@ use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::inclusion::{Inclusion, no_file};
 use mbg_compiler::syntax::library;
 use mbg_compiler::{expand, expansion};
+use proptest::prelude::*;
 
 /// A damper of its own.
 const BRAKE: &str = "/// A damper.\ncomponent Brake(port a) {\n    param strength;\n    a -> R shoe { resistance: strength };\n}\n";
@@ -223,5 +224,24 @@ fn included_text_is_cut_as_the_compiler_cuts_it() {
         let expected = text.replace("//!", "//");
         let expected: proc_macro2::TokenStream = expected.parse().unwrap();
         assert_eq!(found.tokens().to_string(), expected.to_string());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_changed_file_never_panics_and_its_errors_have_places(
+        at in any::<prop::sample::Index>(),
+        length in 0..4_usize,
+        by in "(\\PC{0,3}|[-(){}\\[\\]/*\"'0-9.eE_]{1,3}|\n|//|/\\*|///|include \"x\";)",
+    ) {
+        let start = at.index(BRAKE.len());
+        let end = (start + length).min(BRAKE.len());
+        let brake = format!("{}{by}{}", &BRAKE[..start], &BRAKE[end..]);
+        for report in reported(CART, &[("brake.mbg", &brake)]) {
+            let known = report.contains("\n  in brake.mbg:") || report.contains("`Brake`");
+            prop_assert!(known, "{brake}\n{report}");
+        }
     }
 }

@@ -71,11 +71,15 @@ pub(crate) fn aligned(axis: &Vector) -> (usize, Matrix) {
         }
         return (along, turn);
     }
-    (2, tilted(unit))
+    if unit[2] >= 0.0 {
+        return (2, tilted(unit));
+    }
+    let half = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
+    (2, product(&tilted(unit.map(|it| -it)), &half))
 }
 
-/// The shortest rotation that takes z to a unit vector which is not its opposite: `R = 1 + [w] + [w]² / (1 + cos)`, with
-/// `w` the product of both.
+/// The shortest rotation that takes z to a unit vector, at most a right angle away so that no digits are lost:
+/// `R = 1 + [w] + [w]² / (1 + cos)`, with `w` the vector product of both.
 fn tilted([x, y, z]: Vector) -> Matrix {
     let scale = 1.0 / (1.0 + z);
     [
@@ -181,6 +185,7 @@ mod tests {
             [0.0, 0.0, -1.0],
             [0.3, -0.4, 1.2],
             [0.3, 0.4, -1.2],
+            [1e-6, 0.0, -1.0],
         ];
         for axis in axes {
             let (along, turn) = aligned(&axis);

@@ -51,6 +51,7 @@ pub(crate) struct Joint {
     pub(crate) damping: f64,
     /// Dry friction.
     pub(crate) friction: f64,
+    pub(crate) line: u32,
 }
 
 pub(crate) struct Robot {
@@ -164,25 +165,46 @@ impl<'a> Reader<'a> {
             );
             return self.fail(node, text);
         }
-        Ok(Robot {
+        let robot = Robot {
             name: node.attribute("name").unwrap_or("robot").to_owned(),
             links,
             joints,
             root,
-        })
+        };
+        self.note_massless(&robot);
+        Ok(robot)
+    }
+
+    /// Names the joints that move no mass: their equation is without a solution.
+    fn note_massless(&mut self, robot: &Robot) {
+        let mut heavy: Vec<bool> = robot.links.iter().map(|it| it.body.is_some()).collect();
+        for joint in robot.joints.iter().rev() {
+            if heavy[joint.child] {
+                heavy[joint.parent] = true;
+            } else if joint.motion != Motion::Fixed {
+                let text = format!(
+                    "nothing that `{}` moves has a mass, which `mbg!` will refuse",
+                    joint.name
+                );
+                self.remarks.push(Remark {
+                    line: joint.line,
+                    text,
+                });
+            }
+        }
     }
 
     fn link(&mut self, node: Node<'a, 'a>) -> Checked<Link> {
         let name = self.attribute(node, "name")?.to_owned();
         self.note_others(node, &["inertial"]);
         let body = match child(node, "inertial") {
-            Some(inertial) => self.body(inertial)?,
+            Some(inertial) => self.body(inertial, &name)?,
             None => None,
         };
         Ok(Link { name, body })
     }
 
-    fn body(&mut self, node: Node<'a, 'a>) -> Checked<Option<Body>> {
+    fn body(&mut self, node: Node<'a, 'a>, link: &str) -> Checked<Option<Body>> {
         self.note_others(node, &["origin", "mass", "inertia"]);
         let Some(mass) = child(node, "mass") else {
             return self.fail(node, "expected a `mass` inside `inertial`");
@@ -196,9 +218,10 @@ impl<'a> Reader<'a> {
         };
         let inertia = self.inertia(tensor)?;
         if mass < 0.0 || !is_positive(&inertia) {
-            let text =
-                "a mass that moves freely is positive, and so is its inertia about each axis";
-            self.note(node, text);
+            let text = format!(
+                "mass and inertia of `{link}` are not positive, as those of a moving body must be"
+            );
+            self.note(tensor, text);
         }
         let body = Body {
             mass,
@@ -253,6 +276,7 @@ impl<'a> Reader<'a> {
             axis: self.axis(node)?,
             damping,
             friction,
+            line: self.line(node),
             name,
         })
     }

@@ -4,9 +4,9 @@
 //! parted into as many runs as there are marks, everything is done again, and the mark at which the same error comes
 //! back says in which run it lies. That run is parted next, until it is a single token.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use proc_macro2::{Group, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 
 use super::{Inclusion, placed};
 use crate::diagnostics::Diagnostics;
@@ -23,7 +23,7 @@ impl Inclusion {
         diagnostics: &mut Diagnostics,
         again: &dyn Fn(TokenStream) -> Diagnostics,
     ) {
-        let inside: Vec<String> = self.files.iter().map(|file| text(file.from)).collect();
+        let inside: BTreeSet<String> = self.files.iter().flat_map(|it| ends(it.from)).collect();
         let reports = first..diagnostics.list().len();
         let open: Vec<usize> = reports
             .filter(|report| inside.contains(&text(diagnostics.list()[*report].span)))
@@ -125,21 +125,18 @@ struct Marks {
 impl Marks {
     fn among(tokens: &TokenStream) -> Self {
         let mut spans: Vec<Span> = Vec::new();
-        let mut known = BTreeMap::new();
+        let mut known = BTreeSet::new();
         collect(tokens.clone(), &mut |span| {
-            if spans.len() < MOST_MARKS && known.insert(text(span), ()).is_none() {
+            if spans.len() < MOST_MARKS && known.insert(text(span)) {
                 spans.push(span);
             }
         });
         let mut numbers = BTreeMap::new();
         for (number, span) in spans.iter().enumerate() {
-            // Some compilers tell the ends of a group from the whole of it, and can join spans.
-            let mut group = Group::new(proc_macro2::Delimiter::Brace, TokenStream::new());
-            group.set_span(*span);
+            // Where spans can be joined, an error over several tokens has the span from the first to the last.
             let joined = spans[number..].iter().filter_map(|last| span.join(*last));
-            let all = [*span, group.span_open(), group.span_close()];
-            for span in all.into_iter().chain(joined) {
-                numbers.entry(text(span)).or_insert(number);
+            for span in ends(*span).into_iter().chain(joined.map(text)) {
+                numbers.entry(span).or_insert(number);
             }
         }
         Self { spans, numbers }
@@ -156,6 +153,13 @@ fn collect(tokens: TokenStream, found: &mut impl FnMut(Span)) {
             None => drop(open.pop()),
         }
     }
+}
+
+/// A span, and those of the brackets of a group that has it, which some compilers tell from the whole.
+fn ends(span: Span) -> [String; 3] {
+    let mut group = Group::new(Delimiter::Brace, TokenStream::new());
+    group.set_span(span);
+    [span, group.span_open(), group.span_close()].map(text)
 }
 
 /// The only thing by which a macro can tell spans apart on a stable compiler.

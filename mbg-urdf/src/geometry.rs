@@ -171,6 +171,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::approx_constant, reason = "as files give them")]
     fn right_angles_are_exact() {
         let turn = rotation([-1.57079632679, 0.0, 3.14159265359]);
         assert_eq!(turn, [[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]]);

@@ -22,96 +22,98 @@ fn file(part: &str, changed: &str) -> String {
     text.replace(part, changed)
 }
 
+/// What is changed, by what, and the answer.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    (
+        "</robot>",
+        "",
+        "1: this is no XML: the root node was opened but never closed",
+    ),
+    ("robot", "model", "1: expected a `robot`, found `model`"),
+    ("name=\"a\"", "name=\"b\"", "3: there is another link `b`"),
+    ("<link name=\"a\"/>", "<link/>", "2: `link` needs `name`"),
+    (
+        "<mass value=\"1\"/>",
+        "",
+        "3: expected a `mass` inside `inertial`",
+    ),
+    (
+        "value=\"1\"",
+        "value=\"1 kg\"",
+        "4: `value` is a number, found `1 kg`",
+    ),
+    (
+        "value=\"1\"",
+        "value=\"inf\"",
+        "4: `value` is a number, found `inf`",
+    ),
+    (" iyy=\"1\"", "", "5: `inertia` needs `iyy`"),
+    (
+        "<inertia ",
+        "<inertias ",
+        "3: expected an `inertia` inside `inertial`",
+    ),
+    (
+        "type=\"revolute\"",
+        "type=\"floating\"",
+        "7: joint `j` is floating, which is not supported yet",
+    ),
+    (
+        "type=\"revolute\"",
+        "type=\"hinge\"",
+        "7: joint `j` is of the type `hinge`, known are `fixed`, `revolute`, `continuous` and `prismatic`",
+    ),
+    ("type=\"revolute\"", "", "7: `joint` needs `type`"),
+    (
+        "\"0 0 1\" rpy",
+        "\"0 1\" rpy",
+        "8: `xyz` is three numbers, found `0 1`",
+    ),
+    (
+        "<parent link=\"a\"/>",
+        "",
+        "7: expected a `parent` inside `joint`",
+    ),
+    (
+        "<parent link=\"a\"/>",
+        "<parent link=\"c\"/>",
+        "9: there is no link `c`",
+    ),
+    (
+        "<axis xyz=\"0 0 1\"/>",
+        "<axis xyz=\"0 0 0\"/>",
+        "11: an axis has a direction",
+    ),
+    (
+        "<parent link=\"a\"/>",
+        "<parent link=\"b\"/>",
+        "1: some joints hang on each other and not on `a`",
+    ),
+    (
+        "</robot>",
+        "<link name=\"c\"/>\n</robot>",
+        "1: one link is the root, found `a`, `c`",
+    ),
+    (
+        "</robot>",
+        "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
+        "13: there is another joint `j`",
+    ),
+    (
+        "</robot>",
+        "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>",
+        "13: `b` hangs on the joint `j` already",
+    ),
+    (
+        "</robot>",
+        "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
+        "1: no link is without a joint that holds it",
+    ),
+];
+
 #[test]
 fn mistakes_are_told_with_their_lines() {
-    let cases = [
-        (
-            "</robot>",
-            "",
-            "1: this is no XML: the root node was opened but never closed",
-        ),
-        ("robot", "model", "1: expected a `robot`, found `model`"),
-        ("name=\"a\"", "name=\"b\"", "3: there is another link `b`"),
-        ("<link name=\"a\"/>", "<link/>", "2: `link` needs `name`"),
-        (
-            "<mass value=\"1\"/>",
-            "",
-            "3: expected a `mass` inside `inertial`",
-        ),
-        (
-            "value=\"1\"",
-            "value=\"1 kg\"",
-            "4: `value` is a number, found `1 kg`",
-        ),
-        (
-            "value=\"1\"",
-            "value=\"inf\"",
-            "4: `value` is a number, found `inf`",
-        ),
-        (" iyy=\"1\"", "", "5: `inertia` needs `iyy`"),
-        (
-            "<inertia ",
-            "<inertias ",
-            "3: expected an `inertia` inside `inertial`",
-        ),
-        (
-            "type=\"revolute\"",
-            "type=\"floating\"",
-            "7: joint `j` is floating, which is not supported yet",
-        ),
-        (
-            "type=\"revolute\"",
-            "type=\"hinge\"",
-            "7: joint `j` is of the type `hinge`, known are `fixed`, `revolute`, `continuous` and `prismatic`",
-        ),
-        ("type=\"revolute\"", "", "7: `joint` needs `type`"),
-        (
-            "\"0 0 1\" rpy",
-            "\"0 1\" rpy",
-            "8: `xyz` is three numbers, found `0 1`",
-        ),
-        (
-            "<parent link=\"a\"/>",
-            "",
-            "7: expected a `parent` inside `joint`",
-        ),
-        (
-            "<parent link=\"a\"/>",
-            "<parent link=\"c\"/>",
-            "9: there is no link `c`",
-        ),
-        (
-            "<axis xyz=\"0 0 1\"/>",
-            "<axis xyz=\"0 0 0\"/>",
-            "11: an axis has a direction",
-        ),
-        (
-            "<parent link=\"a\"/>",
-            "<parent link=\"b\"/>",
-            "1: some joints hang on each other and not on `a`",
-        ),
-        (
-            "</robot>",
-            "<link name=\"c\"/>\n</robot>",
-            "1: one link is the root, found `a`, `c`",
-        ),
-        (
-            "</robot>",
-            "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
-            "13: there is another joint `j`",
-        ),
-        (
-            "</robot>",
-            "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>",
-            "13: `b` hangs on the joint `j` already",
-        ),
-        (
-            "</robot>",
-            "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
-            "1: no link is without a joint that holds it",
-        ),
-    ];
-    for (part, changed, expected) in cases {
+    for (part, changed, expected) in MISTAKES {
         let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap_err();
         assert!(
             found.to_string().starts_with(expected),

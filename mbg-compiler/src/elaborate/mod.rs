@@ -6,6 +6,8 @@
 
 mod bonds;
 mod check;
+mod conditions;
+mod constants;
 mod declare;
 mod definitions;
 pub mod expressions;
@@ -18,12 +20,12 @@ mod quadrature;
 mod references;
 mod scope;
 mod size;
-mod wholes;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use proc_macro2::{Ident, Span};
+use syn::Expr;
 
 pub use finish::component_table;
 pub use model::{
@@ -32,13 +34,13 @@ pub use model::{
 };
 pub use size::LIMIT;
 
+use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
-use self::wholes::Wholes;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
-use crate::graph::{BondGraph, Causality, ElementId, Origins};
+use crate::graph::{BondGraph, Causality, ElementId, JunctionId, Origins};
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, Statement};
 
@@ -116,6 +118,12 @@ enum Pending<'a> {
         attitude: &'a ast::Attitude,
         states: Range<usize>,
     },
+    Coordinate {
+        scope: usize,
+        junction: &'a ast::Junction,
+        value: &'a Expr,
+        id: JunctionId,
+    },
     Output {
         scope: usize,
         output: &'a ast::Output,
@@ -134,6 +142,7 @@ impl Pending<'_> {
             | Self::Gyroscopic { scope, .. }
             | Self::Integral { scope, .. }
             | Self::Attitude { scope, .. }
+            | Self::Coordinate { scope, .. }
             | Self::Output { scope, .. }
             | Self::Displacement { scope, .. } => *scope,
         }
@@ -175,7 +184,7 @@ impl<'a> Builder<'a> {
         let weightless = Entity::Value(Value::Scalar(Expression::ZERO));
         let root = Scope {
             derivative: model.derivative.is_some(),
-            wholes: Wholes::of_model(&model.statements),
+            constants: Constants::of_model(&model.statements),
             names: BTreeMap::from([(GRAVITY.to_owned(), weightless)]),
             ..Scope::default()
         };
@@ -215,7 +224,7 @@ impl<'a> Builder<'a> {
 
     fn connect(&mut self, scope: usize, statements: &'a [Statement]) {
         let mut loops = std::mem::take(&mut self.scopes[scope].loops).into_iter();
-        for statement in statements {
+        for statement in self.scopes[scope].constants.chosen(statements) {
             match statement {
                 Statement::Junction(junction) => self.fill_junction(scope, junction),
                 Statement::Chain(chain) => self.chain(scope, chain),
@@ -263,10 +272,7 @@ impl<'a> Builder<'a> {
     /// Reports a mistake: one inside a component of the library at the instance, which is what the user wrote.
     fn tell(&mut self, scope: usize, mut report: Diagnostic) {
         if let Some((component, instance)) = &self.scopes[scope].library {
-            report.span = *instance;
-            report = report.note(format!(
-                "this is inside `{component}`, a component of the library"
-            ));
+            report = report.inside(component, *instance);
         }
         // Each iteration of a loop makes the same mistake.
         self.diagnostics.report_once(report, self.before);

@@ -15,14 +15,15 @@ struct Part {
 /// Links that fixed joints hold together.
 struct Rigid {
     body: Option<Body>,
-    /// Names of its junction, and of what its motion is known by.
+    /// The 1-junction of its frame's flow.
     junction: String,
+    /// Gravity in axes of its frame, and the frame in the world, as expressions.
     gravity: String,
     orientation: String,
     position: String,
 }
 
-/// The parts of a name's text, as they are printed.
+/// What has been printed, and what later text needs of it.
 struct Printer<'a> {
     robot: &'a Robot,
     names: Names,

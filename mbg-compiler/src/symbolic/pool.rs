@@ -6,10 +6,12 @@
 //! costs nothing.
 
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
 use super::implicit::{Implicit, Place};
+use super::linear::Linear;
 
 struct Node {
     operation: Operation,
@@ -20,12 +22,23 @@ struct Node {
 /// Unknowns that are none of the graph are numbered from here.
 const FRESH: usize = 1 << 31;
 
+/// Equations that give something.
+#[derive(Clone)]
+pub(super) enum Definition {
+    /// Unknowns for which symbols stand, by number.
+    Implicit(usize),
+    /// Unknowns that are expressions.
+    Linear(Rc<Linear>),
+}
+
 /// All expressions of a model.
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// What equations give, in order.
+    definitions: Vec<Definition>,
     /// Where each unknown is defined.
     places: BTreeMap<usize, Place>,
     /// How many unknowns were made up.
@@ -46,6 +59,7 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            definitions: Vec::new(),
             places: BTreeMap::new(),
             fresh: 0,
         };
@@ -218,7 +232,18 @@ impl Pool {
         for (row, unknown) in implicit.unknowns.iter().enumerate() {
             self.places.insert(*unknown, Place { number, row });
         }
+        self.definitions.push(Definition::Implicit(number));
         self.implicit.push(implicit);
+    }
+
+    /// Remembers equations with their solution.
+    pub fn solved(&mut self, linear: Linear) {
+        self.definitions.push(Definition::Linear(Rc::new(linear)));
+    }
+
+    /// What equations give, in order.
+    pub(super) fn definitions(&self) -> &[Definition] {
+        &self.definitions
     }
 
     /// A number that no unknown has yet.
@@ -230,6 +255,7 @@ impl Pool {
     /// Forgets all definitions.
     pub fn forget(&mut self) {
         self.implicit.clear();
+        self.definitions.clear();
         self.places.clear();
     }
 
@@ -253,18 +279,18 @@ impl Pool {
     pub fn causes(&self, expression: Expression) -> Vec<Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.equations(place.number),
+                Some(place) => self.evaluated(place.number),
                 None => Vec::new(),
             },
             operation => operation.operands(),
         }
     }
 
-    /// The equations of a definition, with those of the one whose matrix it uses.
-    fn equations(&self, number: usize) -> Vec<Expression> {
+    /// What a definition evaluates, with what the one evaluates whose matrix it uses.
+    fn evaluated(&self, number: usize) -> Vec<Expression> {
         let implicit = &self.implicit[number];
-        let earlier = implicit.earlier().map(|of| self.implicit[of].equations());
-        [implicit.equations(), earlier.unwrap_or_default()].concat()
+        let earlier = implicit.earlier().map(|of| self.implicit[of].evaluated());
+        [implicit.evaluated(), earlier.unwrap_or_default()].concat()
     }
 
     /// Sine.

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Body, IDENTITY, Matrix, Pose, Vector, aligned, transposed};
 use crate::names::{Names, component};
-use crate::robot::{Joint, Motion, Robot};
+use crate::robot::{Joint, Motion, Robot, shown};
 
 /// A link, as part of the rigid body to which fixed joints make it.
 struct Part {
@@ -64,7 +64,7 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
     let name = component(&robot.name);
     let moving = || robot.joints.iter().filter(|it| it.motion != Motion::Fixed);
     let joints: Vec<&str> = moving().map(|it| it.name.as_str()).collect();
-    let mut text = head(robot, source, &name, &joints);
+    let mut text = head(robot, &shown(source), &name, &joints);
     text += &printer.text;
     text += "}\n";
     if let Some(model) = model {

@@ -166,7 +166,7 @@ impl<'a> Reader<'a> {
             return self.fail(node, text);
         }
         let robot = Robot {
-            name: node.attribute("name").unwrap_or("robot").to_owned(),
+            name: shown(node.attribute("name").unwrap_or("robot")),
             links,
             joints,
             root,
@@ -195,7 +195,7 @@ impl<'a> Reader<'a> {
     }
 
     fn link(&mut self, node: Node<'a, 'a>) -> Checked<Link> {
-        let name = self.attribute(node, "name")?.to_owned();
+        let name = shown(self.attribute(node, "name")?);
         self.note_others(node, &["inertial"]);
         let body = match child(node, "inertial") {
             Some(inertial) => self.body(inertial, &name)?,
@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
     }
 
     fn joint(&mut self, node: Node<'a, 'a>, links: &[Link]) -> Checked<Joint> {
-        let name = self.attribute(node, "name")?.to_owned();
+        let name = shown(self.attribute(node, "name")?);
         let motion = match self.attribute(node, "type")? {
             "fixed" => Motion::Fixed,
             "revolute" | "continuous" => Motion::Turn,
@@ -286,7 +286,7 @@ impl<'a> Reader<'a> {
         let Some(element) = child(node, tag) else {
             return self.fail(node, format!("expected a `{tag}` inside `joint`"));
         };
-        let name = self.attribute(element, "link")?;
+        let name = shown(self.attribute(element, "link")?);
         match links.iter().position(|link| link.name == name) {
             Some(number) => Ok(number),
             None => self.fail(element, format!("there is no link `{name}`")),
@@ -357,6 +357,11 @@ impl<'a> Reader<'a> {
             _ => self.fail(node, format!("`{name}` is three numbers, found `{text}`")),
         }
     }
+}
+
+/// A name on one line, as comments need it.
+pub(crate) fn shown(name: &str) -> String {
+    name.replace(char::is_control, " ")
 }
 
 /// The first element with this tag.

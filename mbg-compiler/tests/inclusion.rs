@@ -195,6 +195,16 @@ fn files_that_cannot_be_included_are_refused() {
 }
 
 #[test]
+fn brackets_nest_only_so_deep() {
+    let deep = format!("component A(port a) {}", "{ ".repeat(100_000));
+    let found = reported_in_brake(&deep);
+    assert!(
+        found.starts_with("brackets nest deeper than 256 [MBG0105]\n  in brake.mbg:1:533\n"),
+        "{found:.200}"
+    );
+}
+
+#[test]
 fn a_name_declared_twice_is_told_in_the_later_file() {
     let brake = format!("{BRAKE}{BRAKE}");
     assert_eq!(

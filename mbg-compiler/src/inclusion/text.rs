@@ -47,6 +47,9 @@ pub(crate) fn tokens(
     }
 }
 
+/// Brackets within brackets, beyond which those who read them could run out of stack.
+const DEEPEST: usize = 256;
+
 /// A bracket that is open.
 struct Open {
     delimiter: Delimiter,
@@ -121,9 +124,9 @@ impl Reader<'_> {
         };
         match first {
             '/' if rest.starts_with("///") => self.documentation(),
-            '(' => self.open(Delimiter::Parenthesis),
-            '[' => self.open(Delimiter::Bracket),
-            '{' => self.open(Delimiter::Brace),
+            '(' => return self.open(Delimiter::Parenthesis),
+            '[' => return self.open(Delimiter::Bracket),
+            '{' => return self.open(Delimiter::Brace),
             ')' => return self.close(Delimiter::Parenthesis),
             ']' => return self.close(Delimiter::Bracket),
             '}' => return self.close(Delimiter::Brace),
@@ -157,7 +160,10 @@ impl Reader<'_> {
         self.trees.extend([hash.into(), TokenTree::Group(group)]);
     }
 
-    fn open(&mut self, delimiter: Delimiter) {
+    fn open(&mut self, delimiter: Delimiter) -> Result<(), Failure> {
+        if self.open.len() == DEEPEST {
+            return self.fail(1, format!("brackets nest deeper than {DEEPEST}"));
+        }
         let place = self.at..self.at + 1;
         let span = self.take(1);
         let before = std::mem::take(&mut self.trees);
@@ -167,6 +173,7 @@ impl Reader<'_> {
             place,
             before,
         });
+        Ok(())
     }
 
     fn close(&mut self, delimiter: Delimiter) -> Result<(), Failure> {

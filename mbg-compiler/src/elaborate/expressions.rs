@@ -410,6 +410,8 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn scale(&mut self, factor: Expression, value: Value) -> Value {
         match value {
+            // A rotation stays known as one.
+            value if factor == Expression::ONE => value,
             Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
             Value::Matrix(product) => {
                 let matrix = product

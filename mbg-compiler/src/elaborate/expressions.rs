@@ -401,8 +401,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             (Value::Matrix(a), Value::Matrix(b)) if b.columns() == 1 => {
                 let vector = b.to_matrix(self.pool);
-                let result = a.apply(self.pool, &vector);
-                Ok(Value::Matrix(Product::of(Factor::Dense(result))))
+                Ok(Value::column(a.apply(self.pool, &vector).entries))
             }
             (Value::Matrix(a), Value::Matrix(b)) => Ok(Value::Matrix(a.then(b))),
         }

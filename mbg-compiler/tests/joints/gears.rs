@@ -84,6 +84,9 @@ fn teeth_that_give_way_become_rigid() {
         let errors = [1e4, 1e5, 1e6, 1e7].map(error);
         let slopes = [0, 1, 2].map(|decade| (errors[decade + 1] / errors[decade]).log10());
         println!("{coupling} …: {errors:?}, slopes {slopes:.3?}");
-        assert!(slopes.iter().all(|slope| (slope + 1.0).abs() < 0.05), "{coupling}: {slopes:?}");
+        assert!(
+            slopes.iter().all(|slope| (slope + 1.0).abs() < 0.05),
+            "{coupling}: {slopes:?}"
+        );
     }
 }

@@ -5,7 +5,7 @@
 //! zero. The first form in which a function was built is the one that is kept. Negation is a bit of the handle and
 //! costs nothing.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
@@ -26,6 +26,8 @@ pub struct Pool {
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// Where each unknown is defined.
+    places: BTreeMap<usize, Place>,
     /// How many unknowns were made up.
     fresh: usize,
 }
@@ -44,6 +46,7 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            places: BTreeMap::new(),
             fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
@@ -211,6 +214,10 @@ impl Pool {
 
     /// Says which equations give unknowns. They may hold unknowns that were defined before.
     pub fn define(&mut self, implicit: Implicit) {
+        let number = self.implicit.len();
+        for (row, unknown) in implicit.unknowns.iter().enumerate() {
+            self.places.insert(*unknown, Place { number, row });
+        }
         self.implicit.push(implicit);
     }
 
@@ -223,6 +230,7 @@ impl Pool {
     /// Forgets all definitions.
     pub fn forget(&mut self) {
         self.implicit.clear();
+        self.places.clear();
     }
 
     /// What is given by equations, in order of definition.
@@ -234,14 +242,10 @@ impl Pool {
     /// Where a symbol is defined, if it is an unknown that equations give.
     #[must_use]
     pub fn place(&self, symbol: Symbol) -> Option<Place> {
-        let Symbol::Unknown(unknown) = symbol else {
-            return None;
-        };
-        let position = |(number, implicit): (usize, &Implicit)| {
-            let row = implicit.unknowns.iter().position(|own| *own == unknown)?;
-            Some(Place { number, row })
-        };
-        self.implicit.iter().enumerate().find_map(position)
+        match symbol {
+            Symbol::Unknown(unknown) => self.places.get(&unknown).copied(),
+            _ => None,
+        }
     }
 
     /// What the value of a node depends on: its operands, and for an unknown the equations that give it.
@@ -249,11 +253,18 @@ impl Pool {
     pub fn causes(&self, expression: Expression) -> Vec<Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.implicit[place.number].residuals.clone(),
+                Some(place) => self.equations(place.number),
                 None => Vec::new(),
             },
             operation => operation.operands(),
         }
+    }
+
+    /// The equations of a definition, with those of the one whose matrix it uses.
+    fn equations(&self, number: usize) -> Vec<Expression> {
+        let implicit = &self.implicit[number];
+        let earlier = implicit.earlier().map(|of| self.implicit[of].equations());
+        [implicit.equations(), earlier.unwrap_or_default()].concat()
     }
 
     /// Sine.

@@ -33,6 +33,7 @@ codes! {
     NOT_FINITE = "MBG0216", "a law that divides by zero or whose literal breaks an assumption";
     WHOLE_NUMBER = "MBG0217", "a bound or an index that is no whole number known at compile time";
     CYCLE = "MBG0218", "a value that is defined by itself";
+    NO_ROTATION = "MBG0219", "an initial attitude that is no rotation";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";
@@ -44,5 +45,6 @@ codes! {
     SINGULAR_JUNCTIONS = "MBG0401", "a junction structure that leaves variables undetermined";
     NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop that does not determine its variables";
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
+    SINGULAR_START = "MBG0404", "a model that starts where something it divides by is zero";
     TOO_LARGE = "MBG0601", "a model over the size limit";
 }

@@ -13,6 +13,7 @@ use crate::equations::{self, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind};
 use crate::network::Network;
 use crate::program::{self, Program};
+use crate::start;
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
@@ -128,6 +129,10 @@ fn finish(
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
     let conditioning = solution.conditioning.iter().map(|it| it.normalised);
     let conditioning: Vec<Expression> = conditioning.collect();
+    start::check(&model, scalars, &conditioning, &pool, diagnostics);
+    if diagnostics.any() {
+        return None;
+    }
     let initial = answers
         .states
         .iter()

@@ -33,7 +33,9 @@ codes! {
     NOT_FINITE = "MBG0216", "a law that divides by zero or whose literal breaks an assumption";
     WHOLE_NUMBER = "MBG0217", "a bound or an index that is no whole number known at compile time";
     CYCLE = "MBG0218", "a value that is defined by itself";
-    NO_ROTATION = "MBG0219", "an initial attitude that is no rotation";
+    WORD = "MBG0219", "a word that is none of those to choose from";
+    CONDITION = "MBG0220", "a condition of statements that is not decided at compile time";
+    NO_ROTATION = "MBG0221", "an initial attitude that is no rotation";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";

@@ -56,6 +56,15 @@ impl Diagnostic {
         }
     }
 
+    /// Moves a mistake inside a component of the library to the instance, which is what the user wrote.
+    #[must_use]
+    pub fn inside(mut self, component: &str, instance: Span) -> Self {
+        self.span = instance;
+        self.note(format!(
+            "this is inside `{component}`, a component of the library"
+        ))
+    }
+
     /// The text that the user reads.
     #[must_use]
     pub fn text(&self) -> String {

@@ -261,6 +261,170 @@ fn gravity_is_seen_by_every_component() {
     ");
 }
 
+/// A component whose axes are chosen by words, numbers and what the call gives.
+const CHOICES: &str = "component Hinge(port a[3]) {
+    param blocked: ideal | compliant = ideal;
+    param axis = 0;
+    param stiffness = 2.0;
+    param compliance = 1.0;
+    let count = if blocked == compliant { 3 } else { 1 };
+    if given(stiffness) && axis < 2 {
+        a[axis] -> C spring { stiffness: stiffness };
+        let law = spring.e;
+    } else if given(stiffness) || given(compliance) {
+        a[axis] -> C soft { compliance: compliance };
+        let law = soft.e;
+    } else {
+        let law = 0.0;
+    }
+    if blocked == ideal { } else {
+        for k in 0..3 { if k != axis { a[k] -> C wall { stiffness: 100.0 }; } }
+    }
+    if !(blocked != compliant) { let last = count + 1; } else { let last = count; }
+    if last == 2 { a.z -> R friction { resistance: 1.0 }; }
+    output law = law;
+    output count = count;
+}";
+
+#[test]
+fn statements_are_chosen_at_compile_time() {
+    let model = |call: &str| {
+        flat(&format!(
+            "{CHOICES} model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }} {call} }}"
+        ))
+    };
+    insta::assert_snapshot!(model("h: Hinge (a);"), @"
+    a -> m [3]
+    state m.p.x = 0
+    state m.p.y = 0
+    state m.p.z = 0
+    output h.law = 0
+    output h.count = 1
+    ");
+    insta::assert_snapshot!(model("h: Hinge { axis: 1, stiffness: 5.0, blocked: compliant } (a);"), @"
+    a -> m [3]
+    a.y -> h.spring [1]
+    a.x -> h.k[0].wall [1]
+    a.z -> h.k[2].wall [1]
+    state m.p.x = 0
+    state m.p.y = 0
+    state m.p.z = 0
+    state h.spring.q = 0
+    state h.k[0].wall.q = 0
+    state h.k[2].wall.q = 0
+    output h.law = Signal(0)
+    output h.count = 3
+    ");
+    insta::assert_snapshot!(model("for k in 2..3 { h: Hinge { axis: k, stiffness: 5.0 } (a); }"), @"
+    a -> m [3]
+    a.z -> k[2].h.soft [1]
+    state m.p.x = 0
+    state m.p.y = 0
+    state m.p.z = 0
+    state k[2].h.soft.q = 0
+    output k[2].h.law = Signal(0)
+    output k[2].h.count = 1
+    ");
+}
+
+#[test]
+fn a_choice_and_what_is_not_given_are_handed_on() {
+    let text = format!(
+        "{CHOICES} component Both(port a[3]) {{
+        param blocked: ideal | compliant;
+        param stiffness = 1.0;
+        h: Hinge {{ blocked: blocked, stiffness: stiffness }} (a);
+    }}
+    model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }} b: Both {{ blocked: compliant }} (a); }}"
+    );
+    insta::assert_snapshot!(flat(&text), @"
+    a -> m [3]
+    a.y -> b.h.k[1].wall [1]
+    a.z -> b.h.k[2].wall [1]
+    state m.p.x = 0
+    state m.p.y = 0
+    state m.p.z = 0
+    state b.h.k[1].wall.q = 0
+    state b.h.k[2].wall.q = 0
+    output b.h.law = 0
+    output b.h.count = 3
+    ");
+}
+
+#[test]
+fn mistakes_in_choices_are_told() {
+    insta::assert_snapshot!(mistake("if n > 2 { 1 b; } a.x -> b;"), @"
+    2:4 expected a condition that is decided while the model is compiled, found `n > 2` [MBG0220]
+      help: it compares whole numbers that are known then, or a parameter with one of its words, as in `blocked == ideal`
+      help: it may ask `given(parameter)`, and join conditions by `&&`, `||` and `!`
+    ");
+    insta::assert_snapshot!(mistake("if given(n) { 1 b; }"), @"2:10 `n` is no parameter of this component [MBG0203]");
+    insta::assert_snapshot!(mistake("for k in 0..2 { for j in 0..k { if j + n == 2 { 1 b; } } }"), @"
+    2:36 expected a condition that is decided while the model is compiled, found `j + n == 2` [MBG0220]
+      help: it compares whole numbers that are known then, or a parameter with one of its words, as in `blocked == ideal`
+      help: it may ask `given(parameter)`, and join conditions by `&&`, `||` and `!`
+    ");
+    insta::assert_snapshot!(mistake("param way: left | right = left; if way == right { 1 b; }"), @"2:7 a choice of words belongs to a component, whose instances choose [MBG0213]");
+    insta::assert_snapshot!(mistake("if 1 == 1 { input u; gravity [0.0, 0.0, -u]; let b = a.f.x; output b = b; } else { nonsense -> more; output b = 1.0; }"), @"");
+    insta::assert_snapshot!(mistake("if 1 == 2 { 1 b; a.x -> b; } a.x -> b;"), @"
+    2:37 `b` is not declared [MBG0203]
+      help: junctions here are `a`
+    ");
+}
+
+#[test]
+fn mistakes_in_calls_of_choices_are_told() {
+    let mistake = |call: &str, inside: &str| {
+        let text = format!(
+            "component C(port a[3]) {{ param way: left | right; param n = 1;\n {inside} }}
+model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }}
+{call} }}"
+        );
+        elaborated(&text).err().unwrap_or_default()
+    };
+    insta::assert_snapshot!(mistake("c: C { way: lift } (a);", ""), @"
+    4:13 expected one of `left`, `right`, found `lift` [MBG0219]
+      help: did you mean `left`?
+    ");
+    insta::assert_snapshot!(mistake("c: C { way: 2.0 } (a);", ""), @"4:13 expected one of `left`, `right`, found `2.0` [MBG0219]");
+    insta::assert_snapshot!(mistake("c: C { way } (a);", ""), @"
+    4:1 `C` needs a value for `way` [MBG0214]
+      help: write `{ way: left | right }`
+    ");
+    insta::assert_snapshot!(mistake("c: C (a);", ""), @"
+    4:1 `C` needs a value for `way` [MBG0214]
+      help: write `{ way: left | right }`
+    ");
+    insta::assert_snapshot!(mistake("c: C { wya: left } (a);", ""), @"
+    4:8 `C` has no parameter `wya` [MBG0207]
+      help: its parameters are `n`, `way`
+    4:1 `C` needs a value for `way` [MBG0214]
+      help: write `{ way: left | right }`
+    ");
+    insta::assert_snapshot!(mistake("c: C { way: left } (a);", "if way == rihgt { }"), @"
+    2:12 expected one of `left`, `right`, found `rihgt` [MBG0219]
+      help: did you mean `right`?
+    ");
+    insta::assert_snapshot!(mistake("c: C { way: left } (a);", "if way < right { }"), @"
+    2:5 expected a condition that is decided while the model is compiled, found `way < right` [MBG0220]
+      help: it compares whole numbers that are known then, or a parameter with one of its words, as in `blocked == ideal`
+      help: it may ask `given(parameter)`, and join conditions by `&&`, `||` and `!`
+    ");
+    insta::assert_snapshot!(mistake("c: C { way: left } (a);", "if given(m) { }"), @"2:11 `m` is no parameter of this component [MBG0203]");
+    insta::assert_snapshot!(mistake("c: C { way: left } (a);", "output y = way;"), @"2:13 `way` is a word and no number; ask `if way == …` [MBG0213]");
+    insta::assert_snapshot!(mistake("c: C { way: left } (a);", "output y = if way == up { 1.0 } else { 2.0 };"), @"2:23 expected one of `left`, `right`, found `up` [MBG0219]");
+    insta::assert_snapshot!(mistake("hinge: Revolute { axis: 0.5 } (a, a);", ""), @"
+    4:32 port `a` has dimension 6, found 3 [MBG0204]
+    4:35 port `b` has dimension 6, found 3 [MBG0204]
+    4:1 expected a whole number that is known while the model is compiled, found `axis` [MBG0217]
+      this is inside `Revolute`, a component of the library
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    4:1 expected a number, found a 3×3 matrix [MBG0204]
+      this is inside `Revolute`, a component of the library
+    ");
+}
+
 /// Errors of a model with one mass around the statements given.
 fn mistake(statements: &str) -> String {
     let text =

@@ -97,6 +97,15 @@ const FIXTURES: &[(Code, &str)] = &[
     ),
     (codes::CYCLE, beside_a_mass!("let x = y; let y = x;")),
     (
+        codes::WORD,
+        "component C(port a) { param b: x | y = x; a -> I m { inertia: 1.0 }; }
+         model M { 1 a; c: C { b: z } (a); }",
+    ),
+    (
+        codes::CONDITION,
+        beside_a_mass!("param x = 1.0; if x > 0 { 1 b; }"),
+    ),
+    (
         codes::STORAGE_DERIVATIVE,
         beside_a_mass!("a -> I n { inertia: 2.0 };"),
     ),

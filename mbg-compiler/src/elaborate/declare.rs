@@ -1,5 +1,7 @@
 //! What statements declare before anything is connected: junctions, parameters, inputs and named values.
 
+use proc_macro2::Ident;
+
 use super::expressions::Value;
 use super::model::Parameter;
 use super::scope::{Entity, GRAVITY};
@@ -13,7 +15,7 @@ use crate::syntax::ast::{self, Statement};
 impl<'a> Builder<'a> {
     /// Declares the names of junctions, parameters, inputs, values and loops.
     pub(super) fn declare_names(&mut self, scope: usize, statements: &'a [Statement]) {
-        for statement in statements {
+        for statement in self.scopes[scope].constants.chosen(statements) {
             self.declare_name(scope, statement);
         }
     }
@@ -43,10 +45,11 @@ impl<'a> Builder<'a> {
             Statement::Parameter(parameter) if scope == 0 => self.parameter(parameter),
             Statement::Parameter(parameter) if self.scopes[scope].around.is_some() => {
                 let message = "a parameter belongs to a model or a component; in a loop, use `let`";
-                self.tell(
-                    scope,
-                    error(codes::EXPRESSION, parameter.name.span(), message),
-                );
+                self.misplaced(scope, &parameter.name, message);
+            }
+            Statement::Choice(choice) if scope == 0 || self.scopes[scope].around.is_some() => {
+                let message = "a choice of words belongs to a component, whose instances choose";
+                self.misplaced(scope, &choice.name, message);
             }
             Statement::Input(input) => self.input(scope, input),
             Statement::Let(named) => {
@@ -64,6 +67,11 @@ impl<'a> Builder<'a> {
             }
             _ => {}
         }
+    }
+
+    fn misplaced(&mut self, scope: usize, name: &Ident, message: &str) {
+        self.tell(scope, error(codes::EXPRESSION, name.span(), message));
+        self.name(scope, name, Entity::Opaque);
     }
 
     fn parameter(&mut self, parameter: &'a ast::Parameter) {

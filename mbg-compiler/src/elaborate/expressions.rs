@@ -38,6 +38,9 @@ pub trait Names {
     /// The number that an expression stands for while the model is compiled.
     fn whole(&self, expression: &Expr) -> Result<i64>;
 
+    /// Whether a condition holds, if that is known while the model is compiled.
+    fn decide(&self, condition: &Expr) -> Result<bool>;
+
     /// Every plain name.
     fn all(&self) -> Vec<&str>;
 }
@@ -570,25 +573,25 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     fn choice(&mut self, choice: &syn::ExprIf) -> Result<Value> {
-        let Expr::Binary(test) = &*choice.cond else {
-            return fail(
-                choice.cond.span(),
-                "expected a comparison with < <= > or >=",
-            );
-        };
         let Some((_, otherwise)) = &choice.else_branch else {
             return fail(
                 choice.span(),
                 "expected an `else`: an `if` has a value on both sides",
             );
         };
-        if let Some(chosen) = self.decided(test) {
-            return if chosen {
-                self.branch(&choice.then_branch)
-            } else {
-                self.evaluate(otherwise)
-            };
+        // What is known chooses while the model is compiled: the other branch need not even exist.
+        match self.names.decide(&choice.cond) {
+            Ok(true) => return self.branch(&choice.then_branch),
+            Ok(false) => return self.evaluate(otherwise),
+            Err(report) if report.code != codes::CONDITION => return Err(report),
+            Err(_) => {}
         }
+        let Expr::Binary(test) = &*choice.cond else {
+            return fail(
+                choice.cond.span(),
+                "expected a comparison with < <= > or >=",
+            );
+        };
         let (a, b) = (self.scalar(&test.left)?, self.scalar(&test.right)?);
         let yes = number(
             &self.branch(&choice.then_branch)?,
@@ -608,21 +611,6 @@ impl<N: Names> Evaluator<'_, N> {
         Ok(Value::Scalar(
             self.pool.call(Function::SelectLess, &arguments),
         ))
-    }
-
-    /// A comparison of whole numbers chooses while the model is compiled: the other branch need not even exist.
-    fn decided(&self, test: &syn::ExprBinary) -> Option<bool> {
-        let left = self.names.whole(&test.left).ok()?;
-        let right = self.names.whole(&test.right).ok()?;
-        match test.op {
-            BinOp::Lt(_) => Some(left < right),
-            BinOp::Gt(_) => Some(left > right),
-            BinOp::Le(_) => Some(left <= right),
-            BinOp::Ge(_) => Some(left >= right),
-            BinOp::Eq(_) => Some(left == right),
-            BinOp::Ne(_) => Some(left != right),
-            _ => None,
-        }
     }
 
     fn branch(&mut self, block: &syn::Block) -> Result<Value> {

@@ -3,6 +3,7 @@
 use proc_macro2::Ident;
 
 use super::Builder;
+use super::conditions::no_word;
 use super::scope::{Entity, Scope};
 use crate::codes;
 use crate::diagnostics::{error, listing};
@@ -30,7 +31,7 @@ impl<'a> Builder<'a> {
                 .library
                 .clone()
                 .or(component.library.then_some(place)),
-            wholes: around.wholes.of_instance(instance, component),
+            constants: around.constants.of_instance(instance, component),
             ..Scope::default()
         });
         self.name(scope, &instance.name, Entity::Instance(inner));
@@ -91,14 +92,21 @@ impl<'a> Builder<'a> {
         component: &'a ast::Component,
     ) {
         for argument in &instance.arguments {
-            let known = |parameter: &ast::Parameter| parameter.name == argument.name;
-            if !component.parameters().any(known) {
+            let mut known: Vec<String> = component
+                .parameters()
+                .map(|known| known.name.to_string())
+                .collect();
+            known.extend(component.choices().map(|known| known.name.to_string()));
+            if !known.iter().any(|known| argument.name == known) {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
                 let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
-                let names = component.parameters().map(|known| known.name.to_string());
-                let help = format!("its parameters are {}", listing(names));
+                let help = format!("its parameters are {}", listing(known));
                 self.tell(scope, report.help(help));
             }
+        }
+        for choice in component.choices() {
+            self.check_word(scope, instance, choice);
+            self.name(inner, &choice.name, Entity::Choice);
         }
         for parameter in component.parameters() {
             let name = &parameter.name;
@@ -110,13 +118,42 @@ impl<'a> Builder<'a> {
                     self.definition(inner, name, parameter.dimension, (inner, default))
                 }
                 (None, None) => {
-                    let message = format!("`{}` needs a value for `{name}`", component.name);
-                    let report = error(codes::MISSING_DEFAULT, instance.name.span(), message);
-                    self.tell(scope, report.help(format!("write `{{ {name}: … }}`")));
+                    self.missing_argument(scope, instance, name, "…");
                     Entity::Opaque
                 }
             };
             self.name(inner, name, value);
+        }
+    }
+
+    fn missing_argument(
+        &mut self,
+        scope: usize,
+        instance: &ast::Instance,
+        name: &Ident,
+        value: &str,
+    ) {
+        let message = format!("`{}` needs a value for `{name}`", instance.component);
+        let report = error(codes::MISSING_DEFAULT, instance.name.span(), message);
+        self.tell(scope, report.help(format!("write `{{ {name}: {value} }}`")));
+    }
+
+    /// Reports a choice that is not made, or made of a word that is not listed.
+    fn check_word(&mut self, scope: usize, instance: &ast::Instance, choice: &ast::Choice) {
+        let name = &choice.name;
+        let words: Vec<String> = choice.words.iter().map(ToString::to_string).collect();
+        let Some(argument) = instance.arguments.iter().find(|it| it.name == *name) else {
+            if choice.default.is_none() {
+                self.missing_argument(scope, instance, name, &words.join(" | "));
+            }
+            return;
+        };
+        let Some(value) = &argument.value else {
+            return self.missing_argument(scope, instance, name, &words.join(" | "));
+        };
+        let word = self.scopes[scope].constants.word(value);
+        if word.is_none_or(|word| !words.contains(&word)) {
+            self.tell(scope, *no_word(value, &words));
         }
     }
 

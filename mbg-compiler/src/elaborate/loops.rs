@@ -11,7 +11,7 @@ impl<'a> Builder<'a> {
     /// Declares the iterations of a loop and the names inside.
     pub(super) fn declare_loop(&mut self, scope: usize, repeated: &'a Loop) {
         let around = &self.scopes[scope];
-        let (start, numbers) = match around.wholes.range(repeated) {
+        let (start, numbers) = match around.constants.range(repeated) {
             Ok(range) => (range.start, range),
             Err(report) => {
                 self.tell(scope, *report);
@@ -32,7 +32,7 @@ impl<'a> Builder<'a> {
                     derivative: around.derivative,
                     around: Some(scope),
                     library: around.library.clone(),
-                    wholes: around.wholes.of_iteration(repeated, Some(number)),
+                    constants: around.constants.of_iteration(repeated, Some(number)),
                     names: BTreeMap::from([(
                         repeated.variable.to_string(),
                         Entity::Value(Value::Scalar(variable)),

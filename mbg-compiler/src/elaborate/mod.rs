@@ -7,6 +7,8 @@
 mod attitude;
 mod bonds;
 mod check;
+mod conditions;
+mod constants;
 mod declare;
 mod definitions;
 pub mod expressions;
@@ -20,7 +22,6 @@ mod quadrature;
 mod references;
 mod scope;
 mod size;
-mod wholes;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -34,10 +35,10 @@ pub use model::{
 };
 pub use size::LIMIT;
 
+use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
-use self::wholes::Wholes;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::graph::{BondGraph, Causality, ElementId, Origins};
@@ -178,7 +179,7 @@ impl<'a> Builder<'a> {
         let weightless = Entity::Value(Value::Scalar(Expression::ZERO));
         let root = Scope {
             derivative: model.derivative.is_some(),
-            wholes: Wholes::of_model(&model.statements),
+            constants: Constants::of_model(&model.statements),
             names: BTreeMap::from([(GRAVITY.to_owned(), weightless)]),
             ..Scope::default()
         };
@@ -219,7 +220,7 @@ impl<'a> Builder<'a> {
 
     fn connect(&mut self, scope: usize, statements: &'a [Statement]) {
         let mut loops = std::mem::take(&mut self.scopes[scope].loops).into_iter();
-        for statement in statements {
+        for statement in self.scopes[scope].constants.chosen(statements) {
             match statement {
                 Statement::Junction(junction) => self.fill_junction(scope, junction),
                 Statement::Chain(chain) => self.chain(scope, chain),
@@ -267,10 +268,7 @@ impl<'a> Builder<'a> {
     /// Reports a mistake: one inside a component of the library at the instance, which is what the user wrote.
     fn tell(&mut self, scope: usize, mut report: Diagnostic) {
         if let Some((component, instance)) = &self.scopes[scope].library {
-            report.span = *instance;
-            report = report.note(format!(
-                "this is inside `{component}`, a component of the library"
-            ));
+            report = report.inside(component, *instance);
         }
         // Each iteration of a loop makes the same mistake.
         let place = |report: &Diagnostic| format!("{:?}", report.span);

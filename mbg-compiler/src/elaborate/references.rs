@@ -87,7 +87,7 @@ impl Builder<'_> {
                     let message = format!("a range of `{name}` has no names; give one iteration");
                     return Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)));
                 }
-                let number = self.scopes[scope].wholes.evaluate(&selection.start)?;
+                let number = self.scopes[scope].constants.evaluate(&selection.start)?;
                 Some((number, name.span()))
             }
             _ => None,
@@ -97,10 +97,10 @@ impl Builder<'_> {
 
     /// The numbers that a selection gives.
     fn range(&self, scope: usize, selection: &Selection) -> Result<Range<i64>> {
-        let wholes = &self.scopes[scope].wholes;
-        let start = wholes.evaluate(&selection.start)?;
+        let constants = &self.scopes[scope].constants;
+        let start = constants.evaluate(&selection.start)?;
         let end = match &selection.end {
-            Some(end) => wholes.evaluate(end)?,
+            Some(end) => constants.evaluate(end)?,
             None => start.saturating_add(1),
         };
         Ok(start..end)

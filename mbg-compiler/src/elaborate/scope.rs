@@ -7,10 +7,10 @@ use proc_macro2::{Ident, Span};
 use syn::Expr;
 
 use super::bonds::is_two_port;
+use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Place, Quantity, Signals};
-use super::wholes::Wholes;
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
@@ -40,6 +40,8 @@ pub(super) enum Entity {
     Instance(usize),
     /// A loop with a label: the first value of its variable, and the scopes of its iterations.
     Loop(i64, Vec<usize>),
+    /// A parameter whose value is a word.
+    Choice,
     /// Declared, but broken or without a value.
     Opaque,
 }
@@ -56,7 +58,7 @@ pub(super) struct Scope {
     /// Inside a component of the library: its name, and the instance in the user's text.
     pub(super) library: Option<(String, Span)>,
     /// Names that stand for whole numbers.
-    pub(super) wholes: Wholes,
+    pub(super) constants: Constants,
     /// Names.
     pub(super) names: BTreeMap<String, Entity>,
     /// Loops in order of declaration: their paths, and the scopes of their iterations.
@@ -236,7 +238,11 @@ impl Names for Lookup<'_, '_> {
     }
 
     fn whole(&self, expression: &Expr) -> Result<i64> {
-        self.scopes[self.scope].wholes.evaluate(expression)
+        self.scopes[self.scope].constants.evaluate(expression)
+    }
+
+    fn decide(&self, condition: &Expr) -> Result<bool> {
+        self.scopes[self.scope].constants.decide(condition)
     }
 
     fn all(&self) -> Vec<&str> {
@@ -260,6 +266,10 @@ impl Lookup<'_, '_> {
             },
             Entity::Input(range) => Ok(symbols(pool, range.clone().map(Symbol::Input))),
             Entity::States(range) => Ok(symbols(pool, range.clone().map(Symbol::State))),
+            Entity::Choice => fail(
+                name.span(),
+                format!("`{name}` is a word and no number; ask `if {name} == …`"),
+            ),
             Entity::Rotation(range) => {
                 let entries = range.clone().map(|state| pool.symbol(Symbol::State(state)));
                 let matrix = Matrix::new(3, 3, entries.collect());

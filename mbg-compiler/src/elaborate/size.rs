@@ -1,18 +1,18 @@
-//! How large a model is, before anything is built.
+//! How large a model is, and whether it is known which of its statements are chosen, before anything is built.
 
 use std::collections::BTreeMap;
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 
-use super::wholes::Wholes;
+use super::constants::Constants;
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
-use crate::syntax::ast::{Component, Element, Instance, Loop, Model, Statement};
+use crate::diagnostics::{Diagnostic, Diagnostics, error};
+use crate::syntax::ast::{Component, Conditional, Element, Instance, Loop, Model, Statement};
 
 /// The most vector bonds that a model may have, and the most instances and iterations of loops.
 pub const LIMIT: usize = 4096;
 
-/// Reports a model that is too large or a component that contains itself; false if it did.
+/// Reports a model that is too large, a component that contains itself or an `if` that is not decided; false if it did.
 pub(super) fn check(
     model: &Model,
     components: &BTreeMap<String, &Component>,
@@ -22,13 +22,18 @@ pub(super) fn check(
         components,
         known: BTreeMap::new(),
         open: Vec::new(),
+        library: None,
         probing: false,
     };
-    let wholes = Wholes::of_model(&model.statements);
-    let found = match counter.count(&model.statements, &wholes) {
+    let constants = Constants::of_model(&model.statements);
+    let found = match counter.count(&model.statements, &constants) {
         Ok(size) if size.bonds <= LIMIT => return true,
         Ok(size) => format!("{} vector bonds", size.bonds),
         Err(Stop::Scopes) => "too many instances and iterations of loops".to_owned(),
+        Err(Stop::Undecided(report)) => {
+            diagnostics.report(*report);
+            return false;
+        }
         // Elaboration tells which bound of a loop is no whole number.
         Err(Stop::Unknown) => return true,
         Err(Stop::Recursion(name)) => {
@@ -68,8 +73,10 @@ impl Size {
 enum Stop {
     /// Too many instances and iterations to count on.
     Scopes,
-    /// A bound of a loop is not known.
+    /// A bound of a loop or a condition is not known.
     Unknown,
+    /// A condition is not known, which is the mistake that this reports.
+    Undecided(Box<Diagnostic>),
     /// A component contains itself.
     Recursion(Ident),
 }
@@ -77,14 +84,16 @@ enum Stop {
 struct Counter<'a> {
     components: &'a BTreeMap<String, &'a Component>,
     /// Sizes of components by the whole numbers that they are given, and by whether that was a probe.
-    known: BTreeMap<(bool, String, Wholes), Size>,
+    known: BTreeMap<(bool, String, Constants), Size>,
     open: Vec<String>,
+    /// Inside a component of the library: its name, and the instance in the user's text.
+    library: Option<(String, Span)>,
     /// Whether an unknown bound ends the count; otherwise its loop counts for nothing, since it will not be built.
     probing: bool,
 }
 
 impl Counter<'_> {
-    fn count(&mut self, statements: &[Statement], wholes: &Wholes) -> Result<Size, Stop> {
+    fn count(&mut self, statements: &[Statement], constants: &Constants) -> Result<Size, Stop> {
         let mut total = Size::default();
         for statement in statements {
             let bonds = match statement {
@@ -92,11 +101,15 @@ impl Counter<'_> {
                 Statement::Chain(chain) => chain.arrows.len(),
                 Statement::Closure(_) => 2,
                 Statement::Instance(instance) => {
-                    total.add(self.instance(instance, wholes)?, 1)?;
+                    total.add(self.instance(instance, constants)?, 1)?;
                     0
                 }
                 Statement::Loop(repeated) => {
-                    total.add(self.repeated(repeated, wholes)?, 1)?;
+                    total.add(self.repeated(repeated, constants)?, 1)?;
+                    0
+                }
+                Statement::Conditional(conditional) => {
+                    total.add(self.chosen(conditional, constants)?, 1)?;
                     0
                 }
                 _ => 0,
@@ -106,7 +119,7 @@ impl Counter<'_> {
         Ok(total)
     }
 
-    fn instance(&mut self, instance: &Instance, wholes: &Wholes) -> Result<Size, Stop> {
+    fn instance(&mut self, instance: &Instance, constants: &Constants) -> Result<Size, Stop> {
         let name = instance.component.to_string();
         if self.open.contains(&name) {
             return Err(Stop::Recursion(instance.component.clone()));
@@ -114,13 +127,19 @@ impl Counter<'_> {
         let Some(component) = self.components.get(&name) else {
             return Ok(Size::default());
         };
-        let inner = wholes.of_instance(instance, component);
+        let inner = constants.of_instance(instance, component);
         let key = (self.probing, name.clone(), inner.clone());
         if let Some(known) = self.known.get(&key) {
             return Ok(*known);
         }
-        self.open.push(name);
+        self.open.push(name.clone());
+        let around = self.library.clone();
+        if component.library {
+            self.library
+                .get_or_insert_with(|| (name, instance.name.span()));
+        }
         let counted = self.count(&component.statements, &inner);
+        self.library = around;
         self.open.pop();
         let mut size = counted?;
         size.scopes += 1;
@@ -128,9 +147,21 @@ impl Counter<'_> {
         Ok(size)
     }
 
+    /// What an `if` chooses.
+    fn chosen(&mut self, conditional: &Conditional, constants: &Constants) -> Result<Size, Stop> {
+        match constants.branch(conditional) {
+            Ok(branch) => self.count(branch, constants),
+            Err(_) if self.probing => Err(Stop::Unknown),
+            Err(report) => Err(Stop::Undecided(Box::new(match &self.library {
+                Some((component, instance)) => report.inside(component, *instance),
+                None => *report,
+            }))),
+        }
+    }
+
     /// All iterations at once where they are alike; otherwise one after the other, as far as the limit.
-    fn repeated(&mut self, repeated: &Loop, wholes: &Wholes) -> Result<Size, Stop> {
-        let range = match wholes.range(repeated) {
+    fn repeated(&mut self, repeated: &Loop, constants: &Constants) -> Result<Size, Stop> {
+        let range = match constants.range(repeated) {
             Ok(range) => range,
             Err(_) if self.probing => return Err(Stop::Unknown),
             Err(_) => return Ok(Size::default()),
@@ -145,7 +176,10 @@ impl Counter<'_> {
         };
         let mut total = Size::default();
         let probing = std::mem::replace(&mut self.probing, true);
-        let alike = self.count(&repeated.statements, &wholes.of_iteration(repeated, None));
+        let alike = self.count(
+            &repeated.statements,
+            &constants.of_iteration(repeated, None),
+        );
         self.probing = probing;
         match alike {
             Ok(size) => {
@@ -154,8 +188,8 @@ impl Counter<'_> {
             }
             Err(Stop::Unknown) => {
                 for number in range {
-                    let wholes = wholes.of_iteration(repeated, Some(number));
-                    total.add(self.count(&repeated.statements, &wholes)?, 1)?;
+                    let constants = constants.of_iteration(repeated, Some(number));
+                    total.add(self.count(&repeated.statements, &constants)?, 1)?;
                     total.add(iteration, 1)?;
                 }
             }

@@ -64,6 +64,8 @@ pub struct Port {
 pub enum Statement {
     /// `param drag: N*m*s/rad = 1e3;`
     Parameter(Parameter),
+    /// `param blocked: ideal | compliant = ideal;`
+    Choice(Choice),
     /// `input gust[3]: N*m;`
     Input(Input),
     /// `output alpha[3] = spring.q;`
@@ -84,6 +86,8 @@ pub enum Statement {
     Gravity(Gravity),
     /// `links: for k in 0..4 { … }`
     Loop(Loop),
+    /// `if blocked == compliant { statements } else { statements }`
+    Conditional(Conditional),
     /// `close a -> b by multipliers, displacement: r;`
     Closure(Closure),
     /// `causality componentwise;`
@@ -105,6 +109,18 @@ pub struct Parameter {
     pub unit: Option<Unit>,
     /// Default value; a model's parameters must have one.
     pub default: Option<Expr>,
+}
+
+/// `param name: word | word = word;`
+pub struct Choice {
+    /// Documentation comments.
+    pub documentation: Vec<Attribute>,
+    /// Name.
+    pub name: Ident,
+    /// The words to choose from, two or more.
+    pub words: Vec<Ident>,
+    /// The word chosen where an instance says nothing.
+    pub default: Option<Ident>,
 }
 
 /// `input name[n]: unit;`
@@ -177,6 +193,22 @@ pub struct Loop {
     pub start: Expr,
     /// One past its last value.
     pub end: Expr,
+    /// What the braces hold.
+    pub statements: Vec<Statement>,
+}
+
+/// `if condition { statements } else if condition { statements } else { statements }`
+pub struct Conditional {
+    /// The word `if`.
+    pub word: Ident,
+    /// In order; the first whose condition holds is taken.
+    pub branches: Vec<Branch>,
+}
+
+/// One part of a [`Conditional`].
+pub struct Branch {
+    /// What must hold; none after a mere `else`.
+    pub condition: Option<Expr>,
     /// What the braces hold.
     pub statements: Vec<Statement>,
 }
@@ -387,6 +419,16 @@ impl Component {
             .iter()
             .filter_map(|statement| match statement {
                 Statement::Parameter(parameter) => Some(parameter),
+                _ => None,
+            })
+    }
+
+    /// Its parameters whose values are words, in order of declaration.
+    pub fn choices(&self) -> impl Iterator<Item = &Choice> {
+        self.statements
+            .iter()
+            .filter_map(|statement| match statement {
+                Statement::Choice(choice) => Some(choice),
                 _ => None,
             })
     }

@@ -7,8 +7,8 @@ use quote::ToTokens;
 use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, Visibility};
 
 use super::ast::{
-    Causality, Chain, ChainNode, Closure, Component, Element, Field, Instance, Item, Junction,
-    JunctionKind, Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
+    Chain, ChainNode, Choice, Closure, Component, Conditional, Element, Field, Instance, Item,
+    Junction, JunctionKind, Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
 };
 use super::words;
 
@@ -83,6 +83,7 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
                 assigned(it.default.as_ref())
             )
         }
+        Statement::Choice(it) => write_choice(text, it),
         Statement::Input(it) => {
             write_documentation(text, "  ", &it.documentation)?;
             writeln!(
@@ -143,10 +144,10 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         }
         Statement::Gravity(gravity) => writeln!(text, "  gravity {}", expression(&gravity.value)),
         Statement::Loop(it) => write_loop(text, it),
+        Statement::Conditional(it) => write_conditional(text, it),
         Statement::Closure(it) => write_closure(text, it),
-        Statement::Causality(Causality::Uniform, _) => writeln!(text, "  causality uniform"),
-        Statement::Causality(Causality::Componentwise, _) => {
-            writeln!(text, "  causality componentwise")
+        Statement::Causality(it, _) => {
+            writeln!(text, "  causality {}", format!("{it:?}").to_lowercase())
         }
         Statement::Broken(Some(name)) => writeln!(text, "  broken {name}"),
         Statement::Broken(None) => writeln!(text, "  broken"),
@@ -209,11 +210,35 @@ fn write_loop(text: &mut String, it: &Loop) -> fmt::Result {
         .unwrap_or_default();
     let (start, end) = (expression(&it.start), expression(&it.end));
     writeln!(text, "  {label}for {} in {start}..{end}", it.variable)?;
+    write_inside(text, &it.statements)
+}
+
+/// Statements in braces, set in by one step more.
+fn write_inside(text: &mut String, statements: &[Statement]) -> fmt::Result {
     let mut inside = String::new();
-    write_statements(&mut inside, &it.statements)?;
+    write_statements(&mut inside, statements)?;
     inside
         .lines()
         .try_for_each(|line| writeln!(text, "  {line}"))
+}
+
+fn write_choice(text: &mut String, it: &Choice) -> fmt::Result {
+    write_documentation(text, "  ", &it.documentation)?;
+    let words: Vec<String> = it.words.iter().map(ToString::to_string).collect();
+    let default = it.default.as_ref();
+    let default = default.map_or_else(String::new, |word| format!(" = {word}"));
+    writeln!(text, "  param {}: {}{default}", it.name, words.join(" | "))
+}
+
+fn write_conditional(text: &mut String, it: &Conditional) -> fmt::Result {
+    for (place, branch) in it.branches.iter().enumerate() {
+        let condition = branch.condition.as_ref();
+        let condition = condition.map_or_else(String::new, |it| format!(" if {}", expression(it)));
+        let opening = format!("{}{condition}", if place == 0 { "" } else { "else" });
+        writeln!(text, "  {}", opening.trim_start())?;
+        write_inside(text, &branch.statements)?;
+    }
+    Ok(())
 }
 
 fn element_text(element: &Element) -> String {

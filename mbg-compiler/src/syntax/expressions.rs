@@ -22,9 +22,7 @@ pub(super) fn expression(cursor: &mut Cursor, what: &str) -> Parsed<Expr> {
 ///
 /// `syn` would take `0..n { … }` for a range that ends in a structure.
 pub(super) fn range(cursor: &mut Cursor, what: &str) -> Parsed<(Expr, Expr)> {
-    let brace = |cursor: &Cursor, offset| cursor.group(offset, Delimiter::Brace).is_some();
-    let length =
-        cursor.length_until(|cursor, offset| brace(cursor, offset) || ends(cursor, offset));
+    let length = cursor.length_until(before_brace);
     match read(cursor, length, what)? {
         Expr::Range(range) => bounds(range),
         other => {
@@ -32,6 +30,19 @@ pub(super) fn range(cursor: &mut Cursor, what: &str) -> Parsed<(Expr, Expr)> {
             Err(Box::new(error(codes::SYNTAX, other.span(), message)))
         }
     }
+}
+
+/// Reads a condition up to an opening brace.
+///
+/// `syn` would take `a == b { … }` for a comparison with a structure.
+pub(super) fn condition(cursor: &mut Cursor, what: &str) -> Parsed<Expr> {
+    let length = cursor.length_until(before_brace);
+    read(cursor, length, what)
+}
+
+/// Whether what stands before a brace cannot go past this offset.
+fn before_brace(cursor: &Cursor, offset: usize) -> bool {
+    cursor.group(offset, Delimiter::Brace).is_some() || ends(cursor, offset)
 }
 
 /// The bounds of a range, both of which must be written.

@@ -72,6 +72,10 @@ fn instances(statements: &[Statement], names: &mut Vec<String>) {
         match statement {
             Statement::Instance(instance) => names.push(instance.component.to_string()),
             Statement::Loop(repeated) => instances(&repeated.statements, names),
+            Statement::Conditional(conditional) => conditional
+                .branches
+                .iter()
+                .for_each(|branch| instances(&branch.statements, names)),
             _ => {}
         }
     }

@@ -5,7 +5,7 @@ use proc_macro2::{Delimiter, Ident};
 use super::ast::Loop;
 use super::cursor::{Cursor, Parsed};
 use super::expressions::range;
-use super::recovery::{DEEPEST_LOOP, Sink};
+use super::recovery::{DEEPEST_BLOCK, Sink};
 use super::statements::body;
 use crate::codes;
 
@@ -25,7 +25,7 @@ pub(super) fn repetition(
         return Err(cursor.expected(&format!("`{{` after {}", cursor.previous())));
     };
     let Some(statements) = sink.nested(|sink| body(&group, sink)) else {
-        let message = format!("loops nest deeper than {DEEPEST_LOOP}");
+        let message = format!("blocks nest deeper than {DEEPEST_BLOCK}");
         return Err(Box::new(crate::diagnostics::error(
             codes::SYNTAX,
             variable.span(),

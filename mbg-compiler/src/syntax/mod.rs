@@ -11,6 +11,7 @@
 pub mod ast;
 mod attributes;
 mod chains;
+mod choices;
 mod cursor;
 mod depth;
 pub mod dump;

@@ -9,15 +9,15 @@ use crate::diagnostics::{Code, Diagnostic, Diagnostics, error};
 /// How deep the names of a broken statement are looked for: a loop, a junction, an element.
 const DEPTH: usize = 3;
 
-/// How deep loops may nest, far above any scene, far below where reading them could exhaust the stack.
-pub(super) const DEEPEST_LOOP: usize = 8;
+/// How deep loops and `if`s may nest, far above any scene, far below where reading them could exhaust the stack.
+pub(super) const DEEPEST_BLOCK: usize = 8;
 
 /// Where mistakes go, and the names that were lost to them.
 pub(super) struct Sink<'a> {
     diagnostics: &'a mut Diagnostics,
     lost: Vec<Ident>,
-    /// How many loops are open.
-    loops: usize,
+    /// How many loops and `if`s are open.
+    blocks: usize,
 }
 
 impl<'a> Sink<'a> {
@@ -26,7 +26,7 @@ impl<'a> Sink<'a> {
         Self {
             diagnostics,
             lost: Vec::new(),
-            loops: 0,
+            blocks: 0,
         }
     }
 
@@ -46,14 +46,14 @@ impl<'a> Sink<'a> {
         declared(tokens, DEPTH, &mut self.lost);
     }
 
-    /// Reads the inside of a loop; none if it lies deeper than loops may nest.
+    /// Reads the inside of a loop or an `if`; none if it lies deeper than they may nest.
     pub(super) fn nested<T>(&mut self, read: impl FnOnce(&mut Self) -> T) -> Option<T> {
-        if self.loops == DEEPEST_LOOP {
+        if self.blocks == DEEPEST_BLOCK {
             return None;
         }
-        self.loops += 1;
+        self.blocks += 1;
         let inside = read(self);
-        self.loops -= 1;
+        self.blocks -= 1;
         Some(inside)
     }
 
@@ -97,8 +97,8 @@ pub(super) fn may_open(cursor: &Cursor) -> bool {
     let Some(word) = cursor.ident(0) else {
         return false;
     };
-    // The only statement whose first word no other word or digit follows.
-    if word == "gravity" {
+    // The statements whose first word stands in expressions too, or is followed by one.
+    if word == "gravity" || word == "if" {
         return true;
     }
     let element = cursor.ident(1).is_some() && words::element(&word.to_string()).is_some();
@@ -202,7 +202,7 @@ fn name_at(tokens: &[TokenTree], first: bool) -> Option<&Ident> {
 
 /// Whether a statement that begins with this word declares no name of its own.
 fn is_nameless(word: &Ident) -> bool {
-    ["causality", "gravity", "for", "close"]
+    ["causality", "gravity", "for", "if", "close"]
         .iter()
         .any(|nameless| word == nameless)
         || words::LATER.iter().any(|later| word == later)

@@ -9,6 +9,7 @@ use super::ast::{
 };
 use super::attributes::Attributes;
 use super::chains::{chain, instance, reference};
+use super::choices::{choice, choice_follows, conditional};
 use super::cursor::{Cursor, Parsed};
 use super::elements::one_ports;
 use super::expressions::expression;
@@ -84,6 +85,11 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
             return Err(cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet")));
         }
     }
+    if word == "if" {
+        attributes.unmarked("`if`", sink);
+        cursor.advance(1);
+        return conditional(cursor, first, sink).map(Statement::Conditional);
+    }
     let misspelt = cursor.ident(1).is_some() && words::element(&word).is_none();
     if misspelt || words::is_reserved(&word) {
         return Err(no_statement(cursor));
@@ -123,7 +129,8 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
     Box::new(
         error
             .note(format!("a statement begins with {},", words::alternatives(words::STATEMENTS)))
-            .note("or is a junction `1 name[3] { … }`, a chain `a -> b;` or an instance `name: Component (a, b);`"),
+            .note("or is a junction `1 name[3] { … }`, a chain `a -> b;`, an instance `name: Component (a, b);`")
+            .note("or a choice `if a == b { … } else { … }`"),
     )
 }
 
@@ -148,6 +155,9 @@ fn declaration(
 ) -> Parsed<Statement> {
     cursor.advance(1);
     match word.to_string().as_str() {
+        "param" if choice_follows(cursor) => {
+            choice(cursor, attributes, sink).map(Statement::Choice)
+        }
         "param" => parameter(cursor, attributes, sink).map(Statement::Parameter),
         "input" => input(cursor, attributes, sink).map(Statement::Input),
         "output" => output(cursor, attributes, sink).map(Statement::Output),

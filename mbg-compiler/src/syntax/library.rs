@@ -18,6 +18,10 @@ macro_rules! files {
 
 files! {
     "Body": "body.mbg",
+    "Free": "free.mbg",
+    "Gimbal": "gimbal.mbg",
+    "GimbalAxis": "gimbal_axis.mbg",
+    "GimbalSeries": "gimbal_series.mbg",
     "Offset": "offset.mbg",
     "PlanarBody": "planar_body.mbg",
     "PlanarLink": "planar_link.mbg",
@@ -26,6 +30,7 @@ files! {
     "PlanarRevolute": "planar_revolute.mbg",
     "Prismatic": "prismatic.mbg",
     "Revolute": "revolute.mbg",
+    "Spherical": "spherical.mbg",
     "Turn": "turn.mbg",
 }
 

@@ -19,6 +19,7 @@ macro_rules! files {
 files! {
     "Body": "body.mbg",
     "Free": "free.mbg",
+    "FreeRotation": "free_rotation.mbg",
     "Gimbal": "gimbal.mbg",
     "GimbalAxis": "gimbal_axis.mbg",
     "GimbalSeries": "gimbal_series.mbg",

@@ -8,7 +8,7 @@ mod reference;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use mbg_runtime::{Cause, DormandPrince, Input, Pulse, Rk4, Smooth, System, Trouble};
+use mbg_runtime::{Cause, DormandPrince, Dual, Input, Pulse, Rk4, Smooth, System, Trouble};
 use nalgebra::{SVector, Vector3};
 
 use models::*;
@@ -446,5 +446,31 @@ fn loops_through_attitudes_stay_closed() {
             gap < 1e-14 && energy < 1e-9 && angle < 1e-9,
             "{gap:e} {energy:e} {angle:e}"
         );
+    }
+}
+
+#[test]
+fn jacobians_are_exact_along_rotations() {
+    let model = build! { TopQuaternion, TopQuaternionParameters; };
+    let tilt = Dual::constant(0.6);
+    let dual = TopQuaternion::new(TopQuaternionParameters { tilt }).unwrap();
+    let u = SVector::from([]);
+    for seed in 0..20 {
+        let wave = |place: usize| (f64::from(seed) + 1.7 * place as f64 + 0.3).sin();
+        let mut x = SVector::<f64, 7>::from_fn(|place, _| wave(place));
+        let q = x.fixed_rows::<4>(0).normalize();
+        x.fixed_rows_mut::<4>(0).copy_from(&q);
+        let mut along = SVector::<f64, 7>::from_fn(|place, _| wave(place + 7));
+        let across = along.fixed_rows::<4>(0) - q * q.dot(&along.fixed_rows::<4>(0));
+        along.fixed_rows_mut::<4>(0).copy_from(&across);
+        let jacobian: nalgebra::SMatrix<f64, 7, 7> = model.jacobian_state(0.0, &x, &u, &mut ());
+        let moved = SVector::<Dual<f64>, 7>::from_fn(|place, _| Dual {
+            value: x[place],
+            slope: along[place],
+        });
+        let nothing = SVector::from([]);
+        let slopes = dual.derivative(Dual::constant(0.0), &moved, &nothing, &mut ());
+        let off = (jacobian * along - slopes.map(|rate| rate.slope)).amax();
+        assert!(off < 1e-13, "{off:e}");
     }
 }

@@ -342,3 +342,44 @@ fn only_the_rows_of_a_rotation_that_are_read_are_states() {
         12
     );
 }
+
+#[test]
+fn an_attitude_starts_as_a_rotation() {
+    let start = |attitude: &str| {
+        let model = compiled(&format!(
+            "model M {{
+                1 a {{ I body {{ inertia: 1.0 }} }}
+                attitude r = {attitude};
+                output down[3] = {} * [0.0, 0.0, 1.0];
+            }}",
+            if attitude.starts_with('m') {
+                "transpose(r)"
+            } else {
+                "transpose(matrix_of(r))"
+            }
+        ));
+        run(&model, Routines::INITIAL, &[])[1..].to_vec()
+    };
+    let flow = "([0.0, 0.0, a.f])";
+    assert_close(
+        &start(&format!("quaternion{flow}")),
+        &[1.0, 0.0, 0.0, 0.0],
+        0.0,
+    );
+    let given = format!("quaternion{flow}, initial: [3.0, 0.0, -4.0, 0.0]");
+    assert_close(&start(&given), &[0.6, 0.0, -0.8, 0.0], 1e-15);
+    let given = format!("quaternion{flow}, initial: quaternion_of(rot_x(2.0))");
+    assert_close(
+        &start(&given),
+        &[f64::cos(1.0), f64::sin(1.0), 0.0, 0.0],
+        1e-15,
+    );
+    // Only the last row is read.
+    let given = format!("matrix{flow}, initial: rot_x(0.5)");
+    assert_close(&start(&given), &[0.0, f64::sin(0.5), f64::cos(0.5)], 1e-15);
+    assert_close(
+        &start(&format!("matrix{flow}, initial: 1.0")),
+        &[0.0, 0.0, 1.0],
+        0.0,
+    );
+}

@@ -207,6 +207,21 @@ mod tests {
     }
 
     #[test]
+    fn what_was_turned_is_changed_to_second_order_only() {
+        // To first order a quaternion turns at right angles to itself, and a rotation by a skew matrix.
+        let quaternion: SMatrix<f64, 1, 4> = SMatrix::from([[0.5], [0.5], [-0.5], [0.5]]);
+        let across: SMatrix<f64, 1, 4> = SMatrix::from([[0.5], [-0.5], [0.5], [0.5]]);
+        let rotation = rotation_xyz(&SVector::from([0.3, -0.7, 1.9]));
+        let skew = SMatrix::from([[0.0, 0.5, -0.4], [-0.5, 0.0, 0.3], [0.4, -0.3, 0.0]]);
+        for size in [1e-2, 1e-4, 1e-6] {
+            let turned = quaternion + size * across;
+            assert!((orthonormal(&turned) - turned).norm() < size * size);
+            let turned = rotation + size * (rotation * skew);
+            assert!((orthonormal(&turned) - turned).norm() < size * size);
+        }
+    }
+
+    #[test]
     fn two_rows_of_a_rotation() {
         let rotation = rotation_xyz(&SVector::from([0.3, -0.7, 1.9]));
         let rows: SMatrix<f64, 2, 3> = rotation.fixed_rows::<2>(1).into();

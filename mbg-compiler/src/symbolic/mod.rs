@@ -11,6 +11,7 @@ pub mod field;
 pub mod identity;
 pub mod implicit;
 pub mod matrix;
+pub mod orientation;
 pub mod pool;
 pub mod print;
 mod share;

@@ -28,6 +28,8 @@ pub struct Pool {
     implicit: Vec<Implicit>,
     /// Where each unknown is defined.
     places: BTreeMap<usize, Place>,
+    /// Images of states that depend on each other, such as the parts of a quaternion.
+    placed: BTreeMap<usize, Image>,
     /// How many unknowns were made up.
     fresh: usize,
 }
@@ -47,6 +49,7 @@ impl Pool {
             found: HashMap::new(),
             implicit: Vec::new(),
             places: BTreeMap::new(),
+            placed: BTreeMap::new(),
             fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
@@ -197,6 +200,11 @@ impl Pool {
         self.constant(value, if value < 0.0 { image.negated() } else { image })
     }
 
+    /// Says where a state lies, before it is used: what holds between states at their places holds everywhere.
+    pub fn locate(&mut self, state: usize, image: Image) {
+        self.placed.insert(state, image);
+    }
+
     /// A variable.
     pub fn symbol(&mut self, symbol: Symbol) -> Expression {
         let (kind, index, rate) = match symbol {
@@ -207,7 +215,11 @@ impl Pool {
             Symbol::Signal(index) => (5, index, Rate::Varying),
             Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
-        let image = Image::unknown(&[kind, index as u64]);
+        let image = match symbol {
+            Symbol::State(state) => self.placed.get(&state).copied(),
+            _ => None,
+        };
+        let image = image.unwrap_or_else(|| Image::unknown(&[kind, index as u64]));
         self.find(image)
             .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
     }

@@ -123,8 +123,9 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
             let velocity = expression(&it.angular_velocity);
             writeln!(
                 text,
-                "  attitude {} = quaternion({velocity}){}",
+                "  attitude {} = {}({velocity}){}",
                 it.name,
+                it.orientation.word(),
                 initial(it.initial.as_ref())
             )
         }

@@ -10,7 +10,7 @@ use crate::diagnostics::{Diagnostics, error};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
-use crate::graph::{ElementId, ElementKind};
+use crate::graph::{ElementId, ElementKind, Junction};
 use crate::network::Network;
 use crate::program::{self, Program};
 use crate::start;
@@ -165,6 +165,7 @@ fn finish(
     });
     let mut notes = verdict.notes;
     notes.extend(unused_initial_values(&model, &answers));
+    notes.extend(unused_initial_flows(&model));
     Some(Compiled {
         program,
         conditioning: conditioning.iter().map(written).collect(),
@@ -223,6 +224,23 @@ fn unused_initial_values(model: &Elaborated, answers: &Answers) -> Vec<String> {
         format!("the initial value of `{name}` is not used: `{name}` follows from other states")
     };
     given.map(note).collect()
+}
+
+/// Flows at the start that were given to coordinates which are no states.
+fn unused_initial_flows(model: &Elaborated) -> Vec<String> {
+    let junctions = model.graph.junctions.iter();
+    let given = junctions.filter(|it| it.initial_flow.iter().any(|flow| *flow != Expression::ZERO));
+    let state = |name: &str| {
+        let flow = format!("{name}.f");
+        let mut names = model.states.iter().map(|state| &state.variable.name);
+        names.any(|name| *name == flow || name.starts_with(&format!("{flow}.")))
+    };
+    let unused = given.filter(|junction| !state(&junction.name));
+    let note = |junction: &Junction| {
+        let name = &junction.name;
+        format!("the initial flow of `{name}` is not used: it follows from other states")
+    };
+    unused.map(note).collect()
 }
 
 /// An expression with the model's names.

@@ -12,7 +12,7 @@ use crate::elaborate::{self, Elaborated};
 use crate::equations::{self, Scalars};
 use crate::network::Network;
 use crate::structure::{self, Solution};
-use crate::symbolic::{Expression, Pool};
+use crate::symbolic::{Expression, Implicit, Pool};
 use crate::syntax::ast::{Component, Item, Model};
 use crate::{drawing, program, syntax};
 
@@ -102,7 +102,7 @@ fn value_lines(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool:
         let value = compile::text(model, scalars, pool, *value);
         text += &format!("{} = {value}\n", unknown_name(scalars, unknown));
     }
-    for residual in pool.implicit().iter().flat_map(|it| &it.residuals) {
+    for residual in pool.implicit().iter().flat_map(Implicit::equations) {
         let zero = compile::text(model, scalars, pool, *residual);
         text += &format!("iterated: 0 = {zero}\n");
     }

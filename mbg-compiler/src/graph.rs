@@ -103,6 +103,8 @@ pub struct Junction {
     pub dimension: usize,
     /// Marked `coordinate`.
     pub coordinate: bool,
+    /// The flow of a coordinate at the start, zero where nothing is given.
+    pub initial_flow: Vec<Expression>,
     /// Where it was written.
     pub origin: OriginId,
 }

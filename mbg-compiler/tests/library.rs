@@ -13,7 +13,7 @@ use models::{compiled, elaborated};
 /// Results of a routine at a state, at time zero and without inputs.
 fn run(model: &Compiled, routine: usize, state: &[f64]) -> Vec<f64> {
     let arguments = Arguments {
-        parameters: &[],
+        parameters: &[0.3; 1][..model.model.parameters.len()],
         time: 0.0,
         state,
         input: &[],
@@ -532,4 +532,33 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     2:15 component `Bodi` is not declared [MBG0203]
       help: did you mean `Body`?
     ");
+}
+
+#[test]
+fn a_joint_starts_with_its_rate() {
+    let pendulum = |rate: &str| {
+        compiled(&format!(
+            "#[derivative] model M {{
+                param rate: rad/s = 0.3;
+                1 ground[3];
+                1 end[3];
+                Sf fixed[3] {{ flow: 0.0 }} -> ground;
+                rod: PlanarLink {{ mass: 2.0, inertia: 0.1, centre: [0.5, 0.0], end: [1.0, 0.0], initial_rate: {rate} }}
+                    (ground, end);
+            }}"
+        ))
+    };
+    let place = |model: &Compiled| {
+        let name = |state: &usize| &model.model.states[*state].variable.name;
+        model
+            .states
+            .iter()
+            .position(|state| name(state) == "rod.hinge.rate.f")
+            .unwrap()
+    };
+    let model = pendulum("2.0 * rate");
+    let initial = run(&model, Routines::INITIAL, &[]);
+    assert_eq!(initial[place(&model)], 0.6);
+    let model = pendulum("0.0");
+    assert_eq!(run(&model, Routines::INITIAL, &[])[place(&model)], 0.0);
 }

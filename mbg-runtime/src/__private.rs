@@ -96,6 +96,19 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     })
 }
 
+/// A symmetric matrix from row, column and value of the elements below and on its diagonal that are not zero.
+pub fn symmetric<T: Real, const K: usize>(elements: &[(usize, usize, T)]) -> SMatrix<T, K, K> {
+    let mut matrix = SMatrix::<T, K, K>::from_element(T::from_f64(0.0));
+    for (row, column, value) in elements {
+        for place in [(*row, *column), (*column, *row)] {
+            if let Some(element) = matrix.get_mut(place) {
+                *element = *value;
+            }
+        }
+    }
+    matrix
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -66,6 +66,7 @@ impl Builder {
             name,
             dimension,
             coordinate,
+            initial_flow: Vec::new(),
             origin,
         });
         JunctionId(self.graph.junctions.len() - 1)

@@ -23,6 +23,14 @@ impl<'a> Builder<'a> {
         else {
             return;
         };
+        if let Some(value) = &junction.initial_flow {
+            self.pending.push(Pending::Coordinate {
+                scope,
+                junction,
+                value,
+                id,
+            });
+        }
         for element in &junction.elements {
             if is_two_port(element.kind) {
                 let message = format!(

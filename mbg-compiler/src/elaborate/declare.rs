@@ -34,6 +34,7 @@ impl<'a> Builder<'a> {
                     name: path,
                     dimension: junction.dimension,
                     coordinate: junction.coordinate,
+                    initial_flow: Vec::new(),
                     origin,
                 });
                 self.name(

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use proc_macro2::Ident;
+use syn::spanned::Spanned;
 
 use super::expressions::{Evaluator, Result, Value};
 use super::laws::{Reader, law_words, other_words};
@@ -12,7 +13,7 @@ use super::{Builder, Pending, component_names};
 use crate::codes;
 use crate::diagnostics::{error, listing};
 use crate::graph::{ElementId, Law};
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::symbolic::{Expression, Pool, Rate, Symbol};
 use crate::syntax::ast::{self, Orientation, Statement};
 
 impl<'a> Builder<'a> {
@@ -136,6 +137,16 @@ impl<'a> Builder<'a> {
                 attitude,
                 states,
             } => self.attitude(scope, attitude, states),
+            Pending::Coordinate {
+                scope,
+                junction,
+                value,
+                id,
+            } => {
+                let initial = self.start(scope, junction, value)?;
+                self.graph.junctions[id.0].initial_flow = initial;
+                Ok(())
+            }
             Pending::Output { scope, output } => self.output(scope, output),
             Pending::Displacement {
                 scope,
@@ -255,8 +266,24 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// The flow of a coordinate at the start.
+    fn start(
+        &mut self,
+        scope: usize,
+        junction: &ast::Junction,
+        value: &syn::Expr,
+    ) -> Result<Vec<Expression>> {
+        let initial = self.vector(scope, value, junction.dimension, &junction.name)?;
+        let varies = |initial: &Expression| self.pool.rate(*initial) == Rate::Varying;
+        if initial.iter().any(varies) {
+            let message = "expected an initial value of numbers and parameters alone";
+            return Err(Box::new(error(codes::EXPRESSION, value.span(), message)));
+        }
+        Ok(initial)
+    }
+
     pub(super) fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
-        if self.pool.rate(initial) == crate::symbolic::Rate::Varying {
+        if self.pool.rate(initial) == Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
             return Err(Box::new(error(
                 codes::EXPRESSION,

@@ -27,6 +27,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use proc_macro2::{Ident, Span};
+use syn::Expr;
 
 pub use finish::component_table;
 pub use model::{
@@ -41,7 +42,7 @@ use self::expressions::Value;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
-use crate::graph::{BondGraph, Causality, ElementId, Origins};
+use crate::graph::{BondGraph, Causality, ElementId, JunctionId, Origins};
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, Statement};
 
@@ -119,6 +120,12 @@ enum Pending<'a> {
         attitude: &'a ast::Attitude,
         states: Range<usize>,
     },
+    Coordinate {
+        scope: usize,
+        junction: &'a ast::Junction,
+        value: &'a Expr,
+        id: JunctionId,
+    },
     Output {
         scope: usize,
         output: &'a ast::Output,
@@ -137,6 +144,7 @@ impl Pending<'_> {
             | Self::Gyroscopic { scope, .. }
             | Self::Integral { scope, .. }
             | Self::Attitude { scope, .. }
+            | Self::Coordinate { scope, .. }
             | Self::Output { scope, .. }
             | Self::Displacement { scope, .. } => *scope,
         }

@@ -78,6 +78,7 @@ const PART: usize = 256;
 enum Made {
     Value(usize),
     Solved(usize),
+    Factors(usize),
 }
 
 impl Made {
@@ -86,6 +87,17 @@ impl Made {
             Source::Value(value) => Some(Self::Value(value)),
             Source::Solved(place) => Some(Self::Solved(place.number)),
             Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => None,
+        }
+    }
+
+    /// The factors that a step uses.
+    fn needed_by(step: &Step) -> Option<Self> {
+        match step {
+            Step::Solve(solve) => match solve.solver {
+                Solver::Slope(of) => Some(Self::Factors(of)),
+                Solver::Newton(_) | Solver::LeastNorm => None,
+            },
+            _ => None,
         }
     }
 }
@@ -113,10 +125,12 @@ impl Writer<'_> {
                 return lines;
             }
             let later = parts[number + 1..].iter().copied().flatten();
+            let factors = later.clone().filter_map(Made::needed_by);
             let read: BTreeSet<Made> = later
                 .flat_map(Step::operands)
                 .chain(results.iter().copied())
                 .filter_map(|operand| Made::of(operand.source))
+                .chain(factors)
                 .collect();
             let live: Vec<&Ident> = made
                 .iter()
@@ -132,6 +146,9 @@ impl Writer<'_> {
     fn make(&self, step: &Step, value: usize, made: &mut BTreeMap<Made, Ident>) {
         if let Step::Solve(solve) = step {
             made.insert(Made::Solved(solve.number), unknowns(solve.number));
+            if solve.solver == Solver::LeastNorm {
+                made.insert(Made::Factors(solve.number), factors(solve.number));
+            }
             return;
         }
         for value in value..value + step.results() {
@@ -177,6 +194,7 @@ impl Writer<'_> {
         let number = match solve.solver {
             Solver::Newton(number) => number,
             Solver::LeastNorm => return self.least_norm(solve),
+            Solver::Slope(of) => return self.slope(solve, of),
         };
         let [number, first, size] =
             [number, self.compiled.first(number), solve.size].map(Literal::usize_suffixed);
@@ -200,21 +218,37 @@ impl Writer<'_> {
         }
     }
 
-    /// The runtime's solution of least norm.
+    /// The runtime's solution of least norm, with the factors of its matrix.
     fn least_norm(&self, solve: &Solve) -> TokenStream {
-        let (unknowns, size) = (unknowns(solve.number), Literal::usize_suffixed(solve.size));
-        let operands: Vec<TokenStream> = solve
-            .results
-            .iter()
-            .map(|operand| self.operand(*operand))
-            .collect();
-        let (right, matrix) = operands.split_at(solve.size);
+        let (unknowns, factors) = (unknowns(solve.number), factors(solve.number));
+        let (right, matrix) = solve.results.split_at(solve.size);
+        let entries = matrix.iter().enumerate().filter_map(|(place, entry)| {
+            let (row, column) = (place / solve.size, place % solve.size);
+            let needed = column <= row && entry.source != Source::Constant(0.0);
+            let [row, column] = [row, column].map(Literal::usize_unsuffixed);
+            let entry = self.operand(*entry);
+            needed.then(|| quote!((#row, #column, #entry)))
+        });
+        let (size, right) = (Literal::usize_suffixed(solve.size), self.column(right));
         quote! {
-            let #unknowns = ::mbg_runtime::solve::least_norm(
-                &::mbg_runtime::__private::SMatrix::<T, #size, #size>::from_row_slice(&[#(#matrix),*]),
-                &::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#right),*]),
-            ).solution;
+            let #factors = ::mbg_runtime::solve::Semidefinite::<T, #size>::new(
+                ::mbg_runtime::__private::symmetric(&[#(#entries),*])
+            );
+            let #unknowns = #factors.solve(&#right).solution;
         }
+    }
+
+    /// The runtime's solution of least norm with earlier factors.
+    fn slope(&self, solve: &Solve, of: usize) -> TokenStream {
+        let (unknowns, factors) = (unknowns(solve.number), factors(of));
+        let right = self.column(&solve.results);
+        quote!(let #unknowns = #factors.solve(&#right).solution;)
+    }
+
+    fn column(&self, operands: &[Operand]) -> TokenStream {
+        let size = Literal::usize_suffixed(operands.len());
+        let operands = operands.iter().map(|operand| self.operand(*operand));
+        quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#operands),*]))
     }
 
     fn call(&self, function: &str, arguments: &[Operand]) -> TokenStream {
@@ -265,6 +299,11 @@ impl Writer<'_> {
 /// What holds the unknowns of an iteration.
 fn unknowns(number: usize) -> Ident {
     format_ident!("z{}", number, span = Span::mixed_site())
+}
+
+/// What holds the factors of the matrix that gives the unknowns.
+fn factors(number: usize) -> Ident {
+    format_ident!("s{}", number, span = Span::mixed_site())
 }
 
 fn element(array: &Ident, index: usize) -> TokenStream {

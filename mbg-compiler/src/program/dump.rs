@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Operand, Routine, Solve, Source, Step};
+use super::{Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::{Place, Symbol};
 
 /// The routine as text, one step a line; an iteration is indented.
@@ -44,9 +44,26 @@ fn solution(text: &mut String, solve: &Solve, names: &[String], value: usize, de
         .collect();
     let _ = writeln!(text, "{indent}solve {}", unknowns.join(", "));
     steps(text, &solve.steps, names, value, depth + 1);
-    let (residuals, jacobian) = solve.results.split_at(solve.size);
-    let _ = writeln!(text, "{indent}  zero {}", list(residuals));
-    let _ = writeln!(text, "{indent}  by {}", list(jacobian));
+    let (first, matrix) = solve.results.split_at(solve.size);
+    let _ = match solve.solver {
+        Solver::Newton(_) => writeln!(
+            text,
+            "{indent}  zero {}\n{indent}  by {}",
+            list(first),
+            list(matrix)
+        ),
+        Solver::LeastNorm => writeln!(
+            text,
+            "{indent}  right {}\n{indent}  matrix {}",
+            list(first),
+            list(matrix)
+        ),
+        Solver::Slope(of) => writeln!(
+            text,
+            "{indent}  right {}\n{indent}  matrix of z{of}",
+            list(first)
+        ),
+    };
 }
 
 fn line(step: &Step, value: usize) -> String {

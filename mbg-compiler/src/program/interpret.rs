@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::iterate::{consistent, iterate};
-use super::{Operand, Program, Routine, Solver, Source, Step};
+use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::Symbol;
 
 /// What a program is run with.
@@ -31,6 +31,7 @@ fn run(routine: &Routine, arguments: &Arguments, folded: &[f64]) -> Vec<f64> {
         folded,
         values: Vec::new(),
         solved: BTreeMap::new(),
+        matrices: BTreeMap::new(),
     };
     machine.steps(&routine.steps);
     machine.results(&routine.results)
@@ -43,6 +44,8 @@ struct Machine<'a> {
     values: Vec<f64>,
     /// Unknowns by iteration.
     solved: BTreeMap<usize, Vec<f64>>,
+    /// Matrices of linear solves.
+    matrices: BTreeMap<usize, Vec<f64>>,
 }
 
 impl Machine<'_> {
@@ -60,9 +63,14 @@ impl Machine<'_> {
                     cosine
                 }
                 Step::Call(function, operands) => function.evaluate(&self.results(operands)),
-                Step::Solve(solve) if solve.solver == Solver::LeastNorm => {
-                    let found = consistent(solve.size, &self.results(&solve.results));
+                Step::Solve(solve) if !matches!(solve.solver, Solver::Newton(_)) => {
+                    let (right, mut matrix) = self.linear(solve);
+                    if let Solver::Slope(of) = solve.solver {
+                        matrix.clone_from(&self.matrices[&of]);
+                    }
+                    let found = consistent(&right, &matrix);
                     self.solved.insert(solve.number, found);
+                    self.matrices.insert(solve.number, matrix);
                     continue;
                 }
                 Step::Solve(solve) => {
@@ -81,6 +89,12 @@ impl Machine<'_> {
             };
             self.values.push(value);
         }
+    }
+
+    /// Right side and matrix, as far as the solve has them.
+    fn linear(&self, solve: &Solve) -> (Vec<f64>, Vec<f64>) {
+        let (right, matrix) = solve.results.split_at(solve.size);
+        (self.results(right), self.results(matrix))
     }
 
     fn results(&self, operands: &[Operand]) -> Vec<f64> {

@@ -37,13 +37,13 @@ pub(super) fn iterate(size: usize, evaluate: impl Fn(&[f64]) -> Vec<f64>) -> Vec
     vec![f64::NAN; size]
 }
 
-/// A solution of `S z = b` with a symmetric positive semidefinite matrix, zero where it is free. `values` holds right
-/// sides, then the matrix by rows.
-pub(super) fn consistent(size: usize, values: &[f64]) -> Vec<f64> {
+/// A solution of `S z = b` with a symmetric positive semidefinite matrix by rows, zero where it is free.
+pub(super) fn consistent(right: &[f64], matrix: &[f64]) -> Vec<f64> {
+    let size = right.len();
     let mut rows: Vec<Vec<f64>> = (0..size)
         .map(|row| {
-            let mut entries = values[size + row * size..][..size].to_vec();
-            entries.push(values[row]);
+            let mut entries = matrix[row * size..][..size].to_vec();
+            entries.push(right[row]);
             entries
         })
         .collect();

@@ -66,6 +66,8 @@ pub enum Solver {
     Newton(usize),
     /// Least norm of linear equations that may be singular.
     LeastNorm,
+    /// The same with the matrix of an earlier solve, of which this is the number.
+    Slope(usize),
 }
 
 /// A solve. What does not depend on the unknowns is worked out before it.
@@ -79,7 +81,8 @@ pub struct Solve {
     pub size: usize,
     /// Steps of one evaluation; their values go on from those before, and end with it.
     pub steps: Vec<Step>,
-    /// Residuals, or right sides where they are linear; then the derivatives of residuals by rows.
+    /// Residuals, or right sides where they are linear; then the derivatives of residuals by rows, unless they are those
+    /// of an earlier solve.
     pub results: Vec<Operand>,
 }
 
@@ -146,9 +149,9 @@ impl Routine {
     /// Whether there is an iteration in it.
     #[must_use]
     pub fn iterates(&self) -> bool {
-        self.steps
-            .iter()
-            .any(|step| matches!(step, Step::Solve(solve) if solve.solver != Solver::LeastNorm))
+        self.steps.iter().any(
+            |step| matches!(step, Step::Solve(solve) if matches!(solve.solver, Solver::Newton(_))),
+        )
     }
 
     /// Angles of which sine or cosine is taken.

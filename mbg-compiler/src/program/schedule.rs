@@ -59,13 +59,26 @@ fn folded_nodes(pool: &Pool, requests: &[Vec<Expression>]) -> Vec<Expression> {
     found
 }
 
-/// What an evaluation of an iteration reads and does not depend on its unknowns.
+/// What a solve needs before it begins: of an iteration what its evaluation reads and does not depend on its unknowns.
 fn captured(pool: &Pool, number: usize) -> Vec<Expression> {
     let implicit = &pool.implicit()[number];
+    let evaluated = implicit.evaluated();
+    match implicit.method {
+        Method::Newton { .. } => free_of_unknowns(pool, implicit, evaluated),
+        Method::LeastNorm { .. } => evaluated,
+        Method::Slope { of, .. } => [evaluated, captured(pool, of)].concat(),
+    }
+}
+
+/// The last expressions below the roots that do not depend on the unknowns.
+fn free_of_unknowns(
+    pool: &Pool,
+    implicit: &Implicit,
+    mut pending: Vec<Expression>,
+) -> Vec<Expression> {
     let depends = dependent(pool, implicit);
     let mut seen = vec![false; pool.len()];
     let mut found = Vec::new();
-    let mut pending = implicit.evaluated();
     pending.reverse();
     while let Some(current) = pending.pop() {
         if std::mem::replace(&mut seen[current.node()], true) {
@@ -221,36 +234,57 @@ impl Context<'_> {
         }
     }
 
-    /// The iteration, for which everything that it captures is there. Nothing that it works out is seen outside, since
-    /// there the unknowns have their final values.
+    /// A solve, for which everything that it captures is there, behind the one whose matrix it uses.
     fn solve(&self, draft: &mut Draft, number: usize) {
         let implicit = &self.pool.implicit()[number];
-        let evaluated = implicit.evaluated();
-        let outside = draft.values.clone();
-        let before = std::mem::take(&mut draft.routine.steps);
+        if let Some(earlier) = implicit.earlier()
+            && !draft.solved.contains(&earlier)
+        {
+            self.solve(draft, earlier);
+        }
         draft.solved.insert(number);
-        self.steps(draft, &evaluated, false);
-        let results = evaluated
-            .iter()
-            .map(|result| self.operand(draft, *result, false))
-            .collect();
-        let steps = std::mem::replace(&mut draft.routine.steps, before);
-        draft.values = outside;
+        let evaluated = implicit.evaluated();
+        let (steps, results) = match implicit.method {
+            Method::Newton { .. } => self.evaluation(draft, &evaluated),
+            Method::LeastNorm { .. } | Method::Slope { .. } => {
+                (Vec::new(), self.operands(draft, &evaluated))
+            }
+        };
         draft.routine.steps.push(Step::Solve(Solve {
             number,
-            solver: match implicit.method {
-                Method::LeastNorm { .. } => Solver::LeastNorm,
-                Method::Newton { .. } => Solver::Newton(
-                    self.pool.implicit()[..number]
-                        .iter()
-                        .filter(|before| matches!(before.method, Method::Newton { .. }))
-                        .count(),
-                ),
-            },
+            solver: self.solver(number),
             size: implicit.unknowns.len(),
             steps,
             results,
         }));
+    }
+
+    fn solver(&self, number: usize) -> Solver {
+        let implicit = self.pool.implicit();
+        let newton = |it: &&Implicit| matches!(it.method, Method::Newton { .. });
+        match implicit[number].method {
+            Method::Newton { .. } => {
+                Solver::Newton(implicit[..number].iter().filter(newton).count())
+            }
+            Method::LeastNorm { .. } => Solver::LeastNorm,
+            Method::Slope { of, .. } => Solver::Slope(of),
+        }
+    }
+
+    /// The steps of one evaluation of an iteration, and its results. Nothing that it works out is seen outside, since
+    /// there the unknowns have their final values.
+    fn evaluation(&self, draft: &mut Draft, evaluated: &[Expression]) -> (Vec<Step>, Vec<Operand>) {
+        let outside = draft.values.clone();
+        let before = std::mem::take(&mut draft.routine.steps);
+        self.steps(draft, evaluated, false);
+        let results = self.operands(draft, evaluated);
+        draft.values = outside;
+        (std::mem::replace(&mut draft.routine.steps, before), results)
+    }
+
+    fn operands(&self, draft: &Draft, expressions: &[Expression]) -> Vec<Operand> {
+        let operand = |expression: &Expression| self.operand(draft, *expression, false);
+        expressions.iter().map(operand).collect()
     }
 
     fn step(

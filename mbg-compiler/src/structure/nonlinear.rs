@@ -124,9 +124,11 @@ impl Solver<'_> {
         let inverse = Matrix::new(size, size, inverse).transpose();
         self.pool.define(Implicit {
             unknowns: left,
-            residuals,
-            jacobian,
-            method: Method::Newton { inverse },
+            method: Method::Newton {
+                residuals,
+                jacobian,
+                inverse,
+            },
         });
         Ok(values)
     }

@@ -241,7 +241,11 @@ impl Reducer<'_> {
                     name: format!("{}.f{letter}", junction.name),
                     unit: String::new(),
                 },
-                initial: Expression::ZERO,
+                initial: junction
+                    .initial_flow
+                    .get(*component)
+                    .copied()
+                    .unwrap_or(Expression::ZERO),
                 rate: StateRate::Unknown(*flow),
                 span,
             });

@@ -294,7 +294,7 @@ impl Solver<'_> {
             .collect();
         let columns: Vec<usize> = multipliers.iter().map(|(_, column)| *column).collect();
         let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-        let implicit = Implicit::least_norm(self.pool, numbers, matrix, right, false);
+        let implicit = Implicit::least_norm(self.pool, numbers, matrix, right);
         let symbols: Vec<Symbol> = implicit.symbols().collect();
         self.pool.define(implicit);
         let values = symbols

@@ -39,15 +39,16 @@ impl Differentiator {
 
     /// Adds the derivatives of the next unknowns that equations give, by the implicit function theorem.
     fn define(&mut self, pool: &mut Pool) {
-        let implicit = pool.implicit()[self.defined].clone();
+        let number = self.defined;
         self.defined += 1;
-        if let Method::LeastNorm { slope: true, .. } = implicit.method {
+        let implicit = pool.implicit()[number].clone();
+        if implicit.earlier().is_some() {
             return;
         }
         // While the unknowns have no derivative yet, this is the one by everything else.
         let mut others = Rewritten::default();
         let driven: Vec<Expression> = implicit
-            .residuals
+            .equations()
             .iter()
             .map(|residual| rewrite(&mut others, &self.slopes, pool, *residual))
             .collect();
@@ -56,17 +57,18 @@ impl Differentiator {
         }
         let right: Vec<Expression> = driven.into_iter().map(Expression::negated).collect();
         let slopes = match &implicit.method {
-            Method::Newton { inverse } => inverse.times(pool, &Matrix::column(right)).entries,
-            Method::LeastNorm { .. } => least_norm_slopes(pool, &implicit.jacobian, right),
+            Method::Newton { inverse, .. } => inverse.times(pool, &Matrix::column(right)).entries,
+            Method::LeastNorm { .. } | Method::Slope { .. } => solved_again(pool, number, right),
         };
         self.slopes.extend(implicit.symbols().zip(slopes));
     }
 }
 
-/// The slopes of unknowns of least norm solve the same equations with another right side.
-fn least_norm_slopes(pool: &mut Pool, matrix: &Matrix, right: Vec<Expression>) -> Vec<Expression> {
+/// The unknowns of the same matrix with another right side.
+fn solved_again(pool: &mut Pool, of: usize, right: Vec<Expression>) -> Vec<Expression> {
     let unknowns: Vec<usize> = right.iter().map(|_| pool.fresh_unknown()).collect();
-    let implicit = Implicit::least_norm(pool, unknowns, matrix.clone(), right, true);
+    let method = Method::Slope { of, right };
+    let implicit = Implicit { unknowns, method };
     let symbols: Vec<Symbol> = implicit.symbols().collect();
     pool.define(implicit);
     symbols

@@ -13,10 +13,6 @@ use super::pool::Pool;
 pub struct Implicit {
     /// Numbers of the unknowns, which are [`Symbol::Unknown`]s.
     pub unknowns: Vec<usize>,
-    /// What the unknowns make zero.
-    pub residuals: Vec<Expression>,
-    /// Derivatives of the residuals, by rows, with respect to the unknowns, by columns.
-    pub jacobian: Matrix,
     /// How the unknowns are found.
     pub method: Method,
 }
@@ -26,16 +22,30 @@ pub struct Implicit {
 pub enum Method {
     /// By Newton's iteration.
     Newton {
+        /// What the unknowns make zero.
+        residuals: Vec<Expression>,
+        /// Derivatives of the residuals, by rows, with respect to the unknowns, by columns.
+        jacobian: Matrix,
         /// The inverse of the Jacobian.
         inverse: Matrix,
     },
     /// The equations are linear, `S z = b`, with a symmetric positive semidefinite matrix that may be singular: the
     /// unknowns are those of least norm.
     LeastNorm {
+        /// The matrix `S`.
+        matrix: Matrix,
         /// The right side `b`.
         right: Vec<Expression>,
-        /// Whether the unknowns are derivatives of others; they are not differentiated again.
-        slope: bool,
+        /// `S z − b`.
+        residuals: Vec<Expression>,
+    },
+    /// The equations have the matrix of an earlier definition of the kind before, and a right side of their own. Such
+    /// are the derivatives of its unknowns; they are not differentiated again.
+    Slope {
+        /// Number of the earlier definition.
+        of: usize,
+        /// The right side.
+        right: Vec<Expression>,
     },
 }
 
@@ -60,7 +70,6 @@ impl Implicit {
         unknowns: Vec<usize>,
         matrix: Matrix,
         right: Vec<Expression>,
-        slope: bool,
     ) -> Self {
         let symbols = unknowns.iter().copied().map(Symbol::Unknown);
         let values = symbols.map(|symbol| pool.symbol(symbol)).collect();
@@ -71,21 +80,44 @@ impl Implicit {
             .zip(&right)
             .map(|(sum, right)| pool.subtract(*sum, *right))
             .collect();
-        Self {
-            unknowns,
+        let method = Method::LeastNorm {
+            matrix,
+            right,
             residuals,
-            jacobian: matrix,
-            method: Method::LeastNorm { right, slope },
+        };
+        Self { unknowns, method }
+    }
+
+    /// What the unknowns make zero; of slopes the right side, which the matrix of an earlier definition divides.
+    #[must_use]
+    pub fn equations(&self) -> &[Expression] {
+        match &self.method {
+            Method::Newton { residuals, .. } | Method::LeastNorm { residuals, .. } => residuals,
+            Method::Slope { right, .. } => right,
         }
     }
 
-    /// Everything a solve evaluates: residuals or right sides, then the derivatives of residuals by rows.
+    /// Everything a solve evaluates: residuals, then their derivatives by rows; or right sides, then the matrix by rows
+    /// unless an earlier definition has it.
     #[must_use]
     pub fn evaluated(&self) -> Vec<Expression> {
-        let first = match &self.method {
-            Method::Newton { .. } => &self.residuals,
-            Method::LeastNorm { right, .. } => right,
-        };
-        [&first[..], &self.jacobian.entries].concat()
+        match &self.method {
+            Method::Newton {
+                residuals,
+                jacobian,
+                ..
+            } => [&residuals[..], &jacobian.entries].concat(),
+            Method::LeastNorm { matrix, right, .. } => [&right[..], &matrix.entries].concat(),
+            Method::Slope { right, .. } => right.clone(),
+        }
+    }
+
+    /// The earlier definition whose matrix it uses.
+    #[must_use]
+    pub fn earlier(&self) -> Option<usize> {
+        match self.method {
+            Method::Slope { of, .. } => Some(of),
+            Method::Newton { .. } | Method::LeastNorm { .. } => None,
+        }
     }
 }

@@ -27,7 +27,9 @@ pub struct Pool {
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
     /// Images of states that depend on each other, such as the parts of a quaternion.
-    placed: BTreeMap<usize, Image>,
+    located: BTreeMap<usize, Image>,
+    /// Where each unknown is defined.
+    places: BTreeMap<usize, Place>,
     /// How many unknowns were made up.
     fresh: usize,
 }
@@ -46,7 +48,8 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
-            placed: BTreeMap::new(),
+            located: BTreeMap::new(),
+            places: BTreeMap::new(),
             fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
@@ -199,7 +202,7 @@ impl Pool {
 
     /// Says where a state lies, before it is used: what holds between states at their places holds everywhere.
     pub fn locate(&mut self, state: usize, image: Image) {
-        self.placed.insert(state, image);
+        self.located.insert(state, image);
     }
 
     /// A variable.
@@ -213,7 +216,7 @@ impl Pool {
             Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
         let image = match symbol {
-            Symbol::State(state) => self.placed.get(&state).copied(),
+            Symbol::State(state) => self.located.get(&state).copied(),
             _ => None,
         };
         let image = image.unwrap_or_else(|| Image::unknown(&[kind, index as u64]));
@@ -223,6 +226,10 @@ impl Pool {
 
     /// Says which equations give unknowns. They may hold unknowns that were defined before.
     pub fn define(&mut self, implicit: Implicit) {
+        let number = self.implicit.len();
+        for (row, unknown) in implicit.unknowns.iter().enumerate() {
+            self.places.insert(*unknown, Place { number, row });
+        }
         self.implicit.push(implicit);
     }
 
@@ -235,6 +242,7 @@ impl Pool {
     /// Forgets all definitions.
     pub fn forget(&mut self) {
         self.implicit.clear();
+        self.places.clear();
     }
 
     /// What is given by equations, in order of definition.
@@ -246,14 +254,10 @@ impl Pool {
     /// Where a symbol is defined, if it is an unknown that equations give.
     #[must_use]
     pub fn place(&self, symbol: Symbol) -> Option<Place> {
-        let Symbol::Unknown(unknown) = symbol else {
-            return None;
-        };
-        let position = |(number, implicit): (usize, &Implicit)| {
-            let row = implicit.unknowns.iter().position(|own| *own == unknown)?;
-            Some(Place { number, row })
-        };
-        self.implicit.iter().enumerate().find_map(position)
+        match symbol {
+            Symbol::Unknown(unknown) => self.places.get(&unknown).copied(),
+            _ => None,
+        }
     }
 
     /// What the value of a node depends on: its operands, and for an unknown the equations that give it.
@@ -261,11 +265,18 @@ impl Pool {
     pub fn causes(&self, expression: Expression) -> Vec<Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.implicit[place.number].residuals.clone(),
+                Some(place) => self.equations(place.number),
                 None => Vec::new(),
             },
             operation => operation.operands(),
         }
+    }
+
+    /// The equations of a definition, with those of the one whose matrix it uses.
+    fn equations(&self, number: usize) -> Vec<Expression> {
+        let implicit = &self.implicit[number];
+        let earlier = implicit.earlier().map(|of| self.implicit[of].equations());
+        [implicit.equations(), earlier.unwrap_or_default()].concat()
     }
 
     /// Sine.

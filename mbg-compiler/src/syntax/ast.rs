@@ -266,7 +266,7 @@ pub struct Attitude {
     pub initial: Option<Expr>,
 }
 
-/// `1 name[n] coordinate { elements }`
+/// `1 name[n] coordinate, initial_flow: value { elements }`
 pub struct Junction {
     /// Zero or one.
     pub kind: JunctionKind,
@@ -278,6 +278,8 @@ pub struct Junction {
     pub dimension: usize,
     /// Set by the word `coordinate`.
     pub coordinate: bool,
+    /// The coordinate's flow at the start, zero unless written.
+    pub initial_flow: Option<Expr>,
     /// One-ports in the braces.
     pub elements: Vec<Element>,
 }

@@ -191,9 +191,13 @@ fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
     } else {
         ""
     };
+    let initial = match &junction.initial_flow {
+        Some(value) => format!(", initial_flow: {}", expression(value)),
+        None => String::new(),
+    };
     writeln!(
         text,
-        "  {digit} {}[{}]{coordinate}",
+        "  {digit} {}[{}]{coordinate}{initial}",
         junction.name, junction.dimension
     )?;
     junction

@@ -12,7 +12,7 @@ use super::chains::{chain, instance, reference};
 use super::choices::{choice, choice_follows, conditional};
 use super::cursor::{Cursor, Parsed};
 use super::elements::one_ports;
-use super::expressions::expression;
+use super::expressions::{condition, expression};
 use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
@@ -186,7 +186,7 @@ fn closure(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Clos
         }
         cursor.advance(1);
     }
-    let displacement = trailing(cursor, "displacement")?;
+    let displacement = trailing(cursor, "displacement", expression)?;
     finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
     Ok(Closure {
         name,
@@ -302,7 +302,7 @@ fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     let unit = unit(cursor, sink);
     equals(cursor, dimension.is_some(), unit.is_some())?;
     let rate = expression(cursor, &format!("the rate of `{name}` after `=`"))?;
-    let initial = trailing(cursor, "initial")?;
+    let initial = trailing(cursor, "initial", expression)?;
     finish(cursor, sink, &ending(cursor, initial.is_some()))?;
     let dimension = dimension.unwrap_or(1);
     Ok(Integral {
@@ -339,7 +339,7 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     if !inner.ended() {
         return Err(inner.expected("`)` after the angular velocity"));
     }
-    let initial = trailing(cursor, "initial")?;
+    let initial = trailing(cursor, "initial", expression)?;
     finish(cursor, sink, &ending(cursor, initial.is_some()))?;
     Ok(Attitude {
         documentation: attributes.documentation,
@@ -363,8 +363,12 @@ fn equals(cursor: &mut Cursor, dimension: bool, unit: bool) -> Parsed<()> {
     Err(cursor.expected(&format!("{wanted} after {}", cursor.previous())))
 }
 
-/// Reads `, initial: value`.
-fn trailing(cursor: &mut Cursor, wanted: &str) -> Parsed<Option<Expr>> {
+/// Reads `, initial: value` or its like, the value by `read`.
+fn trailing(
+    cursor: &mut Cursor,
+    wanted: &str,
+    read: fn(&mut Cursor, &str) -> Parsed<Expr>,
+) -> Parsed<Option<Expr>> {
     if !cursor.take_punct(',') {
         return Ok(None);
     }
@@ -380,7 +384,7 @@ fn trailing(cursor: &mut Cursor, wanted: &str) -> Parsed<Option<Expr>> {
     if !cursor.take_punct(':') {
         return Err(cursor.expected(&format!("`:` after `{wanted}`")));
     }
-    expression(cursor, &format!("the value of `{wanted}`")).map(Some)
+    read(cursor, &format!("the value of `{wanted}`")).map(Some)
 }
 
 /// What may end a statement that may have an initial value.
@@ -437,6 +441,11 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
             break;
         }
     }
+    let initial_flow = if coordinate {
+        trailing(cursor, "initial_flow", condition)?
+    } else {
+        None
+    };
     let elements = match cursor.take_group(Delimiter::Brace) {
         Some(group) => {
             let elements = one_ports(&group, sink);
@@ -449,7 +458,13 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
             elements
         }
         None => {
-            undelimited(cursor, dimension.is_some(), coordinate, sink)?;
+            undelimited(
+                cursor,
+                dimension.is_some(),
+                coordinate,
+                initial_flow.is_some(),
+                sink,
+            )?;
             Vec::new()
         }
     };
@@ -459,6 +474,7 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         name,
         dimension: dimension.unwrap_or(1),
         coordinate,
+        initial_flow,
         elements,
     })
 }
@@ -468,14 +484,17 @@ fn undelimited(
     cursor: &mut Cursor,
     dimension: bool,
     coordinate: bool,
+    initial_flow: bool,
     sink: &mut Sink<'_>,
 ) -> Parsed<()> {
     let mut wanted = Vec::new();
-    if !dimension {
+    if !dimension && !initial_flow {
         wanted.push("[");
     }
     if !coordinate {
         wanted.push("coordinate");
+    } else if !initial_flow {
+        wanted.push(", initial_flow: value");
     }
     wanted.extend(["{", ";"]);
     let wanted = format!(

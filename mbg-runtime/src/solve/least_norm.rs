@@ -51,18 +51,7 @@ pub fn least_norm<T: Real, const K: usize>(
     matrix: &SMatrix<T, K, K>,
     right: &SVector<T, K>,
 ) -> LeastNorm<T, K> {
-    let factors = Semidefinite::new(matrix);
-    let first = factors.solve(right);
-    let refinement = factors.solve(&remainder(matrix, &first, right));
-    let solution = first.zip_map(&refinement, |first, refinement| first + refinement);
-    let zero = T::from_f64(0.0);
-    let size = largest(right.iter().copied());
-    let residual = largest(remainder(matrix, &solution, right).iter().copied());
-    LeastNorm {
-        solution,
-        rank: factors.rank,
-        residual: residual / zero.select_less(size, size, T::from_f64(1.0)),
-    }
+    Semidefinite::new(*matrix).solve(right)
 }
 
 /// `b − S λ`.
@@ -80,8 +69,10 @@ fn remainder<T: Real, const K: usize>(
     remainder
 }
 
-/// A pivoted Cholesky factorisation and the null space.
-struct Semidefinite<T, const K: usize> {
+/// A symmetric positive semidefinite matrix, factorised for any number of right sides: see [`least_norm`].
+#[derive(Clone, Debug)]
+pub struct Semidefinite<T, const K: usize> {
+    matrix: SMatrix<T, K, K>,
     /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
     lower: [[T; K]; K],
     order: Order<T, K>,
@@ -97,9 +88,12 @@ struct Semidefinite<T, const K: usize> {
 }
 
 impl<T: Real, const K: usize> Semidefinite<T, K> {
-    fn new(matrix: &SMatrix<T, K, K>) -> Self {
+    /// Factorises the matrix, of which the lower triangle decides on the rank.
+    #[must_use]
+    pub fn new(matrix: SMatrix<T, K, K>) -> Self {
         let zero = T::from_f64(0.0);
         let mut factors = Self {
+            matrix,
             lower: matrix.transpose().data.0,
             order: Order::unchanged(),
             kept: [zero; K],
@@ -110,6 +104,22 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         factors.factorise();
         factors.span_null_space();
         factors
+    }
+
+    /// The solution of least norm with this right side, after one step of iterative refinement.
+    #[must_use]
+    pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
+        let first = self.least_squares(right);
+        let refinement = self.least_squares(&remainder(&self.matrix, &first, right));
+        let solution = first.zip_map(&refinement, |first, refinement| first + refinement);
+        let zero = T::from_f64(0.0);
+        let size = largest(right.iter().copied());
+        let residual = largest(remainder(&self.matrix, &solution, right).iter().copied());
+        LeastNorm {
+            solution,
+            rank: self.rank,
+            residual: residual / zero.select_less(size, size, T::from_f64(1.0)),
+        }
     }
 
     fn factorise(&mut self) {
@@ -208,8 +218,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         }
     }
 
-    /// The least-squares solution of least norm.
-    fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
+    /// The least-squares solution of least norm, without refinement.
+    fn least_squares(&self, right: &SVector<T, K>) -> SVector<T, K> {
         let mut x = self.order.apply(&right.data.0[0]);
         self.remove_null_space(&mut x);
         for k in 0..self.rank {

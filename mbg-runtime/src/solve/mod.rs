@@ -13,7 +13,7 @@ mod memory;
 mod newton;
 mod project;
 
-pub use least_norm::{LeastNorm, least_norm};
+pub use least_norm::{LeastNorm, Semidefinite, least_norm};
 pub use memory::{LoopMemory, Memory, Outcome};
 pub use newton::{ITERATIONS, Solved, newton};
 pub use project::{Projected, project, project_velocity};
@@ -50,7 +50,7 @@ fn exchanged<T: Real>(first: T, second: T, (a, b): (T, T)) -> (T, T) {
 }
 
 /// An order that may differ from lane to lane: the places that the elements came from.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Order<T, const K: usize>([T; K]);
 
 impl<T: Real, const K: usize> Order<T, K> {

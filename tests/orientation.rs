@@ -36,7 +36,6 @@ struct Found {
 
 impl Found {
     fn assert_within(self, rates: f64, quaternion: f64, kept: f64) {
-        println!("{self:?}");
         assert!(
             self.rates < rates && self.quaternion < quaternion && self.kept < kept,
             "{self:?}"
@@ -137,29 +136,28 @@ fn free_bodies_meet_elliptic_functions() {
 }
 
 /// A top from the rates of a reference: it keeps energy and both momenta.
-fn spin<S, const N: usize>(model: &S, start: SVector<f64, N>, rows: &[Row]) -> Found
+fn spin<S, const N: usize>(model: &S, rows: &[Row]) -> Found
 where
     S: System<f64, N, 0, 10, Memory = ()>,
 {
-    run(model, &(), start, rows, |t, x, output| {
+    run(model, &(), model.initial_state(), rows, |t, x, output| {
         vec![model.energy(t, x) + output[9], output[7], output[8]]
     })
 }
 
 #[test]
 fn tops_meet_elliptic_functions_in_every_orientation() {
-    for (rows, tilt) in [(reference::TOP, 0.6), (reference::SLEEPING, 0.01)] {
-        let angles = TopAngles::new(TopAnglesParameters { tilt }).unwrap();
-        let quaternion = TopQuaternion::new(TopQuaternionParameters { tilt }).unwrap();
-        let matrix = TopMatrix::new(TopMatrixParameters { tilt }).unwrap();
-        let rates = rows[0].1;
-        // At the start the last gimbal turns about the body's own axis.
-        let start = started(&angles, "top.foot.rotation.gimbal.rates.f", rates);
-        spin(&angles, start, rows).assert_within(1e-10, 1e-10, 1e-10);
-        let start = started(&quaternion, "top.foot.rotation.rates.f", rates);
-        spin(&quaternion, start, rows).assert_within(1e-10, 1e-10, 1e-10);
-        let start = started(&matrix, "top.foot.rotation.rates.f", rates);
-        spin(&matrix, start, rows).assert_within(1e-10, 1e-10, 1e-10);
+    // The second one falls slowly from where it is unstable, so that what is wrong grows.
+    for (rows, tilt, rate, bound) in [
+        (reference::TOP, 0.6, 25.0, 1e-11),
+        (reference::SLEEPING, 0.01, 13.2, 2e-10),
+    ] {
+        let angles = TopAngles::new(TopAnglesParameters { tilt, rate }).unwrap();
+        let quaternion = TopQuaternion::new(TopQuaternionParameters { tilt, rate }).unwrap();
+        let matrix = TopMatrix::new(TopMatrixParameters { tilt, rate }).unwrap();
+        spin(&angles, rows).assert_within(bound, bound, 1e-11);
+        spin(&quaternion, rows).assert_within(bound, bound, 1e-11);
+        spin(&matrix, rows).assert_within(bound, bound, 1e-11);
         assert_eq!(TopQuaternion::<f64>::META.conditioning.len(), 0);
         assert_eq!(TopMatrix::<f64>::META.conditioning.len(), 0);
     }
@@ -196,7 +194,7 @@ fn a_body_is_pulled_through_gimbal_lock() {
         reference::THROUGH_LOCK,
         |_, _, _| vec![],
     )
-    .assert_within(1e-11, 1e-11, 1.0);
+    .assert_within(1e-12, 1e-12, 1e-12);
     run(
         &matrix,
         &Switched,
@@ -204,7 +202,7 @@ fn a_body_is_pulled_through_gimbal_lock() {
         reference::THROUGH_LOCK,
         |_, _, _| vec![],
     )
-    .assert_within(1e-11, 1e-11, 1.0);
+    .assert_within(1e-12, 1e-12, 1e-12);
     let torque = Smooth(|t: f64| {
         Vector3::new(
             0.3 * (2.0 * t).sin(),
@@ -219,9 +217,9 @@ fn a_body_is_pulled_through_gimbal_lock() {
         reference::NEAR_LOCK,
         |_, _, _| vec![],
     )
-    .assert_within(1e-11, 1e-11, 1.0);
+    .assert_within(1e-12, 1e-12, 1e-12);
     run(&matrix, &torque, y, reference::NEAR_LOCK, |_, _, _| vec![])
-        .assert_within(1e-11, 1e-11, 1.0);
+        .assert_within(1e-12, 1e-12, 1e-12);
 }
 
 #[test]
@@ -260,7 +258,6 @@ fn navigation_in_all_orientations_is_one_system_away_from_gimbal_lock() {
     ] {
         let differences = found.iter().zip(&expected).map(|(a, b)| (a - b).amax());
         let worst = differences.fold(0.0, f64::max);
-        println!("{worst:e}");
         assert!(worst < 1e-11, "{worst:e}");
     }
 }
@@ -335,7 +332,6 @@ fn navigation_with_quaternions_goes_where_gimbals_lock() {
         },
     )
     .unwrap();
-    println!("{worst:?}");
     assert!(pitch(20.0) > 2.0 * FRAC_PI_2);
     assert!(worst[0] < 1e-12 && worst[1] < 1e-12, "{worst:?}");
 }
@@ -362,7 +358,6 @@ fn keeping_a_quaternion_at_length_one_costs_no_order() {
     for closing in [false, true] {
         let errors = [0.04, 0.02, 0.01].map(|h| stepped(h, closing));
         let order = |place: usize| (errors[place][0] / errors[place + 1][0]).log2();
-        println!("{closing} {errors:?} {} {}", order(0), order(1));
         assert!((order(1) - 4.0).abs() < 0.2, "{errors:?}");
         let drift = errors[2][1];
         assert_eq!(drift < 1e-15, closing, "{drift:e}");
@@ -441,7 +436,6 @@ fn loops_through_attitudes_stay_closed() {
         HungMatrix, HungMatrixParameters;
     };
     for [gap, energy, angle] in [hang(&quaternion), hang(&matrix)] {
-        println!("{gap:e} {energy:e} {angle:e}");
         assert!(
             gap < 1e-14 && energy < 1e-9 && angle < 1e-9,
             "{gap:e} {energy:e} {angle:e}"
@@ -452,8 +446,8 @@ fn loops_through_attitudes_stay_closed() {
 #[test]
 fn jacobians_are_exact_along_rotations() {
     let model = build! { TopQuaternion, TopQuaternionParameters; };
-    let tilt = Dual::constant(0.6);
-    let dual = TopQuaternion::new(TopQuaternionParameters { tilt }).unwrap();
+    let (tilt, rate) = (Dual::constant(0.6), Dual::constant(25.0));
+    let dual = TopQuaternion::new(TopQuaternionParameters { tilt, rate }).unwrap();
     let u = SVector::from([]);
     for seed in 0..20 {
         let wave = |place: usize| (f64::from(seed) + 1.7 * place as f64 + 0.3).sin();

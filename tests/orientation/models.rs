@@ -19,8 +19,12 @@ mbg! {
         param orientation: angles | quaternion | matrix = angles;
         /// About x where it starts.
         param tilt: rad;
+        /// About its own axis.
+        param rate: rad/s;
         1 ground[6] { Sf held { flow: 0.0 } }
-        foot: Spherical { orientation: orientation, initial: [tilt, 0.0, 0.0] } (ground, frame);
+        foot: Spherical {
+            orientation: orientation, initial: [tilt, 0.0, 0.0], initial_rates: [0.0, 0.0, rate]
+        } (ground, frame);
         // About the foot 0.8 and 0.3 kg m².
         body: Body {
             mass: 1.0, inertia: diag(0.55, 0.55, 0.3), centre: [0.0, 0.0, 0.5], gravity_at: foot.gravity_b
@@ -56,8 +60,9 @@ mbg! {
     pub(crate) model TopAngles {
         gravity [0.0, 0.0, -10.0];
         param tilt: rad = 0.6;
+        param rate: rad/s = 25.0;
         1 frame[6];
-        top: Top { orientation: angles, tilt: tilt } (frame);
+        top: Top { orientation: angles, tilt: tilt, rate: rate } (frame);
         output rates[3]: rad/s = frame.f[0..3];
         output quaternion[4] = top.quaternion;
         output momentum[2]: N*m*s = top.momentum;
@@ -68,8 +73,9 @@ mbg! {
     pub(crate) model TopQuaternion {
         gravity [0.0, 0.0, -10.0];
         param tilt: rad = 0.6;
+        param rate: rad/s = 25.0;
         1 frame[6];
-        top: Top { orientation: quaternion, tilt: tilt } (frame);
+        top: Top { orientation: quaternion, tilt: tilt, rate: rate } (frame);
         output rates[3]: rad/s = frame.f[0..3];
         output quaternion[4] = top.quaternion;
         output momentum[2]: N*m*s = top.momentum;
@@ -80,8 +86,9 @@ mbg! {
     pub(crate) model TopMatrix {
         gravity [0.0, 0.0, -10.0];
         param tilt: rad = 0.6;
+        param rate: rad/s = 25.0;
         1 frame[6];
-        top: Top { orientation: matrix, tilt: tilt } (frame);
+        top: Top { orientation: matrix, tilt: tilt, rate: rate } (frame);
         output rates[3]: rad/s = frame.f[0..3];
         output quaternion[4] = top.quaternion;
         output momentum[2]: N*m*s = top.momentum;

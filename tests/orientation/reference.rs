@@ -1,4 +1,5 @@
 //! Rigid bodies, by closed forms in elliptic functions and by integration in multiple precision, to 18 digits.
+#![allow(clippy::approx_constant, reason = "numbers as they were computed")]
 
 /// Time in s, angular velocity in body axes in rad/s, and the quaternion that takes body axes to those of the world,
 /// its sign continuous.

@@ -63,11 +63,11 @@ pub fn quaternion_of(pool: &mut Pool, matrix: &Matrix) -> [Expression; 4] {
 fn squares(pool: &mut Pool, matrix: &Matrix) -> [[Expression; 4]; 4] {
     let at = |row: usize, column: usize| matrix.at(row, column);
     let mut square = [[Expression::ZERO; 4]; 4];
-    for part in 0..4 {
+    for (part, row) in square.iter_mut().enumerate() {
         // Of the three signs in 1 ± R11 ± R22 ± R33 all are plus for w, and one for x, y and z.
         let terms = (0..3).map(|axis| at(axis, axis).flipped(part != 0 && part != axis + 1));
         let terms: Vec<Expression> = terms.chain([Expression::ONE]).collect();
-        square[part][part] = pool.sum(&terms);
+        row[part] = pool.sum(&terms);
     }
     for axis in 0..3 {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);

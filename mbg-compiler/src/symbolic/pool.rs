@@ -26,10 +26,10 @@ pub struct Pool {
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// Images of states that depend on each other, such as the parts of a quaternion.
+    located: BTreeMap<usize, Image>,
     /// Where each unknown is defined.
     places: BTreeMap<usize, Place>,
-    /// Images of states that depend on each other, such as the parts of a quaternion.
-    placed: BTreeMap<usize, Image>,
     /// How many unknowns were made up.
     fresh: usize,
 }
@@ -48,8 +48,8 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            located: BTreeMap::new(),
             places: BTreeMap::new(),
-            placed: BTreeMap::new(),
             fresh: 0,
         };
         pool.insert(Operation::Constant(0.0), Image::ZERO, Rate::Constant);
@@ -202,7 +202,7 @@ impl Pool {
 
     /// Says where a state lies, before it is used: what holds between states at their places holds everywhere.
     pub fn locate(&mut self, state: usize, image: Image) {
-        self.placed.insert(state, image);
+        self.located.insert(state, image);
     }
 
     /// A variable.
@@ -216,7 +216,7 @@ impl Pool {
             Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
         let image = match symbol {
-            Symbol::State(state) => self.placed.get(&state).copied(),
+            Symbol::State(state) => self.located.get(&state).copied(),
             _ => None,
         };
         let image = image.unwrap_or_else(|| Image::unknown(&[kind, index as u64]));

@@ -15,6 +15,12 @@ const JOINTS: &[(&str, &str, &str)] = &[
     ("Cylindrical", "axis: 0, tilt: rot_y(0.6)", "joint.angle"),
     ("Universal", "first: 2, second: 1", "joint.angle.y"),
     ("Planar", "axis: 2, tilt: rot_x(0.6)", "sunk.z"),
+    ("Spherical", "", "joint.angles.y"),
+    (
+        "Spherical",
+        "orientation: quaternion",
+        "joint.quaternion[2]",
+    ),
     ("PlanarRevolute", "", "joint.angle"),
     ("PlanarPrismatic", "direction: -0.7", "sunk.z"),
 ];
@@ -67,7 +73,7 @@ fn compliant(joint: &str, arguments: &str, seen: &str, stiffness: f64) -> f64 {
         ("blocked_stiffness", stiffness),
         ("blocked_damping", damping),
     ];
-    if joint != "PlanarRevolute" {
+    if !["PlanarRevolute", "Spherical"].contains(&joint) {
         words.push(("blocked_torsional_stiffness", stiffness));
         words.push(("blocked_torsional_damping", damping));
     }

@@ -152,10 +152,22 @@ impl Scene {
         evaluate(&self.model.program, routine, &point)
     }
 
-    /// Some state without any symmetry.
+    /// Some state without any symmetry; quaternions and matrices are those at the start, since they must be rotations.
     pub(crate) fn state(&self, seed: usize) -> Vec<f64> {
-        (0..self.model.states.len())
-            .map(|place| (1.3 * place as f64 + 0.4 + 0.77 * seed as f64).sin())
+        let rotation = |name: &str| {
+            ["rotation.quaternion", "rotation.turn"]
+                .iter()
+                .any(|part| name.contains(part))
+        };
+        let places = self.names().into_iter().zip(self.start()).enumerate();
+        places
+            .map(|(place, (name, start))| {
+                if rotation(name) {
+                    start
+                } else {
+                    (1.3 * place as f64 + 0.4 + 0.77 * seed as f64).sin()
+                }
+            })
             .collect()
     }
 

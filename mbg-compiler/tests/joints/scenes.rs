@@ -138,3 +138,48 @@ fn in_a_plane_a_load_and_a_point_mass_do_the_same() {
         format!("{bob} load: PlanarLoad {{ force: [0.0, 0.8], angle: hinge.angle }} (tip);");
     alike(&change(&moment, ""), &change(&force, ""));
 }
+
+#[test]
+fn friction_falls_from_its_breakaway_to_its_sliding_value() {
+    let scene = Scene::of(
+        "model Sliding {
+            1 block { I body { inertia: 2.0 } }
+            rubbing: Friction { sliding: 3.0, breakaway: 5.0, speed: 0.01, stribeck_speed: 0.1 } (block);
+        }",
+    );
+    for speed in [-0.4, -0.05, 0.0, 0.003, 0.1, 2.0_f64] {
+        let curve = 3.0 + 2.0 * (-(speed / 0.1).powi(2)).exp();
+        let expected = -curve * (speed / 0.01).tanh();
+        alike(
+            &scene.run(Routines::DERIVATIVE, &[2.0 * speed]),
+            &[expected],
+        );
+    }
+}
+
+#[test]
+fn joints_start_with_their_rates_and_springs_at_rest() {
+    let scene = Scene::of(
+        "#[derivative] model Start {
+            causality componentwise;
+            1 ground[6]; 1 b[6];
+            Sf fixed[6] { flow: 0.0 } -> ground;
+            joint: Universal { initial: [0.3, 0.2], initial_rates: [0.5, -0.4], stiffness: [3.0, 4.0], rest: [0.1, 0.7] }
+                (ground, b);
+            body: Body { mass: 2.0, inertia: 3.0, centre: [0.1, 0.2, 0.3] } (b);
+            output angle[2] = joint.angle;
+            output rate[2] = joint.rate.f;
+        }",
+    );
+    let start = scene.start();
+    alike(&scene.run(Routines::OUTPUT, &start), &[0.3, 0.2, 0.5, -0.4]);
+    let spring = ["joint.spring.q.x", "joint.spring.q.y"].map(|name| start[scene.place(name)]);
+    alike(&spring, &[0.2, -0.5]);
+    // ½ 3 · 0.2² + ½ 4 · 0.5², beside what moves.
+    let mut still = start;
+    for name in ["joint.rate.f.x", "joint.rate.f.y"] {
+        let place = scene.place(name);
+        still[place] = 0.0;
+    }
+    alike(&scene.run(Routines::ENERGY, &still), &[0.56]);
+}

@@ -413,16 +413,6 @@ model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }}
     insta::assert_snapshot!(mistake("c: C { way: left } (a);", "if given(m) { }"), @"2:11 `m` is no parameter of this component [MBG0203]");
     insta::assert_snapshot!(mistake("c: C { way: left } (a);", "output y = way;"), @"2:13 `way` is a word and no number; ask `if way == …` [MBG0213]");
     insta::assert_snapshot!(mistake("c: C { way: left } (a);", "output y = if way == up { 1.0 } else { 2.0 };"), @"2:23 expected `left` or `right`, found `up` [MBG0219]");
-    insta::assert_snapshot!(mistake("hinge: Revolute { axis: 0.5 } (a, a);", ""), @"
-    4:32 port `a` has dimension 6, found 3 [MBG0204]
-    4:35 port `b` has dimension 6, found 3 [MBG0204]
-    4:1 expected a whole number that is known while the model is compiled, found `axis` [MBG0217]
-      this is inside `Revolute`, a component of the library
-      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
-      help: a `param` of a model is no such number, because it can change after the model is compiled
-    4:1 expected a number, found a 3×3 matrix [MBG0204]
-      this is inside `Revolute`, a component of the library
-    ");
 }
 
 /// Errors of a model with one mass around the statements given.

@@ -108,8 +108,8 @@ fn three_hinges_are_the_gimbals_for_every_sequence() {
         let gimbals = two_bodies(&format!("joint: Gimbal {{ {arguments} }}"));
         let series = two_bodies(&format!("joint: GimbalSeries {{ {arguments} }}"));
         let word = if first == third { "sin" } else { "cos" };
-        assert_eq!(gimbals.conditioning, [format!("{word}(joint.angles.y)")]);
-        assert_eq!(series.conditioning, [format!("{word}(joint.y.angle)")]);
+        assert_eq!(gimbals.conditioning, [format!("{word}(joint.spring.q.y)")]);
+        assert_eq!(series.conditioning, [format!("{word}(joint.y.spring.q)")]);
         assert_eq!((gimbals.states.len(), series.states.len()), (9, 9));
         for _ in 0..100 {
             let state: Vec<f64> = (0..9).map(|_| 3.0 * next()).collect();

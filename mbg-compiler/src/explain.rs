@@ -132,4 +132,23 @@ fn programs(compiled: &Compiled) -> String {
             &program::dump(&routines[Routines::DERIVATIVE]),
         )
         + &section("output", &program::dump(&routines[Routines::OUTPUT]))
+        + &section("operations", &operations(compiled))
+}
+
+/// What each function costs.
+fn operations(compiled: &Compiled) -> String {
+    let functions = [
+        ("derivative", Routines::DERIVATIVE),
+        ("output", Routines::OUTPUT),
+        ("derivative_and_jacobian", Routines::DERIVATIVE_AND_JACOBIAN),
+        ("jacobian_input", Routines::JACOBIAN_INPUT),
+        ("energy", Routines::ENERGY),
+        ("power", Routines::POWER),
+        ("conditioning", Routines::CONDITIONING),
+    ];
+    let lines = functions.map(|(name, number)| {
+        let count = compiled.program.routines[number].operations();
+        format!("{name:<24}{count:>6}")
+    });
+    lines.join("\n")
 }

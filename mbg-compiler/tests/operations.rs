@@ -74,7 +74,7 @@ fn operations_grow_linearly() {
 fn jacobians_grow_with_the_square() {
     let counts = [4, 8, 16].map(|links| {
         let compiled = models::compiled(&chain(links));
-        compiled.program.routines[Routines::JACOBIAN_STATE].operations()
+        compiled.program.routines[Routines::DERIVATIVE_AND_JACOBIAN].operations()
     });
     let pairs = [4.0, 8.0, 16.0].map(|links: f64| links * links);
     let each: Vec<f64> = counts

@@ -180,7 +180,7 @@ fn kept(
                 .filter(|(_, keep)| **keep)
                 .map(|(rate, _)| *rate),
         );
-        let read: Vec<usize> = symbols(pool, &roots)
+        let mut read: Vec<usize> = symbols(pool, &roots)
             .into_iter()
             .filter_map(|symbol| {
                 if let Symbol::State(state) = symbol {
@@ -191,6 +191,13 @@ fn kept(
             })
             .filter(|state| !keep[*state])
             .collect();
+        // Only a whole row of an attitude can be kept at length one.
+        let rows = model.attitudes.iter().flat_map(|attitude| &attitude.rows);
+        for row in rows {
+            if row.iter().any(|state| read.contains(state)) {
+                read.extend(row);
+            }
+        }
         if read.is_empty() {
             return (0..keep.len()).filter(|state| keep[*state]).collect();
         }

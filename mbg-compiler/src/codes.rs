@@ -36,6 +36,7 @@ codes! {
     CYCLE = "MBG0218", "a value that is defined by itself";
     WORD = "MBG0219", "a word that is none of those to choose from";
     CONDITION = "MBG0220", "a condition of statements that is not decided at compile time";
+    NO_ROTATION = "MBG0221", "an initial attitude that is no rotation";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";
@@ -47,6 +48,7 @@ codes! {
     SINGULAR_JUNCTIONS = "MBG0401", "a junction structure that leaves variables undetermined";
     NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop that does not determine its variables";
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
+    SINGULAR_START = "MBG0404", "a model that starts where something it divides by is zero";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

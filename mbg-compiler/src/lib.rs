@@ -11,7 +11,7 @@
 //! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
-//! | answers | [`answers`], [`closures`], [`checks`] | what functions return, projection makes zero, `new` asks |
+//! | answers | [`answers`], [`closures`], [`checks`], [`start`] | what functions return, projection makes zero, `new` asks |
 //! | program | [`program`] | straight-line arithmetic |
 //! | emission | [`emit`] | Rust |
 //!
@@ -33,6 +33,7 @@ pub mod graph;
 pub mod inclusion;
 pub mod network;
 pub mod program;
+pub mod start;
 pub mod structure;
 pub mod symbolic;
 pub mod syntax;

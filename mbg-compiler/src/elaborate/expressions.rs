@@ -93,7 +93,7 @@ pub fn fail<T>(span: Span, message: impl Into<String>) -> Result<T> {
     Err(Box::new(error(codes::EXPRESSION, span, message)))
 }
 
-fn mismatch<T>(span: Span, message: String) -> Result<T> {
+pub(super) fn mismatch<T>(span: Span, message: String) -> Result<T> {
     Err(Box::new(error(codes::WRONG_DIMENSION, span, message)))
 }
 
@@ -419,8 +419,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             (Value::Matrix(a), Value::Matrix(b)) if b.columns() == 1 => {
                 let vector = b.to_matrix(self.pool);
-                let result = a.apply(self.pool, &vector);
-                Ok(Value::Matrix(Product::of(Factor::Dense(result))))
+                Ok(Value::column(a.apply(self.pool, &vector).entries))
             }
             (Value::Matrix(a), Value::Matrix(b)) => Ok(Value::Matrix(a.then(b))),
         }
@@ -428,6 +427,8 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn scale(&mut self, factor: Expression, value: Value) -> Value {
         match value {
+            // A rotation stays known as one.
+            value if factor == Expression::ONE => value,
             Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
             Value::Matrix(product) => {
                 let matrix = product
@@ -478,12 +479,6 @@ impl<N: Names> Evaluator<'_, N> {
                 count(2)?;
                 self.power(arguments)
             }
-            "rot_x" | "rot_y" | "rot_z" => {
-                count(1)?;
-                let axis = usize::from(text.as_bytes()[4] - b'x');
-                let angle = self.scalar(&arguments[0])?;
-                Ok(Value::Matrix(Product::of(Factor::Rotation { axis, angle })))
-            }
             "transpose" => {
                 count(1)?;
                 match self.evaluate(&arguments[0])? {
@@ -502,7 +497,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             "skew" => {
                 count(1)?;
-                let [x, y, z] = self.triple(&arguments[0])?;
+                let [x, y, z] = self.column(&arguments[0])?;
                 let zero = Expression::ZERO;
                 let rows = [
                     zero,
@@ -518,15 +513,10 @@ impl<N: Names> Evaluator<'_, N> {
                 let matrix = Matrix::new(3, 3, rows.to_vec());
                 Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
             }
-            "jacobian_xyz" => {
-                count(1)?;
-                let factor = Factor::GimbalJacobian {
-                    angles: self.triple(&arguments[0])?,
-                    transposed: false,
-                };
-                Ok(Value::Matrix(Product::of(factor)))
-            }
-            _ => self.elementary(name, arguments),
+            _ => match self.orientation(name, arguments) {
+                Some(value) => value,
+                None => self.elementary(name, arguments),
+            },
         }
     }
 
@@ -542,7 +532,8 @@ impl<N: Names> Evaluator<'_, N> {
             );
             return Err(Box::new(report.help(
                 "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
-                 diag, transpose, skew, rot_x, rot_y, rot_z, jacobian_xyz",
+                 diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, \
+                 angles_of",
             )));
         };
         if arguments.len() != function.arity() {
@@ -575,18 +566,6 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(
                 arguments[1].span(),
                 "expected an integer exponent between -64 and 64",
-            ),
-        }
-    }
-
-    fn triple(&mut self, argument: &Expr) -> Result<[Expression; 3]> {
-        let value = self.evaluate(argument)?;
-        let shape = value.shape();
-        match value.entries(self.pool).as_deref() {
-            Some(&[a, b, c]) => Ok([a, b, c]),
-            _ => mismatch(
-                argument.span(),
-                format!("expected a vector of 3, found {shape}"),
             ),
         }
     }

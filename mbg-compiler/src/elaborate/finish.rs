@@ -15,7 +15,7 @@ use crate::codes;
 use crate::diagnostics::{error, listing};
 use crate::graph::{ElementId, JunctionId, Law};
 use crate::symbolic::{Expression, Pool, Rate, Symbol};
-use crate::syntax::ast::{self, Statement};
+use crate::syntax::ast::{self, Orientation, Statement};
 
 impl<'a> Builder<'a> {
     /// A model parameter's default, which must be a number.
@@ -57,7 +57,13 @@ impl<'a> Builder<'a> {
                 Statement::Integral(integral) => {
                     (&integral.name, integral.unit.as_ref(), integral.dimension)
                 }
-                Statement::Attitude(attitude) => (&attitude.name, None, 4),
+                Statement::Attitude(attitude) => {
+                    let dimension = match attitude.orientation {
+                        Orientation::Quaternion => 4,
+                        Orientation::Matrix => 9,
+                    };
+                    (&attitude.name, None, dimension)
+                }
                 _ => continue,
             };
             let start = self.states.len();
@@ -75,7 +81,13 @@ impl<'a> Builder<'a> {
                 });
             }
             let states = start..self.states.len();
-            self.name(scope, name, Entity::States(states.clone()));
+            let entity = match statement {
+                Statement::Attitude(attitude) => {
+                    self.place_attitude(attitude.orientation, states.clone())
+                }
+                _ => Entity::States(states.clone()),
+            };
+            self.name(scope, name, entity);
             // Before the outputs, which may read them; they are read after all laws anyway.
             self.pending.push(match statement {
                 Statement::Integral(integral) => Pending::Integral {
@@ -183,7 +195,7 @@ impl<'a> Builder<'a> {
         .evaluate(expression)
     }
 
-    fn vector(
+    pub(super) fn vector(
         &mut self,
         scope: usize,
         expression: &syn::Expr,
@@ -279,7 +291,7 @@ impl<'a> Builder<'a> {
         Ok(initial)
     }
 
-    fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
+    pub(super) fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
         if self.claims.is_none() && self.pool.rate(initial) == Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
             return Err(Box::new(error(
@@ -319,54 +331,6 @@ impl<'a> Builder<'a> {
         }
         for ((state, rate), initial) in states.zip(rates).zip(initial) {
             self.states[state].rate = StateRate::Expression(rate);
-            self.initial_value(state, initial)?;
-        }
-        Ok(())
-    }
-
-    /// `q̇ = ½ q∘(0, ω)`.
-    fn attitude(
-        &mut self,
-        scope: usize,
-        attitude: &ast::Attitude,
-        states: std::ops::Range<usize>,
-    ) -> Result<()> {
-        let omega = self.vector(scope, &attitude.angular_velocity, 3, &attitude.name)?;
-        self.claim(
-            scope,
-            Subject::Turning,
-            &omega,
-            attitude.angular_velocity.span(),
-        );
-        let initial = match &attitude.initial {
-            Some(value) => self.vector(scope, value, 4, &attitude.name)?,
-            None => vec![
-                Expression::ONE,
-                Expression::ZERO,
-                Expression::ZERO,
-                Expression::ZERO,
-            ],
-        };
-        let pool = &mut *self.pool;
-        let two = pool.integer(2);
-        let half: Vec<Expression> = omega
-            .iter()
-            .map(|rate| pool.divide(*rate, two).unwrap_or(Expression::ZERO))
-            .collect();
-        let q: Vec<Expression> = states
-            .clone()
-            .map(|state| pool.symbol(Symbol::State(state)))
-            .collect();
-        let rows = [
-            [(1, 0, true), (2, 1, true), (3, 2, true)],
-            [(0, 0, false), (2, 2, false), (3, 1, true)],
-            [(0, 1, false), (3, 0, false), (1, 2, true)],
-            [(0, 2, false), (1, 1, false), (2, 0, true)],
-        ];
-        for ((state, row), initial) in states.zip(rows).zip(initial) {
-            let terms = row
-                .map(|(part, axis, minus)| self.pool.multiply(q[part], half[axis]).flipped(minus));
-            self.states[state].rate = StateRate::Expression(self.pool.sum(&terms));
             self.initial_value(state, initial)?;
         }
         Ok(())
@@ -418,6 +382,7 @@ impl<'a> Builder<'a> {
             inputs: self.inputs,
             outputs: self.outputs,
             states: self.states,
+            attitudes: self.attitudes,
             signals: self.signals,
             assumptions: self.assumptions,
         }

@@ -4,6 +4,7 @@
 //! resolved, laws evaluated into the pool. Afterwards all dimensions agree and every port has one bond. Errors: `MBG02xx`,
 //! `MBG0601`.
 
+mod attitude;
 mod bonds;
 mod check;
 pub mod claims;
@@ -17,6 +18,7 @@ mod instances;
 mod laws;
 mod loops;
 mod model;
+mod orientation;
 mod quadrature;
 mod references;
 mod scope;
@@ -30,8 +32,8 @@ use syn::Expr;
 
 pub use finish::component_table;
 pub use model::{
-    Assumption, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal, Signals, State,
-    StateRate, Variable,
+    Assumption, Attitude, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal,
+    Signals, State, StateRate, Variable,
 };
 pub use size::LIMIT;
 
@@ -166,6 +168,7 @@ struct Builder<'a> {
     /// States and dimension by element.
     ports: Vec<(Range<usize>, usize)>,
     states: Vec<State>,
+    attitudes: Vec<Attitude>,
     parameters: Vec<Parameter>,
     inputs: Vec<Variable>,
     outputs: Vec<Output>,
@@ -210,6 +213,7 @@ impl<'a> Builder<'a> {
             },
             ports: Vec::new(),
             states: Vec::new(),
+            attitudes: Vec::new(),
             parameters: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),

@@ -15,7 +15,7 @@ use super::model::{Place, Quantity, Signals};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Symbol};
 
 /// The acceleration of free fall: a name of the model that every component sees.
 pub(super) const GRAVITY: &str = "gravity";
@@ -33,8 +33,10 @@ pub(super) enum Entity {
     Junction(JunctionId, Range<usize>),
     /// An element.
     Element(ElementId),
-    /// States of an integral or attitude.
+    /// States of an integral, or of a quaternion.
     States(Range<usize>),
+    /// States of a rotation matrix, by rows.
+    Rotation(Range<usize>),
     /// A component in use: its scope.
     Instance(usize),
     /// A loop with a label: the first value of its variable, and the scopes of its iterations.
@@ -213,7 +215,11 @@ impl Names for Lookup<'_, '_> {
             let taken = matches!(
                 self.scopes.find(self.scope, "t"),
                 Some(
-                    Entity::Value(_) | Entity::Definition(_) | Entity::Input(_) | Entity::States(_)
+                    Entity::Value(_)
+                        | Entity::Definition(_)
+                        | Entity::Input(_)
+                        | Entity::States(_)
+                        | Entity::Rotation(_)
                 )
             );
             if name == "t" && !taken {
@@ -304,6 +310,11 @@ impl Lookup<'_, '_> {
                 name.span(),
                 format!("`{name}` is a word and no number; ask `if {name} == …`"),
             ),
+            Entity::Rotation(range) => {
+                let entries = range.clone().map(|state| pool.symbol(Symbol::State(state)));
+                let matrix = Matrix::new(3, 3, entries.collect());
+                Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+            }
             Entity::Junction(..) => fail(
                 name.span(),
                 format!("`{name}` is a junction; write `{name}.f` or `{name}.e`"),

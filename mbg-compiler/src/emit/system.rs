@@ -3,6 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::close::close;
 use super::meta;
 use super::routine::{Setting, lines};
 use crate::compile::{Compiled, Routines};
@@ -223,55 +224,6 @@ fn jacobian(
     }}
 }
 
-/// The projection onto closed loops; nothing for a model without any.
-fn close(compiled: &Compiled) -> Option<TokenStream> {
-    if compiled.model.graph.closures.is_empty() {
-        return None;
-    }
-    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
-    let routines = [Routines::CLOSED_POSITIONS, Routines::CLOSED_FLOWS];
-    let projections = routines
-        .iter()
-        .zip(&compiled.closed)
-        .filter(|(_, closed)| !closed.is_empty());
-    let projections = projections.map(|(routine, closed)| {
-        let (steps, results) = lines(
-            compiled,
-            &compiled.program.routines[*routine],
-            Setting::Method,
-        );
-        let (values, jacobian) = results.split_at(closed.len());
-        let size = Literal::usize_suffixed(closed.len());
-        let closures = closed.iter().copied().map(Literal::usize_suffixed);
-        let memory = cold_memory(compiled, *routine);
-        quote! {
-            let x = ::mbg_runtime::__private::close(
-                Self::META, &[#(#closures),*], x, held,
-                |x: &::mbg_runtime::__private::SVector<T, #n>| {
-                    #memory
-                    #steps
-                    (
-                        ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
-                        ::mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
-                    )
-                },
-            )?;
-        }
-    });
-    Some(quote! {
-        fn close(
-            &self,
-            t: T,
-            x: ::mbg_runtime::__private::SVector<T, #n>,
-            u: &::mbg_runtime::__private::SVector<T, #m>,
-            held: &[usize],
-        ) -> ::core::result::Result<::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::Trouble> {
-            #(#projections)*
-            ::core::result::Result::Ok(x)
-        }
-    })
-}
-
 /// The type of what is remembered: nothing, or the unknowns of all iterations.
 fn memory(compiled: &Compiled) -> TokenStream {
     let sizes: Vec<usize> = compiled.iterations().collect();
@@ -283,7 +235,7 @@ fn memory(compiled: &Compiled) -> TokenStream {
 }
 
 /// What is asked without a memory begins at zero, if it needs an iteration at all.
-fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
+pub(super) fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
     compiled.program.routines[routine]
         .iterates()
         .then(|| quote!(let memory = &mut <Self::Memory as ::core::default::Default>::default();))

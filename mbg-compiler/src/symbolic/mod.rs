@@ -13,6 +13,7 @@ pub mod identity;
 pub mod implicit;
 pub mod linear;
 pub mod matrix;
+pub mod orientation;
 pub mod pool;
 pub mod print;
 mod share;

@@ -37,6 +37,8 @@ pub struct Pool {
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// Images of states that depend on each other, such as the parts of a quaternion.
+    located: BTreeMap<usize, Image>,
     /// What equations give, in order.
     definitions: Vec<Definition>,
     /// Where each unknown is defined.
@@ -59,6 +61,7 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            located: BTreeMap::new(),
             definitions: Vec::new(),
             places: BTreeMap::new(),
             fresh: 0,
@@ -211,6 +214,11 @@ impl Pool {
         self.constant(value, if value < 0.0 { image.negated() } else { image })
     }
 
+    /// Says where a state lies, before it is used: what holds between states at their places holds everywhere.
+    pub fn locate(&mut self, state: usize, image: Image) {
+        self.located.insert(state, image);
+    }
+
     /// A variable.
     pub fn symbol(&mut self, symbol: Symbol) -> Expression {
         let (kind, index, rate) = match symbol {
@@ -221,7 +229,11 @@ impl Pool {
             Symbol::Signal(index) => (5, index, Rate::Varying),
             Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
-        let image = Image::unknown(&[kind, index as u64]);
+        let image = match symbol {
+            Symbol::State(state) => self.located.get(&state).copied(),
+            _ => None,
+        };
+        let image = image.unwrap_or_else(|| Image::unknown(&[kind, index as u64]));
         self.find(image)
             .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
     }

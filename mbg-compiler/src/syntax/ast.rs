@@ -229,15 +229,40 @@ pub struct Integral {
     pub initial: Option<Expr>,
 }
 
+/// How an attitude is held in states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Orientation {
+    /// Four, the parts of a quaternion.
+    Quaternion,
+    /// Nine, a rotation matrix by rows.
+    Matrix,
+}
+
+impl Orientation {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Quaternion, Self::Matrix];
+
+    /// Its word in the language.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Quaternion => "quaternion",
+            Self::Matrix => "matrix",
+        }
+    }
+}
+
 /// `attitude name = quaternion(angular_velocity), initial: value;`
 pub struct Attitude {
     /// Documentation comments.
     pub documentation: Vec<Attribute>,
     /// Name.
     pub name: Ident,
+    /// `quaternion` or `matrix`.
+    pub orientation: Orientation,
     /// Angular velocity in body axes, the argument of `quaternion(…)`.
     pub angular_velocity: Expr,
-    /// Value at the start, `[1, 0, 0, 0]` unless written.
+    /// Value at the start, that of no rotation unless written.
     pub initial: Option<Expr>,
 }
 

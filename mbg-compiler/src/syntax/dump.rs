@@ -120,13 +120,10 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         }
         Statement::Attitude(it) => {
             write_documentation(text, "  ", &it.documentation)?;
+            let (name, word) = (&it.name, it.orientation.word());
             let velocity = expression(&it.angular_velocity);
-            writeln!(
-                text,
-                "  attitude {} = quaternion({velocity}){}",
-                it.name,
-                initial(it.initial.as_ref())
-            )
+            let initial = initial(it.initial.as_ref());
+            writeln!(text, "  attitude {name} = {word}({velocity}){initial}")
         }
         Statement::Junction(junction) => write_junction(text, junction),
         Statement::Chain(chain) => writeln!(text, "  chain {}", chain_text(chain)),

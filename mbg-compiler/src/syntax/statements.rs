@@ -4,8 +4,8 @@ use proc_macro2::{Delimiter, Group, Ident};
 use syn::Expr;
 
 use super::ast::{
-    Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let, Output,
-    Parameter, Statement,
+    Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let,
+    Orientation, Output, Parameter, Statement,
 };
 use super::attributes::Attributes;
 use super::chains::{chain, instance, reference};
@@ -321,18 +321,18 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
         return Err(cursor.expected(&format!("`=` after {}", cursor.previous())));
     }
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
-    if word != "quaternion" {
-        let help = match words::nearest(&word, &["quaternion"]) {
+    let known = Orientation::ALL.into_iter().find(|it| it.word() == word);
+    let Some(orientation) = known else {
+        let help = match words::nearest(&word, &Orientation::ALL.map(Orientation::word)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "an attitude is the integral of an angular velocity in body axes".to_owned(),
         };
-        return Err(Box::new(
-            (*cursor.expected("`quaternion(…)` after `=`")).help(help),
-        ));
-    }
+        let wanted = "`quaternion(…)` or `matrix(…)` after `=`";
+        return Err(Box::new((*cursor.expected(wanted)).help(help)));
+    };
     cursor.advance(1);
     let Some(group) = cursor.take_group(Delimiter::Parenthesis) else {
-        return Err(cursor.expected("`(` after `quaternion`"));
+        return Err(cursor.expected(&format!("`(` after `{word}`")));
     };
     let mut inner = Cursor::inside(&group);
     let angular_velocity = expression(&mut inner, "the angular velocity")?;
@@ -344,6 +344,7 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     Ok(Attitude {
         documentation: attributes.documentation,
         name,
+        orientation,
         angular_velocity,
         initial,
     })

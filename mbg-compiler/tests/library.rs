@@ -508,6 +508,8 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     insta::assert_snapshot!(elaborated(axis).err().unwrap(), @"
     2:9 `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
       this is inside `Revolute`, a component of the library
+    2:9 expected 0, 1 or 2 for the axis x, y or z [MBG0213]
+      this is inside `Revolute`, a component of the library
     ");
     let shape = "model M { 1 a[6]; 1 b[6];
         offset: Offset { by: [1.0, 2.0] } (a, b); }";

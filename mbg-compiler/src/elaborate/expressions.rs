@@ -401,8 +401,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             (Value::Matrix(a), Value::Matrix(b)) if b.columns() == 1 => {
                 let vector = b.to_matrix(self.pool);
-                let result = a.apply(self.pool, &vector);
-                Ok(Value::Matrix(Product::of(Factor::Dense(result))))
+                Ok(Value::column(a.apply(self.pool, &vector).entries))
             }
             (Value::Matrix(a), Value::Matrix(b)) => Ok(Value::Matrix(a.then(b))),
         }
@@ -410,6 +409,8 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn scale(&mut self, factor: Expression, value: Value) -> Value {
         match value {
+            // A rotation stays known as one.
+            value if factor == Expression::ONE => value,
             Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
             Value::Matrix(product) => {
                 let matrix = product

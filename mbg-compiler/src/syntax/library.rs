@@ -17,22 +17,37 @@ macro_rules! files {
 }
 
 files! {
+    "Bearing": "bearing.mbg",
     "Body": "body.mbg",
+    "Cut": "cut.mbg",
+    "Cylindrical": "cylindrical.mbg",
+    "Fixed": "fixed.mbg",
     "Free": "free.mbg",
     "FreeRotation": "free_rotation.mbg",
+    "Friction": "friction.mbg",
+    "Gear": "gear.mbg",
     "Gimbal": "gimbal.mbg",
     "GimbalAxis": "gimbal_axis.mbg",
     "GimbalSeries": "gimbal_series.mbg",
+    "Load": "load.mbg",
+    "Mount": "mount.mbg",
     "Offset": "offset.mbg",
+    "Planar": "planar.mbg",
     "PlanarBody": "planar_body.mbg",
+    "PlanarCut": "planar_cut.mbg",
     "PlanarLink": "planar_link.mbg",
+    "PlanarLoad": "planar_load.mbg",
     "PlanarOffset": "planar_offset.mbg",
+    "PlanarPointMass": "planar_point_mass.mbg",
     "PlanarPrismatic": "planar_prismatic.mbg",
     "PlanarRevolute": "planar_revolute.mbg",
+    "PointMass": "point_mass.mbg",
     "Prismatic": "prismatic.mbg",
+    "Rack": "rack.mbg",
     "Revolute": "revolute.mbg",
     "Spherical": "spherical.mbg",
     "Turn": "turn.mbg",
+    "Universal": "universal.mbg",
 }
 
 /// The names of all components of the library.

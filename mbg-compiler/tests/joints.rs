@@ -57,6 +57,13 @@ const JOINTS: &[(&str, &str, &str, &[&str])] = &[
         &["angle", "travel.x", "travel.y"],
     ),
     (
+        "Spherical",
+        "",
+        "first: 2, third: 0, initial: [0.3, 0.2, -0.1], stiffness: 5.0, damping: 0.2, friction: 0.4,
+         torque: [1.5, 0.2, -0.3]",
+        &["angle.x", "angle.y", "angle.z"],
+    ),
+    (
         "PlanarRevolute",
         "",
         "initial: 0.3, stiffness: 5.0, rest: 0.1, damping: 0.2, friction: 0.4, torque: 1.5",

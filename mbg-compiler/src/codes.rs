@@ -15,6 +15,7 @@ codes! {
     UNIT = "MBG0102", "a unit that is not a product of powers";
     DIMENSION_LITERAL = "MBG0103", "a dimension that is not a positive integer";
     FIELD_REPEATED = "MBG0104", "a word given twice in one element";
+    INCLUDE = "MBG0105", "a file that cannot be included";
     EMPTY_MODEL = "MBG0201", "a model without a storage, an integral or an attitude";
     DUPLICATE_NAME = "MBG0202", "a name declared twice";
     UNKNOWN_NAME = "MBG0203", "a name that is not declared";

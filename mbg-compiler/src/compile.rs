@@ -80,7 +80,7 @@ pub struct Routines;
 impl Routines {
     pub const DERIVATIVE: usize = 0;
     pub const OUTPUT: usize = 1;
-    pub const JACOBIAN_STATE: usize = 2;
+    pub const DERIVATIVE_AND_JACOBIAN: usize = 2;
     pub const JACOBIAN_INPUT: usize = 3;
     pub const ENERGY: usize = 4;
     pub const POWER: usize = 5;
@@ -137,10 +137,11 @@ fn finish(
         .states
         .iter()
         .map(|state| model.states[*state].initial);
+    let by_states = jacobian(&mut pool, &answers.rates, &by_state);
     let requests = [
         answers.rates.clone(),
         answers.outputs.clone(),
-        jacobian(&mut pool, &answers.rates, &by_state).entries,
+        [&answers.rates[..], &by_states.entries].concat(),
         jacobian(&mut pool, &answers.rates, &by_input).entries,
         vec![answers.energy],
         vec![answers.supplied, answers.dissipated],

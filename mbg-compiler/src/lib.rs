@@ -4,6 +4,7 @@
 //!
 //! | stage | module | result |
 //! |---|---|---|
+//! | inclusion | [`inclusion`] | tokens, those of included files in place |
 //! | syntax | [`syntax`] | a tree |
 //! | elaboration | [`elaborate`] | a flat [`graph::BondGraph`] with laws |
 //! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
@@ -28,6 +29,7 @@ pub mod emit;
 pub mod equations;
 pub mod explain;
 pub mod graph;
+pub mod inclusion;
 pub mod network;
 pub mod program;
 pub mod start;
@@ -38,18 +40,38 @@ pub mod syntax;
 use proc_macro2::TokenStream;
 
 use diagnostics::Diagnostics;
+use inclusion::{Inclusion, Read};
 use syntax::ast::Item;
 
 /// Compiles the tokens between the braces of `mbg! { … }`: items, or located errors and the shells of the models.
+/// What they include is read by `read`, such as [`inclusion::crate_file`].
 #[must_use]
-pub fn expand(tokens: TokenStream) -> TokenStream {
+pub fn expand(tokens: TokenStream, read: &Read<'_>) -> TokenStream {
     let mut diagnostics = Diagnostics::new();
-    let mut output = items(tokens, &mut diagnostics);
+    let mut output = expansion(tokens, read, &mut diagnostics);
     output.extend(diagnostics.to_tokens());
     output
 }
 
 /// As [`expand`], with the errors apart.
+pub fn expansion(
+    tokens: TokenStream,
+    read: &Read<'_>,
+    diagnostics: &mut Diagnostics,
+) -> TokenStream {
+    let inclusion = Inclusion::of(tokens, read, diagnostics);
+    let before = diagnostics.clone();
+    let mut output = items(inclusion.tokens(), diagnostics);
+    inclusion.locate(before.list().len(), diagnostics, &|tokens| {
+        let mut again = before.clone();
+        let _ = items(tokens, &mut again);
+        again
+    });
+    output.extend(inclusion.dependencies());
+    output
+}
+
+/// As [`expansion`], of tokens that include nothing.
 pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream {
     let source = syntax::parse(tokens, diagnostics);
     let sound = !diagnostics.any();

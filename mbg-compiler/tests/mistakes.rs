@@ -42,6 +42,7 @@ const FIXTURES: &[(Code, &str)] = &[
         codes::FIELD_REPEATED,
         "model M { 1 a { I m { inertia: 1.0, inertia: 1.0 } } }",
     ),
+    (codes::INCLUDE, beside_a_mass!("include \"mine.mbg\";")),
     (
         codes::EMPTY_MODEL,
         "model M { 1 a { R r { resistance: 1.0 } } }",

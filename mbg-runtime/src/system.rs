@@ -51,6 +51,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SMatrix<T, N, N>;
 
+    /// [`derivative`](Self::derivative) and [`jacobian_state`](Self::jacobian_state) at once; a generated model works out
+    /// once what both need.
+    fn derivative_and_jacobian(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> (SVector<T, N>, SMatrix<T, N, N>) {
+        let derivative = self.derivative(t, x, u, memory);
+        (derivative, self.jacobian_state(t, x, u, memory))
+    }
+
     /// `∂f/∂u`, exact.
     fn jacobian_input(
         &self,

@@ -279,15 +279,7 @@ impl<'a> Builder<'a> {
             report = report.inside(component, *instance);
         }
         // Each iteration of a loop makes the same mistake.
-        let place = |report: &Diagnostic| format!("{:?}", report.span);
-        let told = self.diagnostics.list()[self.before..].iter().any(|known| {
-            known.message == report.message
-                && known.notes == report.notes
-                && place(known) == place(&report)
-        });
-        if !told {
-            self.diagnostics.report(report);
-        }
+        self.diagnostics.report_once(report, self.before);
     }
 
     /// Where something in a scope stands in the user's text.

@@ -6,10 +6,12 @@
 //! costs nothing.
 
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
 use super::implicit::{Implicit, Place};
+use super::linear::Linear;
 
 struct Node {
     operation: Operation,
@@ -20,6 +22,15 @@ struct Node {
 /// Unknowns that are none of the graph are numbered from here.
 const FRESH: usize = 1 << 31;
 
+/// Equations that give something.
+#[derive(Clone)]
+pub(super) enum Definition {
+    /// Unknowns for which symbols stand, by number.
+    Implicit(usize),
+    /// Unknowns that are expressions.
+    Linear(Rc<Linear>),
+}
+
 /// All expressions of a model.
 pub struct Pool {
     nodes: Vec<Node>,
@@ -28,6 +39,8 @@ pub struct Pool {
     implicit: Vec<Implicit>,
     /// Images of states that depend on each other, such as the parts of a quaternion.
     located: BTreeMap<usize, Image>,
+    /// What equations give, in order.
+    definitions: Vec<Definition>,
     /// Where each unknown is defined.
     places: BTreeMap<usize, Place>,
     /// How many unknowns were made up.
@@ -49,6 +62,7 @@ impl Pool {
             found: HashMap::new(),
             implicit: Vec::new(),
             located: BTreeMap::new(),
+            definitions: Vec::new(),
             places: BTreeMap::new(),
             fresh: 0,
         };
@@ -230,7 +244,18 @@ impl Pool {
         for (row, unknown) in implicit.unknowns.iter().enumerate() {
             self.places.insert(*unknown, Place { number, row });
         }
+        self.definitions.push(Definition::Implicit(number));
         self.implicit.push(implicit);
+    }
+
+    /// Remembers equations with their solution.
+    pub fn solved(&mut self, linear: Linear) {
+        self.definitions.push(Definition::Linear(Rc::new(linear)));
+    }
+
+    /// What equations give, in order.
+    pub(super) fn definitions(&self) -> &[Definition] {
+        &self.definitions
     }
 
     /// A number that no unknown has yet.
@@ -242,6 +267,7 @@ impl Pool {
     /// Forgets all definitions.
     pub fn forget(&mut self) {
         self.implicit.clear();
+        self.definitions.clear();
         self.places.clear();
     }
 
@@ -265,18 +291,18 @@ impl Pool {
     pub fn causes(&self, expression: Expression) -> Vec<Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.equations(place.number),
+                Some(place) => self.evaluated(place.number),
                 None => Vec::new(),
             },
             operation => operation.operands(),
         }
     }
 
-    /// The equations of a definition, with those of the one whose matrix it uses.
-    fn equations(&self, number: usize) -> Vec<Expression> {
+    /// What a definition evaluates, with what the one evaluates whose matrix it uses.
+    fn evaluated(&self, number: usize) -> Vec<Expression> {
         let implicit = &self.implicit[number];
-        let earlier = implicit.earlier().map(|of| self.implicit[of].equations());
-        [implicit.equations(), earlier.unwrap_or_default()].concat()
+        let earlier = implicit.earlier().map(|of| self.implicit[of].evaluated());
+        [implicit.evaluated(), earlier.unwrap_or_default()].concat()
     }
 
     /// Sine.

@@ -4,10 +4,13 @@
 
 use std::collections::BTreeSet;
 
+use proc_macro2::Span;
+
 use super::ast::{Component, Item, Source, Statement};
 use super::items;
 use super::recovery::Sink;
 use crate::diagnostics::Diagnostics;
+use crate::inclusion::text;
 
 macro_rules! files {
     ($($name:literal: $file:literal,)*) => {
@@ -103,8 +106,8 @@ fn instances(statements: &[Statement], names: &mut Vec<String>) {
 }
 
 /// Reads one file of the library, in which a test finds no mistakes.
-fn read(text: &str) -> Option<Component> {
-    let tokens = text.parse().ok()?;
+fn read(file: &str) -> Option<Component> {
+    let (tokens, _) = text::tokens(file, &|_| Span::call_site()).ok()?;
     let mut unheard = Diagnostics::new();
     let source = items::source(tokens, &mut Sink::new(&mut unheard));
     source.items.into_iter().find_map(|item| match item {

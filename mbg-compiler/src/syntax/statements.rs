@@ -17,8 +17,8 @@ use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
 use super::words;
-use crate::codes;
 use crate::diagnostics::Diagnostic;
+use crate::inclusion;
 
 /// Reads the statements between braces.
 pub(super) fn body(group: &Group, sink: &mut Sink<'_>) -> Vec<Statement> {
@@ -81,8 +81,8 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
             attributes.unmarked(&format!("`{word}`"), sink);
             return declaration(cursor, first, attributes, sink);
         }
-        if words::LATER.contains(&word.as_str()) {
-            return Err(cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet")));
+        if word == words::INCLUDE {
+            return Err(Box::new(inclusion::misplaced(cursor.span())));
         }
     }
     if word == "if" {

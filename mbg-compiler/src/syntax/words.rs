@@ -16,8 +16,8 @@ pub(super) const STATEMENTS: &[&str] = &[
     "causality",
 ];
 
-/// Words that will begin a statement one day.
-pub(super) const LATER: &[&str] = &["include"];
+/// The word that takes a file into the macro call, before anything else.
+pub(super) const INCLUDE: &str = "include";
 
 /// Words that begin an item.
 pub(super) const ITEMS: &[&str] = &["model", "component"];

@@ -20,9 +20,9 @@ mod input;
 #[doc = include_str!("language.md")]
 pub mod language {}
 mod meta;
-mod polynomial;
 mod real;
 mod scalar;
+mod sine;
 pub mod solve;
 mod step;
 mod system;
@@ -30,7 +30,7 @@ mod system;
 pub use dual::Dual;
 pub use input::{Constant, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
-pub use real::Real;
+pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use step::{Cause, Dense, DormandPrince, Rk4, Statistics, Stopped};
 pub use system::{ParameterError, Power, System, Trouble};

@@ -32,6 +32,20 @@ macro_rules! ordered {
         }
 
         #[inline]
+        fn multiply_add(self, factor: Self, addend: Self) -> Self {
+            #[cfg(any(test, feature = "std"))]
+            if crate::FUSED {
+                return $scalar::mul_add(self, factor, addend);
+            }
+            self * factor + addend
+        }
+
+        #[inline]
+        fn sin_cos(self) -> (Self, Self) {
+            crate::sine::sin_cos(self)
+        }
+
+        #[inline]
         fn abs(self) -> Self {
             $scalar::abs(self)
         }
@@ -79,14 +93,6 @@ impl Real for f64 {
     elementary!(f64: tan = tan, asin = asin, acos = acos, exp = exp, ln = log, sqrt = sqrt, tanh = tanh);
 
     #[inline]
-    fn sin_cos(self) -> (Self, Self) {
-        #[cfg(any(test, feature = "std"))]
-        return f64::sin_cos(self);
-        #[cfg(not(any(test, feature = "std")))]
-        return libm::sincos(self);
-    }
-
-    #[inline]
     fn atan2(self, x: Self) -> Self {
         #[cfg(any(test, feature = "std"))]
         return f64::atan2(self, x);
@@ -100,14 +106,6 @@ impl Real for f32 {
 
     ordered!(f32);
     elementary!(f32: tan = tanf, asin = asinf, acos = acosf, exp = expf, ln = logf, sqrt = sqrtf, tanh = tanhf);
-
-    #[inline]
-    fn sin_cos(self) -> (Self, Self) {
-        #[cfg(any(test, feature = "std"))]
-        return f32::sin_cos(self);
-        #[cfg(not(any(test, feature = "std")))]
-        return crate::polynomial::sin_cos(self);
-    }
 
     #[inline]
     fn atan2(self, x: Self) -> Self {

@@ -5,7 +5,7 @@
 //! | write a model | the [`language`] |
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Rk4`] at a fixed step, [`DormandPrince`] at a tolerance; [`Input`] |
-//! | compute with other numbers | [`Real`], [`Dual`] |
+//! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 #![no_std]
 #[cfg(any(test, feature = "std"))]
@@ -16,6 +16,8 @@ pub mod __private;
 pub mod attitude;
 mod dual;
 mod input;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 #[cfg(feature = "macros")]
 #[doc = include_str!("language.md")]
 pub mod language {}

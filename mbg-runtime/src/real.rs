@@ -13,11 +13,7 @@ pub const FUSED: bool = cfg!(all(
     not(feature = "reproducible"),
     any(
         target_feature = "fma",
-        all(target_arch = "aarch64", target_feature = "neon"),
-        all(
-            any(target_arch = "riscv32", target_arch = "riscv64"),
-            target_feature = "d"
-        )
+        all(target_arch = "aarch64", target_feature = "neon")
     )
 ));
 
@@ -29,6 +25,7 @@ pub const FUSED: bool = cfg!(all(
 /// | type | elementary functions |
 /// |---|---|
 /// | `f64`, `f32` | sine and cosine of this crate; others of the standard library with the feature `std`, else of the crate `libm` |
+/// | lanes, with the feature `lanes` | sine and cosine likewise, all lanes at once; others lane by lane |
 /// | [`Dual<T>`](crate::Dual) | those of `T`, with their slopes |
 pub trait Real:
     Copy

@@ -59,7 +59,7 @@ fn moderate<T: Angle>(angle: T) -> (T, T) {
 
 /// Polynomial of degree 5 in z, in three independent pairs.
 #[inline(always)]
-fn quintic<T: Real>([a, b, c, d, e, f]: [f64; 6], z: T) -> T {
+pub(crate) fn quintic<T: Real>([a, b, c, d, e, f]: [f64; 6], z: T) -> T {
     let pair = |low: f64, high: f64| z.multiply_add(T::from_f64(high), T::from_f64(low));
     let square = z * z;
     let upper = square.multiply_add(pair(e, f), pair(c, d));
@@ -68,7 +68,7 @@ fn quintic<T: Real>([a, b, c, d, e, f]: [f64; 6], z: T) -> T {
 
 /// Polynomial of degree 2 in z.
 #[inline(always)]
-fn quadratic<T: Real>([a, b, c]: [f64; 3], z: T) -> T {
+pub(crate) fn quadratic<T: Real>([a, b, c]: [f64; 3], z: T) -> T {
     let upper = z.multiply_add(T::from_f64(c), T::from_f64(b));
     z.multiply_add(upper, T::from_f64(a))
 }
@@ -88,18 +88,18 @@ macro_rules! double {
         fn polynomials(z: Self) -> (Self, Self) {
             let sine = [
                 -1.666_666_666_666_663e-1,
-                8.333_333_333_321_840_7e-3,
+                8.333_333_333_321_84e-3,
                 -1.984_126_982_935_820_3e-4,
                 2.755_731_353_820_664_7e-6,
                 -2.505_073_429_859_918_6e-8,
                 1.589_542_485_005_161_6e-10,
             ];
             let cosine = [
-                4.166_666_666_666_660_2e-2,
-                -1.388_888_888_887_456_9e-3,
-                2.480_158_728_977_463_1e-5,
-                -2.755_731_444_066_056_1e-7,
-                2.087_573_576_741_426_1e-9,
+                4.166_666_666_666_66e-2,
+                -1.388_888_888_887_457e-3,
+                2.480_158_728_977_463e-5,
+                -2.755_731_444_066_056e-7,
+                2.087_573_576_741_426e-9,
                 -1.136_031_838_303_257_7e-11,
             ];
             (
@@ -164,6 +164,9 @@ macro_rules! angle {
         }
     };
 }
+
+#[cfg(feature = "lanes")]
+pub(crate) use {double, single};
 
 angle!(f64, double, libm::sincos, 64);
 angle!(f32, single, libm::sincosf, 32);

@@ -170,6 +170,7 @@ impl Writer<'_> {
                 let (a, b) = (self.operand(*a), self.operand(*b));
                 quote!(#a * #b)
             }
+            Step::MultiplyAdd(a, b, c) => self.call("multiply_add", &[*a, *b, *c]),
             Step::Divide(a, b) => {
                 let (a, b) = (self.operand(*a), self.operand(*b));
                 quote!(#a / #b)

@@ -119,6 +119,11 @@ macro_rules! lanes {
                 sine::sin_cos(self)
             }
 
+            #[inline]
+            fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+                sine::sines_cosines(angles)
+            }
+
             lane_by_lane!($scalar: tan, asin, acos, exp, ln, tanh; atan2);
 
             #[inline]

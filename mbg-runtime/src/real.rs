@@ -61,6 +61,11 @@ pub trait Real:
     /// error is below 2e-16 and 1.6 units of the last place, or 1.19e-7 and 2.5 units. Larger angles take `libm`. The
     /// sine of −0 is 0.
     fn sin_cos(self) -> (Self, Self);
+    /// Sines and cosines of several angles at once: evaluated side by side, with one test for those that are large.
+    fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+        let both = angles.map(Self::sin_cos);
+        (both.map(|it| it.0), both.map(|it| it.1))
+    }
     /// Sine.
     fn sin(self) -> Self {
         self.sin_cos().0

@@ -46,6 +46,11 @@ macro_rules! ordered {
         }
 
         #[inline]
+        fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+            crate::sine::sines_cosines(angles)
+        }
+
+        #[inline]
         fn abs(self) -> Self {
             $scalar::abs(self)
         }

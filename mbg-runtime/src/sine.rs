@@ -24,7 +24,7 @@ pub(crate) trait Angle: Real {
     /// Lane by lane by `libm`.
     fn far(self) -> (Self, Self);
     /// With y the angle less its quadrants and z = y²: (sin y / y − 1) / z and (cos y − 1 + z / 2) / z².
-    fn polynomials(z: Self) -> (Self, Self);
+    fn polynomials<const K: usize>(z: [Self; K]) -> ([Self; K], [Self; K]);
     /// Sine and cosine from those of the reduced angle. The lowest bits of `shifted` are the number of quadrants.
     fn turned(shifted: Self, sine: Self, cosine: Self) -> (Self, Self);
 }
@@ -33,44 +33,73 @@ pub(crate) trait Angle: Real {
 #[inline(always)]
 pub(crate) fn sin_cos<T: Angle>(angle: T) -> (T, T) {
     if angle.is_moderate() {
-        moderate(angle)
+        let ([sine], [cosine]) = moderate([angle]);
+        (sine, cosine)
     } else {
         angle.far()
     }
 }
 
+/// Sines and cosines of several angles in rad.
 #[inline(always)]
-fn moderate<T: Angle>(angle: T) -> (T, T) {
-    let number = T::from_f64;
-    let shift = number(T::SHIFT);
-    let shifted = angle.multiply_add(number(core::f64::consts::FRAC_2_PI), shift);
-    let quadrants = shifted - shift;
-    let mut y = angle;
-    for part in T::PARTS {
-        y = quadrants.multiply_add(number(-part), y);
+pub(crate) fn sines_cosines<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
+    let is_moderate = |all: bool, angle: &T| all & angle.is_moderate();
+    if angles.iter().fold(true, is_moderate) {
+        moderate(angles)
+    } else {
+        some_far(angles)
     }
-    let z = y * y;
-    let (sine, cosine) = T::polynomials(z);
-    let sine = (y * z).multiply_add(sine, y);
-    let parabola = z.multiply_add(number(-0.5), number(1.0));
-    let cosine = (z * z).multiply_add(cosine, parabola);
-    T::turned(shifted, sine, cosine)
+}
+
+#[cold]
+#[inline(never)]
+fn some_far<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
+    let both = angles.map(sin_cos);
+    (both.map(|it| it.0), both.map(|it| it.1))
+}
+
+/// One operation after the other on all angles: each constant is loaded once, and several angles share a register.
+#[inline(always)]
+fn moderate<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
+    let every = |number: f64| [T::from_f64(number); K];
+    let turns = every(core::f64::consts::FRAC_2_PI);
+    let shifted = multiply_add(angles, turns, every(T::SHIFT));
+    let quadrants = shifted.map(|it| it - T::from_f64(T::SHIFT));
+    let mut y = angles;
+    for part in T::PARTS {
+        y = multiply_add(quadrants, every(-part), y);
+    }
+    let z = y.map(|y| y * y);
+    let cubes: [T; K] = core::array::from_fn(|k| y[k] * z[k]);
+    let (sines, cosines) = T::polynomials(z);
+    let sines = multiply_add(cubes, sines, y);
+    let parabolas = multiply_add(z, every(-0.5), every(1.0));
+    let cosines = multiply_add(z.map(|z| z * z), cosines, parabolas);
+    let turned: [(T, T); K] = core::array::from_fn(|k| T::turned(shifted[k], sines[k], cosines[k]));
+    (turned.map(|it| it.0), turned.map(|it| it.1))
+}
+
+#[inline(always)]
+fn multiply_add<T: Real, const K: usize>(a: [T; K], b: [T; K], c: [T; K]) -> [T; K] {
+    core::array::from_fn(|k| a[k].multiply_add(b[k], c[k]))
 }
 
 /// Polynomial of degree 5 in z, in three independent pairs.
 #[inline(always)]
-pub(crate) fn quintic<T: Real>([a, b, c, d, e, f]: [f64; 6], z: T) -> T {
-    let pair = |low: f64, high: f64| z.multiply_add(T::from_f64(high), T::from_f64(low));
-    let square = z * z;
-    let upper = square.multiply_add(pair(e, f), pair(c, d));
-    square.multiply_add(upper, pair(a, b))
+pub(crate) fn quintic<T: Real, const K: usize>([a, b, c, d, e, f]: [f64; 6], z: [T; K]) -> [T; K] {
+    let every = |number: f64| [T::from_f64(number); K];
+    let pair = |low: f64, high: f64| multiply_add(z, every(high), every(low));
+    let squares = z.map(|z| z * z);
+    let upper = multiply_add(squares, pair(e, f), pair(c, d));
+    multiply_add(squares, upper, pair(a, b))
 }
 
 /// Polynomial of degree 2 in z.
 #[inline(always)]
-pub(crate) fn quadratic<T: Real>([a, b, c]: [f64; 3], z: T) -> T {
-    let upper = z.multiply_add(T::from_f64(c), T::from_f64(b));
-    z.multiply_add(upper, T::from_f64(a))
+pub(crate) fn quadratic<T: Real, const K: usize>([a, b, c]: [f64; 3], z: [T; K]) -> [T; K] {
+    let every = |number: f64| [T::from_f64(number); K];
+    let upper = multiply_add(z, every(c), every(b));
+    multiply_add(z, upper, every(a))
 }
 
 /// The constants of double precision, for `f64` and its lanes.
@@ -85,7 +114,7 @@ macro_rules! double {
         ];
 
         #[inline(always)]
-        fn polynomials(z: Self) -> (Self, Self) {
+        fn polynomials<const K: usize>(z: [Self; K]) -> ([Self; K], [Self; K]) {
             let sine = [
                 -1.666_666_666_666_663e-1,
                 8.333_333_333_321_84e-3,
@@ -123,7 +152,7 @@ macro_rules! single {
         ];
 
         #[inline(always)]
-        fn polynomials(z: Self) -> (Self, Self) {
+        fn polynomials<const K: usize>(z: [Self; K]) -> ([Self; K], [Self; K]) {
             let sine = [-1.666_665_52e-1, 8.332_202_21e-3, -1.952_111_2e-4];
             let cosine = [4.166_664_56e-2, -1.388_730_13e-3, 2.443_067_02e-5];
             (

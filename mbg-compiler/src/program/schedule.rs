@@ -153,6 +153,8 @@ impl Draft {
 struct Common {
     /// Angles of which both sine and cosine are needed, with the two nodes.
     angles: BTreeMap<usize, (usize, usize)>,
+    /// Those of them that are at hand from the start, with their sines.
+    early: Vec<(Expression, Expression)>,
     /// Divisors of several quotients. These become products with one reciprocal: a division takes the time of five to ten
     /// multiplications and seldom overlaps with another, and the second rounding costs half a unit of the last place.
     divisors: BTreeSet<usize>,
@@ -179,8 +181,34 @@ impl Context<'_> {
     /// Appends what the roots still need.
     fn steps(&self, draft: &mut Draft, roots: &[Expression], folding: bool) {
         let common = self.common(draft, roots, folding);
+        self.early_angles(draft, folding, &common);
         for root in roots {
             self.visit(draft, root.magnitude(), folding, &common);
+        }
+    }
+
+    /// Angles that are at hand from the start come first, so that their sines are evaluated side by side.
+    fn early_angles(&self, draft: &mut Draft, folding: bool, common: &Common) {
+        let early = || common.early.iter();
+        for (angle, _) in early() {
+            self.visit(draft, *angle, folding, common);
+        }
+        for (_, sine) in early() {
+            self.visit(draft, *sine, folding, common);
+        }
+    }
+
+    /// Whether it is a sum or product of what is at hand from the start.
+    fn is_early(&self, expression: Expression, folding: bool) -> bool {
+        if self.is_leaf(expression, folding) {
+            return true;
+        }
+        match self.pool.operation(expression) {
+            Operation::Add(a, b) | Operation::Multiply(a, b) => {
+                self.is_leaf(*b, folding) && self.is_early(*a, folding)
+                    || self.is_leaf(*a, folding) && self.is_early(*b, folding)
+            }
+            _ => false,
         }
     }
 
@@ -219,20 +247,27 @@ impl Context<'_> {
             }
             let operation = self.pool.operation(current);
             match operation {
-                Operation::Sine(angle) => drop(sines.insert(angle.node(), current.node())),
-                Operation::Cosine(angle) => drop(cosines.insert(angle.node(), current.node())),
+                Operation::Sine(angle) => drop(sines.insert(*angle, current.magnitude())),
+                Operation::Cosine(angle) => drop(cosines.insert(*angle, current.magnitude())),
                 Operation::Divide(_, divisor) => *quotients.entry(divisor.node()).or_default() += 1,
                 _ => {}
             }
             pending.extend(self.before(current));
         }
-        let paired = sines
-            .into_iter()
-            .filter_map(|(angle, sine)| cosines.get(&angle).map(|cosine| (angle, (sine, *cosine))))
+        sines.retain(|angle, _| cosines.contains_key(angle));
+        let early = sines
+            .iter()
+            .map(|(angle, sine)| (*angle, *sine))
+            .filter(|(angle, _)| self.is_early(*angle, folding))
             .collect();
+        let paired = |(angle, sine): (Expression, Expression)| {
+            let cosine = cosines.get(&angle)?;
+            Some((angle.node(), (sine.node(), cosine.node())))
+        };
         quotients.retain(|_, quotients| *quotients > 1 && !folding);
         Common {
-            angles: paired,
+            angles: sines.into_iter().filter_map(paired).collect(),
+            early,
             divisors: quotients.into_keys().collect(),
         }
     }

@@ -24,7 +24,7 @@ pub const FUSED: bool = cfg!(all(
 ///
 /// | type | elementary functions |
 /// |---|---|
-/// | `f64`, `f32` | sine and cosine of this crate; others of the standard library with the feature `std`, else of the crate `libm` |
+/// | `f64`, `f32` | sine and cosine of this crate; others of the standard library with `std` and without `reproducible`, else of the crate `libm` |
 /// | lanes, with the feature `lanes` | sine and cosine likewise, all lanes at once; others lane by lane |
 /// | [`Dual<T>`](crate::Dual) | those of `T`, with their slopes |
 pub trait Real:

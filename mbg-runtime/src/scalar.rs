@@ -2,14 +2,15 @@
 
 use crate::Real;
 
-/// Functions of one argument: from the standard library where there is one, else from `libm`.
+/// Functions of one argument: from the standard library where there is one and its last digits may differ from one
+/// system to another, else from `libm`.
 macro_rules! elementary {
     ($scalar:ident: $($name:ident = $bare:ident),*) => { $(
         #[inline]
         fn $name(self) -> Self {
-            #[cfg(any(test, feature = "std"))]
+            #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
             return $scalar::$name(self);
-            #[cfg(not(any(test, feature = "std")))]
+            #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
             return libm::$bare(self);
         }
     )* };
@@ -99,9 +100,9 @@ impl Real for f64 {
 
     #[inline]
     fn atan2(self, x: Self) -> Self {
-        #[cfg(any(test, feature = "std"))]
+        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
         return f64::atan2(self, x);
-        #[cfg(not(any(test, feature = "std")))]
+        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
         return libm::atan2(self, x);
     }
 }
@@ -114,9 +115,9 @@ impl Real for f32 {
 
     #[inline]
     fn atan2(self, x: Self) -> Self {
-        #[cfg(any(test, feature = "std"))]
+        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
         return f32::atan2(self, x);
-        #[cfg(not(any(test, feature = "std")))]
+        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
         return libm::atan2f(self, x);
     }
 }
@@ -124,9 +125,9 @@ impl Real for f32 {
 /// `base` to the power of `exponent`, for step control.
 #[inline]
 pub(crate) fn power(base: f64, exponent: f64) -> f64 {
-    #[cfg(any(test, feature = "std"))]
+    #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
     return base.powf(exponent);
-    #[cfg(not(any(test, feature = "std")))]
+    #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
     return libm::pow(base, exponent);
 }
 

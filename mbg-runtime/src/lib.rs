@@ -21,6 +21,9 @@ pub mod lanes;
 #[cfg(feature = "macros")]
 #[doc = include_str!("language.md")]
 pub mod language {}
+#[cfg(feature = "macros")]
+#[doc = include_str!("joints.md")]
+pub mod joints {}
 mod meta;
 mod real;
 mod scalar;

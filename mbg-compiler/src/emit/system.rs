@@ -4,8 +4,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::close;
-use super::meta;
 use super::routine::{Setting, lines};
+use super::{columns, meta};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
 use crate::program::{Operand, Source};
@@ -104,11 +104,11 @@ fn system(compiled: &Compiled) -> TokenStream {
     let initial = body(Routines::INITIAL, &vector);
     let derivative = body(Routines::DERIVATIVE, &vector);
     let output = body(Routines::OUTPUT, &vector);
-    let derivative_and_jacobian = derivative_and_jacobian(compiled);
-    let jacobian_input = body(Routines::JACOBIAN_INPUT, &|results| {
-        let entries = &compiled.program.routines[Routines::JACOBIAN_INPUT].results;
-        jacobian(compiled, entries, results, compiled.model.inputs.len())
-    });
+    let (derivative_and_jacobian, jacobian_input) = if compiled.unrolled {
+        (derivative_and_jacobian(compiled), jacobian_input(compiled))
+    } else {
+        columns::jacobians(compiled)
+    };
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -187,6 +187,14 @@ fn derivative_and_jacobian(compiled: &Compiled) -> TokenStream {
     })
 }
 
+fn jacobian_input(compiled: &Compiled) -> TokenStream {
+    let routine = Routines::JACOBIAN_INPUT;
+    body(compiled, routine, &|results| {
+        let entries = &compiled.program.routines[routine].results;
+        jacobian(compiled, entries, results, compiled.model.inputs.len())
+    })
+}
+
 /// A vector of results.
 fn vector(results: &[TokenStream]) -> TokenStream {
     let size = Literal::usize_suffixed(results.len());
@@ -217,7 +225,7 @@ fn jacobian(
     });
     quote! {{
         let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
-            <T as ::mbg_runtime::Real>::from_f64(0.0),
+            T::from_f64(0.0),
         );
         #(#entries)*
         jacobian

@@ -12,7 +12,7 @@ mod reference;
 use std::error::Error;
 use std::time::Instant;
 
-use mbg_runtime::{DormandPrince, Rk4, Statistics, Stopped, System};
+use mbg_runtime::{Adaptive, Dop853, Integrator, Rk4, Statistics, Stopped, System};
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
 use plotters::prelude::*;
@@ -90,9 +90,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut adaptive = Vec::new();
     for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-        let pair = DormandPrince::new(tolerance, tolerance * 1e-4);
+        let solver = Adaptive::new(Dop853, tolerance, tolerance * 1e-4);
         adaptive.push(measure(format!("rtol = {tolerance:e}"), |found| {
-            pair.sample(&model, &gust, 0.0, start, &times, |t, x| {
+            solver.sample(&model, &gust, 0.0, start, &times, |t, x| {
                 found.push((t, *x))
             })
         })?);

@@ -141,6 +141,7 @@ pub(super) fn along<T: Real, const N: usize>(
 /// An iteration that goes on until nothing but rounding is left.
 pub(super) struct Settling {
     before: f64,
+    stalls: u32,
 }
 
 /// How far an iteration has come.
@@ -155,16 +156,24 @@ impl Settling {
     pub(super) const fn new() -> Self {
         Self {
             before: f64::INFINITY,
+            stalls: 0,
         }
     }
 
     /// Takes the size of a change, relative to what is changed. It has settled when nothing changes, or when a small
     /// change no longer becomes smaller (Hairer, McLachlan and Razakarivony, *BIT Numerical Mathematics* 48 (2008),
-    /// 231–243).
+    /// 231–243). A component near zero may be all rounding: then a change of a hundredth that stalls twice counts.
     pub(super) fn after<T: Real>(&mut self, change: f64) -> Progress {
-        let stalls = change >= self.before;
+        if change >= self.before {
+            self.stalls += 1;
+        }
         self.before = change;
-        if change == 0.0 || stalls && change < T::SINGULAR {
+        let small = match self.stalls {
+            0 => 0.0,
+            1 => T::SINGULAR,
+            _ => 1e-2,
+        };
+        if change <= small {
             Progress::Settled
         } else if change.is_nan() {
             Progress::Lost

@@ -123,10 +123,10 @@ impl<T: Real, const N: usize> Work<T, N> {
             self.fresh = false;
         }
         self.factorise(problem, start);
-        let Some((_, real, pair)) = &self.factors else {
-            return failed();
-        };
         let mut stages = self.predict(length);
+        let Some((_, real, pair)) = &self.factors else {
+            return failed(&stages);
+        };
         let mut newton = Newton {
             problem,
             start,
@@ -139,7 +139,7 @@ impl<T: Real, const N: usize> Work<T, N> {
         };
         let Some(theta) = found else {
             (self.keeps, self.rejected, self.rate) = (false, true, 1.0);
-            return failed();
+            return failed(&stages);
         };
         self.keeps = theta <= FAST;
         let error = tolerance.map_or(0.0, |tolerance| {
@@ -212,9 +212,9 @@ impl<T: Real, const N: usize> Work<T, N> {
 }
 
 /// A step that did not come off.
-fn failed<T: Real, const N: usize>() -> Trial<T, N> {
+fn failed<T: Real, const N: usize>(stages: &Stages<T, N>) -> Trial<T, N> {
     Trial {
-        change: SVector::from_element(T::from_f64(f64::NAN)),
+        change: stages[2],
         slope: None,
         error: f64::INFINITY,
     }

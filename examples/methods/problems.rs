@@ -149,6 +149,19 @@ impl Law<2, 0> for Pendulum {
     }
 }
 
+/// Hunters and hunted, after Lotka and Volterra.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hunters;
+
+impl Law<2, 0> for Hunters {
+    const STATES: &'static [Variable] = &[state("hunted"), state("hunters")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let one = T::from_f64(1.0);
+        SVector::from([x[0] * (one - x[1]), x[1] * (x[0] - one)])
+    }
+}
+
 /// A free rigid body with the principal inertias 1, 2 and 3: momentum in its own axes and quaternion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RigidBody;
@@ -200,6 +213,24 @@ impl Law<3, 0> for Follower {
         let [angle, rate, torque] = x.data.0[0];
         let behind = torque + angle.sin();
         SVector::from([rate, torque, -(behind * T::from_f64(1.0 / self.0))])
+    }
+}
+
+/// The problem of Kaps: `x = e^{-2t}`, `y = e^{-t}` whatever the small number is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kaps(pub f64);
+
+impl Law<2, 0> for Kaps {
+    const STATES: &'static [Variable] = &[state("x"), state("y")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let stiffness = T::from_f64(1.0 / self.0);
+        let [x, y] = x.data.0[0];
+        let behind = x - y * y;
+        SVector::from([
+            -(T::from_f64(2.0) * x) - stiffness * behind,
+            x - y * (T::from_f64(1.0) + y),
+        ])
     }
 }
 

@@ -1,5 +1,8 @@
 //! The macro used for real: behaviour against references, closed forms and identities.
 
+#[path = "../examples/arm/model.rs"]
+#[allow(unreachable_pub)]
+mod arm;
 #[path = "../examples/dc_motor/model.rs"]
 #[allow(unreachable_pub)]
 mod dc_motor;
@@ -18,6 +21,7 @@ mod run;
 #[allow(clippy::unwrap_used)]
 mod models {
     mod amplifier;
+    mod arm;
     mod audit;
     mod behaviour;
     mod closed;

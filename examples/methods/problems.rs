@@ -34,7 +34,7 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
         operations: Operations {
             derivative: 0,
             output: 0,
-            jacobian_state: 0,
+            derivative_and_jacobian: 0,
             jacobian_input: 0,
             energy: 0,
             power: 0,

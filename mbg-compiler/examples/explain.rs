@@ -1,16 +1,25 @@
 //! Prints every stage of the models in a file: `cargo run -p mbg-compiler --example explain -- FILE`.
 //!
-//! The file holds what stands between the braces of `mbg! { … }`, or Rust source with one such call in it.
+//! The file holds what stands between the braces of `mbg! { … }`, or Rust source with one such call in it. Files that it
+//! includes are looked for from the current directory.
 
 use std::error::Error;
 
+use mbg_compiler::diagnostics::Diagnostics;
+use mbg_compiler::inclusion::Inclusion;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: explain FILE")?;
     let tokens: TokenStream = std::fs::read_to_string(path)?.parse()?;
     let inner = between_braces(tokens.clone()).unwrap_or(tokens);
-    print!("{}", mbg_compiler::explain::explain(inner));
+    let mut diagnostics = Diagnostics::new();
+    let read = |path: &str| std::fs::read_to_string(path);
+    let inclusion = Inclusion::of(inner, &read, &mut diagnostics);
+    for diagnostic in diagnostics.list() {
+        eprintln!("{}", diagnostic.text());
+    }
+    print!("{}", mbg_compiler::explain::explain(inclusion.tokens()));
     Ok(())
 }
 

@@ -21,7 +21,7 @@ pub struct Answers {
     pub rates: Vec<Expression>,
     /// Outputs in order.
     pub outputs: Vec<Expression>,
-    /// Stored energy.
+    /// Stored energy, that of pseudo bonds left out, as their power is.
     pub energy: Expression,
     /// Power from the sources.
     pub supplied: Expression,
@@ -87,12 +87,12 @@ impl Answers {
             .graph
             .elements
             .iter()
-            .filter_map(|element| {
-                if let Law::Storage(storage) = &element.law {
+            .enumerate()
+            .filter_map(|(id, element)| match &element.law {
+                Law::Storage(storage) if !model.graph.is_pseudo(ElementId(id)) => {
                     Some(storage.energy)
-                } else {
-                    None
                 }
+                _ => None,
             })
             .collect();
         let energies: Vec<Expression> = energies
@@ -180,7 +180,7 @@ fn kept(
                 .filter(|(_, keep)| **keep)
                 .map(|(rate, _)| *rate),
         );
-        let read: Vec<usize> = symbols(pool, &roots)
+        let mut read: Vec<usize> = symbols(pool, &roots)
             .into_iter()
             .filter_map(|symbol| {
                 if let Symbol::State(state) = symbol {
@@ -191,6 +191,13 @@ fn kept(
             })
             .filter(|state| !keep[*state])
             .collect();
+        // Only a whole row of an attitude can be kept at length one.
+        let rows = model.attitudes.iter().flat_map(|attitude| &attitude.rows);
+        for row in rows {
+            if row.iter().any(|state| read.contains(state)) {
+                read.extend(row);
+            }
+        }
         if read.is_empty() {
             return (0..keep.len()).filter(|state| keep[*state]).collect();
         }
@@ -209,7 +216,7 @@ fn powers(
     for (id, port) in &scalars.ports {
         let kind = model.graph.elements[id.0].kind;
         let source = matches!(kind, ElementKind::Se | ElementKind::Sf);
-        if !source && kind != ElementKind::R {
+        if (!source && kind != ElementKind::R) || model.graph.is_pseudo(*id) {
             continue;
         }
         for (effort, flow) in port.effort.iter().zip(&port.flow) {

@@ -110,6 +110,40 @@ pub fn positions(
     }
 }
 
+/// Leaves of derivatives by the entries of attitudes what is along them: a matrix X of orthonormal rows stays one to
+/// first order when G is changed by G − ½ (G Xᵀ + X Gᵀ) X. `places` are the columns of each attitude's entries by row.
+pub fn tangential(
+    residuals: &mut Residuals,
+    places: &[Vec<Vec<usize>>],
+    by: &[Symbol],
+    pool: &mut Pool,
+) {
+    for places in places {
+        let (rows, columns) = (places.len(), places[0].len());
+        let matrix = |entry: &mut dyn FnMut(usize) -> Expression| {
+            let entries = places.iter().flatten().map(|place| entry(*place)).collect();
+            Matrix::new(rows, columns, entries)
+        };
+        let x = matrix(&mut |place| pool.symbol(by[place]));
+        for residual in 0..residuals.values.len() {
+            let start = residual * by.len();
+            let g = matrix(&mut |place| residuals.jacobian.entries[start + place]);
+            let product = g.times(pool, &x.transpose());
+            let pairs = product.entries.iter().zip(product.transpose().entries);
+            let two = pool.integer(2);
+            let halves = pairs.map(|(a, b)| {
+                let sum = pool.add(*a, b);
+                pool.divide(sum, two).unwrap_or(Expression::ZERO)
+            });
+            let across = Matrix::new(rows, rows, halves.collect()).times(pool, &x);
+            for (entry, place) in places.iter().flatten().enumerate() {
+                let along = pool.subtract(g.entries[entry], across.entries[entry]);
+                residuals.jacobian.entries[start + place] = along;
+            }
+        }
+    }
+}
+
 /// Residuals of the flows, with derivatives by the states that are velocities or momenta.
 #[must_use]
 pub fn flows(

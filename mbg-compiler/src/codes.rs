@@ -15,6 +15,7 @@ codes! {
     UNIT = "MBG0102", "a unit that is not a product of powers";
     DIMENSION_LITERAL = "MBG0103", "a dimension that is not a positive integer";
     FIELD_REPEATED = "MBG0104", "a word given twice in one element";
+    INCLUDE = "MBG0105", "a file that cannot be included";
     EMPTY_MODEL = "MBG0201", "a model without a storage, an integral or an attitude";
     DUPLICATE_NAME = "MBG0202", "a name declared twice";
     UNKNOWN_NAME = "MBG0203", "a name that is not declared";
@@ -35,6 +36,7 @@ codes! {
     CYCLE = "MBG0218", "a value that is defined by itself";
     WORD = "MBG0219", "a word that is none of those to choose from";
     CONDITION = "MBG0220", "a condition of statements that is not decided at compile time";
+    NO_ROTATION = "MBG0221", "an initial attitude that is no rotation";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";
@@ -46,5 +48,9 @@ codes! {
     SINGULAR_JUNCTIONS = "MBG0401", "a junction structure that leaves variables undetermined";
     NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop that does not determine its variables";
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
+    SINGULAR_START = "MBG0404", "a model that starts where something it divides by is zero";
+    UNIT_MISMATCH = "MBG0501", "units that do not agree";
+    UNIT_NAME = "MBG0502", "a name that is no unit of SI";
+    UNIT_SCALE = "MBG0503", "a unit that would scale values";
     TOO_LARGE = "MBG0601", "a model over the size limit";
 }

@@ -13,10 +13,12 @@ use crate::equations::{self, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Junction};
 use crate::network::Network;
 use crate::program::{self, Program};
+use crate::start;
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
 use crate::syntax::ast;
+use crate::units;
 
 /// Everything that emission needs.
 pub struct Compiled {
@@ -32,6 +34,8 @@ pub struct Compiled {
     pub eliminated: Vec<(String, String)>,
     /// Algebraic loops in order of solution.
     pub loops: Vec<AlgebraicLoop>,
+    /// Places of the states of each attitude, by row; rows that nothing reads are left out.
+    pub attitudes: Vec<Vec<Vec<usize>>>,
     /// The closure behind each residual of positions and of flows.
     pub closed: [Vec<usize>; 2],
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
@@ -77,7 +81,7 @@ pub struct Routines;
 impl Routines {
     pub const DERIVATIVE: usize = 0;
     pub const OUTPUT: usize = 1;
-    pub const JACOBIAN_STATE: usize = 2;
+    pub const DERIVATIVE_AND_JACOBIAN: usize = 2;
     pub const JACOBIAN_INPUT: usize = 3;
     pub const ENERGY: usize = 4;
     pub const POWER: usize = 5;
@@ -86,6 +90,7 @@ impl Routines {
     pub const CHECKS: usize = 8;
     pub const CLOSED_POSITIONS: usize = 9;
     pub const CLOSED_FLOWS: usize = 10;
+    pub const DERIVATIVE_TIME: usize = 11;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -97,6 +102,11 @@ pub fn compile(
 ) -> Option<Compiled> {
     let mut pool = Pool::new();
     let mut elaborated = elaborate::elaborate(model, components, &mut pool, diagnostics)?;
+    let before = diagnostics.list().len();
+    units::check(model, components, &elaborated, diagnostics);
+    if diagnostics.list().len() > before {
+        return None;
+    }
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
     let first = structure::solve(&scalars, &mut pool);
@@ -119,19 +129,26 @@ fn finish(
     let (scalars, solution) = (&solved.scalars, &solved.solution);
     let by_state: Vec<Symbol> = answers.states.iter().copied().map(Symbol::State).collect();
     let by_input: Vec<Symbol> = (0..model.inputs.len()).map(Symbol::Input).collect();
-    let positions = closures::positions(&answers.displacements, &by_state, &mut pool);
+    let attitudes = attitudes(&model, &answers.states);
+    let mut positions = closures::positions(&answers.displacements, &by_state, &mut pool);
+    closures::tangential(&mut positions, &attitudes, &by_state, &mut pool);
     let flows = closures::flows(&model, scalars, solution, &by_state, &mut pool);
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
     let conditioning = solution.conditioning.iter().map(|it| it.normalised);
     let conditioning: Vec<Expression> = conditioning.collect();
+    start::check(&model, scalars, &conditioning, &pool, diagnostics);
+    if diagnostics.any() {
+        return None;
+    }
     let initial = answers
         .states
         .iter()
         .map(|state| model.states[*state].initial);
+    let by_states = jacobian(&mut pool, &answers.rates, &by_state);
     let requests = [
         answers.rates.clone(),
         answers.outputs.clone(),
-        jacobian(&mut pool, &answers.rates, &by_state).entries,
+        [&answers.rates[..], &by_states.entries].concat(),
         jacobian(&mut pool, &answers.rates, &by_input).entries,
         vec![answers.energy],
         vec![answers.supplied, answers.dissipated],
@@ -140,6 +157,7 @@ fn finish(
         checked,
         positions.evaluated(),
         flows.evaluated(),
+        jacobian(&mut pool, &answers.rates, &[Symbol::Time]).entries,
     ];
     share(&mut pool, &requests[Routines::DERIVATIVE]);
     let program = build(&pool, scalars, solution, &answers, &requests);
@@ -162,6 +180,7 @@ fn finish(
         conditioning: conditioning.iter().map(written).collect(),
         loops: loops(&model, scalars, solution),
         eliminated: eliminated.collect(),
+        attitudes,
         closed: [positions.closures, flows.closures],
         checks,
         dependent: verdict.dependent,
@@ -170,6 +189,16 @@ fn finish(
         states: answers.states,
         model,
     })
+}
+
+/// Where the states of each attitude went, by row.
+fn attitudes(model: &Elaborated, states: &[usize]) -> Vec<Vec<Vec<usize>>> {
+    let place = |state: &usize| states.binary_search(state).ok();
+    let row = |row: &Vec<usize>| row.iter().map(place).collect::<Option<Vec<usize>>>();
+    let attitudes = model.attitudes.iter();
+    let kept = attitudes.map(|attitude| attitude.rows.iter().filter_map(row).collect());
+    kept.filter(|rows: &Vec<Vec<usize>>| !rows.is_empty())
+        .collect()
 }
 
 /// The program, with values named after what they are the values of.

@@ -82,9 +82,12 @@ impl Diagnostic {
 }
 
 /// The sink into which every stage reports.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
+    /// The place of every call, also of one that told what was told already; and the call by which each mistake came.
+    places: Vec<Span>,
+    calls: Vec<usize>,
 }
 
 impl Diagnostics {
@@ -100,7 +103,24 @@ impl Diagnostics {
             !diagnostic.message.ends_with('.'),
             "house style: no full stop"
         );
+        self.calls.push(self.places.len());
+        self.places.push(diagnostic.span);
         self.list.push(diagnostic);
+    }
+
+    /// Reports one mistake, unless the same was told at the same place since there were `before`.
+    pub fn report_once(&mut self, diagnostic: Diagnostic, before: usize) {
+        let place = |report: &Diagnostic| format!("{:?}", report.span);
+        let told = self.list[before..].iter().any(|known| {
+            known.message == diagnostic.message
+                && known.notes == diagnostic.notes
+                && place(known) == place(&diagnostic)
+        });
+        if told {
+            self.places.push(diagnostic.span);
+        } else {
+            self.report(diagnostic);
+        }
     }
 
     /// Reports a mistake that needs no more than its message.
@@ -118,6 +138,21 @@ impl Diagnostics {
     #[must_use]
     pub fn list(&self) -> &[Diagnostic] {
         &self.list
+    }
+
+    /// The call by which a mistake came, by the mistake's number.
+    pub(crate) fn call(&self, number: usize) -> usize {
+        self.calls[number]
+    }
+
+    /// Where a call reported.
+    pub(crate) fn place_of_call(&self, call: usize) -> Option<Span> {
+        self.places.get(call).copied()
+    }
+
+    /// A mistake by number.
+    pub(crate) fn get_mut(&mut self, number: usize) -> &mut Diagnostic {
+        &mut self.list[number]
     }
 
     /// One `compile_error!` per mistake, each at its own token.

@@ -12,7 +12,7 @@ use crate::elaborate::{self, Elaborated};
 use crate::equations::{self, Scalars};
 use crate::network::Network;
 use crate::structure::{self, Solution};
-use crate::symbolic::{Expression, Implicit, Pool};
+use crate::symbolic::{Expression, Method, Pool};
 use crate::syntax::ast::{Component, Item, Model};
 use crate::{drawing, program, syntax};
 
@@ -102,9 +102,13 @@ fn value_lines(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool:
         let value = compile::text(model, scalars, pool, *value);
         text += &format!("{} = {value}\n", unknown_name(scalars, unknown));
     }
-    for residual in pool.implicit().iter().flat_map(Implicit::equations) {
-        let zero = compile::text(model, scalars, pool, *residual);
-        text += &format!("iterated: 0 = {zero}\n");
+    for implicit in pool.implicit() {
+        if let Method::Newton { residuals, .. } = &implicit.method {
+            for residual in residuals {
+                let zero = compile::text(model, scalars, pool, *residual);
+                text += &format!("iterated: 0 = {zero}\n");
+            }
+        }
     }
     for inverted in &solution.conditioning {
         let divisor = compile::text(model, scalars, pool, inverted.normalised);
@@ -128,4 +132,23 @@ fn programs(compiled: &Compiled) -> String {
             &program::dump(&routines[Routines::DERIVATIVE]),
         )
         + &section("output", &program::dump(&routines[Routines::OUTPUT]))
+        + &section("operations", &operations(compiled))
+}
+
+/// What each function costs.
+fn operations(compiled: &Compiled) -> String {
+    let functions = [
+        ("derivative", Routines::DERIVATIVE),
+        ("output", Routines::OUTPUT),
+        ("derivative_and_jacobian", Routines::DERIVATIVE_AND_JACOBIAN),
+        ("jacobian_input", Routines::JACOBIAN_INPUT),
+        ("energy", Routines::ENERGY),
+        ("power", Routines::POWER),
+        ("conditioning", Routines::CONDITIONING),
+    ];
+    let lines = functions.map(|(name, number)| {
+        let count = compiled.program.routines[number].operations();
+        format!("{name:<24}{count:>6}")
+    });
+    lines.join("\n")
 }

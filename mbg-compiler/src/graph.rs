@@ -103,6 +103,8 @@ pub struct Junction {
     pub dimension: usize,
     /// Marked `coordinate`.
     pub coordinate: bool,
+    /// Marked `pseudo`: effort times flow is no power.
+    pub pseudo: bool,
     /// The flow of a coordinate at the start, zero where nothing is given.
     pub initial_flow: Vec<Expression>,
     /// Where it was written.
@@ -247,6 +249,16 @@ impl Element {
 }
 
 impl BondGraph {
+    /// Whether an element is on a pseudo bond: effort times flow is no power there.
+    #[must_use]
+    pub fn is_pseudo(&self, id: ElementId) -> bool {
+        let pseudo = |end: &End| matches!(end, End::Junction(id, _) if self.junctions[id.0].pseudo);
+        self.bonds.iter().any(|bond| {
+            (bond.from == End::OnePort(id) && pseudo(&bond.to))
+                || (bond.to == End::OnePort(id) && pseudo(&bond.from))
+        })
+    }
+
     /// The path of an end, for people.
     #[must_use]
     pub fn end_name(&self, end: &End) -> String {

@@ -4,12 +4,14 @@
 //!
 //! | stage | module | result |
 //! |---|---|---|
+//! | inclusion | [`inclusion`] | tokens, those of included files in place |
 //! | syntax | [`syntax`] | a tree |
 //! | elaboration | [`elaborate`] | a flat [`graph::BondGraph`] with laws |
+//! | units | [`units`] | the verdict on units |
 //! | causality | [`drawing`], [`causality`] | the verdict on the drawing |
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
-//! | answers | [`answers`], [`closures`], [`checks`] | what functions return, projection makes zero, `new` asks |
+//! | answers | [`answers`], [`closures`], [`checks`], [`start`] | what functions return, projection makes zero, `new` asks |
 //! | program | [`program`] | straight-line arithmetic |
 //! | emission | [`emit`] | Rust |
 //!
@@ -28,27 +30,50 @@ pub mod emit;
 pub mod equations;
 pub mod explain;
 pub mod graph;
+pub mod inclusion;
 pub mod network;
 pub mod program;
+pub mod start;
 pub mod structure;
 pub mod symbolic;
 pub mod syntax;
+pub mod units;
 
 use proc_macro2::TokenStream;
 
 use diagnostics::Diagnostics;
+use inclusion::{Inclusion, Read};
 use syntax::ast::Item;
 
 /// Compiles the tokens between the braces of `mbg! { … }`: items, or located errors and the shells of the models.
+/// What they include is read by `read`, such as [`inclusion::crate_file`].
 #[must_use]
-pub fn expand(tokens: TokenStream) -> TokenStream {
+pub fn expand(tokens: TokenStream, read: &Read<'_>) -> TokenStream {
     let mut diagnostics = Diagnostics::new();
-    let mut output = items(tokens, &mut diagnostics);
+    let mut output = expansion(tokens, read, &mut diagnostics);
     output.extend(diagnostics.to_tokens());
     output
 }
 
 /// As [`expand`], with the errors apart.
+pub fn expansion(
+    tokens: TokenStream,
+    read: &Read<'_>,
+    diagnostics: &mut Diagnostics,
+) -> TokenStream {
+    let inclusion = Inclusion::of(tokens, read, diagnostics);
+    let before = diagnostics.clone();
+    let mut output = items(inclusion.tokens(), diagnostics);
+    inclusion.locate(before.list().len(), diagnostics, &|tokens| {
+        let mut again = before.clone();
+        let _ = items(tokens, &mut again);
+        again
+    });
+    output.extend(inclusion.dependencies());
+    output
+}
+
+/// As [`expansion`], of tokens that include nothing.
 pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream {
     let source = syntax::parse(tokens, diagnostics);
     let sound = !diagnostics.any();

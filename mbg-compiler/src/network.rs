@@ -177,11 +177,12 @@ impl Network {
         }
     }
 
-    /// `J a = e_x a₀ + Rx (e_y a₁ + Ry e_z a₂)`, as a network of 0-junctions, one per frame.
+    /// `J a = e_i a₀ + R_i (e_j a₁ + R_j e_k a₂)`, as a network of 0-junctions, one per frame.
     fn expand_jacobians(&mut self) {
         for index in 0..self.two_ports.len() {
             let two_port = self.two_ports[index].clone();
             let Factor::GimbalJacobian {
+                axes,
                 angles,
                 transposed: false,
             } = two_port.factor
@@ -198,7 +199,7 @@ impl Network {
             };
             let rates: [usize; 3] = [0, 1, 2].map(|_| self.wire(1));
             let mut split = vec![branch(two_port.input, 0..3, true)];
-            split.extend((0..3).map(|axis| branch(rates[axis], axis..axis + 1, false)));
+            split.extend((0..3).map(|gimbal| branch(rates[gimbal], gimbal..gimbal + 1, false)));
             self.junctions.push(Junction {
                 kind: JunctionKind::One,
                 dimension: 3,
@@ -208,22 +209,22 @@ impl Network {
             let into_outer = [self.wire(3), self.wire(3)];
             let outgoing = [two_port.output, into_outer[0], into_middle[0]];
             let arriving = [Some(into_outer[1]), Some(into_middle[1]), None];
-            for axis in 0..3 {
+            for (gimbal, axis) in axes.into_iter().enumerate() {
                 let mut branches = vec![
-                    branch(rates[axis], axis..axis + 1, true),
-                    branch(outgoing[axis], 0..3, false),
+                    branch(rates[gimbal], axis..axis + 1, true),
+                    branch(outgoing[gimbal], 0..3, false),
                 ];
-                branches.extend(arriving[axis].map(|wire| branch(wire, 0..3, true)));
+                branches.extend(arriving[gimbal].map(|wire| branch(wire, 0..3, true)));
                 self.junctions.push(Junction {
                     kind: JunctionKind::Zero,
                     dimension: 3,
                     branches,
                 });
             }
-            let turn = |axis, [input, output]: [usize; 2]| TwoPort {
+            let turn = |gimbal: usize, [input, output]: [usize; 2]| TwoPort {
                 factor: Factor::Rotation {
-                    axis,
-                    angle: angles[axis],
+                    axis: axes[gimbal],
+                    angle: angles[gimbal],
                 },
                 gyrator: false,
                 input,

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use mbg_compiler::inclusion::no_file;
 use mbg_compiler::{expand, explain::explain};
 
 /// Names the file that a process started by the test writes.
@@ -22,7 +23,11 @@ fn expansions() -> String {
     let texts = TEXTS.into_iter().chain([rejected.as_str()]);
     let both = texts.map(|text| {
         let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
-        format!("{}\n{}\n", expand(tokens.clone()), explain(tokens))
+        format!(
+            "{}\n{}\n",
+            expand(tokens.clone(), &no_file),
+            explain(tokens)
+        )
     });
     both.collect()
 }

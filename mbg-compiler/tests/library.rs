@@ -508,6 +508,22 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     insta::assert_snapshot!(elaborated(axis).err().unwrap(), @"
     2:9 `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
       this is inside `Revolute`, a component of the library
+    2:9 expected 0, 1 or 2 for the axis x, y or z [MBG0213]
+      this is inside `Revolute`, a component of the library
+    ");
+    let undecided = "model M { param n = 1.0; 1 a[6]; 1 b[6];
+        hinge: Revolute { axis: n, blocked: compliant } (a, b); }";
+    insta::assert_snapshot!(elaborated(undecided).err().unwrap(), @"
+    2:9 expected a condition that is decided while the model is compiled, found `k != axis` [MBG0220]
+      this is inside `Revolute`, a component of the library
+      help: it compares whole numbers that are known then, or a parameter with one of its words, as in `blocked == ideal`
+      help: it may ask `given(parameter)`, and join conditions by `&&`, `||` and `!`
+    ");
+    let word = "model M { 1 a[6]; 1 b[6];
+        hinge: Revolute { axis: 1, blocked: complaint } (a, b); }";
+    insta::assert_snapshot!(elaborated(word).err().unwrap(), @"
+    2:45 expected `ideal` or `compliant`, found `complaint` [MBG0219]
+      help: did you mean `compliant`?
     ");
     let shape = "model M { 1 a[6]; 1 b[6];
         offset: Offset { by: [1.0, 2.0] } (a, b); }";

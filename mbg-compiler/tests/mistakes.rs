@@ -42,6 +42,7 @@ const FIXTURES: &[(Code, &str)] = &[
         codes::FIELD_REPEATED,
         "model M { 1 a { I m { inertia: 1.0, inertia: 1.0 } } }",
     ),
+    (codes::INCLUDE, beside_a_mass!("include \"mine.mbg\";")),
     (
         codes::EMPTY_MODEL,
         "model M { 1 a { R r { resistance: 1.0 } } }",
@@ -106,6 +107,12 @@ const FIXTURES: &[(Code, &str)] = &[
         beside_a_mass!("param x = 1.0; if x > 0 { 1 b; }"),
     ),
     (
+        codes::NO_ROTATION,
+        beside_a_mass!(
+            "1 b[3] { I n { inertia: 1.0 } } attitude r = matrix(b.f), initial: diag(1.0, 1.0, -1.0);"
+        ),
+    ),
+    (
         codes::STORAGE_DERIVATIVE,
         beside_a_mass!("a -> I n { inertia: 2.0 };"),
     ),
@@ -156,6 +163,19 @@ const FIXTURES: &[(Code, &str)] = &[
         codes::ORDER_LOST_UNSUPPORTED,
         beside_a_mass!("input u; 1 b { Sf s { flow: u } #[derivative] I n { inertia: 2.0 } }"),
     ),
+    (
+        codes::SINGULAR_START,
+        beside_a_mass!(
+            "1 b[3] { I n { inertia: 1.0 } } 1 c[3] { I o { inertia: 1.0 } }
+             joint: Gimbal { first: 2, second: 0, third: 2 } (b, c);"
+        ),
+    ),
+    (
+        codes::UNIT_MISMATCH,
+        beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
+    ),
+    (codes::UNIT_NAME, beside_a_mass!("param x: furlong = 1.0;")),
+    (codes::UNIT_SCALE, beside_a_mass!("param x: N/mm = 1.0;")),
 ];
 
 /// More bonds than a model may have.
@@ -217,7 +237,7 @@ const BESIDE_A_MASS: &[(&str, &[&str])] = &[
         &["MBG0210"],
     ),
     ("I n { inertia: 1.0 } -> a; a -> n;", &["MBG0209"]),
-    ("x: Gear (a);", &["MBG0203"]),
+    ("x: Cog (a);", &["MBG0203"]),
     ("output y = a;", &["MBG0213"]),
     ("output y = b.f;", &["MBG0203"]),
     ("output y = a.f.y;", &["MBG0204"]),
@@ -255,6 +275,27 @@ const BESIDE_A_MASS: &[(&str, &[&str])] = &[
     ("a -> C c { stiffness: 1.0, initial: a.f };", &["MBG0213"]),
     ("integral x = x, initial: x;", &["MBG0213"]),
     ("attitude q = quaternion(a.f);", &["MBG0204"]),
+    (
+        "attitude r = matrix([a.f, 0.0, 0.0]), initial: [1.0, 0.0, 0.0, 0.0];",
+        &["MBG0204"],
+    ),
+    (
+        "attitude r = matrix([a.f, 0.0, 0.0]), initial: diag(1.0, 1.0, 0.9);",
+        &["MBG0221"],
+    ),
+    (
+        "attitude q = quaternion([a.f, 0.0, 0.0]), initial: [0.0, 0.0, 0.0, 0.0];",
+        &["MBG0221"],
+    ),
+    ("output y[3] = angles_of(1.0, 0, 0, 1);", &["MBG0213"]),
+    ("output y[3] = angles_of(1.0, 0, 1, 3);", &["MBG0213"]),
+    ("output y[3] = angles_of(2.0, 0, 1, 2);", &["MBG0204"]),
+    ("output y[3] = angles_of(1.0);", &["MBG0213"]),
+    (
+        "output y[4] = quaternion_of(matrix_of([1.0, 0.0]));",
+        &["MBG0204"],
+    ),
+    ("output y = rot(a.f, 0.0) * [1.0, 0.0, 0.0];", &["MBG0217"]),
 ];
 
 #[test]

@@ -67,3 +67,21 @@ fn operations_grow_linearly() {
         "{counts:?}"
     );
 }
+
+/// A Jacobian has as many entries as there are pairs of links, and costs as much for each pair however many there are:
+/// it solves the factorised equations once for each state, and differentiates no factorisation.
+#[test]
+fn jacobians_grow_with_the_square() {
+    let counts = [4, 8, 16].map(|links| {
+        let compiled = models::compiled(&chain(links));
+        compiled.program.routines[Routines::DERIVATIVE_AND_JACOBIAN].operations()
+    });
+    let pairs = [4.0, 8.0, 16.0].map(|links: f64| links * links);
+    let each: Vec<f64> = counts
+        .iter()
+        .zip(pairs)
+        .map(|(count, pairs)| *count as f64 / pairs)
+        .collect();
+    println!("Jacobians of chains of 4, 8, 16 links: {counts:?}, for each pair {each:.0?}");
+    assert!(each[2] < 1.4 * each[1], "{each:?}");
+}

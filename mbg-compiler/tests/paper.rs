@@ -29,6 +29,7 @@ fn both_sides(pool: &mut Pool) -> (Matrix, Matrix) {
         classic = turn(axis).apply(pool, &classic);
     }
     let jacobian = Factor::GimbalJacobian {
+        axes: [0, 1, 2],
         angles,
         transposed: false,
     }
@@ -98,6 +99,7 @@ fn single_mutations_are_found() {
     assert!(!identical(&pool, &classic, &swapped));
     let angles = [0, 1, 2].map(|index| pool.symbol(Symbol::State(index)));
     let jacobian = Factor::GimbalJacobian {
+        axes: [0, 1, 2],
         angles,
         transposed: false,
     }

@@ -1,5 +1,6 @@
 //! What each stage makes of three small models, and their expansions, as snapshots.
 
+use mbg_compiler::inclusion::no_file;
 use mbg_compiler::{expand, explain::explain};
 
 const OSCILLATOR: &str = include_str!("syntax/oscillator.mbg");
@@ -9,7 +10,7 @@ const CARRIAGE: &str = include_str!("stages/slide.mbg");
 
 /// The expansion as a person would have written it.
 fn formatted(text: &str) -> String {
-    let expansion = expand(text.parse().expect("tokens"));
+    let expansion = expand(text.parse().expect("tokens"), &no_file);
     prettyplease::unparse(&syn::parse2(expansion).expect("the expansion is Rust"))
 }
 

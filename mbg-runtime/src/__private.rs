@@ -43,6 +43,25 @@ pub fn check<T: Real>(
     }
 }
 
+/// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.
+pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
+    mut x: SVector<T, N>,
+    places: &[[usize; C]; R],
+    held: &[usize],
+) -> SVector<T, N> {
+    if places.iter().flatten().any(|place| held.contains(place)) {
+        return x;
+    }
+    let rows: SMatrix<T, R, C> = SMatrix::from_fn(|row, column| x[places[row][column]]);
+    let rows = crate::attitude::orthonormal(&rows);
+    for (row, places) in places.iter().enumerate() {
+        for (column, place) in places.iter().enumerate() {
+            x[*place] = rows[(row, column)];
+        }
+    }
+    x
+}
+
 /// How far a projection goes: in units of precision and of what the states contribute to a residual, but at least one.
 const CLOSED: f64 = 32.0;
 

@@ -6,6 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::Real;
+use crate::step::magnitude;
 
 /// `R = Rx(a) Ry(b) Rz(c)` of the angles `[a, b, c]` in rad: about x first, then about the new y, then the newest z.
 ///
@@ -77,6 +78,55 @@ pub fn rotation_from_quaternion<T: Real>(quaternion: &SVector<T, 4>) -> SMatrix<
     ])
 }
 
+/// Corrections of an orthonormalisation at most.
+const CORRECTIONS: usize = 32;
+
+/// The matrix next to `matrix` whose rows are orthonormal: with `R` rows a quaternion (1), or the first rows of a
+/// rotation matrix (up to 3).
+///
+/// The matrix is brought to the length of the result, and then `X ← X + ½ (1 − X Xᵀ) X` is repeated, which converges
+/// quadratically to the orthogonal factor of the polar decomposition (Björck and Bowie 1971). That is the nearest one,
+/// so the correction is at right angles to every rotation of it: what a step of integration has turned is not turned
+/// back. A matrix with linearly dependent rows has none, and one of zeros gives NaN.
+///
+/// ```
+/// use mbg_runtime::attitude::orthonormal;
+/// use nalgebra::SMatrix;
+///
+/// let quaternion: SMatrix<f64, 1, 4> = SMatrix::from([[3.0], [0.0], [4.0], [0.0]]);
+/// assert!((orthonormal(&quaternion) - quaternion / 5.0).norm() < 1e-15);
+/// ```
+pub fn orthonormal<T: Real, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+) -> SMatrix<T, R, C> {
+    let half = T::from_f64(0.5);
+    let dot = |x: &SMatrix<T, R, C>, a: usize, b: usize| {
+        let products = (0..C).map(|column| x[(a, column)] * x[(b, column)]);
+        products.fold(T::from_f64(0.0), |sum, product| sum + product)
+    };
+    let mut x = *matrix;
+    let square = (0..R).fold(T::from_f64(0.0), |sum, row| sum + dot(&x, row, row));
+    let scale = (T::from_f64(R as f64) / square).sqrt();
+    x.apply(|entry| *entry = scale * *entry);
+    for _ in 0..if R > 1 { CORRECTIONS } else { 0 } {
+        let missing: SMatrix<T, R, R> = SMatrix::from_fn(|a, b| {
+            let unit = T::from_f64(if a == b { 1.0 } else { 0.0 });
+            half * (unit - dot(&x, a, b))
+        });
+        x = SMatrix::from_fn(|row, column| {
+            let added = (0..R).map(|other| missing[(row, other)] * x[(other, column)]);
+            added.fold(x[(row, column)], |sum, added| sum + added)
+        });
+        let largest = missing
+            .iter()
+            .fold(0.0, |largest: f64, entry| largest.max(magnitude(*entry)));
+        if largest * largest < T::EPSILON {
+            break;
+        }
+    }
+    x
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -141,6 +191,44 @@ mod tests {
         assert!((rotation - rotation_from_quaternion(&(3.0 * quaternion))).norm() < 1e-15);
         assert!((rotation * rotation.transpose() - SMatrix::identity()).norm() < 1e-15);
         assert!((rotation.determinant() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn orthonormal_rows_are_those_next_to_it() {
+        let rotation = rotation_xyz(&SVector::from([0.3, -0.7, 1.9]));
+        let stretched = SMatrix::from([[1.1, 0.2, 0.0], [0.2, 0.7, -0.1], [0.0, -0.1, 1.3]]);
+        // The symmetric positive factor of a polar decomposition is what is taken away.
+        let found = orthonormal(&(rotation * stretched));
+        assert!((found - rotation).norm() < 1e-14, "{found}");
+        let unit = SMatrix::<f64, 3, 3>::identity();
+        assert_eq!(orthonormal(&unit), unit);
+        let quaternion: SMatrix<f32, 1, 4> = SMatrix::from([[3.0], [0.0], [-4.0], [0.0]]);
+        assert!((orthonormal(&quaternion) - quaternion / 5.0).norm() < 1e-6);
+    }
+
+    #[test]
+    fn what_was_turned_is_changed_to_second_order_only() {
+        // To first order a quaternion turns at right angles to itself, and a rotation by a skew matrix.
+        let quaternion: SMatrix<f64, 1, 4> = SMatrix::from([[0.5], [0.5], [-0.5], [0.5]]);
+        let across: SMatrix<f64, 1, 4> = SMatrix::from([[0.5], [-0.5], [0.5], [0.5]]);
+        let rotation = rotation_xyz(&SVector::from([0.3, -0.7, 1.9]));
+        let skew = SMatrix::from([[0.0, 0.5, -0.4], [-0.5, 0.0, 0.3], [0.4, -0.3, 0.0]]);
+        for size in [1e-2, 1e-4, 1e-6] {
+            let turned = quaternion + size * across;
+            assert!((orthonormal(&turned) - turned).norm() < size * size);
+            let turned = rotation + size * (rotation * skew);
+            assert!((orthonormal(&turned) - turned).norm() < size * size);
+        }
+    }
+
+    #[test]
+    fn two_rows_of_a_rotation() {
+        let rotation = rotation_xyz(&SVector::from([0.3, -0.7, 1.9]));
+        let rows: SMatrix<f64, 2, 3> = rotation.fixed_rows::<2>(1).into();
+        let disturbed = rows + SMatrix::from([[1e-5, 2e-5], [-1e-5, 0.0], [3e-5, -1e-5]]);
+        let found = orthonormal(&disturbed);
+        assert!((found * found.transpose() - SMatrix::<f64, 2, 2>::identity()).norm() < 1e-15);
+        assert!((found - rows).norm() <= (disturbed - rows).norm());
     }
 
     #[test]

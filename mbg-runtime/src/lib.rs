@@ -19,6 +19,9 @@ mod input;
 #[cfg(feature = "macros")]
 #[doc = include_str!("language.md")]
 pub mod language {}
+#[cfg(feature = "macros")]
+#[doc = include_str!("joints.md")]
+pub mod joints {}
 mod meta;
 mod polynomial;
 mod real;

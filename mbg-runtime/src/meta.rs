@@ -139,8 +139,8 @@ pub struct Operations {
     pub derivative: usize,
     /// Of `output`.
     pub output: usize,
-    /// Of `jacobian_state`.
-    pub jacobian_state: usize,
+    /// Of `derivative_and_jacobian`.
+    pub derivative_and_jacobian: usize,
     /// Of `jacobian_input`.
     pub jacobian_input: usize,
     /// Of `energy`.

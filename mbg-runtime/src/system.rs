@@ -52,6 +52,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SMatrix<T, N, N>;
 
+    /// [`derivative`](Self::derivative) and [`jacobian_state`](Self::jacobian_state) at once; a generated model works out
+    /// once what both need.
+    fn derivative_and_jacobian(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> (SVector<T, N>, SMatrix<T, N, N>) {
+        let derivative = self.derivative(t, x, u, memory);
+        (derivative, self.jacobian_state(t, x, u, memory))
+    }
+
     /// `∂f/∂u`, exact.
     fn jacobian_input(
         &self,
@@ -119,11 +132,14 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
             })
     }
 
-    /// The state next to `x` at which every loop that multipliers close is closed: positions first, then flows.
+    /// The state next to `x` at which every loop that multipliers close is closed, positions first, then flows, and
+    /// every attitude is a rotation: quaternions have length one, rotation matrices orthonormal rows.
     ///
-    /// The correction is that of least norm in the states, by Gauss and Newton. States numbered in `held` stay as they
-    /// are, so that consistent initial values are found from a part of them. Steppers ask at the start and after each
-    /// step, with nothing held. What is left of each residual g is below 32 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
+    /// The correction of a loop is that of least norm in the states, by Gauss and Newton; that of an attitude is
+    /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `held` stay as they are, so that consistent
+    /// initial values are found from a part of them, and so does an attitude of which one is held. Steppers ask at the
+    /// start and after each step, with nothing held. What is left of each residual g is below
+    /// 32 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
     ///
     /// # Errors
     ///

@@ -102,7 +102,7 @@ mbg! {
             R air { resistance: 0.5 }
             Se drive { effort: torque }
         }
-        Sf spindle { flow: sin(1.7 * t) } -> body.z;
+        Sf spindle { flow: 1.0 * sin(1.7 * t) } -> body.z;
         output rates[3]: rad/s = body.f;
         output momentum[3]: N*m*s = inertia.p;
     }
@@ -115,7 +115,7 @@ mbg! {
             C field { stiffness: [[3.0, 0.4, 0.7], [0.4, 2.0, -0.3], [0.7, -0.3, 1.5]] }
             R leak { resistance: 0.5 }
         }
-        Se supply { effort: cos(1.7 * t) } -> node.y;
+        Se supply { effort: 1.0 * cos(1.7 * t) } -> node.y;
         output voltages[3]: V = node.e;
         output charges[3]: C = field.q;
     }

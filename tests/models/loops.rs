@@ -139,7 +139,7 @@ mbg! {
         1 slide {
             Se push { effort: force }
             R linear { resistance: 1.0 }
-            R parabola { effort: powi(f, 2) }
+            R parabola { effort: 1.0 * powi(f, 2) }
         }
         integral travel = slide.f;
         output position = travel;
@@ -149,7 +149,7 @@ mbg! {
     pub(crate) model TurnedRound {
         causality componentwise;
         input force: N;
-        1 slide { Se push { effort: force } R friction { effort: f + powi(f, 3) } }
+        1 slide { Se push { effort: force } R friction { effort: 1.0 * f + 1.0 * powi(f, 3) } }
         integral travel = slide.f;
         output position = travel;
     }

@@ -16,5 +16,7 @@ pub(crate) mod governor;
 pub(crate) mod integrate;
 pub(crate) mod planar;
 pub(crate) mod rectifier;
+pub(crate) mod robots;
 pub(crate) mod slider_crank;
 pub(crate) mod transistor_amplifier;
+pub(crate) mod tree;

@@ -66,6 +66,7 @@ impl Builder {
             name,
             dimension,
             coordinate,
+            pseudo: false,
             initial_flow: Vec::new(),
             origin,
         });

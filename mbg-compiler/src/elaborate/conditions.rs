@@ -6,9 +6,10 @@ use syn::{BinOp, Expr, ExprBinary, ExprCall, UnOp};
 use super::constants::{Chosen, Constants, plain_name};
 use super::expressions::Result;
 use crate::codes;
-use crate::diagnostics::{Diagnostic, error, listing};
+use crate::diagnostics::{Diagnostic, error};
 use crate::syntax::ast::{Conditional, Statement};
 use crate::syntax::dump;
+use crate::syntax::words::alternatives;
 
 impl Constants {
     /// The statements with those in place that their `if`s choose; an `if` that is not decided chooses none.
@@ -112,11 +113,8 @@ fn is_chosen(chosen: &Chosen, word: &Expr) -> Result<bool> {
 /// An expression that is none of the words of a choice.
 pub(super) fn no_word(found: &Expr, words: &[String]) -> Box<Diagnostic> {
     let text = dump::expression(found);
-    let message = format!(
-        "expected one of {}, found `{text}`",
-        listing(words.to_vec())
-    );
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let message = format!("expected {}, found `{text}`", alternatives(&words));
     Box::new(error(codes::WORD, found.span(), message).did_you_mean(&text, &words))
 }
 

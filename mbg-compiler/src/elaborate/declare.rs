@@ -34,6 +34,7 @@ impl<'a> Builder<'a> {
                     name: path,
                     dimension: junction.dimension,
                     coordinate: junction.coordinate,
+                    pseudo: junction.pseudo,
                     initial_flow: Vec::new(),
                     origin,
                 });
@@ -55,7 +56,8 @@ impl<'a> Builder<'a> {
             Statement::Input(input) => self.input(scope, input),
             Statement::Let(named) => {
                 let value = (scope, &named.value);
-                let value = self.definition(scope, &named.name, named.dimension, value);
+                let shape = (named.dimension, named.unit.as_ref());
+                let value = self.definition(scope, &named.name, shape, value);
                 self.name(scope, &named.name, value);
             }
             Statement::Gravity(gravity) => self.gravity(scope, gravity),
@@ -87,6 +89,8 @@ impl<'a> Builder<'a> {
         let default = self.default_value(parameter);
         let symbol = self.pool.symbol(Symbol::Parameter(self.parameters.len()));
         let value = Entity::Value(Value::Scalar(symbol));
+        let number = self.parameters.len();
+        self.claim_unit(0, [Symbol::Parameter(number)], parameter.unit.as_ref());
         self.name(0, &parameter.name, value);
         self.parameters.push(Parameter {
             name: parameter.name.clone(),
@@ -114,11 +118,9 @@ impl<'a> Builder<'a> {
             input.dimension,
             &unit,
         ));
-        self.name(
-            scope,
-            &input.name,
-            Entity::Input(start..start + input.dimension),
-        );
+        let range = start..start + input.dimension;
+        self.claim_unit(scope, range.clone().map(Symbol::Input), input.unit.as_ref());
+        self.name(scope, &input.name, Entity::Input(range));
     }
 
     fn gravity(&mut self, scope: usize, gravity: &'a ast::Gravity) {
@@ -127,7 +129,7 @@ impl<'a> Builder<'a> {
             let message = "`gravity` belongs to a model, all of whose components see it";
             return self.tell(scope, error(codes::EXPRESSION, span, message));
         }
-        let value = self.definition(scope, &gravity.name, None, (scope, &gravity.value));
+        let value = self.definition(scope, &gravity.name, (None, None), (scope, &gravity.value));
         let before = self.scopes[0].names.insert(GRAVITY.to_owned(), value);
         if matches!(before, Some(Entity::Definition(_))) {
             self.diagnostics

@@ -12,6 +12,7 @@ use super::expressions::{Result, Value};
 use super::scope::Entity;
 use crate::codes;
 use crate::diagnostics::error;
+use crate::syntax::ast::Unit;
 
 /// A named value.
 pub(super) struct Definition<'a> {
@@ -23,6 +24,8 @@ pub(super) struct Definition<'a> {
     pub(super) path: String,
     /// Dimension, when declared: a number then stands for each component.
     pub(super) dimension: Option<usize>,
+    /// Unit, when declared.
+    pub(super) unit: Option<&'a Unit>,
     /// What it stands for.
     pub(super) value: &'a Expr,
     /// How far it is.
@@ -57,7 +60,7 @@ impl<'a> Builder<'a> {
         &mut self,
         scope: usize,
         name: &'a Ident,
-        dimension: Option<usize>,
+        (dimension, unit): (Option<usize>, Option<&'a Unit>),
         (names, value): (usize, &'a Expr),
     ) -> Entity {
         self.definitions.push(Definition {
@@ -65,6 +68,7 @@ impl<'a> Builder<'a> {
             name,
             path: self.path(scope, name),
             dimension,
+            unit,
             value,
             progress: Progress::Unread,
         });
@@ -150,11 +154,12 @@ impl<'a> Builder<'a> {
             ..
         } = self.definitions[definition];
         let value = self.evaluate(scope, value)?;
-        match (dimension, &value) {
-            (None, _) => Ok(value),
-            (Some(dimension), Value::Scalar(number)) => Ok(Value::column(vec![*number; dimension])),
-            (Some(dimension), _) => self.entries(&value, dimension, name).map(Value::column),
-        }
+        let value = match (dimension, &value) {
+            (None, _) => value,
+            (Some(dimension), Value::Scalar(number)) => Value::column(vec![*number; dimension]),
+            (Some(dimension), _) => Value::column(self.entries(&value, dimension, name)?),
+        };
+        Ok(self.claim_definition(definition, value))
     }
 
     fn report_cycle(&mut self, open: &[usize], needed: usize) {

@@ -43,6 +43,14 @@ pub trait Names {
 
     /// Every plain name.
     fn all(&self) -> Vec<&str>;
+
+    /// Is told the value of each operator, function and `if`, with the place of its sign or name.
+    fn seen(&mut self, _pool: &mut Pool, _place: Span, _value: &Value) {}
+
+    /// What a number with a decimal point stands for, which may carry a unit.
+    fn measured(&mut self, _pool: &mut Pool, value: Expression, _text: &str) -> Expression {
+        value
+    }
 }
 
 impl Value {
@@ -85,7 +93,7 @@ pub fn fail<T>(span: Span, message: impl Into<String>) -> Result<T> {
     Err(Box::new(error(codes::EXPRESSION, span, message)))
 }
 
-fn mismatch<T>(span: Span, message: String) -> Result<T> {
+pub(super) fn mismatch<T>(span: Span, message: String) -> Result<T> {
     Err(Box::new(error(codes::WRONG_DIMENSION, span, message)))
 }
 
@@ -101,6 +109,9 @@ impl<N: Names> Evaluator<'_, N> {
     /// The value of an expression.
     pub fn evaluate(&mut self, expression: &Expr) -> Result<Value> {
         let value = self.any_value(expression)?;
+        if let Some(place) = sign(expression) {
+            self.names.seen(self.pool, place, &value);
+        }
         match &value {
             Value::Scalar(scalar)
                 if self.pool.rate(*scalar) == Rate::Constant
@@ -164,7 +175,14 @@ impl<N: Names> Evaluator<'_, N> {
             _ => return fail(literal.span(), "expected a number"),
         };
         match self.pool.literal(&text) {
-            Some(value) if suffix.is_empty() || suffix == "f64" => Ok(Value::Scalar(value)),
+            Some(value) if suffix.is_empty() || suffix == "f64" => {
+                let measured = matches!(literal, Lit::Float(_)) && value != Expression::ZERO;
+                Ok(Value::Scalar(if measured {
+                    self.names.measured(self.pool, value, &text)
+                } else {
+                    value
+                }))
+            }
             Some(_) => fail(
                 literal.span(),
                 format!("expected a number without suffix, found `{suffix}`"),
@@ -401,8 +419,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             (Value::Matrix(a), Value::Matrix(b)) if b.columns() == 1 => {
                 let vector = b.to_matrix(self.pool);
-                let result = a.apply(self.pool, &vector);
-                Ok(Value::Matrix(Product::of(Factor::Dense(result))))
+                Ok(Value::column(a.apply(self.pool, &vector).entries))
             }
             (Value::Matrix(a), Value::Matrix(b)) => Ok(Value::Matrix(a.then(b))),
         }
@@ -410,6 +427,8 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn scale(&mut self, factor: Expression, value: Value) -> Value {
         match value {
+            // A rotation stays known as one.
+            value if factor == Expression::ONE => value,
             Value::Scalar(value) => Value::Scalar(self.pool.multiply(factor, value)),
             Value::Matrix(product) => {
                 let matrix = product
@@ -460,12 +479,6 @@ impl<N: Names> Evaluator<'_, N> {
                 count(2)?;
                 self.power(arguments)
             }
-            "rot_x" | "rot_y" | "rot_z" => {
-                count(1)?;
-                let axis = usize::from(text.as_bytes()[4] - b'x');
-                let angle = self.scalar(&arguments[0])?;
-                Ok(Value::Matrix(Product::of(Factor::Rotation { axis, angle })))
-            }
             "transpose" => {
                 count(1)?;
                 match self.evaluate(&arguments[0])? {
@@ -484,7 +497,7 @@ impl<N: Names> Evaluator<'_, N> {
             }
             "skew" => {
                 count(1)?;
-                let [x, y, z] = self.triple(&arguments[0])?;
+                let [x, y, z] = self.column(&arguments[0])?;
                 let zero = Expression::ZERO;
                 let rows = [
                     zero,
@@ -500,15 +513,10 @@ impl<N: Names> Evaluator<'_, N> {
                 let matrix = Matrix::new(3, 3, rows.to_vec());
                 Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
             }
-            "jacobian_xyz" => {
-                count(1)?;
-                let factor = Factor::GimbalJacobian {
-                    angles: self.triple(&arguments[0])?,
-                    transposed: false,
-                };
-                Ok(Value::Matrix(Product::of(factor)))
-            }
-            _ => self.elementary(name, arguments),
+            _ => match self.orientation(name, arguments) {
+                Some(value) => value,
+                None => self.elementary(name, arguments),
+            },
         }
     }
 
@@ -524,7 +532,8 @@ impl<N: Names> Evaluator<'_, N> {
             );
             return Err(Box::new(report.help(
                 "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
-                 diag, transpose, skew, rot_x, rot_y, rot_z, jacobian_xyz",
+                 diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, \
+                 angles_of",
             )));
         };
         if arguments.len() != function.arity() {
@@ -557,18 +566,6 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(
                 arguments[1].span(),
                 "expected an integer exponent between -64 and 64",
-            ),
-        }
-    }
-
-    fn triple(&mut self, argument: &Expr) -> Result<[Expression; 3]> {
-        let value = self.evaluate(argument)?;
-        let shape = value.shape();
-        match value.entries(self.pool).as_deref() {
-            Some(&[a, b, c]) => Ok([a, b, c]),
-            _ => mismatch(
-                argument.span(),
-                format!("expected a vector of 3, found {shape}"),
             ),
         }
     }
@@ -648,6 +645,17 @@ fn number(value: &Value, span: Span) -> Result<Expression> {
     match value {
         Value::Scalar(value) => Ok(*value),
         other => mismatch(span, format!("expected a number, found {}", other.shape())),
+    }
+}
+
+/// Where the sign of an operator or the name of a function stands.
+fn sign(expression: &Expr) -> Option<Span> {
+    match expression {
+        Expr::Binary(binary) => Some(binary.op.span()),
+        Expr::Call(call) => Some(call.func.span()),
+        Expr::MethodCall(call) => Some(call.method.span()),
+        Expr::If(choice) => Some(choice.if_token.span),
+        _ => None,
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use proc_macro2::Ident;
 use syn::spanned::Spanned;
 
+use super::claims::Subject;
 use super::expressions::{Evaluator, Result, Value};
 use super::laws::{Reader, law_words, other_words};
 use super::model::{Elaborated, Output, State, StateRate};
@@ -12,9 +13,9 @@ use super::scope::{Entity, Lookup, Own};
 use super::{Builder, Pending, component_names};
 use crate::codes;
 use crate::diagnostics::{error, listing};
-use crate::graph::{ElementId, Law};
+use crate::graph::{ElementId, JunctionId, Law};
 use crate::symbolic::{Expression, Pool, Rate, Symbol};
-use crate::syntax::ast::{self, Statement};
+use crate::syntax::ast::{self, Orientation, Statement};
 
 impl<'a> Builder<'a> {
     /// A model parameter's default, which must be a number.
@@ -56,10 +57,17 @@ impl<'a> Builder<'a> {
                 Statement::Integral(integral) => {
                     (&integral.name, integral.unit.as_ref(), integral.dimension)
                 }
-                Statement::Attitude(attitude) => (&attitude.name, None, 4),
+                Statement::Attitude(attitude) => {
+                    let dimension = match attitude.orientation {
+                        Orientation::Quaternion => 4,
+                        Orientation::Matrix => 9,
+                    };
+                    (&attitude.name, None, dimension)
+                }
                 _ => continue,
             };
             let start = self.states.len();
+            self.claim_unit(scope, (start..start + dimension).map(Symbol::State), unit);
             let unit = unit.map_or("", |unit| unit.text.as_str());
             let path = self.path(scope, name);
             let span = self.place(scope, name.span());
@@ -73,7 +81,13 @@ impl<'a> Builder<'a> {
                 });
             }
             let states = start..self.states.len();
-            self.name(scope, name, Entity::States(states.clone()));
+            let entity = match statement {
+                Statement::Attitude(attitude) => {
+                    self.place_attitude(attitude.orientation, states.clone())
+                }
+                _ => Entity::States(states.clone()),
+            };
+            self.name(scope, name, entity);
             // Before the outputs, which may read them; they are read after all laws anyway.
             self.pending.push(match statement {
                 Statement::Integral(integral) => Pending::Integral {
@@ -131,7 +145,7 @@ impl<'a> Builder<'a> {
                 value,
                 id,
             } => {
-                let initial = self.start(scope, junction, value)?;
+                let initial = self.start(scope, (junction, id), value)?;
                 self.graph.junctions[id.0].initial_flow = initial;
                 Ok(())
             }
@@ -151,11 +165,12 @@ impl<'a> Builder<'a> {
         let [bond, _] = self.graph.closures[number].bonds;
         let dimension = self.graph.bonds[bond.0].dimension;
         let entries = self.vector(scope, value, dimension, &closure.name)?;
+        self.claim(scope, Subject::Displacement(number), &entries, value.span());
         self.graph.closures[number].displacement = Some(entries);
         Ok(())
     }
 
-    fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_, 'a>) {
+    pub(super) fn lookup(&mut self, scope: usize) -> (&mut Pool, Lookup<'_, 'a>) {
         let lookup = Lookup {
             scopes: &self.scopes,
             scope,
@@ -165,6 +180,7 @@ impl<'a> Builder<'a> {
             missing: &mut self.missing,
             signals: &mut self.signals,
             own: None,
+            claims: self.claims.as_mut(),
         };
         (self.pool, lookup)
     }
@@ -179,7 +195,7 @@ impl<'a> Builder<'a> {
         .evaluate(expression)
     }
 
-    fn vector(
+    pub(super) fn vector(
         &mut self,
         scope: usize,
         expression: &syn::Expr,
@@ -230,6 +246,9 @@ impl<'a> Builder<'a> {
 
     fn law(&mut self, scope: usize, element: &ast::Element, id: ElementId) -> Result<()> {
         let field = law_field(element)?;
+        if self.claims.is_some() {
+            return self.claim_words(scope, element, id);
+        }
         let (states, dimension) = self.ports[id.0].clone();
         let own = Own {
             element: id,
@@ -258,20 +277,22 @@ impl<'a> Builder<'a> {
     fn start(
         &mut self,
         scope: usize,
-        junction: &ast::Junction,
+        (junction, id): (&ast::Junction, JunctionId),
         value: &syn::Expr,
     ) -> Result<Vec<Expression>> {
         let initial = self.vector(scope, value, junction.dimension, &junction.name)?;
+        let flow = Subject::Flow(id);
+        self.claim(scope, flow, &initial, value.span());
         let varies = |initial: &Expression| self.pool.rate(*initial) == Rate::Varying;
-        if initial.iter().any(varies) {
+        if self.claims.is_none() && initial.iter().any(varies) {
             let message = "expected an initial value of numbers and parameters alone";
             return Err(Box::new(error(codes::EXPRESSION, value.span(), message)));
         }
         Ok(initial)
     }
 
-    fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
-        if self.pool.rate(initial) == Rate::Varying {
+    pub(super) fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
+        if self.claims.is_none() && self.pool.rate(initial) == Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
             return Err(Box::new(error(
                 codes::EXPRESSION,
@@ -294,6 +315,20 @@ impl<'a> Builder<'a> {
             Some(value) => self.vector(scope, value, integral.dimension, &integral.name)?,
             None => vec![Expression::ZERO; integral.dimension],
         };
+        self.claim(
+            scope,
+            Subject::Rate(states.clone()),
+            &rates,
+            integral.rate.span(),
+        );
+        if let Some(value) = &integral.initial {
+            self.claim(
+                scope,
+                Subject::Start(states.clone()),
+                &initial,
+                value.span(),
+            );
+        }
         for ((state, rate), initial) in states.zip(rates).zip(initial) {
             self.states[state].rate = StateRate::Expression(rate);
             self.initial_value(state, initial)?;
@@ -301,50 +336,15 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// `q̇ = ½ q∘(0, ω)`.
-    fn attitude(
-        &mut self,
-        scope: usize,
-        attitude: &ast::Attitude,
-        states: std::ops::Range<usize>,
-    ) -> Result<()> {
-        let omega = self.vector(scope, &attitude.angular_velocity, 3, &attitude.name)?;
-        let initial = match &attitude.initial {
-            Some(value) => self.vector(scope, value, 4, &attitude.name)?,
-            None => vec![
-                Expression::ONE,
-                Expression::ZERO,
-                Expression::ZERO,
-                Expression::ZERO,
-            ],
-        };
-        let pool = &mut *self.pool;
-        let two = pool.integer(2);
-        let half: Vec<Expression> = omega
-            .iter()
-            .map(|rate| pool.divide(*rate, two).unwrap_or(Expression::ZERO))
-            .collect();
-        let q: Vec<Expression> = states
-            .clone()
-            .map(|state| pool.symbol(Symbol::State(state)))
-            .collect();
-        let rows = [
-            [(1, 0, true), (2, 1, true), (3, 2, true)],
-            [(0, 0, false), (2, 2, false), (3, 1, true)],
-            [(0, 1, false), (3, 0, false), (1, 2, true)],
-            [(0, 2, false), (1, 1, false), (2, 0, true)],
-        ];
-        for ((state, row), initial) in states.zip(rows).zip(initial) {
-            let terms = row
-                .map(|(part, axis, minus)| self.pool.multiply(q[part], half[axis]).flipped(minus));
-            self.states[state].rate = StateRate::Expression(self.pool.sum(&terms));
-            self.initial_value(state, initial)?;
-        }
-        Ok(())
-    }
-
     fn output(&mut self, scope: usize, output: &ast::Output) -> Result<()> {
         let values = self.vector(scope, &output.value, output.dimension, &output.name)?;
+        self.claim_value(
+            scope,
+            &output.name,
+            output.unit.as_ref(),
+            &values,
+            output.value.span(),
+        );
         let unit = output.unit.as_ref().map_or("", |unit| unit.text.as_str());
         let path = self.path(scope, &output.name);
         let variables = component_names(&path, output.dimension, unit);
@@ -382,6 +382,7 @@ impl<'a> Builder<'a> {
             inputs: self.inputs,
             outputs: self.outputs,
             states: self.states,
+            attitudes: self.attitudes,
             signals: self.signals,
             assumptions: self.assumptions,
         }

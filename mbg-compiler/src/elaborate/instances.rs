@@ -110,13 +110,12 @@ impl<'a> Builder<'a> {
         }
         for parameter in component.parameters() {
             let name = &parameter.name;
+            let shape = (parameter.dimension, parameter.unit.as_ref());
             let value = match (instance.argument(name), &parameter.default) {
                 (Some((name, argument)), _) => {
-                    self.definition(inner, name, parameter.dimension, (scope, argument))
+                    self.definition(inner, name, shape, (scope, argument))
                 }
-                (None, Some(default)) => {
-                    self.definition(inner, name, parameter.dimension, (inner, default))
-                }
+                (None, Some(default)) => self.definition(inner, name, shape, (inner, default)),
                 (None, None) => {
                     self.missing_argument(scope, instance, name, "…");
                     Entity::Opaque

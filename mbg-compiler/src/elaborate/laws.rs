@@ -6,6 +6,7 @@ use proc_macro2::Span;
 use syn::Expr;
 use syn::spanned::Spanned;
 
+use super::bonds::is_two_port;
 use super::expressions::{Evaluator, Result, Value};
 use super::model::{Assumption, Condition};
 use super::quadrature;
@@ -120,6 +121,23 @@ impl Reader<'_, '_, '_> {
                     },
                 ))
             }
+        }
+    }
+
+    /// What stands after a word, without what follows from it.
+    pub(super) fn entries(&mut self, word: &str, value: &Expr) -> Result<Matrix> {
+        let plain = matches!(self.element.kind, ElementKind::Se | ElementKind::Sf);
+        match word {
+            "inertia" | "stiffness" | "compliance" | "resistance" | "conductance" => {
+                self.coefficient(value)
+            }
+            "energy" => self.energy_terms(value).map(Matrix::column),
+            "effort" | "flow" if is_two_port(self.element.kind) => {
+                let product = self.matrix(value)?;
+                Ok(product.to_matrix(self.pool))
+            }
+            "effort" | "flow" if !plain => self.by_component(value).map(Matrix::column),
+            _ => self.vector(value).map(Matrix::column),
         }
     }
 

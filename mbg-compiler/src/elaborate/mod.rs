@@ -4,8 +4,10 @@
 //! resolved, laws evaluated into the pool. Afterwards all dimensions agree and every port has one bond. Errors: `MBG02xx`,
 //! `MBG0601`.
 
+mod attitude;
 mod bonds;
 mod check;
+pub mod claims;
 mod conditions;
 mod constants;
 mod declare;
@@ -16,6 +18,7 @@ mod instances;
 mod laws;
 mod loops;
 mod model;
+mod orientation;
 mod quadrature;
 mod references;
 mod scope;
@@ -29,11 +32,12 @@ use syn::Expr;
 
 pub use finish::component_table;
 pub use model::{
-    Assumption, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal, Signals, State,
-    StateRate, Variable,
+    Assumption, Attitude, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal,
+    Signals, State, StateRate, Variable,
 };
 pub use size::LIMIT;
 
+use self::claims::Claims;
 use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
@@ -164,6 +168,7 @@ struct Builder<'a> {
     /// States and dimension by element.
     ports: Vec<(Range<usize>, usize)>,
     states: Vec<State>,
+    attitudes: Vec<Attitude>,
     parameters: Vec<Parameter>,
     inputs: Vec<Variable>,
     outputs: Vec<Output>,
@@ -171,6 +176,8 @@ struct Builder<'a> {
     assumptions: Vec<Assumption>,
     pending: Vec<Pending<'a>>,
     integrals: Vec<(usize, &'a Statement)>,
+    /// What the checker of units is told, while it is asked for.
+    claims: Option<Claims>,
 }
 
 impl<'a> Builder<'a> {
@@ -206,6 +213,7 @@ impl<'a> Builder<'a> {
             },
             ports: Vec::new(),
             states: Vec::new(),
+            attitudes: Vec::new(),
             parameters: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),
@@ -213,6 +221,7 @@ impl<'a> Builder<'a> {
             assumptions: Vec::new(),
             pending: Vec::new(),
             integrals: Vec::new(),
+            claims: None,
         }
     }
 
@@ -275,15 +284,7 @@ impl<'a> Builder<'a> {
             report = report.inside(component, *instance);
         }
         // Each iteration of a loop makes the same mistake.
-        let place = |report: &Diagnostic| format!("{:?}", report.span);
-        let told = self.diagnostics.list()[self.before..].iter().any(|known| {
-            known.message == report.message
-                && known.notes == report.notes
-                && place(known) == place(&report)
-        });
-        if !told {
-            self.diagnostics.report(report);
-        }
+        self.diagnostics.report_once(report, self.before);
     }
 
     /// Where something in a scope stands in the user's text.

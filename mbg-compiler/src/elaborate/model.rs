@@ -26,6 +26,8 @@ pub struct Elaborated {
     pub outputs: Vec<Output>,
     /// Candidate states in order of declaration: storages, then integrals and attitudes.
     pub states: Vec<State>,
+    /// Candidate states of attitudes.
+    pub attitudes: Vec<Attitude>,
     /// Efforts and flows that laws and outputs read.
     pub signals: Signals,
     /// What parameters must fulfil.
@@ -73,6 +75,14 @@ pub struct State {
     pub rate: StateRate,
     /// Where it was written.
     pub span: Span,
+}
+
+/// Candidate states that are the entries of a matrix with orthonormal rows: a quaternion in one row of four, or a
+/// rotation matrix in three rows of three.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attitude {
+    /// Candidate states by row.
+    pub rows: Vec<Vec<usize>>,
 }
 
 /// Where a state's time derivative comes from.

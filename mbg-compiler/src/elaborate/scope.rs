@@ -7,6 +7,7 @@ use proc_macro2::{Ident, Span};
 use syn::Expr;
 
 use super::bonds::is_two_port;
+use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
@@ -14,7 +15,7 @@ use super::model::{Place, Quantity, Signals};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Symbol};
 
 /// The acceleration of free fall: a name of the model that every component sees.
 pub(super) const GRAVITY: &str = "gravity";
@@ -32,8 +33,10 @@ pub(super) enum Entity {
     Junction(JunctionId, Range<usize>),
     /// An element.
     Element(ElementId),
-    /// States of an integral or attitude.
+    /// States of an integral, or of a quaternion.
     States(Range<usize>),
+    /// States of a rotation matrix, by rows.
+    Rotation(Range<usize>),
     /// A component in use: its scope.
     Instance(usize),
     /// A loop with a label: the first value of its variable, and the scopes of its iterations.
@@ -101,6 +104,20 @@ impl Scopes {
             current = self.0[scope].around;
         }
         None
+    }
+
+    /// Where something in a scope stands in the user's text, and in which component of the library if in one.
+    pub(super) fn place(&self, scope: usize, span: Span) -> Site {
+        match &self.0[scope].library {
+            Some((component, instance)) => Site {
+                span: *instance,
+                library: Some(component.clone()),
+            },
+            None => Site {
+                span,
+                library: None,
+            },
+        }
     }
 
     /// Every plain name that a scope sees.
@@ -187,6 +204,8 @@ pub(super) struct Lookup<'a, 'm> {
     pub(super) missing: &'a mut Option<Missing>,
     pub(super) signals: &'a mut Signals,
     pub(super) own: Option<Own>,
+    /// What the checker of units is told, while it is asked for.
+    pub(super) claims: Option<&'a mut Claims>,
 }
 
 impl Names for Lookup<'_, '_> {
@@ -196,7 +215,11 @@ impl Names for Lookup<'_, '_> {
             let taken = matches!(
                 self.scopes.find(self.scope, "t"),
                 Some(
-                    Entity::Value(_) | Entity::Definition(_) | Entity::Input(_) | Entity::States(_)
+                    Entity::Value(_)
+                        | Entity::Definition(_)
+                        | Entity::Input(_)
+                        | Entity::States(_)
+                        | Entity::Rotation(_)
                 )
             );
             if name == "t" && !taken {
@@ -242,6 +265,29 @@ impl Names for Lookup<'_, '_> {
     fn all(&self) -> Vec<&str> {
         self.scopes.visible(self.scope)
     }
+
+    fn seen(&mut self, pool: &mut Pool, place: Span, value: &Value) {
+        let Some(claims) = &mut self.claims else {
+            return;
+        };
+        // A product of matrices is looked at where it meets a vector or a law.
+        let Some(entries) = value.entries(pool) else {
+            return;
+        };
+        claims.list.push(Claim {
+            subject: Subject::Part,
+            entries,
+            columns: 1,
+            place: self.scopes.place(self.scope, place),
+        });
+    }
+
+    fn measured(&mut self, pool: &mut Pool, value: Expression, text: &str) -> Expression {
+        match &mut self.claims {
+            Some(claims) => pool.symbol(claims.hide(text, true)),
+            None => value,
+        }
+    }
 }
 
 /// Why `e` and `f` of a two-port mean nothing.
@@ -264,6 +310,11 @@ impl Lookup<'_, '_> {
                 name.span(),
                 format!("`{name}` is a word and no number; ask `if {name} == …`"),
             ),
+            Entity::Rotation(range) => {
+                let entries = range.clone().map(|state| pool.symbol(Symbol::State(state)));
+                let matrix = Matrix::new(3, 3, entries.collect());
+                Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+            }
             Entity::Junction(..) => fail(
                 name.span(),
                 format!("`{name}` is a junction; write `{name}.f` or `{name}.e`"),

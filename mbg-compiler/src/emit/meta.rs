@@ -184,14 +184,14 @@ fn operations(compiled: &Compiled) -> TokenStream {
     let [
         derivative,
         output,
-        jacobian_state,
+        derivative_and_jacobian,
         jacobian_input,
         energy,
         power,
     ] = [
         Routines::DERIVATIVE,
         Routines::OUTPUT,
-        Routines::JACOBIAN_STATE,
+        Routines::DERIVATIVE_AND_JACOBIAN,
         Routines::JACOBIAN_INPUT,
         Routines::ENERGY,
         Routines::POWER,
@@ -200,7 +200,7 @@ fn operations(compiled: &Compiled) -> TokenStream {
     let angles = Literal::usize_suffixed(routines[Routines::DERIVATIVE].angles());
     quote! {
         ::mbg_runtime::Operations {
-            derivative: #derivative, output: #output, jacobian_state: #jacobian_state,
+            derivative: #derivative, output: #output, derivative_and_jacobian: #derivative_and_jacobian,
             jacobian_input: #jacobian_input, energy: #energy, power: #power, angles: #angles,
         }
     }

@@ -3,6 +3,7 @@
 //! Input: a [`Compiled`] model. Output: tokens: the type of the parameters, the model's type, and its `System`. The
 //! code is flat, generic over the scalar, refers to everything by absolute path, and is the same for the same input.
 
+mod close;
 mod meta;
 mod parameters;
 mod routine;

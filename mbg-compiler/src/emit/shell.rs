@@ -62,7 +62,7 @@ fn behaviour(name: &Ident, sizes: Sizes) -> TokenStream {
             name: #name, parameters: &[], states: &[], inputs: &[], outputs: &[], bonds: &[], dependent: &[],
             conditioning: &[], eliminated: &[], closures: &[], loops: &[], assumptions: &[], notes: &[], diagram: "",
             operations: ::mbg_runtime::Operations {
-                derivative: 0, output: 0, jacobian_state: 0, jacobian_input: 0, energy: 0, power: 0, angles: 0,
+                derivative: 0, output: 0, derivative_and_jacobian: 0, jacobian_input: 0, energy: 0, power: 0, angles: 0,
             },
         };
         type Memory = ();

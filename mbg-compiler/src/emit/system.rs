@@ -3,11 +3,12 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::close::close;
 use super::meta;
 use super::routine::{Setting, lines};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
-use crate::program::Source;
+use crate::program::{Operand, Source};
 
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
@@ -99,24 +100,16 @@ fn system(compiled: &Compiled) -> TokenStream {
     ]
     .map(Literal::usize_suffixed);
     let meta = meta::constant(compiled);
-    let body = |routine: usize, build: &dyn Fn(Vec<TokenStream>) -> TokenStream| {
-        let (steps, results) = lines(
-            compiled,
-            &compiled.program.routines[routine],
-            Setting::Method,
-        );
-        let result = build(results);
-        quote!(#steps #result)
-    };
+    let body = |routine: usize, build: Build| body(compiled, routine, build);
     let initial = body(Routines::INITIAL, &vector);
     let derivative = body(Routines::DERIVATIVE, &vector);
+    let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
-    let jacobian_state = jacobian(compiled, Routines::JACOBIAN_STATE, compiled.states.len());
-    let jacobian_input = jacobian(
-        compiled,
-        Routines::JACOBIAN_INPUT,
-        compiled.model.inputs.len(),
-    );
+    let derivative_and_jacobian = derivative_and_jacobian(compiled);
+    let jacobian_input = body(Routines::JACOBIAN_INPUT, &|results| {
+        let entries = &compiled.program.routines[Routines::JACOBIAN_INPUT].results;
+        jacobian(compiled, entries, results, compiled.model.inputs.len())
+    });
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -149,11 +142,21 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
             #[inline]
             fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
-                #jacobian_state
+                self.derivative_and_jacobian(t, x, u, memory).1
+            }
+            #[inline]
+            fn derivative_and_jacobian(
+                &self, #arguments, memory: &mut #memory,
+            ) -> (::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::__private::SMatrix<T, #n, #n>) {
+                #derivative_and_jacobian
             }
             #[inline]
             fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
                 #jacobian_input
+            }
+            #[inline]
+            fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> ::mbg_runtime::__private::SVector<T, #n> {
+                #derivative_time
             }
             #[inline]
             fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }
@@ -166,24 +169,49 @@ fn system(compiled: &Compiled) -> TokenStream {
     }
 }
 
+/// Makes what a function returns of the results of its routine.
+type Build<'a> = &'a dyn Fn(&[TokenStream]) -> TokenStream;
+
+/// Steps and result of a function.
+fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
+    let routine = &compiled.program.routines[routine];
+    let (steps, results) = lines(compiled, routine, Setting::Method);
+    let result = build(&results);
+    quote!(#steps #result)
+}
+
+/// Both at once: the first results are the derivative, the others the Jacobian by rows.
+fn derivative_and_jacobian(compiled: &Compiled) -> TokenStream {
+    let size = compiled.states.len();
+    let routine = Routines::DERIVATIVE_AND_JACOBIAN;
+    body(compiled, routine, &|results| {
+        let entries = &compiled.program.routines[routine].results[size..];
+        let derivative = vector(&results[..size]);
+        let jacobian = jacobian(compiled, entries, &results[size..], size);
+        quote!((#derivative, #jacobian))
+    })
+}
+
 /// A vector of results.
-fn vector(results: Vec<TokenStream>) -> TokenStream {
+fn vector(results: &[TokenStream]) -> TokenStream {
     let size = Literal::usize_suffixed(results.len());
     quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
 }
 
-/// Steps and result of a Jacobian of the derivative: all entries, or where most are zero those that are not.
-fn jacobian(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
-    let routine = &compiled.program.routines[routine];
-    let (steps, results) = lines(compiled, routine, Setting::Method);
+/// A Jacobian of the derivative by rows: all entries, or where most are zero those that are not.
+fn jacobian(
+    compiled: &Compiled,
+    entries: &[Operand],
+    results: &[TokenStream],
+    columns: usize,
+) -> TokenStream {
     let size = [compiled.states.len(), columns].map(Literal::usize_suffixed);
     let [rows, width] = &size;
-    let filled: Vec<usize> = (0..results.len())
-        .filter(|entry| routine.results[*entry].source != Source::Constant(0.0))
+    let filled: Vec<usize> = (0..entries.len())
+        .filter(|entry| entries[*entry].source != Source::Constant(0.0))
         .collect();
-    if 4 * filled.len() >= results.len() {
+    if 4 * filled.len() >= entries.len() {
         return quote! {
-            #steps
             ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_row_slice(&[#(#results),*])
         };
     }
@@ -192,63 +220,13 @@ fn jacobian(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream 
         let ([row, column], value) = (&place, &results[entry]);
         quote!(jacobian[(#row, #column)] = #value;)
     });
-    quote! {
-        #steps
+    quote! {{
         let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
             <T as ::mbg_runtime::Real>::from_f64(0.0),
         );
         #(#entries)*
         jacobian
-    }
-}
-
-/// The projection onto closed loops; nothing for a model without any.
-fn close(compiled: &Compiled) -> Option<TokenStream> {
-    if compiled.model.graph.closures.is_empty() {
-        return None;
-    }
-    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
-    let routines = [Routines::CLOSED_POSITIONS, Routines::CLOSED_FLOWS];
-    let projections = routines
-        .iter()
-        .zip(&compiled.closed)
-        .filter(|(_, closed)| !closed.is_empty());
-    let projections = projections.map(|(routine, closed)| {
-        let (steps, results) = lines(
-            compiled,
-            &compiled.program.routines[*routine],
-            Setting::Method,
-        );
-        let (values, jacobian) = results.split_at(closed.len());
-        let size = Literal::usize_suffixed(closed.len());
-        let closures = closed.iter().copied().map(Literal::usize_suffixed);
-        let memory = cold_memory(compiled, *routine);
-        quote! {
-            let x = ::mbg_runtime::__private::close(
-                Self::META, &[#(#closures),*], x, held,
-                |x: &::mbg_runtime::__private::SVector<T, #n>| {
-                    #memory
-                    #steps
-                    (
-                        ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
-                        ::mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
-                    )
-                },
-            )?;
-        }
-    });
-    Some(quote! {
-        fn close(
-            &self,
-            t: T,
-            x: ::mbg_runtime::__private::SVector<T, #n>,
-            u: &::mbg_runtime::__private::SVector<T, #m>,
-            held: &[usize],
-        ) -> ::core::result::Result<::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::Trouble> {
-            #(#projections)*
-            ::core::result::Result::Ok(x)
-        }
-    })
+    }}
 }
 
 /// The type of what is remembered: nothing, or the unknowns of all iterations.
@@ -262,7 +240,7 @@ fn memory(compiled: &Compiled) -> TokenStream {
 }
 
 /// What is asked without a memory begins at zero, if it needs an iteration at all.
-fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
+pub(super) fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
     compiled.program.routines[routine]
         .iterates()
         .then(|| quote!(let memory = &mut <Self::Memory as ::core::default::Default>::default();))

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::symbolic::linear::{Elimination, back_substitute};
 use crate::symbolic::{Expression, Matrix, Pool, Rate, Substitution};
 
 /// Linear equations by rows, which shrink as unknowns are eliminated.
@@ -13,8 +14,7 @@ pub(super) struct System {
     /// Rows and columns that are left.
     open_rows: BTreeSet<usize>,
     open_columns: BTreeSet<usize>,
-    /// Row and column of each pivot in order.
-    pivots: Vec<(usize, usize)>,
+    eliminations: Vec<Elimination>,
 }
 
 /// Why a pivot was not taken: it is identically zero.
@@ -36,7 +36,7 @@ impl System {
             columns,
             open_rows: (0..size).collect(),
             open_columns: (0..size).collect(),
-            pivots: Vec::new(),
+            eliminations: Vec::new(),
         }
     }
 
@@ -176,13 +176,13 @@ impl System {
         let pivot_row = self.rows[row].clone();
         self.open_rows.remove(&row);
         self.open_columns.remove(&column);
-        self.pivots.push((row, column));
         for inner in pivot_row.keys() {
             self.columns[*inner].remove(&row);
         }
         let others: Vec<usize> = std::mem::take(&mut self.columns[column])
             .into_iter()
             .collect();
+        let mut factors = Vec::with_capacity(others.len());
         for other in others {
             let entry = self.rows[other].remove(&column).unwrap_or(Expression::ZERO);
             let factor = pool.divide(entry, pivot).ok_or(Vanished)?;
@@ -199,7 +199,16 @@ impl System {
             }
             let product = pool.multiply(factor, self.right[row]);
             self.right[other] = pool.subtract(self.right[other], product);
+            factors.push((other, factor));
         }
+        let others = pivot_row.into_iter().filter(|(other, _)| *other != column);
+        self.eliminations.push(Elimination {
+            row,
+            column,
+            pivot,
+            others: others.collect(),
+            factors,
+        });
         Ok(())
     }
 
@@ -217,7 +226,7 @@ impl System {
 
     /// All unknowns, given those that were left.
     pub(super) fn back_substitute(
-        self,
+        &self,
         pool: &mut Pool,
         columns: &[usize],
         values: &[Expression],
@@ -226,15 +235,17 @@ impl System {
         for (column, value) in columns.iter().zip(values) {
             solution[*column] = *value;
         }
-        for (row, column) in self.pivots.iter().rev() {
-            let mut rest = self.right[*row];
-            for (inner, value) in self.rows[*row].iter().filter(|(inner, _)| *inner != column) {
-                let product = pool.multiply(*value, solution[*inner]);
-                rest = pool.subtract(rest, product);
-            }
-            let pivot = self.entry(*row, *column);
-            solution[*column] = pool.divide(rest, pivot).ok_or(Vanished)?;
-        }
+        back_substitute(pool, &self.eliminations, &self.right, &mut solution).ok_or(Vanished)?;
         Ok(solution)
+    }
+
+    /// The equations as they are.
+    pub(super) fn equations(&self) -> (Vec<BTreeMap<usize, Expression>>, Vec<Expression>) {
+        (self.rows.clone(), self.right.clone())
+    }
+
+    /// How unknowns were eliminated.
+    pub(super) fn into_eliminations(self) -> Vec<Elimination> {
+        self.eliminations
     }
 }

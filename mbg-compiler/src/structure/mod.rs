@@ -23,7 +23,7 @@ mod tree;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::elaborate::Condition;
-use crate::equations::{Inertia, Scalars};
+use crate::equations::{Equation, Inertia, Scalars};
 use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use reduction::{Reduction, reduce};
@@ -82,10 +82,24 @@ pub struct Undetermined {
 
 /// Solves the equations.
 pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
+    let multipliers: BTreeSet<usize> = scalars
+        .closures
+        .iter()
+        .flat_map(|closure| closure.multipliers.iter().copied())
+        .collect();
+    // A constraint determines its multiplier even where it says nothing: that of least norm is zero then.
+    let own_multiplier = |equation: &Equation| {
+        let [multiplier, other] = equation.about;
+        let constrains = multiplier == other && equation.level.is_none();
+        (constrains && multipliers.contains(&multiplier)).then_some(multiplier)
+    };
     let incidence: Vec<Vec<usize>> = scalars
         .equations
         .iter()
-        .map(|equation| equation.terms.keys().copied().collect())
+        .map(|equation| {
+            let terms = equation.terms.keys().copied();
+            terms.chain(own_multiplier(equation)).collect()
+        })
         .collect();
     pool.forget();
     let mut all: Vec<Vec<usize>> = scalars
@@ -97,6 +111,7 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
                 .keys()
                 .chain(&equation.signals)
                 .copied()
+                .chain(own_multiplier(equation))
                 .collect()
         })
         .collect();
@@ -106,11 +121,6 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         .ok_or(Failure::Singular)?;
     // What a reduced system eliminates level by level is one block, whatever could be split off: a multiplier, too, even
     // where one end of its loop is fixed and its effort comes last.
-    let multipliers: BTreeSet<usize> = scalars
-        .closures
-        .iter()
-        .flat_map(|closure| closure.multipliers.iter().copied())
-        .collect();
     let levelled: Vec<usize> = (0..all.len())
         .filter(|row| {
             let unknown = matching[*row];

@@ -8,8 +8,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::System;
-use super::solve::{ADJUGATE, Solver, places};
+use super::solve::{Solver, places};
 use super::{Failure, Loop, Undetermined};
+use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Expression, Implicit, Matrix, Method, Pool, Rate, Substitution, Symbol, affine, jacobian,
@@ -37,7 +38,8 @@ impl Solver<'_> {
             self.define(left, &matrix, &right, unknowns)?
         } else {
             let mut divisor = Expression::ONE;
-            let values = self.dense(&matrix, &right, &mut divisor)?;
+            let values =
+                dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
             self.note(divisor, &[]);
             values
         };
@@ -111,7 +113,7 @@ impl Solver<'_> {
             let mut unit = vec![Expression::ZERO; size];
             unit[row] = Expression::ONE;
             let mut divisor = Expression::ONE;
-            let Ok(column) = self.dense(&jacobian, &unit, &mut divisor) else {
+            let Some(column) = dense(self.pool, &jacobian, &unit, &mut divisor) else {
                 return Err(Failure::Undetermined(Box::new(Undetermined {
                     unknowns: unknowns.to_vec(),
                     left,

@@ -11,11 +11,9 @@ use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Owner, Scalars};
 use crate::symbolic::{
-    Differentiator, Expression, Function, Implicit, Matrix, Pool, Rate, Substitution, Symbol,
+    Differentiator, Expression, Function, Implicit, Linear, Matrix, Method, Pool, Rate, Rest,
+    RestSolver, Substitution, Symbol, dense,
 };
-
-/// Up to this size a block is solved by its adjugate; larger ones are made smaller by pivots that never vanish.
-pub(super) const ADJUGATE: usize = 3;
 
 impl From<Vanished> for Failure {
     fn from(_: Vanished) -> Self {
@@ -132,7 +130,7 @@ impl Solver<'_> {
         }
         let matrix = Matrix::new(unknowns.len(), unknowns.len(), matrix);
         let mut divisor = Expression::ONE;
-        let values = self.dense(&matrix, &right, &mut divisor)?;
+        let values = dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
         self.note(divisor, &norms);
         let by_law = rows
             .iter()
@@ -180,6 +178,7 @@ impl Solver<'_> {
         let mut system = System::new(rows, right);
         let tree = Tree::of(scalars, equations, &place);
         let shift = self.shift(&mut system, &tree, unknowns, &place);
+        let (matrix, right) = system.equations();
         let admitted = |row, column| tree.admits(row, column);
         let all: Columns = (0..equations.len()).collect();
         for (number, level) in self.levels(equations, unknowns) {
@@ -218,12 +217,19 @@ impl Solver<'_> {
                 system.eliminate_constants(self.pool, &all, &columns, &admitted)?;
             }
         }
-        let (columns, values) = if scalars.closures.is_empty() {
+        let (rest, values) = if scalars.closures.is_empty() {
             self.rest(&mut system, &tree)?
         } else {
             self.multipliers(&mut system, equations, unknowns)?
         };
-        let mut values = system.back_substitute(self.pool, &columns, &values)?;
+        let mut values = system.back_substitute(self.pool, &rest.columns, &values)?;
+        self.pool.solved(Linear {
+            matrix,
+            right,
+            eliminations: system.into_eliminations(),
+            rest,
+            values: values.clone(),
+        });
         if let Some(shift) = shift {
             shift.undo(self.pool, &mut values);
         }
@@ -231,25 +237,30 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// What is left when no level has it, solved as a whole: columns and their values.
+    /// What is left when no level has it, solved as a whole: the rest and its values.
     fn rest(
         &mut self,
         system: &mut System,
         tree: &Tree,
-    ) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+    ) -> Result<(Rest, Vec<Expression>), Failure> {
         let rows = system.open().clone();
         let columns = (0..system.size()).collect();
         system.eliminate_constants(self.pool, &rows, &columns, &|row, column| {
             tree.allows(row, column)
         })?;
         let (columns, matrix, right) = system.rest();
-        if columns.is_empty() {
-            return Ok((columns, Vec::new()));
-        }
         let mut divisor = Expression::ONE;
-        let values = self.dense(&matrix, &right, &mut divisor)?;
+        let rest = Rest {
+            rows: system.open().iter().copied().collect(),
+            columns,
+            solver: RestSolver::Dense(matrix.clone()),
+        };
+        if rest.columns.is_empty() {
+            return Ok((rest, Vec::new()));
+        }
+        let values = dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
         self.note(divisor, &[]);
-        Ok((columns, values))
+        Ok((rest, values))
     }
 
     /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
@@ -258,7 +269,7 @@ impl Solver<'_> {
         system: &mut System,
         equations: &[usize],
         unknowns: &[usize],
-    ) -> Result<(Vec<usize>, Vec<Expression>), Failure> {
+    ) -> Result<(Rest, Vec<Expression>), Failure> {
         let place = places(unknowns);
         let multipliers: Vec<(usize, usize)> = self
             .scalars
@@ -292,16 +303,25 @@ impl Solver<'_> {
             .iter()
             .map(|(row, _)| system.right(*row).negated())
             .collect();
-        let columns: Vec<usize> = multipliers.iter().map(|(_, column)| *column).collect();
+        let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
         let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-        let implicit = Implicit::least_norm(self.pool, numbers, matrix, right);
+        let implicit = Implicit {
+            unknowns: numbers,
+            method: Method::LeastNorm { matrix, right },
+        };
         let symbols: Vec<Symbol> = implicit.symbols().collect();
+        let solver = RestSolver::LeastNorm(self.pool.implicit().len());
         self.pool.define(implicit);
         let values = symbols
             .into_iter()
             .map(|symbol| self.pool.symbol(symbol))
             .collect();
-        Ok((columns, values))
+        let rest = Rest {
+            rows,
+            columns,
+            solver,
+        };
+        Ok((rest, values))
     }
 
     fn shift(
@@ -440,112 +460,6 @@ impl Solver<'_> {
         }
         let sum = self.pool.sum(&squares);
         Ok(self.pool.call(Function::Sqrt, &[sum]))
-    }
-
-    /// Solves `A x = b`; `divisor` is multiplied by what was divided by.
-    pub(super) fn dense(
-        &mut self,
-        matrix: &Matrix,
-        right: &[Expression],
-        divisor: &mut Expression,
-    ) -> Result<Vec<Expression>, Failure> {
-        let size = matrix.rows;
-        if size == 1 {
-            *divisor = self.pool.multiply(*divisor, matrix.at(0, 0));
-            let value = self
-                .pool
-                .divide(right[0], matrix.at(0, 0))
-                .ok_or(Failure::Singular)?;
-            return Ok(vec![value]);
-        }
-        if size <= ADJUGATE {
-            return self.by_adjugate(matrix, right, divisor);
-        }
-        self.by_pivot(matrix, right, divisor)
-    }
-
-    fn by_adjugate(
-        &mut self,
-        matrix: &Matrix,
-        right: &[Expression],
-        divisor: &mut Expression,
-    ) -> Result<Vec<Expression>, Failure> {
-        let determinant = matrix.determinant(self.pool);
-        *divisor = self.pool.multiply(*divisor, determinant);
-        let adjugate = matrix.adjugate(self.pool);
-        let numerators = adjugate
-            .times(self.pool, &Matrix::column(right.to_vec()))
-            .entries;
-        numerators
-            .into_iter()
-            .map(|numerator| {
-                self.pool
-                    .divide(numerator, determinant)
-                    .ok_or(Failure::Singular)
-            })
-            .collect()
-    }
-
-    /// Eliminates one unknown by the pivot that is safest, then sparsest, and solves the rest.
-    fn by_pivot(
-        &mut self,
-        matrix: &Matrix,
-        right: &[Expression],
-        divisor: &mut Expression,
-    ) -> Result<Vec<Expression>, Failure> {
-        let size = matrix.rows;
-        let (row, column) = self.pivot(matrix).ok_or(Failure::Singular)?;
-        let pivot = matrix.at(row, column);
-        *divisor = self.pool.multiply(*divisor, pivot);
-        let rows: Vec<usize> = (0..size).filter(|other| *other != row).collect();
-        let columns: Vec<usize> = (0..size).filter(|other| *other != column).collect();
-        let mut entries = Vec::with_capacity(rows.len() * columns.len());
-        let mut rest = Vec::with_capacity(rows.len());
-        for other in &rows {
-            let factor = self
-                .pool
-                .divide(matrix.at(*other, column), pivot)
-                .ok_or(Failure::Singular)?;
-            for inner in &columns {
-                let product = self.pool.multiply(factor, matrix.at(row, *inner));
-                entries.push(self.pool.subtract(matrix.at(*other, *inner), product));
-            }
-            let product = self.pool.multiply(factor, right[row]);
-            rest.push(self.pool.subtract(right[*other], product));
-        }
-        let smaller = Matrix::new(rows.len(), columns.len(), entries);
-        let mut values = self.dense(&smaller, &rest, divisor)?;
-        let mut numerator = right[row];
-        for (inner, value) in columns.iter().zip(&values) {
-            let product = self.pool.multiply(matrix.at(row, *inner), *value);
-            numerator = self.pool.subtract(numerator, product);
-        }
-        values.insert(
-            column,
-            self.pool
-                .divide(numerator, pivot)
-                .ok_or(Failure::Singular)?,
-        );
-        Ok(values)
-    }
-
-    /// Constants before parameters before what varies; among equals the one that fills in least (Markowitz 1957).
-    fn pivot(&self, matrix: &Matrix) -> Option<(usize, usize)> {
-        let size = matrix.rows;
-        let filled = |row: usize, column: usize| matrix.at(row, column) != Expression::ZERO;
-        let in_row: Vec<usize> = (0..size)
-            .map(|row| (0..size).filter(|c| filled(row, *c)).count())
-            .collect();
-        let in_column: Vec<usize> = (0..size)
-            .map(|column| (0..size).filter(|r| filled(*r, column)).count())
-            .collect();
-        (0..size)
-            .flat_map(|row| (0..size).map(move |column| (row, column)))
-            .filter(|(row, column)| filled(*row, *column))
-            .min_by_key(|(row, column)| {
-                let rate = self.pool.rate(matrix.at(*row, *column));
-                (rate, (in_row[*row] - 1) * (in_column[*column] - 1))
-            })
     }
 
     /// Remembers what was divided by.

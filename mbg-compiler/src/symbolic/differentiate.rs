@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::expression::{Expression, Function, Operation, Symbol};
-use super::implicit::{Implicit, Method};
+use super::implicit::Method;
+use super::linear::Linear;
 use super::matrix::Matrix;
-use super::pool::Pool;
+use super::pool::{Definition, Pool};
 use super::substitute::symbols;
 use super::walk::Rewritten;
 
@@ -14,7 +15,7 @@ pub struct Differentiator {
     known: Rewritten,
     /// Derivatives of symbols; those that are not there do not depend on the one in question.
     slopes: BTreeMap<Symbol, Expression>,
-    /// How many of the pool's implicit definitions are in `slopes`.
+    /// How many of the pool's definitions are known.
     defined: usize,
 }
 
@@ -31,24 +32,29 @@ impl Differentiator {
 
     /// The derivative.
     pub fn derivative(&mut self, pool: &mut Pool, expression: Expression) -> Expression {
-        while self.defined < pool.implicit().len() {
-            self.define(pool);
+        while let Some(definition) = pool.definitions().get(self.defined).cloned() {
+            self.defined += 1;
+            match definition {
+                Definition::Implicit(number) => self.unknowns(pool, number),
+                Definition::Linear(linear) => self.solution(pool, &linear),
+            }
         }
         rewrite(&mut self.known, &self.slopes, pool, expression)
     }
 
-    /// Adds the derivatives of the next unknowns that equations give, by the implicit function theorem.
-    fn define(&mut self, pool: &mut Pool) {
-        let number = self.defined;
-        self.defined += 1;
+    /// Adds the derivatives of unknowns that an iteration finds, by the implicit function theorem. Those of a linear
+    /// solve come with the equations that it belongs to.
+    fn unknowns(&mut self, pool: &mut Pool, number: usize) {
         let implicit = pool.implicit()[number].clone();
-        if implicit.earlier().is_some() {
+        let Method::Newton {
+            residuals, inverse, ..
+        } = &implicit.method
+        else {
             return;
-        }
+        };
         // While the unknowns have no derivative yet, this is the one by everything else.
         let mut others = Rewritten::default();
-        let driven: Vec<Expression> = implicit
-            .equations()
+        let driven: Vec<Expression> = residuals
             .iter()
             .map(|residual| rewrite(&mut others, &self.slopes, pool, *residual))
             .collect();
@@ -56,25 +62,37 @@ impl Differentiator {
             return;
         }
         let right: Vec<Expression> = driven.into_iter().map(Expression::negated).collect();
-        let slopes = match &implicit.method {
-            Method::Newton { inverse, .. } => inverse.times(pool, &Matrix::column(right)).entries,
-            Method::LeastNorm { .. } | Method::Slope { .. } => solved_again(pool, number, right),
-        };
+        let slopes = inverse.times(pool, &Matrix::column(right)).entries;
         self.slopes.extend(implicit.symbols().zip(slopes));
     }
-}
 
-/// The unknowns of the same matrix with another right side.
-fn solved_again(pool: &mut Pool, of: usize, right: Vec<Expression>) -> Vec<Expression> {
-    let unknowns: Vec<usize> = right.iter().map(|_| pool.fresh_unknown()).collect();
-    let method = Method::Slope { of, right };
-    let implicit = Implicit { unknowns, method };
-    let symbols: Vec<Symbol> = implicit.symbols().collect();
-    pool.define(implicit);
-    symbols
-        .into_iter()
-        .map(|symbol| pool.symbol(symbol))
-        .collect()
+    /// Adds the derivatives of a solution of linear equations: `A z' = b' − A' z`.
+    fn solution(&mut self, pool: &mut Pool, linear: &Linear) {
+        let right = (0..linear.right.len()).map(|row| self.driven(pool, linear, row));
+        let right: Vec<Expression> = right.collect();
+        let slopes = if right.iter().all(|driven| *driven == Expression::ZERO) {
+            right
+        } else {
+            match linear.solve(pool, right) {
+                Some(slopes) => slopes,
+                None => return,
+            }
+        };
+        for (value, slope) in linear.values.iter().zip(slopes) {
+            self.known.set(*value, slope);
+        }
+    }
+
+    /// One row of `b' − A' z`.
+    fn driven(&mut self, pool: &mut Pool, linear: &Linear, row: usize) -> Expression {
+        let mut driven = rewrite(&mut self.known, &self.slopes, pool, linear.right[row]);
+        for (column, coefficient) in &linear.matrix[row] {
+            let slope = rewrite(&mut self.known, &self.slopes, pool, *coefficient);
+            let product = pool.multiply(slope, linear.values[*column]);
+            driven = pool.subtract(driven, product);
+        }
+        driven
+    }
 }
 
 /// Derivatives of expressions, by rows, with respect to symbols, by columns; only what an expression holds is

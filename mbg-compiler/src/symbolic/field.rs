@@ -195,6 +195,44 @@ impl Image {
         let scale = Self::ONE.plus(square).inverted().unwrap_or(Self::ZERO);
         (Self::ONE.minus(square).times(scale), t.plus(t).times(scale))
     }
+
+    /// A random point of the unit sphere in four dimensions that depends on the word given, by its rational
+    /// parametrisation: a quaternion of length one.
+    #[must_use]
+    pub fn sphere(word: u64) -> [Self; 4] {
+        let [a, b, c] = [0, 1, 2].map(|axis| Self::unknown(&[0x5_b4e2, word, axis]));
+        let squares = a.times(a).plus(b.times(b)).plus(c.times(c));
+        let scale = Self::ONE.plus(squares).inverted().unwrap_or(Self::ZERO);
+        let double = |part: Self| part.plus(part).times(scale);
+        [
+            Self::ONE.minus(squares).times(scale),
+            double(a),
+            double(b),
+            double(c),
+        ]
+    }
+
+    /// A random rotation matrix that depends on the word given, by rows: that of a random quaternion.
+    #[must_use]
+    pub fn rotation(word: u64) -> [Self; 9] {
+        let q = Self::sphere(word);
+        let product = |a: usize, b: usize| {
+            let product = q[a].times(q[b]);
+            product.plus(product)
+        };
+        let diagonal = |a, b| Self::ONE.minus(product(a, a)).minus(product(b, b));
+        [
+            diagonal(2, 3),
+            product(1, 2).minus(product(0, 3)),
+            product(1, 3).plus(product(0, 2)),
+            product(1, 2).plus(product(0, 3)),
+            diagonal(1, 3),
+            product(2, 3).minus(product(0, 1)),
+            product(1, 3).minus(product(0, 2)),
+            product(2, 3).plus(product(0, 1)),
+            diagonal(1, 2),
+        ]
+    }
 }
 
 #[cfg(test)]
@@ -215,5 +253,23 @@ mod tests {
     fn circle_points_are_on_the_circle() {
         let (cosine, sine) = Image::circle(Image::unknown(&[7]));
         assert_eq!(cosine.times(cosine).plus(sine.times(sine)), Image::ONE);
+    }
+
+    #[test]
+    fn quaternions_have_length_one_and_rotations_orthonormal_rows() {
+        let dot = |a: &[Image], b: &[Image]| {
+            let products = a.iter().zip(b).map(|(a, b)| a.times(*b));
+            products.fold(Image::ZERO, Image::plus)
+        };
+        let sphere = Image::sphere(3);
+        assert_eq!(dot(&sphere, &sphere), Image::ONE);
+        let rotation = Image::rotation(3);
+        for a in 0..3 {
+            for b in 0..3 {
+                let expected = if a == b { Image::ONE } else { Image::ZERO };
+                let [a, b] = [a, b].map(|row| &rotation[3 * row..3 * row + 3]);
+                assert_eq!(dot(a, b), expected);
+            }
+        }
     }
 }

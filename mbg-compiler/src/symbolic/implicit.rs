@@ -6,7 +6,6 @@
 
 use super::expression::{Expression, Symbol};
 use super::matrix::Matrix;
-use super::pool::Pool;
 
 /// As many equations as unknowns.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,8 +35,6 @@ pub enum Method {
         matrix: Matrix,
         /// The right side `b`.
         right: Vec<Expression>,
-        /// `S z − b`.
-        residuals: Vec<Expression>,
     },
     /// The equations have the matrix of an earlier definition of the kind before, and a right side of their own. Such
     /// are the derivatives of its unknowns; they are not differentiated again.
@@ -64,39 +61,6 @@ impl Implicit {
         self.unknowns.iter().copied().map(Symbol::Unknown)
     }
 
-    /// Unknowns of least norm of `matrix · z = right`.
-    pub fn least_norm(
-        pool: &mut Pool,
-        unknowns: Vec<usize>,
-        matrix: Matrix,
-        right: Vec<Expression>,
-    ) -> Self {
-        let symbols = unknowns.iter().copied().map(Symbol::Unknown);
-        let values = symbols.map(|symbol| pool.symbol(symbol)).collect();
-        let product = matrix.times(pool, &Matrix::column(values));
-        let residuals = product
-            .entries
-            .iter()
-            .zip(&right)
-            .map(|(sum, right)| pool.subtract(*sum, *right))
-            .collect();
-        let method = Method::LeastNorm {
-            matrix,
-            right,
-            residuals,
-        };
-        Self { unknowns, method }
-    }
-
-    /// What the unknowns make zero; of slopes the right side, which the matrix of an earlier definition divides.
-    #[must_use]
-    pub fn equations(&self) -> &[Expression] {
-        match &self.method {
-            Method::Newton { residuals, .. } | Method::LeastNorm { residuals, .. } => residuals,
-            Method::Slope { right, .. } => right,
-        }
-    }
-
     /// Everything a solve evaluates: residuals, then their derivatives by rows; or right sides, then the matrix by rows
     /// unless an earlier definition has it.
     #[must_use]
@@ -107,7 +71,7 @@ impl Implicit {
                 jacobian,
                 ..
             } => [&residuals[..], &jacobian.entries].concat(),
-            Method::LeastNorm { matrix, right, .. } => [&right[..], &matrix.entries].concat(),
+            Method::LeastNorm { matrix, right } => [&right[..], &matrix.entries].concat(),
             Method::Slope { right, .. } => right.clone(),
         }
     }

@@ -209,8 +209,10 @@ pub enum Factor {
         angle: Expression,
     },
     /// Eq. (8) of Tod et al. (2013): angular velocity of three concentric gimbals, in the axes before the first,
-    /// from the rates of their angles: columns `e_x`, `Rx e_y`, `Rx Ry e_z`.
+    /// from the rates of their angles. With axes i, j, k it has the columns `e_i`, `R_i e_j`, `R_i R_j e_k`.
     GimbalJacobian {
+        /// The axes about which they turn, 0, 1 or 2 each.
+        axes: [usize; 3],
         /// The gimbals' angles.
         angles: [Expression; 3],
         /// Whether it is transposed.
@@ -236,7 +238,12 @@ impl Factor {
                 axis: *axis,
                 angle: angle.negated(),
             },
-            Self::GimbalJacobian { angles, transposed } => Self::GimbalJacobian {
+            Self::GimbalJacobian {
+                axes,
+                angles,
+                transposed,
+            } => Self::GimbalJacobian {
+                axes: *axes,
                 angles: *angles,
                 transposed: !transposed,
             },
@@ -249,8 +256,12 @@ impl Factor {
     pub fn to_matrix(&self, pool: &mut Pool) -> Matrix {
         match self {
             Self::Rotation { axis, angle } => rotation(pool, *axis, *angle),
-            Self::GimbalJacobian { angles, transposed } => {
-                let matrix = gimbal_jacobian(pool, *angles);
+            Self::GimbalJacobian {
+                axes,
+                angles,
+                transposed,
+            } => {
+                let matrix = gimbal_jacobian(pool, *axes, *angles);
                 if *transposed {
                     matrix.transpose()
                 } else {
@@ -263,9 +274,11 @@ impl Factor {
 
     fn apply(&self, pool: &mut Pool, vector: &Matrix) -> Matrix {
         match self {
-            Self::GimbalJacobian { angles, transposed } => {
-                apply_jacobian(pool, *angles, *transposed, vector)
-            }
+            Self::GimbalJacobian {
+                axes,
+                angles,
+                transposed,
+            } => apply_jacobian(pool, *axes, *angles, *transposed, vector),
             _ => self.to_matrix(pool).times(pool, vector),
         }
     }
@@ -350,37 +363,50 @@ fn rotation(pool: &mut Pool, axis: usize, angle: Expression) -> Matrix {
     matrix
 }
 
-fn gimbal_jacobian(pool: &mut Pool, [first, second, _]: [Expression; 3]) -> Matrix {
-    let (s1, c1) = (pool.sine(first), pool.cosine(first));
-    let (s2, c2) = (pool.sine(second), pool.cosine(second));
-    let (zero, one) = (Expression::ZERO, Expression::ONE);
-    let (upper, lower) = (pool.multiply(c2, s1).negated(), pool.multiply(c1, c2));
-    Matrix::new(3, 3, vec![one, zero, s2, zero, c1, upper, zero, s1, lower])
+/// Its columns, by applying it to the unit vectors.
+fn gimbal_jacobian(pool: &mut Pool, axes: [usize; 3], angles: [Expression; 3]) -> Matrix {
+    let columns: Vec<Matrix> = (0..3)
+        .map(|gimbal| {
+            let rates = along(gimbal, Expression::ONE);
+            apply_jacobian(pool, axes, angles, false, &rates)
+        })
+        .collect();
+    let entries = (0..9).map(|entry| columns[entry % 3].at(entry / 3, 0));
+    Matrix::new(3, 3, entries.collect())
 }
 
-/// In nested frames: `e_x v₀ + Rx (e_y v₁ + Ry e_z v₂)`, or the transposed of that.
+/// In nested frames: `e_i v₀ + R_i (e_j v₁ + R_j e_k v₂)`, or the transposed of that.
 fn apply_jacobian(
     pool: &mut Pool,
+    axes: [usize; 3],
     angles: [Expression; 3],
     transposed: bool,
     vector: &Matrix,
 ) -> Matrix {
-    let [first, second, _] = angles;
-    let unit = |axis: usize, value: Expression| {
-        let mut entries = vec![Expression::ZERO; 3];
-        entries[axis] = value;
-        Matrix::column(entries)
-    };
     if transposed {
-        let inner = rotation(pool, 0, first.negated()).times(pool, vector);
-        let innermost = rotation(pool, 1, second.negated()).times(pool, &inner);
-        return Matrix::column(vec![vector.at(0, 0), inner.at(1, 0), innermost.at(2, 0)]);
+        let inner = rotation(pool, axes[0], angles[0].negated()).times(pool, vector);
+        let innermost = rotation(pool, axes[1], angles[1].negated()).times(pool, &inner);
+        let frames = [vector, &inner, &innermost];
+        let entries = frames
+            .into_iter()
+            .zip(axes)
+            .map(|(frame, axis)| frame.at(axis, 0));
+        return Matrix::column(entries.collect());
     }
-    let mut sum = rotation(pool, 1, second).times(pool, &unit(2, vector.at(2, 0)));
-    sum.entries[1] = pool.add(sum.entries[1], vector.at(1, 0));
-    let mut sum = rotation(pool, 0, first).times(pool, &sum);
-    sum.entries[0] = pool.add(sum.entries[0], vector.at(0, 0));
+    let mut sum = along(axes[2], vector.at(2, 0));
+    for gimbal in [1, 0] {
+        sum = rotation(pool, axes[gimbal], angles[gimbal]).times(pool, &sum);
+        let entry = &mut sum.entries[axes[gimbal]];
+        *entry = pool.add(*entry, vector.at(gimbal, 0));
+    }
     sum
+}
+
+/// A vector of three along an axis.
+fn along(axis: usize, value: Expression) -> Matrix {
+    let mut entries = vec![Expression::ZERO; 3];
+    entries[axis] = value;
+    Matrix::column(entries)
 }
 
 #[cfg(test)]
@@ -411,21 +437,37 @@ mod tests {
         );
     }
 
+    /// Three rotations, no two neighbours of which have one axis.
+    fn sequences() -> impl Iterator<Item = [usize; 3]> {
+        (0..27)
+            .map(|number| [number / 9, number / 3 % 3, number % 3])
+            .filter(|[first, second, third]| first != second && second != third)
+    }
+
     #[test]
-    fn determinant_of_the_gimbal_jacobian_is_the_cosine_of_the_second_angle() {
+    fn determinant_of_the_gimbal_jacobian_is_cosine_or_sine_of_the_second_angle() {
         let mut pool = Pool::new();
         let angles = angles(&mut pool);
-        let jacobian = Factor::GimbalJacobian {
-            angles,
-            transposed: false,
+        assert_eq!(sequences().count(), 12);
+        for axes in sequences() {
+            let jacobian = Factor::GimbalJacobian {
+                axes,
+                angles,
+                transposed: false,
+            }
+            .to_matrix(&mut pool);
+            let expected = if axes[0] == axes[2] {
+                pool.sine(angles[1])
+            } else {
+                pool.cosine(angles[1])
+            };
+            assert_eq!(jacobian.determinant(&mut pool).magnitude(), expected);
+            let inverse = jacobian.inverse(&mut pool).unwrap();
+            assert_eq!(
+                inverse.times(&mut pool, &jacobian),
+                Matrix::diagonal(&[Expression::ONE; 3])
+            );
         }
-        .to_matrix(&mut pool);
-        assert_eq!(jacobian.determinant(&mut pool), pool.cosine(angles[1]));
-        let inverse = jacobian.inverse(&mut pool).unwrap();
-        assert_eq!(
-            inverse.times(&mut pool, &jacobian),
-            Matrix::diagonal(&[Expression::ONE; 3])
-        );
     }
 
     #[test]
@@ -437,11 +479,17 @@ mod tests {
                 .map(|index| pool.symbol(Symbol::State(index)))
                 .collect(),
         );
-        for transposed in [false, true] {
-            let factor = Factor::GimbalJacobian { angles, transposed };
-            let nested = factor.apply(&mut pool, &vector);
-            let dense = factor.to_matrix(&mut pool).times(&mut pool, &vector);
-            assert_eq!(nested, dense);
+        for axes in sequences() {
+            for transposed in [false, true] {
+                let factor = Factor::GimbalJacobian {
+                    axes,
+                    angles,
+                    transposed,
+                };
+                let nested = factor.apply(&mut pool, &vector);
+                let dense = factor.to_matrix(&mut pool).times(&mut pool, &vector);
+                assert_eq!(nested, dense);
+            }
         }
     }
 }

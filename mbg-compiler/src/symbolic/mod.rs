@@ -4,13 +4,16 @@
 
 pub mod affine;
 mod arithmetic;
+pub mod dense;
 pub mod differentiate;
 pub mod evaluate;
 pub mod expression;
 pub mod field;
 pub mod identity;
 pub mod implicit;
+pub mod linear;
 pub mod matrix;
+pub mod orientation;
 pub mod pool;
 pub mod print;
 mod share;
@@ -18,10 +21,12 @@ pub mod substitute;
 mod walk;
 
 pub use affine::affine;
+pub use dense::dense;
 pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;
 pub use expression::{Expression, Function, Operation, Rate, Symbol};
 pub use implicit::{Implicit, Method, Place};
+pub use linear::{Elimination, Linear, Rest, RestSolver};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::Pool;
 pub use share::share;

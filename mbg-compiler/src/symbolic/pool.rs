@@ -6,10 +6,12 @@
 //! costs nothing.
 
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
 use super::implicit::{Implicit, Place};
+use super::linear::Linear;
 
 struct Node {
     operation: Operation,
@@ -20,12 +22,25 @@ struct Node {
 /// Unknowns that are none of the graph are numbered from here.
 const FRESH: usize = 1 << 31;
 
+/// Equations that give something.
+#[derive(Clone)]
+pub(super) enum Definition {
+    /// Unknowns for which symbols stand, by number.
+    Implicit(usize),
+    /// Unknowns that are expressions.
+    Linear(Rc<Linear>),
+}
+
 /// All expressions of a model.
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
     found: HashMap<Image, u32>,
     implicit: Vec<Implicit>,
+    /// Images of states that depend on each other, such as the parts of a quaternion.
+    located: BTreeMap<usize, Image>,
+    /// What equations give, in order.
+    definitions: Vec<Definition>,
     /// Where each unknown is defined.
     places: BTreeMap<usize, Place>,
     /// How many unknowns were made up.
@@ -46,6 +61,8 @@ impl Pool {
             nodes: Vec::new(),
             found: HashMap::new(),
             implicit: Vec::new(),
+            located: BTreeMap::new(),
+            definitions: Vec::new(),
             places: BTreeMap::new(),
             fresh: 0,
         };
@@ -197,6 +214,11 @@ impl Pool {
         self.constant(value, if value < 0.0 { image.negated() } else { image })
     }
 
+    /// Says where a state lies, before it is used: what holds between states at their places holds everywhere.
+    pub fn locate(&mut self, state: usize, image: Image) {
+        self.located.insert(state, image);
+    }
+
     /// A variable.
     pub fn symbol(&mut self, symbol: Symbol) -> Expression {
         let (kind, index, rate) = match symbol {
@@ -207,7 +229,11 @@ impl Pool {
             Symbol::Signal(index) => (5, index, Rate::Varying),
             Symbol::Unknown(index) => (6, index, Rate::Varying),
         };
-        let image = Image::unknown(&[kind, index as u64]);
+        let image = match symbol {
+            Symbol::State(state) => self.located.get(&state).copied(),
+            _ => None,
+        };
+        let image = image.unwrap_or_else(|| Image::unknown(&[kind, index as u64]));
         self.find(image)
             .unwrap_or_else(|| self.insert(Operation::Symbol(symbol), image, rate))
     }
@@ -218,7 +244,18 @@ impl Pool {
         for (row, unknown) in implicit.unknowns.iter().enumerate() {
             self.places.insert(*unknown, Place { number, row });
         }
+        self.definitions.push(Definition::Implicit(number));
         self.implicit.push(implicit);
+    }
+
+    /// Remembers equations with their solution.
+    pub fn solved(&mut self, linear: Linear) {
+        self.definitions.push(Definition::Linear(Rc::new(linear)));
+    }
+
+    /// What equations give, in order.
+    pub(super) fn definitions(&self) -> &[Definition] {
+        &self.definitions
     }
 
     /// A number that no unknown has yet.
@@ -230,6 +267,7 @@ impl Pool {
     /// Forgets all definitions.
     pub fn forget(&mut self) {
         self.implicit.clear();
+        self.definitions.clear();
         self.places.clear();
     }
 
@@ -253,18 +291,18 @@ impl Pool {
     pub fn causes(&self, expression: Expression) -> Vec<Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.equations(place.number),
+                Some(place) => self.evaluated(place.number),
                 None => Vec::new(),
             },
             operation => operation.operands(),
         }
     }
 
-    /// The equations of a definition, with those of the one whose matrix it uses.
-    fn equations(&self, number: usize) -> Vec<Expression> {
+    /// What a definition evaluates, with what the one evaluates whose matrix it uses.
+    fn evaluated(&self, number: usize) -> Vec<Expression> {
         let implicit = &self.implicit[number];
-        let earlier = implicit.earlier().map(|of| self.implicit[of].equations());
-        [implicit.equations(), earlier.unwrap_or_default()].concat()
+        let earlier = implicit.earlier().map(|of| self.implicit[of].evaluated());
+        [implicit.evaluated(), earlier.unwrap_or_default()].concat()
     }
 
     /// Sine.

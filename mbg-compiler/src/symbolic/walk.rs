@@ -15,6 +15,12 @@ impl Rewritten {
         self.0[&expression.node()].flipped(expression.is_negative())
     }
 
+    /// Says what an expression is rewritten to, unless that is known.
+    pub(super) fn set(&mut self, expression: Expression, rewritten: Expression) {
+        let rewritten = rewritten.flipped(expression.is_negative());
+        self.0.entry(expression.node()).or_insert(rewritten);
+    }
+
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
         self.0.clear();

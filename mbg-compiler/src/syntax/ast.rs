@@ -229,19 +229,44 @@ pub struct Integral {
     pub initial: Option<Expr>,
 }
 
+/// How an attitude is held in states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Orientation {
+    /// Four, the parts of a quaternion.
+    Quaternion,
+    /// Nine, a rotation matrix by rows.
+    Matrix,
+}
+
+impl Orientation {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Quaternion, Self::Matrix];
+
+    /// Its word in the language.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Quaternion => "quaternion",
+            Self::Matrix => "matrix",
+        }
+    }
+}
+
 /// `attitude name = quaternion(angular_velocity), initial: value;`
 pub struct Attitude {
     /// Documentation comments.
     pub documentation: Vec<Attribute>,
     /// Name.
     pub name: Ident,
+    /// `quaternion` or `matrix`.
+    pub orientation: Orientation,
     /// Angular velocity in body axes, the argument of `quaternion(…)`.
     pub angular_velocity: Expr,
-    /// Value at the start, `[1, 0, 0, 0]` unless written.
+    /// Value at the start, that of no rotation unless written.
     pub initial: Option<Expr>,
 }
 
-/// `1 name[n] coordinate, initial_flow: value { elements }`
+/// `1 name[n] coordinate, initial_flow: value { elements }`, `0 name pseudo;`
 pub struct Junction {
     /// Zero or one.
     pub kind: JunctionKind,
@@ -253,6 +278,8 @@ pub struct Junction {
     pub dimension: usize,
     /// Set by the word `coordinate`.
     pub coordinate: bool,
+    /// Set by the word `pseudo`: effort times flow is no power.
+    pub pseudo: bool,
     /// The coordinate's flow at the start, zero unless written.
     pub initial_flow: Option<Expr>,
     /// One-ports in the braces.
@@ -386,7 +413,15 @@ pub struct Unit {
     /// As shown to users, `N*m*s/rad`.
     pub text: String,
     /// Names with their integer exponents, in order of writing.
-    pub factors: Vec<(String, i32)>,
+    pub factors: Vec<(Ident, i32)>,
+}
+
+impl Unit {
+    /// Where it begins; none where nobody wrote it.
+    #[must_use]
+    pub fn span(&self) -> Option<Span> {
+        self.factors.first().map(|(name, _)| name.span())
+    }
 }
 
 impl Component {

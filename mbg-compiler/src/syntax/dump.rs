@@ -120,13 +120,10 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         }
         Statement::Attitude(it) => {
             write_documentation(text, "  ", &it.documentation)?;
+            let (name, word) = (&it.name, it.orientation.word());
             let velocity = expression(&it.angular_velocity);
-            writeln!(
-                text,
-                "  attitude {} = quaternion({velocity}){}",
-                it.name,
-                initial(it.initial.as_ref())
-            )
+            let initial = initial(it.initial.as_ref());
+            writeln!(text, "  attitude {name} = {word}({velocity}){initial}")
         }
         Statement::Junction(junction) => write_junction(text, junction),
         Statement::Chain(chain) => writeln!(text, "  chain {}", chain_text(chain)),
@@ -185,6 +182,7 @@ fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
         JunctionKind::Zero => '0',
         JunctionKind::One => '1',
     };
+    let pseudo = if junction.pseudo { " pseudo" } else { "" };
     let coordinate = if junction.coordinate {
         " coordinate"
     } else {
@@ -196,7 +194,7 @@ fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
     };
     writeln!(
         text,
-        "  {digit} {}[{}]{coordinate}{initial}",
+        "  {digit} {}[{}]{pseudo}{coordinate}{initial}",
         junction.name, junction.dimension
     )?;
     junction

@@ -11,7 +11,8 @@ use super::recovery::Sink;
 use super::statements::body;
 use super::words;
 use crate::codes;
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::{Diagnostic, error};
+use crate::inclusion;
 
 /// Reads everything.
 pub(super) fn source(tokens: TokenStream, sink: &mut Sink<'_>) -> Source {
@@ -73,7 +74,7 @@ fn visibility(cursor: &mut Cursor) -> Parsed<Visibility> {
     <Visibility as syn::parse::Parse>::parse
         .parse2(tokens)
         .map_err(|_| {
-            Box::new(crate::diagnostics::error(
+            Box::new(error(
                 codes::SYNTAX,
                 cursor.last_span(),
                 "expected `pub`, `pub(crate)` or `pub(super)`",
@@ -114,8 +115,8 @@ fn keyword(cursor: &mut Cursor, public: bool, sink: &mut Sink<'_>) -> Parsed<&'s
 
 /// What stands here is no item; perhaps it is a statement.
 fn elsewhere(cursor: &Cursor, error: Diagnostic, word: &str) -> Box<Diagnostic> {
-    if words::LATER.contains(&word) {
-        return cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet"));
+    if word == words::INCLUDE {
+        return Box::new(inclusion::misplaced(cursor.span()));
     }
     let statement = words::STATEMENTS.contains(&word)
         || words::element(word).is_some()

@@ -85,7 +85,7 @@ fn begins(cursor: &Cursor, offset: usize) -> bool {
         .ident(offset)
         .map(ToString::to_string)
         .unwrap_or_default();
-    let known = words::STATEMENTS.contains(&word.as_str()) || words::LATER.contains(&word.as_str());
+    let known = words::STATEMENTS.contains(&word.as_str()) || word == words::INCLUDE;
     known && cursor.ident(offset + 1).is_some()
 }
 
@@ -205,7 +205,7 @@ fn is_nameless(word: &Ident) -> bool {
     ["causality", "gravity", "for", "if", "close"]
         .iter()
         .any(|nameless| word == nameless)
-        || words::LATER.iter().any(|later| word == later)
+        || word == words::INCLUDE
 }
 
 fn is_hash(token: &TokenTree) -> bool {

@@ -4,8 +4,8 @@ use proc_macro2::{Delimiter, Group, Ident};
 use syn::Expr;
 
 use super::ast::{
-    Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let, Output,
-    Parameter, Statement,
+    Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let,
+    Orientation, Output, Parameter, Statement,
 };
 use super::attributes::Attributes;
 use super::chains::{chain, instance, reference};
@@ -17,8 +17,8 @@ use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
 use super::words;
-use crate::codes;
 use crate::diagnostics::Diagnostic;
+use crate::inclusion;
 
 /// Reads the statements between braces.
 pub(super) fn body(group: &Group, sink: &mut Sink<'_>) -> Vec<Statement> {
@@ -81,8 +81,8 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
             attributes.unmarked(&format!("`{word}`"), sink);
             return declaration(cursor, first, attributes, sink);
         }
-        if words::LATER.contains(&word.as_str()) {
-            return Err(cursor.failure(codes::SYNTAX, format!("`{word}` is not supported yet")));
+        if word == words::INCLUDE {
+            return Err(Box::new(inclusion::misplaced(cursor.span())));
         }
     }
     if word == "if" {
@@ -321,18 +321,18 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
         return Err(cursor.expected(&format!("`=` after {}", cursor.previous())));
     }
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
-    if word != "quaternion" {
-        let help = match words::nearest(&word, &["quaternion"]) {
+    let known = Orientation::ALL.into_iter().find(|it| it.word() == word);
+    let Some(orientation) = known else {
+        let help = match words::nearest(&word, &Orientation::ALL.map(Orientation::word)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "an attitude is the integral of an angular velocity in body axes".to_owned(),
         };
-        return Err(Box::new(
-            (*cursor.expected("`quaternion(…)` after `=`")).help(help),
-        ));
-    }
+        let wanted = "`quaternion(…)` or `matrix(…)` after `=`";
+        return Err(Box::new((*cursor.expected(wanted)).help(help)));
+    };
     cursor.advance(1);
     let Some(group) = cursor.take_group(Delimiter::Parenthesis) else {
-        return Err(cursor.expected("`(` after `quaternion`"));
+        return Err(cursor.expected(&format!("`(` after `{word}`")));
     };
     let mut inner = Cursor::inside(&group);
     let angular_velocity = expression(&mut inner, "the angular velocity")?;
@@ -344,6 +344,7 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     Ok(Attitude {
         documentation: attributes.documentation,
         name,
+        orientation,
         angular_velocity,
         initial,
     })
@@ -429,12 +430,15 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         cursor.advance(1);
         cursor.name(&format!("the name of the junction after {digit}"))?
     };
-    let (mut dimension, mut coordinate) = (None, false);
+    let (mut dimension, mut coordinate, mut pseudo) = (None, false, false);
     loop {
         if dimension.is_none() && cursor.group(0, Delimiter::Bracket).is_some() {
             dimension = cursor.dimension()?;
         } else if !coordinate && cursor.ident(0).is_some_and(|word| word == "coordinate") {
             coordinate = true;
+            cursor.advance(1);
+        } else if !pseudo && cursor.ident(0).is_some_and(|word| word == "pseudo") {
+            pseudo = true;
             cursor.advance(1);
         } else {
             break;
@@ -457,13 +461,14 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
             elements
         }
         None => {
-            undelimited(
-                cursor,
-                dimension.is_some(),
-                coordinate,
-                initial_flow.is_some(),
-                sink,
-            )?;
+            let started = initial_flow.is_some();
+            let words = [
+                ("[", dimension.is_some() || started),
+                ("coordinate", coordinate),
+                ("pseudo", pseudo || started),
+                (", initial_flow: value", !coordinate || started),
+            ];
+            undelimited(cursor, &words, sink)?;
             Vec::new()
         }
     };
@@ -473,38 +478,25 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         name,
         dimension: dimension.unwrap_or(1),
         coordinate,
+        pseudo,
         initial_flow,
         elements,
     })
 }
 
-/// Ends a junction without braces.
-fn undelimited(
-    cursor: &mut Cursor,
-    dimension: bool,
-    coordinate: bool,
-    initial_flow: bool,
-    sink: &mut Sink<'_>,
-) -> Parsed<()> {
-    let mut wanted = Vec::new();
-    if !dimension && !initial_flow {
-        wanted.push("[");
-    }
-    if !coordinate {
-        wanted.push("coordinate");
-    } else if !initial_flow {
-        wanted.push(", initial_flow: value");
-    }
-    wanted.extend(["{", ";"]);
+/// Ends a junction without braces; with each word that may stand before the end comes whether it was read.
+fn undelimited(cursor: &mut Cursor, words: &[(&str, bool)], sink: &mut Sink<'_>) -> Parsed<()> {
+    let missing = words.iter().filter(|(_, read)| !read);
+    let missing: Vec<&str> = missing.map(|(word, _)| *word).collect();
     let wanted = format!(
         "{} after {}",
-        words::alternatives(&wanted),
+        words::alternatives(&[missing.as_slice(), &["{", ";"]].concat()),
         cursor.previous()
     );
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
-    if !coordinate && words::nearest(&word, &["coordinate"]).is_some() {
+    if let Some(near) = words::nearest(&word, &missing) {
         return Err(Box::new(
-            (*cursor.expected(&wanted)).help("did you mean `coordinate`?"),
+            (*cursor.expected(&wanted)).help(format!("did you mean `{near}`?")),
         ));
     }
     finish(cursor, sink, &wanted)

@@ -68,18 +68,19 @@ fn product(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Par
 
 /// Reads a name, `1` or parentheses, with an exponent.
 fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Parsed<()> {
-    if let Some(name) = cursor.ident(0).map(ToString::to_string) {
-        if name.contains('·') {
+    if let Some(name) = cursor.ident(0).cloned() {
+        let spelling = name.to_string();
+        if spelling.contains('·') {
             let error = *cursor.failure(
                 codes::UNIT,
                 format!("expected the name of a unit, found `{name}`"),
             );
             return Err(Box::new(
-                error.help(format!("write `{}`", name.replace('·', "*"))),
+                error.help(format!("write `{}`", spelling.replace('·', "*"))),
             ));
         }
         cursor.advance(1);
-        unit.text.push_str(&name);
+        unit.text.push_str(&spelling);
         let exponent = exponent(cursor, unit)?;
         unit.factors.push((name, sign * exponent));
         return Ok(());

@@ -16,8 +16,8 @@ pub(super) const STATEMENTS: &[&str] = &[
     "causality",
 ];
 
-/// Words that will begin a statement one day.
-pub(super) const LATER: &[&str] = &["include"];
+/// The word that takes a file into the macro call, before anything else.
+pub(super) const INCLUDE: &str = "include";
 
 /// Words that begin an item.
 pub(super) const ITEMS: &[&str] = &["model", "component"];
@@ -77,7 +77,7 @@ pub(super) fn element_listing() -> String {
 }
 
 /// `` `a`, `b` or `c` ``.
-pub(super) fn alternatives(words: &[&str]) -> String {
+pub(crate) fn alternatives(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
     match quoted.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),

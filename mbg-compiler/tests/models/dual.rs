@@ -35,6 +35,8 @@ fn run(routine: &Routine, point: &Point, folded: &[Dual<f64>]) -> Vec<Dual<f64>>
                 cosine
             }
             Step::Call(Function::Sqrt, operands) => read(&operands[0]).sqrt(),
+            Step::Call(Function::Exp, operands) => read(&operands[0]).exp(),
+            Step::Call(Function::Tanh, operands) => read(&operands[0]).tanh(),
             Step::Call(function, _) => panic!("no model here calls {function:?}"),
             Step::Solve(_) => panic!("a loop is iterated"),
         };

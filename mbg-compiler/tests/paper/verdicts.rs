@@ -269,7 +269,7 @@ fn coulomb_friction_is_a_conflict_on_the_axis_of_a_revolute_only() {
     assert!(compiled("", &revolute(COMPONENTWISE, dry)).is_ok());
     let library = library().replace(
         "R damper { resistance: damping }",
-        "R damper { effort: damping * sign(f) }",
+        "R damper { effort: damping * 1.0 * sign(f) }",
     );
     assert!(compiled(&library, &System::free(GIMBALS).text()).is_ok());
 }
@@ -278,7 +278,7 @@ fn coulomb_friction_is_a_conflict_on_the_axis_of_a_revolute_only() {
 fn dry_friction_fits_the_new_joint_and_costs_the_classic_one_its_springs() {
     let dry = library().replace(
         "R damper { resistance: damping }",
-        "R damper { effort: damping * tanh(f) }",
+        "R damper { effort: damping * 1.0 * tanh(f / 1.0) }",
     );
     let compiled = |system: System| compiled(&dry, &system.text());
     assert!(compiled(System::free(GIMBALS)).is_ok());

@@ -136,7 +136,12 @@ fn rejected(
         codes::RECTANGULAR_INVERSE,
         codes::FIXED_RESISTOR,
     ];
-    let unsupported = [codes::ORDER_LOST_UNSUPPORTED, codes::NONLINEAR_LOOP];
+    // The last may befall any graph that starts where a modulus makes it singular.
+    let unsupported = [
+        codes::ORDER_LOST_UNSUPPORTED,
+        codes::NONLINEAR_LOOP,
+        codes::SINGULAR_START,
+    ];
     let among = |list: &[Code], code: &&str| list.iter().any(|it| it.text == *code);
     let expected = reported.iter().all(|code| match verdict {
         Verdict::Dependent(dependent) => {
@@ -211,12 +216,11 @@ fn check(graph: &Graph, model: &Compiled, state: &[f64]) -> Result<(), String> {
     let scale = outputs.iter().fold(1.0_f64, |scale, it| {
         scale.max(it.value.abs()).max(it.slope.abs())
     });
-    if !scale.is_finite() || scale > 1e4 {
-        return if scale.is_finite() {
-            Ok(())
-        } else {
-            Err("not finite".to_owned())
-        };
+    if !scale.is_finite() {
+        return Err("not finite".to_owned());
+    }
+    if scale > 1e4 {
+        return Ok(());
     }
     let (told, integrals) = told(graph, &outputs);
     laws(&told, scale)?;
@@ -235,7 +239,8 @@ fn check(graph: &Graph, model: &Compiled, state: &[f64]) -> Result<(), String> {
     near("supplied", power[0], supplied, scale * scale)?;
     near("dissipated", power[1], dissipated, scale * scale)?;
     near("balance", energy.slope, power[0] - power[1], scale * scale)?;
-    let jacobian = Told::values(&run(Routines::JACOBIAN_STATE, &still, 0.0, 0.0));
+    let jacobian = Told::values(&run(Routines::DERIVATIVE_AND_JACOBIAN, &still, 0.0, 0.0));
+    let jacobian = &jacobian[state.len()..];
     let by_input = Told::values(&run(Routines::JACOBIAN_INPUT, &still, 0.0, 0.0));
     let size = jacobian
         .iter()

@@ -22,7 +22,7 @@ const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]
         operations: Operations {
             derivative: 0,
             output: 0,
-            jacobian_state: 0,
+            derivative_and_jacobian: 0,
             jacobian_input: 0,
             energy: 0,
             power: 0,

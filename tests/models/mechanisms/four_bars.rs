@@ -6,32 +6,7 @@ use super::{Figures, Method, Task, apart, states};
 use crate::references::four_bar::{DURATION, RATE, tip};
 
 mbg! {
-    /// Cranks on the ground 1 m apart, and couplers between their tips; all links are rods of 1 m and 1 kg.
-    component Row(port ground[3]) {
-        param loops;
-        cranks: for k in 0..loops + 1 {
-            1 tip[3];
-            link: PlanarLink {
-                mass: 1.0, inertia: 1.0 / 12, centre: [0.5, 0.0], end: [1.0, 0.0],
-                initial: 1.5707963267948966, position_a: [k, 0.0]
-            } (ground, tip);
-            let height = link.position_centre.y + if k > 0 { cranks[k-1].height } else { 0.0 };
-        }
-        couplers: for k in 0..loops {
-            1 tip[3];
-            link: PlanarLink {
-                mass: 1.0, inertia: 1.0 / 12, centre: [0.5, 0.0], end: [1.0, 0.0],
-                initial: -1.5707963267948966,
-                angle_a: cranks[k].link.angle_b, position_a: cranks[k].link.position_b
-            } (cranks[k].tip, tip);
-            let open = link.position_b - cranks[k+1].link.position_b;
-            close tip[1..3] -> cranks[k+1].tip[1..3] by multipliers, displacement: open;
-            let height = link.position_centre.y + if k > 0 { couplers[k-1].height } else { cranks[loops].height };
-            output gap[2]: m = open;
-        }
-        output balance: J = 9.81 * couplers[loops-1].height;
-        output point[2]: m = cranks[0].link.position_b;
-    }
+    include "tests/models/mechanisms/row.mbg";
 
     #[derivative]
     pub(crate) model FourBar {

@@ -1,0 +1,184 @@
+//! Attitudes: states that are a quaternion or a rotation matrix, and that stay one.
+
+use std::ops::Range;
+
+use proc_macro2::Span;
+use syn::spanned::Spanned;
+
+use super::Builder;
+use super::claims::Subject;
+use super::expressions::{Result, Value};
+use super::model::{Attitude, StateRate};
+use super::scope::Entity;
+use crate::codes;
+use crate::diagnostics::error;
+use crate::symbolic::field::Image;
+use crate::symbolic::{Expression, Function, Matrix, Symbol};
+use crate::syntax::ast::{self, Orientation};
+
+/// How far the constants of an initial rotation matrix may be from one.
+const ROTATION: f64 = 1e-6;
+
+impl Builder<'_> {
+    /// Puts the states of an attitude where they are a rotation exactly, and says what their name stands for.
+    pub(super) fn place_attitude(&mut self, form: Orientation, states: Range<usize>) -> Entity {
+        let (first, word) = (states.start, states.start as u64);
+        let (columns, images) = match form {
+            Orientation::Quaternion => (4, Image::sphere(word).to_vec()),
+            Orientation::Matrix => (3, Image::rotation(word).to_vec()),
+        };
+        for (state, image) in states.clone().zip(images) {
+            self.pool.locate(state, image);
+        }
+        let row = |start: usize| (start..start + columns).collect();
+        self.attitudes.push(Attitude {
+            rows: states.clone().step_by(columns).map(row).collect(),
+        });
+        match form {
+            Orientation::Quaternion => Entity::States(first..states.end),
+            Orientation::Matrix => Entity::Rotation(states),
+        }
+    }
+
+    /// `q̇ = ½ q∘(0, ω)`, or `Ṙ = R skew(ω)`.
+    pub(super) fn attitude(
+        &mut self,
+        scope: usize,
+        attitude: &ast::Attitude,
+        states: Range<usize>,
+    ) -> Result<()> {
+        let omega = self.vector(scope, &attitude.angular_velocity, 3, &attitude.name)?;
+        let span = attitude.angular_velocity.span();
+        self.claim(scope, Subject::Turning, &omega, span);
+        let own: Vec<Expression> = states
+            .clone()
+            .map(|state| self.pool.symbol(Symbol::State(state)))
+            .collect();
+        let (rates, initial) = match attitude.orientation {
+            Orientation::Quaternion => (
+                self.quaternion_rates(&own, &omega),
+                self.initial_quaternion(scope, attitude)?,
+            ),
+            Orientation::Matrix => (
+                self.matrix_rates(&own, &omega),
+                self.initial_matrix(scope, attitude)?,
+            ),
+        };
+        for ((state, rate), initial) in states.zip(rates).zip(initial) {
+            self.states[state].rate = StateRate::Expression(rate);
+            self.initial_value(state, initial)?;
+        }
+        Ok(())
+    }
+
+    fn quaternion_rates(&mut self, q: &[Expression], omega: &[Expression]) -> Vec<Expression> {
+        let pool = &mut *self.pool;
+        let two = pool.integer(2);
+        let half: Vec<Expression> = omega
+            .iter()
+            .map(|rate| pool.divide(*rate, two).unwrap_or(Expression::ZERO))
+            .collect();
+        let rows = [
+            [(1, 0, true), (2, 1, true), (3, 2, true)],
+            [(0, 0, false), (2, 2, false), (3, 1, true)],
+            [(0, 1, false), (3, 0, false), (1, 2, true)],
+            [(0, 2, false), (1, 1, false), (2, 0, true)],
+        ];
+        let rate = |row: [(usize, usize, bool); 3]| {
+            let terms =
+                row.map(|(part, axis, minus)| pool.multiply(q[part], half[axis]).flipped(minus));
+            pool.sum(&terms)
+        };
+        rows.map(rate).to_vec()
+    }
+
+    /// Each row turns by itself: its rate is `row × ω`.
+    fn matrix_rates(&mut self, matrix: &[Expression], omega: &[Expression]) -> Vec<Expression> {
+        let rate = |entry: usize| {
+            let (row, column) = (entry / 3, entry % 3);
+            let (next, last) = ((column + 1) % 3, (column + 2) % 3);
+            let plus = self.pool.multiply(matrix[3 * row + next], omega[last]);
+            let minus = self.pool.multiply(matrix[3 * row + last], omega[next]);
+            self.pool.subtract(plus, minus)
+        };
+        (0..9).map(rate).collect()
+    }
+
+    /// Divided by its length.
+    fn initial_quaternion(
+        &mut self,
+        scope: usize,
+        attitude: &ast::Attitude,
+    ) -> Result<Vec<Expression>> {
+        let Some(value) = &attitude.initial else {
+            let mut none = vec![Expression::ZERO; 4];
+            none[0] = Expression::ONE;
+            return Ok(none);
+        };
+        let parts = self.vector(scope, value, 4, &attitude.name)?;
+        let squares: Vec<Expression> = parts
+            .iter()
+            .map(|part| self.pool.multiply(*part, *part))
+            .collect();
+        let square = self.pool.sum(&squares);
+        if square == Expression::ONE {
+            return Ok(parts);
+        }
+        let length = self.pool.call(Function::Sqrt, &[square]);
+        let divided = parts.iter().map(|part| self.pool.divide(*part, length));
+        let divided: Option<Vec<Expression>> = divided.collect();
+        divided.ok_or_else(|| {
+            let message = "a quaternion of zeros is no rotation";
+            let report = error(codes::NO_ROTATION, self.place(scope, value.span()), message);
+            Box::new(report.help("write `initial: [1.0, 0.0, 0.0, 0.0]` for none"))
+        })
+    }
+
+    /// By rows. Constants must be those of a rotation.
+    fn initial_matrix(
+        &mut self,
+        scope: usize,
+        attitude: &ast::Attitude,
+    ) -> Result<Vec<Expression>> {
+        let unit = Matrix::diagonal(&[Expression::ONE; 3]);
+        let Some(value) = &attitude.initial else {
+            return Ok(unit.entries);
+        };
+        let span = self.place(scope, value.span());
+        let matrix = match self.evaluate(scope, value)? {
+            Value::Scalar(Expression::ONE) => unit,
+            Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
+                product.to_matrix(self.pool)
+            }
+            found => {
+                let message = format!("expected a 3×3 matrix, found {}", found.shape());
+                return Err(Box::new(error(codes::WRONG_DIMENSION, span, message)));
+            }
+        };
+        self.check_rotation(&matrix, span)?;
+        Ok(matrix.entries)
+    }
+
+    fn check_rotation(&mut self, matrix: &Matrix, span: Span) -> Result<()> {
+        let gram = matrix.transpose().times(self.pool, matrix);
+        let determinant = matrix.determinant(self.pool);
+        let wanted = Matrix::diagonal(&[Expression::ONE; 3]);
+        let pairs = gram.entries.iter().zip(&wanted.entries);
+        let far = pairs
+            .chain([(&determinant, &Expression::ONE)])
+            .any(|(found, wanted)| {
+                let difference = self.pool.subtract(*found, *wanted);
+                let constant = self.pool.constant_value(difference);
+                constant.is_some_and(|difference| difference.abs() > ROTATION)
+            });
+        if !far {
+            return Ok(());
+        }
+        let message =
+            "this matrix is no rotation: its columns must be orthonormal and right-handed";
+        let report = error(codes::NO_ROTATION, span, message);
+        Err(Box::new(report.help(
+            "write a product of rotations, such as `initial: rot_z(0.5) * rot_x(0.1)`",
+        )))
+    }
+}

@@ -1,0 +1,129 @@
+//! Functions of orientations in laws: rotations, and their conversions into each other.
+
+use proc_macro2::Ident;
+use syn::Expr;
+use syn::spanned::Spanned;
+
+use super::expressions::{Evaluator, Names, Result, Value, fail, mismatch};
+use crate::symbolic::orientation::{angles_of, matrix_of, quaternion_of};
+use crate::symbolic::{Expression, Factor, Matrix, Product};
+
+/// How each function is called.
+const USAGES: [&str; 9] = [
+    "rot_x(angle)",
+    "rot_y(angle)",
+    "rot_z(angle)",
+    "rot(axis, angle)",
+    "jacobian_xyz(angles)",
+    "jacobian(angles, 0, 1, 2)",
+    "matrix_of(quaternion)",
+    "quaternion_of(matrix)",
+    "angles_of(matrix, 0, 1, 2)",
+];
+
+impl<N: Names> Evaluator<'_, N> {
+    /// The value of a function of this file; none if it is another one.
+    pub(super) fn orientation(
+        &mut self,
+        name: &Ident,
+        arguments: &[Expr],
+    ) -> Option<Result<Value>> {
+        let value = match (name.to_string().as_str(), arguments) {
+            ("rot_x", [angle]) => self.turn(0, angle),
+            ("rot_y", [angle]) => self.turn(1, angle),
+            ("rot_z", [angle]) => self.turn(2, angle),
+            ("rot", [axis, angle]) => self.axis(axis).and_then(|axis| self.turn(axis, angle)),
+            ("jacobian_xyz", [angles]) => self.jacobian(angles, [0, 1, 2]),
+            ("jacobian", [angles, axes @ ..]) if axes.len() == 3 => self
+                .sequence(axes)
+                .and_then(|axes| self.jacobian(angles, axes)),
+            ("matrix_of", [quaternion]) => self.matrix_of(quaternion),
+            ("quaternion_of", [matrix]) => self
+                .rotation(matrix)
+                .map(|matrix| Value::column(quaternion_of(self.pool, &matrix).to_vec())),
+            ("angles_of", [matrix, axes @ ..]) if axes.len() == 3 => self.angles_of(matrix, axes),
+            (known, _) => {
+                let usage = USAGES
+                    .iter()
+                    .find(|usage| usage.starts_with(&format!("{known}(")))?;
+                fail(name.span(), format!("expected `{usage}`"))
+            }
+        };
+        Some(value)
+    }
+
+    fn turn(&mut self, axis: usize, angle: &Expr) -> Result<Value> {
+        let angle = self.scalar(angle)?;
+        Ok(Value::Matrix(Product::of(Factor::Rotation { axis, angle })))
+    }
+
+    fn jacobian(&mut self, angles: &Expr, axes: [usize; 3]) -> Result<Value> {
+        let factor = Factor::GimbalJacobian {
+            axes,
+            angles: self.column(angles)?,
+            transposed: false,
+        };
+        Ok(Value::Matrix(Product::of(factor)))
+    }
+
+    fn matrix_of(&mut self, quaternion: &Expr) -> Result<Value> {
+        let quaternion = self.column(quaternion)?;
+        let matrix = matrix_of(self.pool, quaternion);
+        Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+    }
+
+    fn angles_of(&mut self, matrix: &Expr, axes: &[Expr]) -> Result<Value> {
+        let (axes, matrix) = (self.sequence(axes)?, self.rotation(matrix)?);
+        Ok(Value::column(angles_of(self.pool, &matrix, axes).to_vec()))
+    }
+
+    /// A 3×3 matrix, or the number 1 for the unit matrix.
+    fn rotation(&mut self, matrix: &Expr) -> Result<Matrix> {
+        match self.evaluate(matrix)? {
+            Value::Scalar(Expression::ONE) => Ok(Matrix::diagonal(&[Expression::ONE; 3])),
+            Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
+                Ok(product.to_matrix(self.pool))
+            }
+            found => {
+                let message = format!("expected a 3×3 matrix, found {}", found.shape());
+                mismatch(matrix.span(), message)
+            }
+        }
+    }
+
+    /// A vector of known dimension.
+    pub(super) fn column<const D: usize>(&mut self, argument: &Expr) -> Result<[Expression; D]> {
+        let value = self.evaluate(argument)?;
+        let shape = value.shape();
+        let entries = value.entries(self.pool).unwrap_or_default();
+        entries.try_into().or_else(|_| {
+            let message = format!("expected a vector of {D}, found {shape}");
+            mismatch(argument.span(), message)
+        })
+    }
+
+    /// Three axes, no neighbours equal.
+    fn sequence(&mut self, axes: &[Expr]) -> Result<[usize; 3]> {
+        let mut sequence = [0; 3];
+        for (axis, place) in axes.iter().zip(&mut sequence) {
+            *place = self.axis(axis)?;
+        }
+        let [first, second, third] = sequence;
+        if first != second && second != third {
+            return Ok(sequence);
+        }
+        let (a, b) = if first == second { (0, 1) } else { (1, 2) };
+        let message = format!(
+            "two turns in a row about one axis, {second}, are one turn; write three axes such as `0, 1, 2` or `2, 0, 2`"
+        );
+        let span = axes[a].span();
+        fail(span.join(axes[b].span()).unwrap_or(span), message)
+    }
+
+    fn axis(&mut self, axis: &Expr) -> Result<usize> {
+        match usize::try_from(self.names.whole(axis)?) {
+            Ok(number) if number < 3 => Ok(number),
+            _ => fail(axis.span(), "expected 0, 1 or 2 for the axis x, y or z"),
+        }
+    }
+}

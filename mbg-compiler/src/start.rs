@@ -1,0 +1,134 @@
+//! Stage 5d, start: a model must not start where something that it divides by is zero.
+//!
+//! A proper Euler sequence, such as z-x-z, is singular where its middle angle is zero, which is where angles start
+//! unless they are told otherwise. Errors: `MBG0404`.
+
+use std::collections::BTreeMap;
+
+use crate::codes;
+use crate::compile::text;
+use crate::diagnostics::{Diagnostics, error};
+use crate::elaborate::Elaborated;
+use crate::equations::Scalars;
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Evaluation, Expression, Pool, Symbol};
+
+/// A normalised determinant below this is zero: that of `System::trouble` in double precision.
+const SINGULAR: f64 = 1.5e-8;
+/// What is proposed in place of a start at which a determinant is zero.
+const PROPOSED: f64 = 0.5;
+
+/// Reports normalised determinants that are zero with initial values and default parameters, without inputs.
+pub fn check(
+    model: &Elaborated,
+    scalars: &Scalars,
+    conditioning: &[Expression],
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) {
+    let start = Start::of(model, pool);
+    for divisor in conditioning {
+        // One without a value depends on what only an iteration finds.
+        if start.value(pool, *divisor, &BTreeMap::new()).abs() < SINGULAR {
+            report(model, scalars, &start, *divisor, pool, diagnostics);
+        }
+    }
+}
+
+/// Parameters and states at the start.
+struct Start<'a> {
+    model: &'a Elaborated,
+    states: Vec<f64>,
+}
+
+impl<'a> Start<'a> {
+    fn of(model: &'a Elaborated, pool: &Pool) -> Self {
+        let mut start = Self {
+            model,
+            states: Vec::new(),
+        };
+        let values = model
+            .states
+            .iter()
+            .map(|state| start.value(pool, state.initial, &BTreeMap::new()));
+        start.states = values.collect();
+        start
+    }
+
+    /// A value at the start, but with some states changed.
+    fn value(&self, pool: &Pool, expression: Expression, changed: &BTreeMap<usize, f64>) -> f64 {
+        let symbol = |symbol: Symbol| match symbol {
+            Symbol::Parameter(index) => self.model.parameters[index].default,
+            Symbol::State(index) => *changed.get(&index).unwrap_or(&self.states[index]),
+            Symbol::Input(_) | Symbol::Time => 0.0,
+            Symbol::Signal(_) | Symbol::Unknown(_) => f64::NAN,
+        };
+        Evaluation::new(&symbol).value(pool, expression)
+    }
+}
+
+fn report(
+    model: &Elaborated,
+    scalars: &Scalars,
+    start: &Start,
+    divisor: Expression,
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) {
+    let read: Vec<usize> = symbols(pool, &[divisor])
+        .into_iter()
+        .filter_map(|symbol| match symbol {
+            Symbol::State(state) => Some(state),
+            _ => None,
+        })
+        .collect();
+    // The one that leads away, or else the first.
+    let leads_away = |state: &&usize| {
+        let changed = BTreeMap::from([(**state, start.states[**state] + PROPOSED)]);
+        start.value(pool, divisor, &changed).abs() > SINGULAR
+    };
+    let Some(state) = read.iter().find(leads_away).or(read.first()) else {
+        return;
+    };
+    let written = text(model, scalars, pool, divisor);
+    let message = format!("the model starts where {written} is zero, which it divides by");
+    let report = error(codes::SINGULAR_START, model.states[*state].span, message)
+        .note("rates are not finite there: this is the edge of the model's singular set");
+    diagnostics.report(report.help(proposal(model, start, *state)));
+}
+
+/// The initial values to type, with one component changed.
+fn proposal(model: &Elaborated, start: &Start, state: usize) -> String {
+    let name = &model.states[state].variable.name;
+    let (whole, members) = match vector(model, state) {
+        Some((whole, members)) => (whole, members),
+        None => (name.as_str(), state..state + 1),
+    };
+    let values = members.clone().map(|member| {
+        let value = start.states[member] + if member == state { PROPOSED } else { 0.0 };
+        format!("{value:?}")
+    });
+    let values = values.collect::<Vec<_>>().join(", ");
+    let values = if members.len() == 1 {
+        values
+    } else {
+        format!("[{values}]")
+    };
+    format!("give `{whole}` another start, such as `initial: {values}`")
+}
+
+/// The vector of which a state is a component: its name, and its states.
+fn vector(model: &Elaborated, state: usize) -> Option<(&str, std::ops::Range<usize>)> {
+    let name = |state: usize| model.states.get(state).map(|it| it.variable.name.as_str());
+    let (whole, component) = name(state)?.rsplit_once('.')?;
+    let place = match ["x", "y", "z"].iter().position(|known| *known == component) {
+        Some(place) => place,
+        None => component.parse().ok()?,
+    };
+    let first = state.checked_sub(place)?;
+    let belongs = |state: &usize| {
+        name(*state).is_some_and(|name| name.rsplit_once('.').is_some_and(|it| it.0 == whole))
+    };
+    let end = (state..model.states.len()).take_while(belongs).last()? + 1;
+    Some((whole, first..end))
+}

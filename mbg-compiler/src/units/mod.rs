@@ -1,0 +1,376 @@
+//! Stage 2b, units: whether the units of a model agree.
+//!
+//! Input: an [`Elaborated`] model, and its text once more. Output: nothing but errors `MBG05xx`. Afterwards every
+//! equation of the model can be one between quantities: terms of sums have one unit, functions that want pure numbers
+//! have them, each law fits the effort and the flow at its element, and effort times flow is power in every true bond.
+//!
+//! A unit that is not declared is an unknown, for which the equations are solved as they come; a mistake is told where
+//! they first contradict each other. A number with a decimal point may carry any unit; a whole number counts, and is pure
+//! as a factor. A model that declares no unit at all is not looked at.
+
+mod dimension;
+mod inference;
+mod names;
+mod ports;
+mod report;
+
+use std::collections::BTreeMap;
+
+pub(crate) use names::acceleration;
+
+use self::dimension::{Dimension, Ratio, Unknowns};
+use self::inference::{Inference, Measure};
+use self::ports::Ports;
+use self::report::Reporter;
+use crate::diagnostics::Diagnostics;
+use crate::elaborate::claims::{self, Claim, Claims, Subject};
+use crate::elaborate::{Elaborated, Quantity};
+use crate::graph::{BondGraph, ElementId, ElementKind, End};
+use crate::symbolic::{Expression, Pool, Symbol};
+use crate::syntax::ast::{self, Unit};
+
+/// Whether a unit is that of a pure number, such as an angle.
+pub(crate) fn is_pure(unit: &Unit) -> bool {
+    names::dimension(unit).is_ok_and(|dimension| dimension.is_pure())
+}
+
+/// Checks the units of a model that is sound otherwise.
+pub fn check(
+    model: &ast::Model,
+    components: &BTreeMap<String, &ast::Component>,
+    elaborated: &Elaborated,
+    diagnostics: &mut Diagnostics,
+) {
+    let mut pool = Pool::new();
+    let claims = claims::claims(model, components, &mut pool);
+    let silent = |claim: &Claim| !matches!(claim.subject, Subject::Declared(..));
+    if claims.units.is_empty() && claims.list.iter().all(silent) {
+        return;
+    }
+    let mut reporter = Reporter::new(elaborated, &claims, &pool, diagnostics);
+    let Some(declared) = declared(&claims, &mut reporter) else {
+        return;
+    };
+    let mut unknowns = Unknowns::default();
+    let ports = Ports::of(&elaborated.graph, &mut unknowns, &mut reporter);
+    let symbols = symbols(elaborated, &claims, declared, &ports, &mut unknowns);
+    let inference = Inference::new(&pool, symbols, unknowns);
+    let mut checker = Checker {
+        model: elaborated,
+        ports,
+        inference,
+        reporter,
+    };
+    checker.run(&claims.list);
+}
+
+/// The units that are declared; none if one of them is no unit of SI, which is told.
+fn declared(claims: &Claims, reporter: &mut Reporter<'_>) -> Option<BTreeMap<Symbol, Dimension>> {
+    let mut declared = BTreeMap::new();
+    let mut sound = true;
+    for (symbol, unit, place) in &claims.units {
+        match names::dimension(unit) {
+            Ok(dimension) => {
+                declared.insert(*symbol, dimension);
+            }
+            Err(report) => {
+                reporter.tell(place, *report);
+                sound = false;
+            }
+        }
+    }
+    for claim in &claims.list {
+        if let Subject::Declared(_, unit) = &claim.subject
+            && let Err(report) = names::dimension(unit)
+        {
+            reporter.tell(&claim.place, *report);
+            sound = false;
+        }
+    }
+    sound.then_some(declared)
+}
+
+/// The units of all symbols: declared, of a port, or unknown.
+fn symbols(
+    model: &Elaborated,
+    claims: &Claims,
+    declared: BTreeMap<Symbol, Dimension>,
+    ports: &Ports,
+    unknowns: &mut Unknowns,
+) -> BTreeMap<Symbol, Dimension> {
+    let mut symbols = declared;
+    symbols.insert(Symbol::Time, second());
+    for (number, (quantity, place, component)) in claims.signals.list().iter().enumerate() {
+        let [effort, flow] = ports.variables(*place, *component);
+        let unit = match quantity {
+            Quantity::Effort => effort,
+            Quantity::Flow => flow,
+        };
+        symbols.insert(Symbol::Signal(number), unit.clone());
+    }
+    for (state, entry) in model.states.iter().enumerate() {
+        let unit = match entry.rate {
+            crate::elaborate::StateRate::Storage(id, component) => {
+                let [effort, flow] = &ports.inner[id.0][component];
+                let rate = match model.graph.elements[id.0].kind {
+                    ElementKind::I => effort,
+                    _ => flow,
+                };
+                rate.times(&second())
+            }
+            _ => unknowns.fresh(),
+        };
+        symbols.entry(Symbol::State(state)).or_insert(unit);
+    }
+    symbols
+}
+
+/// The unit of time.
+fn second() -> Dimension {
+    Dimension::of([0, 0, 1, 0, 0, 0, 0])
+}
+
+/// The unit of power.
+fn watt() -> Dimension {
+    Dimension::of([1, 2, -3, 0, 0, 0, 0])
+}
+
+/// When claims are looked at: what says most about units comes first, so that a contradiction is found where it
+/// most likely was made.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Phase {
+    OnePorts,
+    TwoPorts,
+    Bonds,
+    Answers,
+}
+
+struct Checker<'a> {
+    model: &'a Elaborated,
+    ports: Ports,
+    inference: Inference<'a>,
+    reporter: Reporter<'a>,
+}
+
+impl Checker<'_> {
+    fn run(&mut self, claims: &[Claim]) {
+        for phase in [
+            Phase::OnePorts,
+            Phase::TwoPorts,
+            Phase::Bonds,
+            Phase::Answers,
+        ] {
+            if phase == Phase::Bonds {
+                self.junction_bonds();
+                continue;
+            }
+            let mut start = 0;
+            for (position, claim) in claims.iter().enumerate() {
+                if matches!(claim.subject, Subject::Part) && position + 1 < claims.len() {
+                    continue;
+                }
+                // Parts belong to what is made of them.
+                if self.phase(claim) == phase {
+                    for claim in &claims[start..=position] {
+                        self.claim(claim);
+                    }
+                }
+                start = position + 1;
+            }
+        }
+        if !self.reporter.any() {
+            self.roots();
+        }
+    }
+
+    /// A junction whose units could only be roots is one where effort times flow is no power.
+    fn roots(&mut self) {
+        for (junction, pairs) in self.model.graph.junctions.iter().zip(&self.ports.junctions) {
+            let units = pairs
+                .iter()
+                .map(|pair| self.inference.unknowns.reduce(&pair[0]));
+            let root = units.filter(Dimension::is_known).find(Dimension::has_roots);
+            if let Some(unit) = root {
+                self.reporter.root(junction, &unit);
+            }
+        }
+    }
+
+    fn phase(&self, claim: &Claim) -> Phase {
+        match &claim.subject {
+            Subject::Word(id, _) if is_two_port(&self.model.graph, *id) => Phase::TwoPorts,
+            Subject::Word(..) | Subject::Declared(..) => Phase::OnePorts,
+            _ => Phase::Answers,
+        }
+    }
+
+    /// Bonds between junctions, and between both ends of a closure.
+    fn junction_bonds(&mut self) {
+        let graph = &self.model.graph;
+        for bond in &graph.bonds {
+            if ports::joins_junctions(bond) {
+                self.bond(&bond.from, &bond.to, bond.origin);
+            }
+        }
+        for closure in &graph.closures {
+            let [first, last] = closure.bonds.map(|bond| &graph.bonds[bond.0]);
+            self.bond(&first.from, &last.to, closure.origin);
+        }
+    }
+
+    fn bond(&mut self, from: &End, to: &End, origin: crate::graph::OriginId) {
+        let pairs = self.ports.pairs(&self.model.graph, from, to);
+        let mistake = ports::join(&pairs, &mut self.inference.unknowns);
+        if let Some(mistake) = mistake {
+            self.reporter.bond(origin, &mistake);
+        }
+    }
+
+    fn claim(&mut self, claim: &Claim) {
+        let mut mistakes = Vec::new();
+        let measures: Vec<Measure> = claim
+            .entries
+            .iter()
+            .map(|entry| self.inference.measure(*entry, &mut mistakes))
+            .collect();
+        if let Some(mistake) = mistakes.first() {
+            self.reporter.mismatch(&claim.place, mistake);
+        }
+        match &claim.subject {
+            Subject::Part => {}
+            Subject::Declared(name, unit) => {
+                let wanted = names::dimension(unit).unwrap_or_default();
+                let found = self.first_other(&measures, &vec![wanted; measures.len()]);
+                if let Some((_, found)) = found {
+                    self.reporter.declared(claim, name, &unit.text, &found);
+                }
+            }
+            Subject::Word(id, word) => self.word(claim, *id, word, &measures),
+            Subject::Rate(states) => {
+                let wanted = self.state_units(states.clone(), Ratio::MINUS);
+                self.expect(claim, "the rate", &wanted, &measures);
+            }
+            Subject::Start(states) => {
+                let wanted = self.state_units(states.clone(), Ratio::new(0, 1));
+                self.expect(claim, "`initial`", &wanted, &measures);
+            }
+            Subject::Flow(id) => {
+                let flows = self.ports.junctions[id.0].iter();
+                let wanted: Vec<Dimension> = flows.map(|[_, flow]| flow.clone()).collect();
+                self.expect(claim, "`initial_flow`", &wanted, &measures);
+            }
+            Subject::Turning => {
+                let wanted = vec![Dimension::pure().over(&second()); measures.len()];
+                self.expect(claim, "an angular velocity", &wanted, &measures);
+            }
+            Subject::Displacement(number) => {
+                let bond = self.model.graph.closures[*number].bonds[0];
+                let end = self.model.graph.bonds[bond.0].from.clone();
+                let pairs = self.ports.pairs(&self.model.graph, &end, &end);
+                let wanted = pairs.iter().map(|pair| pair[0][1].times(&second()));
+                let wanted: Vec<Dimension> = wanted.collect();
+                self.expect(claim, "`displacement`", &wanted, &measures);
+            }
+        }
+    }
+
+    /// The units of states times a power of a second.
+    fn state_units(&self, states: std::ops::Range<usize>, power: Ratio) -> Vec<Dimension> {
+        let unit = |state| self.inference.symbols[&Symbol::State(state)].clone();
+        states
+            .map(|state| unit(state).times_power(&second(), power))
+            .collect()
+    }
+
+    fn expect(&mut self, claim: &Claim, what: &str, wanted: &[Dimension], found: &[Measure]) {
+        if let Some((wanted, found)) = self.first_other(found, wanted) {
+            self.reporter.other(claim, what, [&wanted, &found], None);
+        }
+    }
+
+    /// Makes units what they must be: the first that cannot, with what it is.
+    fn first_other(
+        &mut self,
+        found: &[Measure],
+        wanted: &[Dimension],
+    ) -> Option<(Dimension, Dimension)> {
+        let unknowns = &mut self.inference.unknowns;
+        let mut other = None;
+        for (found, wanted) in found.iter().zip(wanted) {
+            if let Measure::Of(found) = found
+                && !unknowns.equate(found, wanted)
+            {
+                other = other.or(Some((unknowns.reduce(wanted), unknowns.reduce(found))));
+            }
+        }
+        other
+    }
+
+    /// What stands after a word must fit the effort and the flow at the element.
+    fn word(&mut self, claim: &Claim, id: ElementId, word: &str, found: &[Measure]) {
+        let known: Vec<Measure> = found.to_vec();
+        let (mut measures, mut wanted) = (Vec::new(), Vec::new());
+        for (position, measure) in known.into_iter().enumerate() {
+            // A number stands for each component, whatever their units.
+            if self.reporter.is_number(claim.entries[position]) {
+                continue;
+            }
+            let place = (position / claim.columns, position % claim.columns);
+            for unit in self
+                .ports
+                .wanted(&self.model.graph, id, word, place, found.len())
+            {
+                measures.push(measure.clone());
+                wanted.push(unit);
+            }
+        }
+        if let Some((wanted, found)) = self.first_other(&measures, &wanted) {
+            let name = &self.model.graph.elements[id.0].name;
+            let what = format!("`{word}` of `{name}`");
+            let note = self.surroundings(id);
+            self.reporter
+                .other(claim, &what, [&wanted, &found], Some(note));
+        }
+    }
+
+    /// The efforts and flows at an element, for people.
+    fn surroundings(&mut self, id: ElementId) -> String {
+        let mut side = |variables: &[[Dimension; 2]]| {
+            let units = variables[0].each_ref().map(|unit| {
+                let unit = self.inference.unknowns.reduce(unit);
+                report::unit_text(&unit)
+            });
+            format!("the effort is {} and the flow {}", units[0], units[1])
+        };
+        let inner = side(&self.ports.inner[id.0]);
+        if self.ports.outer[id.0].is_empty() {
+            return format!("{inner} there");
+        }
+        let outer = side(&self.ports.outer[id.0]);
+        format!("before it {inner}, after it {outer}")
+    }
+}
+
+/// Whether an element has two ports.
+fn is_two_port(graph: &BondGraph, id: ElementId) -> bool {
+    use ElementKind::{GY, MGY, MTF, TF};
+    matches!(graph.elements[id.0].kind, TF | GY | MTF | MGY)
+}
+
+/// An expression with the names of a text.
+pub(super) fn expression_text(
+    model: &Elaborated,
+    claims: &Claims,
+    pool: &Pool,
+    expression: Expression,
+) -> String {
+    let name = |symbol: Symbol| match symbol {
+        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
+        Symbol::State(index) => model.states[index].variable.name.clone(),
+        Symbol::Input(index) => model.inputs[index].name.clone(),
+        Symbol::Time => "t".to_owned(),
+        Symbol::Unknown(index) => claims.hidden[index].text.clone(),
+        Symbol::Signal(index) => report::signal_text(model, claims.signals.list()[index]),
+    };
+    crate::symbolic::print::Printer::new(pool, &name).text(expression)
+}

@@ -1,0 +1,231 @@
+//! What the user reads about units.
+
+use super::dimension::Dimension;
+use super::inference::Mismatch;
+use super::ports::Mistake;
+use super::{expression_text, names};
+use crate::codes;
+use crate::diagnostics::{Diagnostic, Diagnostics, error};
+use crate::elaborate::claims::{Claim, Claims, Site};
+use crate::elaborate::{Elaborated, Place, Quantity, Signal};
+use crate::graph::{Junction, JunctionKind, OriginId, component_name};
+use crate::symbolic::{Expression, Operation, Pool, Symbol};
+
+/// Tells mistakes, each once.
+pub(super) struct Reporter<'a> {
+    model: &'a Elaborated,
+    claims: &'a Claims,
+    pool: &'a Pool,
+    diagnostics: &'a mut Diagnostics,
+    before: usize,
+}
+
+/// A unit as people write it.
+pub(super) fn unit_text(unit: &Dimension) -> String {
+    if unit.is_pure() {
+        return "a pure number".to_owned();
+    }
+    if unit.is_known() {
+        return format!("`{}`", names::text(unit));
+    }
+    "a unit that is not known".to_owned()
+}
+
+/// `damper.e`, `joint.f.x`.
+pub(super) fn signal_text(model: &Elaborated, (quantity, place, component): Signal) -> String {
+    let letter = match quantity {
+        Quantity::Effort => "e",
+        Quantity::Flow => "f",
+    };
+    let (name, dimension) = match place {
+        Place::Junction(id) => {
+            let junction = &model.graph.junctions[id.0];
+            (&junction.name, junction.dimension)
+        }
+        Place::Port(id) => (&model.graph.elements[id.0].name, 1),
+    };
+    if dimension == 1 {
+        return format!("{name}.{letter}");
+    }
+    format!("{name}.{letter}.{}", component_name(component, dimension))
+}
+
+impl<'a> Reporter<'a> {
+    pub(super) fn new(
+        model: &'a Elaborated,
+        claims: &'a Claims,
+        pool: &'a Pool,
+        diagnostics: &'a mut Diagnostics,
+    ) -> Self {
+        let before = diagnostics.list().len();
+        Self {
+            model,
+            claims,
+            pool,
+            diagnostics,
+            before,
+        }
+    }
+
+    /// Reports a mistake at a place.
+    pub(super) fn tell(&mut self, place: &Site, report: Diagnostic) {
+        let report = place.locate(report);
+        // Each iteration of a loop makes the same mistake.
+        let span = |report: &Diagnostic| format!("{:?}", report.span);
+        let told = &self.diagnostics.list()[self.before..];
+        if !told.iter().any(|known| span(known) == span(&report)) {
+            self.diagnostics.report(report);
+        }
+    }
+
+    /// Whether an expression is a number without a name.
+    pub(super) fn is_number(&self, expression: Expression) -> bool {
+        match self.pool.operation(expression) {
+            Operation::Constant(_) => true,
+            Operation::Symbol(Symbol::Unknown(index)) => self.claims.hidden[*index].number,
+            _ => false,
+        }
+    }
+
+    /// Two units, or by what they differ where one of them is not known.
+    fn both(&self, [left, right]: [&Dimension; 2]) -> (String, String) {
+        if left.is_known() && right.is_known() {
+            return (unit_text(left), unit_text(right));
+        }
+        let factor = unit_text(&right.over(left));
+        ("another unit".to_owned(), format!("that times {factor}"))
+    }
+
+    /// An expression, when it is short enough to be read.
+    fn text(&self, expression: Expression, otherwise: &str) -> String {
+        let text = expression_text(self.model, self.claims, self.pool, expression);
+        if text.chars().count() > 40 {
+            return otherwise.to_owned();
+        }
+        format!("`{text}`")
+    }
+
+    /// A sum or a function.
+    pub(super) fn mismatch(&mut self, place: &Site, mistake: &Mismatch) {
+        let (message, pure) = match mistake {
+            Mismatch::Terms([a, b], [left, right]) => {
+                let pure = left.is_pure() || right.is_pure();
+                let (left, right) = self.both([left, right]);
+                let (a, b) = (self.text(*a, "the left"), self.text(*b, "the right"));
+                let message = format!(
+                    "{a} is {left} and {b} is {right}: they are neither added nor compared"
+                );
+                (message, pure)
+            }
+            Mismatch::Argument(function, argument, unit) => {
+                let argument = self.text(*argument, "its argument");
+                let unit = unit_text(unit);
+                let message = format!(
+                    "`{function}` takes a pure number or an angle, and {argument} is {unit}"
+                );
+                (message, true)
+            }
+        };
+        self.report(place, message, None, pure);
+    }
+
+    /// A name with a declared unit and another value.
+    pub(super) fn declared(&mut self, claim: &Claim, name: &str, unit: &str, found: &Dimension) {
+        let text = unit_text(found);
+        let message = format!("`{name}` is declared in `{unit}`, and this is {text}");
+        self.report(&claim.place, message, None, found.is_pure());
+    }
+
+    /// A value that its place wants in another unit.
+    pub(super) fn other(
+        &mut self,
+        claim: &Claim,
+        what: &str,
+        [wanted, found]: [&Dimension; 2],
+        note: Option<String>,
+    ) {
+        let pure = wanted.is_pure() || found.is_pure();
+        let (wanted, found) = self.both([wanted, found]);
+        let message = format!("{what} must be {wanted} here, and this is {found}");
+        self.report(&claim.place, message, note, pure);
+    }
+
+    /// Reports units that do not agree; where one of them is that of a pure number, a factor may be all that is missing.
+    fn report(&mut self, place: &Site, message: String, note: Option<String>, pure: bool) {
+        let mut report = error(codes::UNIT_MISMATCH, place.span, message);
+        if let Some(note) = note {
+            report = report.note(note);
+        }
+        if pure {
+            report = report.help(
+                "a number with a decimal point carries any unit as a factor: `2.0 * …`; a whole number counts",
+            );
+        }
+        self.tell(place, report);
+    }
+
+    /// A bond between what cannot be joined.
+    pub(super) fn bond(&mut self, origin: OriginId, mistake: &Mistake) {
+        let origins = &self.model.graph.origins;
+        let variable = if mistake.flow { "flows" } else { "efforts" };
+        let (left, right) = self.both([&mistake.units[0], &mistake.units[1]]);
+        let message = format!(
+            "`{}` joins {variable}: {left} before it, {right} after it",
+            origins.path(origin)
+        );
+        let help = "a transformer or a gyrator goes between two domains: `a -> TF gear { flow: ratio } -> b;`";
+        let report = error(codes::UNIT_MISMATCH, origins.span(origin), message).help(help);
+        let place = Site {
+            span: origins.span(origin),
+            library: None,
+        };
+        self.tell(&place, report);
+    }
+
+    /// Whether anything was reported.
+    pub(super) fn any(&self) -> bool {
+        self.diagnostics.list().len() > self.before
+    }
+
+    /// A junction whose effort could only be in a root of units.
+    pub(super) fn root(&mut self, junction: &Junction, unit: &Dimension) {
+        let (name, span) = (
+            &junction.name,
+            self.model.graph.origins.span(junction.origin),
+        );
+        let unit = unit_text(unit);
+        let message = format!(
+            "the effort of `{name}` could only be in {unit}, if effort times flow is power"
+        );
+        let digit = match junction.kind {
+            JunctionKind::Zero => 0,
+            JunctionKind::One => 1,
+        };
+        let own = name.rsplit('.').next().unwrap_or(name);
+        let help = format!("write `{digit} {own} pseudo` where effort times flow is no power");
+        let report = error(codes::UNIT_MISMATCH, span, message).help(help);
+        self.tell(
+            &Site {
+                span,
+                library: None,
+            },
+            report,
+        );
+    }
+
+    /// A bond between a junction of pseudo bonds and one of true bonds.
+    pub(super) fn pseudo(&mut self, origin: OriginId) {
+        let origins = &self.model.graph.origins;
+        let message = format!(
+            "`{}` joins a junction of pseudo bonds to one of true bonds",
+            origins.path(origin)
+        );
+        let help = "write `pseudo` at both, `0 name pseudo;`, or at neither";
+        let report = error(codes::UNIT_MISMATCH, origins.span(origin), message).help(help);
+        let place = Site {
+            span: origins.span(origin),
+            library: None,
+        };
+        self.tell(&place, report);
+    }
+}

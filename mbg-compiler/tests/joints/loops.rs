@@ -1,0 +1,332 @@
+//! Cuts: a tree of joints that is closed by one moves as the joint of the same kind does.
+
+use mbg_compiler::compile::Routines;
+use mbg_compiler::program::{self, Arguments};
+
+use crate::rows;
+use crate::scene::{Scene, cross};
+
+const BODY: &str = "body: Body {
+        mass: 2.0, inertia: diag(1.0, 2.0, 3.0), centre: [0.1, 0.2, -0.3], gravity_at: down
+    } (b);
+    output spin[3] = b.f[0..3];
+    output velocity[3] = b.f[3..6];";
+
+/// A body that six joint axes leave free, and what is held of it.
+fn scene(cut: &str) -> Scene {
+    Scene::of(&format!(
+        "#[derivative] model Held {{
+            causality componentwise;
+            gravity [0.5, 1.0, -9.81];
+            1 ground[6]; 1 plate[6]; 1 lift[6]; 1 b[6];
+            Sf fixed[6] {{ flow: 0.0 }} -> ground;
+            plane: Planar {{ axis: 2 }} (ground, plate);
+            height: Prismatic {{
+                axis: 2, gravity_a: plane.gravity_b, orientation_a: plane.orientation_b, position_a: plane.position_b
+            }} (plate, lift);
+            cross: Universal {{
+                gravity_a: height.gravity_b, orientation_a: height.orientation_b, position_a: height.position_b
+            }} (lift, b);
+            {cut}
+            let down = cross.gravity_b;
+            {BODY}
+        }}"
+    ))
+}
+
+fn closed(word: &str) -> Scene {
+    scene(&format!(
+        "cut: Cut {{
+            joint: {word}, orientation_a: diag(1.0, 1.0, 1.0), orientation_b: cross.orientation_b,
+            position_a: 0.0, position_b: cross.position_b
+        }} (ground, b);"
+    ))
+}
+
+/// The body on a joint of its own.
+fn joined(joint: &str) -> Scene {
+    Scene::of(&format!(
+        "#[derivative] model Joined {{
+            causality componentwise;
+            gravity [0.5, 1.0, -9.81];
+            1 ground[6]; 1 b[6];
+            Sf fixed[6] {{ flow: 0.0 }} -> ground;
+            {joint}
+            {BODY}
+        }}"
+    ))
+}
+
+/// How the flows of the body change, from a state in which these are not zero.
+fn change(scene: &Scene, moving: &[(&str, f64)]) -> Vec<f64> {
+    let mut state = vec![0.0; scene.model.states.len()];
+    for (name, value) in moving {
+        state[scene.place(name)] = *value;
+    }
+    let arguments = Arguments {
+        parameters: &[],
+        time: 0.0,
+        state: &state,
+        input: &[],
+    };
+    let rates = program::evaluate(&scene.model.program, Routines::DERIVATIVE, &arguments);
+    scene.along(Routines::OUTPUT, &state, &rates)
+}
+
+#[test]
+fn cuts_take_the_degrees_of_freedom_of_the_table() {
+    let table = rows(3);
+    assert_eq!(table.len(), 7);
+    for row in table {
+        let planar = row[0] == "PlanarCut";
+        let scene = if planar { flat(row[1]) } else { closed(row[1]) };
+        assert_eq!(scene.velocities(), if planar { 3 } else { 6 });
+        let closings = scene.model.closed.each_ref().map(Vec::len);
+        assert_eq!(closings, [row[2].parse().unwrap(); 2], "{}", row[1]);
+    }
+}
+
+/// Momenta of the body that turns about the origin with an angular velocity in its own axes.
+fn momenta(omega: [f64; 3]) -> Vec<(&'static str, f64)> {
+    let speed = cross(&omega, &[0.1, 0.2, -0.3]);
+    vec![
+        ("body.spin.p.x", omega[0]),
+        ("body.spin.p.y", 2.0 * omega[1]),
+        ("body.spin.p.z", 3.0 * omega[2]),
+        ("body.body.p.x", 2.0 * speed[0]),
+        ("body.body.p.y", 2.0 * speed[1]),
+        ("body.body.p.z", 2.0 * speed[2]),
+    ]
+}
+
+#[track_caller]
+fn alike(found: &[f64], expected: &[f64]) {
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+}
+
+/// A cut, and the joint of its kind, move a body alike from a state that both allow.
+#[test]
+fn a_cut_moves_a_body_as_the_joint_does() {
+    let hinge = joined("joint: Revolute { axis: 2 } (ground, b); let down = joint.gravity_b;");
+    let expected = change(&hinge, &[("joint.angle", 0.4), ("joint.rate.f", 1.3)]);
+    let state = [momenta([0.0, 0.0, 1.3]), vec![("plane.angle", 0.4)]].concat();
+    alike(&change(&closed("revolute"), &state), &expected);
+
+    let universal = joined("joint: Universal (ground, b); let down = joint.gravity_b;");
+    let own = [
+        ("joint.angle.x", 0.4),
+        ("joint.angle.y", 0.3),
+        ("joint.rate.f.x", 1.3),
+        ("joint.rate.f.y", -0.7),
+    ];
+    let expected = change(&universal, &own);
+    let (sine, cosine) = 0.3_f64.sin_cos();
+    let turned = momenta([1.3 * cosine, -0.7, 1.3 * sine]);
+    let state = [turned, vec![("cross.angle.x", 0.4), ("cross.angle.y", 0.3)]].concat();
+    alike(&change(&closed("universal"), &state), &expected);
+
+    let ball = joined(
+        "Sf pin[3] { flow: 0.0 } -> b[3..6]; let down = gravity; ground -> R idle { resistance: 1.0 };",
+    );
+    let spins = momenta([1.3, -0.7, 0.6]);
+    let expected = change(&ball, &spins[..3]);
+    alike(&change(&closed("spherical"), &spins), &expected);
+    assert!(expected[..3].iter().all(|slope| slope.abs() > 1e-2));
+
+    let held = change(&closed("fixed"), &[]);
+    alike(&held, &[0.0; 6]);
+}
+
+/// A plate that three joint axes leave free in a plane, and what is held of it.
+fn flat(word: &str) -> Scene {
+    Scene::of(&format!(
+        "#[derivative] model Flat {{
+            causality componentwise;
+            gravity [0.5, -9.81];
+            1 ground[3]; 1 along[3]; 1 across[3]; 1 b[3];
+            Sf fixed[3] {{ flow: 0.0 }} -> ground;
+            first: PlanarPrismatic (ground, along);
+            second: PlanarPrismatic {{ direction: 1.5707963267948966, position_a: first.position_b }} (along, across);
+            hinge: PlanarRevolute (across, b);
+            cut: PlanarCut {{
+                joint: {word}, angle_a: 0.0, angle_b: hinge.angle, direction: 0.4,
+                position_a: 0.0, position_b: second.position_b
+            }} (ground, b);
+            let turned = hinge.angle;
+            {PLATE}
+        }}"
+    ))
+}
+
+const PLATE: &str = "1 centre[3];
+    arm: PlanarOffset { angle: turned, x: 0.3, y: 0.1 } (b, centre);
+    body: PlanarBody { mass: 2.0, inertia: 0.5 } (centre);
+    output spin = b.f[0];
+    output velocity[2] = b.f[1..3];";
+
+/// As [`joined`], in a plane.
+fn joined_flat(joint: &str) -> Scene {
+    Scene::of(&format!(
+        "#[derivative] model Joined {{
+            causality componentwise;
+            gravity [0.5, -9.81];
+            1 ground[3]; 1 b[3];
+            Sf fixed[3] {{ flow: 0.0 }} -> ground;
+            {joint}
+            {PLATE}
+        }}"
+    ))
+}
+
+#[test]
+fn a_planar_cut_moves_a_body_as_the_joint_does() {
+    // The plate turns about its point b, which lies at the origin.
+    let (angle, rate) = (0.6_f64, 1.3);
+    let arm = [
+        0.3 * angle.cos() - 0.1 * angle.sin(),
+        0.3 * angle.sin() + 0.1 * angle.cos(),
+    ];
+    let expected = change(
+        &joined_flat("hinge: PlanarRevolute (ground, b); let turned = hinge.angle;"),
+        &[("hinge.angle", angle), ("hinge.rate.f", rate)],
+    );
+    let state = [
+        ("hinge.angle", angle),
+        ("body.spin.p", 0.5 * rate),
+        ("body.body.p.x", -2.0 * rate * arm[1]),
+        ("body.body.p.y", 2.0 * rate * arm[0]),
+    ];
+    alike(&change(&flat("revolute"), &state), &expected);
+
+    // The plate slides along a line through the origin.
+    let slide =
+        joined_flat("slide: PlanarPrismatic { direction: 0.4 } (ground, b); let turned = 0.0;");
+    let (speed, travel) = (0.7, 0.2);
+    let (sine, cosine) = 0.4_f64.sin_cos();
+    let expected = change(&slide, &[("slide.rate.f", speed)]);
+    let state = [
+        ("first.travel", travel * cosine),
+        ("second.travel", travel * sine),
+        ("body.body.p.x", 2.0 * speed * cosine),
+        ("body.body.p.y", 2.0 * speed * sine),
+    ];
+    alike(&change(&flat("prismatic"), &state), &expected);
+
+    alike(&change(&flat("fixed"), &[]), &[0.0; 3]);
+}
+
+/// Both ends may move: that displacements change as the flows do is proven for every state when they are compiled.
+#[test]
+fn both_ends_of_a_cut_may_move() {
+    for word in ["spherical", "universal", "revolute", "fixed"] {
+        let scene = Scene::of(&format!(
+            "#[derivative] model Both {{
+                causality componentwise;
+                1 ground[6]; 1 a[6]; 1 b[6];
+                Sf fixed[6] {{ flow: 0.0 }} -> ground;
+                left: Cylindrical {{ axis: 1, tilt: rot_x(0.3) }} (ground, a);
+                right: Universal {{ offset: [1.0, 0.0, 0.0] }} (ground, b);
+                one: Body {{ mass: 2.0, inertia: diag(1.0, 2.0, 3.0) }} (a);
+                other: Body {{ mass: 2.0, inertia: diag(1.0, 2.0, 3.0) }} (b);
+                cut: Cut {{
+                    joint: {word}, orientation_a: left.orientation_b, orientation_b: right.orientation_b,
+                    position_a: left.position_b, position_b: right.position_b
+                }} (a, b);
+            }}"
+        ));
+        assert_eq!(scene.velocities(), 4);
+    }
+    for word in ["revolute", "prismatic", "fixed"] {
+        let scene = Scene::of(&format!(
+            "#[derivative] model Both {{
+                causality componentwise;
+                1 ground[3]; 1 foot[3]; 1 a[3]; 1 b[3];
+                Sf fixed[3] {{ flow: 0.0 }} -> ground;
+                left: PlanarRevolute (ground, foot);
+                slide: PlanarPrismatic {{ angle: left.angle }} (foot, a);
+                right: PlanarRevolute (ground, b);
+                one: PlanarBody {{ mass: 2.0, inertia: 1.0 }} (a);
+                other: PlanarBody {{ mass: 2.0, inertia: 1.0 }} (b);
+                cut: PlanarCut {{
+                    joint: {word}, angle_a: left.angle, angle_b: right.angle, direction: 0.3,
+                    position_a: slide.position_b, position_b: [1.0, 0.0]
+                }} (a, b);
+            }}"
+        ));
+        assert_eq!(scene.velocities(), 3);
+    }
+}
+
+/// A parallelogram of three rods, and its ground: in a plane, two equations close it.
+const PARALLELOGRAM: &str = "#[derivative] model Flat {
+    causality componentwise;
+    gravity [0.5, -9.81];
+    1 ground[3]; 1 first[3]; 1 second[3]; 1 third[3];
+    Sf fixed[3] { flow: 0.0 } -> ground;
+    crank: PlanarLink { mass: 1.0, inertia: 0.2, centre: [0.5, 0.0], end: [1.0, 0.0] } (ground, first);
+    coupler: PlanarLink {
+        mass: 2.0, inertia: 0.7, centre: [1.0, 0.1], end: [2.0, 0.0], angle_a: crank.angle_b, position_a: crank.position_b
+    } (first, second);
+    rocker: PlanarLink {
+        mass: 1.5, inertia: 0.3, centre: [0.4, 0.0], end: [1.0, 0.0],
+        angle_a: coupler.angle_b, position_a: coupler.position_b
+    } (second, third);
+    cut: PlanarCut { position_a: rocker.position_b, position_b: [2.0, 0.0] } (third, ground);
+    output rates[3] = [crank.hinge.rate.f, coupler.hinge.rate.f, rocker.hinge.rate.f];
+}";
+
+/// The same in space, where a hinge takes five equations, three of which say nothing in any position.
+const IN_SPACE: &str = "
+component Link(port a[6], port b[6]) {
+    param mass; param inertia; param centre[3]; param end[3];
+    param gravity_a[3]; param orientation_a; param position_a[3];
+    1 rod[6];
+    hinge: Revolute { axis: 2, gravity_a: gravity_a, orientation_a: orientation_a, position_a: position_a } (a, rod);
+    body: Body {
+        mass: mass, inertia: diag(1.0, 2.0, inertia), centre: centre, gravity_at: hinge.gravity_b
+    } (rod);
+    reach: Offset { by: end, orientation: hinge.orientation_b, position_a: position_a } (rod, b);
+}
+#[derivative] model Spatial {
+    causality componentwise;
+    gravity [0.5, -9.81, 0.0];
+    1 ground[6]; 1 first[6]; 1 second[6]; 1 third[6];
+    Sf fixed[6] { flow: 0.0 } -> ground;
+    let upright = diag(1.0, 1.0, 1.0);
+    crank: Link {
+        mass: 1.0, inertia: 0.2, centre: [0.5, 0.0, 0.0], end: [1.0, 0.0, 0.0],
+        gravity_a: gravity, orientation_a: upright, position_a: 0.0
+    } (ground, first);
+    coupler: Link {
+        mass: 2.0, inertia: 0.7, centre: [1.0, 0.1, 0.0], end: [2.0, 0.0, 0.0],
+        gravity_a: crank.hinge.gravity_b, orientation_a: crank.hinge.orientation_b, position_a: crank.reach.position_b
+    } (first, second);
+    rocker: Link {
+        mass: 1.5, inertia: 0.3, centre: [0.4, 0.0, 0.0], end: [1.0, 0.0, 0.0],
+        gravity_a: coupler.hinge.gravity_b, orientation_a: coupler.hinge.orientation_b,
+        position_a: coupler.reach.position_b
+    } (second, third);
+    cut: Cut {
+        joint: revolute, orientation_a: rocker.hinge.orientation_b, orientation_b: upright,
+        position_a: rocker.reach.position_b, position_b: [2.0, 0.0, 0.0]
+    } (third, ground);
+    output rates[3] = [crank.hinge.rate.f, coupler.hinge.rate.f, rocker.hinge.rate.f];
+}";
+
+#[test]
+fn equations_that_say_nothing_close_a_loop_as_well() {
+    let (angle, rate) = (1.0, 0.8);
+    let state = [
+        ("crank.hinge.angle", angle),
+        ("coupler.hinge.angle", -angle),
+        ("rocker.hinge.angle", angle + std::f64::consts::PI),
+        ("crank.hinge.rate.f", rate),
+        ("coupler.hinge.rate.f", -rate),
+        ("rocker.hinge.rate.f", rate),
+    ];
+    let [flat, spatial] = [PARALLELOGRAM, IN_SPACE].map(|text| change(&Scene::of(text), &state));
+    alike(&spatial, &flat);
+    assert!(flat.iter().all(|slope| slope.abs() > 1.0), "{flat:?}");
+}

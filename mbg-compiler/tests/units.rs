@@ -1,0 +1,264 @@
+//! Units: which models agree in them, and what is told where they do not.
+#![allow(clippy::unwrap_used)]
+
+use mbg_compiler::diagnostics::{Diagnostic, Diagnostics};
+use mbg_compiler::items;
+
+fn diagnose(text: &str) -> Vec<Diagnostic> {
+    let mut diagnostics = Diagnostics::new();
+    let _ = items(text.parse().unwrap(), &mut diagnostics);
+    diagnostics.list().to_vec()
+}
+
+/// What is told of a text with one mistake: where, in the text, and what.
+fn told(text: &str) -> (String, String) {
+    let found = diagnose(text);
+    let [only] = &found[..] else {
+        panic!("one mistake in {text}, found {found:#?}")
+    };
+    let place = only.span.start();
+    let line = text.lines().nth(place.line - 1).unwrap();
+    let place: String = line.chars().skip(place.column).collect();
+    (place, only.text())
+}
+
+/// A mass of known unit at a 1-junction, with more statements.
+fn mass(body: &str) -> String {
+    format!("model M {{ param mass: kg = 1.0; 1 a {{ I m {{ inertia: mass }} }} {body} }}")
+}
+
+/// Statements beside the mass, the text from the place of the mistake on, and what is told.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    (
+        "param k: N*m/rad = 1.0; a -> C c { stiffness: k };",
+        "k }",
+        "`stiffness` of `c` must be `N/m` here, and this is `N*m`",
+    ),
+    (
+        "param z: ohm = 1.0; a -> R r { resistance: z };",
+        "z }",
+        "`resistance` of `r` must be `N*s/m` here, and this is `ohm`",
+    ),
+    (
+        "param g: S = 1.0; a -> R r { conductance: g };",
+        "g }",
+        "`conductance` of `r` must be `m/s/N` here, and this is `S`",
+    ),
+    (
+        "param force: N = 1.0; param way: m = 1.0; Se s { effort: 2.0 * (force + way) } -> a;",
+        "+ way",
+        "`force` is `N` and `way` is `m`: they are neither added nor compared",
+    ),
+    (
+        "param way: m = 1.0; Se s { effort: 3.0 * sin(way) } -> a;",
+        "sin(way)",
+        "`sin` takes a pure number or an angle, and `way` is `m`",
+    ),
+    (
+        "param w: rad/s = 1.0; Se s { effort: 3.0 * exp(w) } -> a;",
+        "exp(w)",
+        "`exp` takes a pure number or an angle, and `w` is `1/s`",
+    ),
+    (
+        "let weight: N = mass * 9.81; let heavy: N = weight + mass * 1;",
+        "+ mass",
+        "`weight` is `N` and `mass` is `kg`",
+    ),
+    (
+        "let speed: m/s = a.f; let wrong: m = speed;",
+        "speed;",
+        "`wrong` is declared in `m`, and this is `m/s`",
+    ),
+    (
+        "output speed: m = a.f;",
+        "a.f;",
+        "`speed` is declared in `m`, and this is `m/s`",
+    ),
+    (
+        "integral way: m = m.p;",
+        "m.p;",
+        "the rate must be `m/s` here, and this is `N*s`",
+    ),
+    (
+        "param start: m/s = 1.0; integral way: m = a.f, initial: start;",
+        "start;",
+        "`initial` must be `m` here, and this is `m/s`",
+    ),
+    (
+        "param start: m/s = 1.0; a -> C c { stiffness: 1.0, initial: start };",
+        "start }",
+        "`initial` of `c` must be `m` here, and this is `m/s`",
+    ),
+    (
+        "param r: m = 1.0; param j: kg = 1.0; a -> TF t { flow: r } -> b; 1 b { C c { stiffness: j } }",
+        "r }",
+        "`flow` of `t` must be",
+    ),
+    (
+        "param k: N*m/A = 1.0; param h: H = 1.0; a -> GY t { effort: k } -> b; 0 b { C l { compliance: h } }",
+        "k }",
+        "`effort` of `t` must be",
+    ),
+    (
+        "param h: H = 1.0; 1 b { I l { inertia: h } } 0 n { R r { resistance: 1.0 } } a -> n; n -> b;",
+        "-> b",
+        "`n -> b` joins efforts: `N` before it, `V` after it",
+    ),
+    (
+        "param x: m = 1.0; param y: s = 1.0; output z = atan2(x, y);",
+        "atan2(",
+        "`x` is `m` and `y` is `s`",
+    ),
+    (
+        "param x: m = 1.0; output z = max(x, mass);",
+        "max(",
+        "`x` is `m` and `mass` is `kg`",
+    ),
+];
+
+#[test]
+fn a_mistake_is_told_at_its_token_with_both_units() {
+    for (body, place, message) in MISTAKES {
+        let (found, text) = told(&mass(body));
+        assert!(found.starts_with(place), "{body}: at `{found}`\n{text}");
+        assert!(text.starts_with(message), "{body}: {text}");
+    }
+}
+
+#[test]
+fn models_whose_units_agree_are_silent() {
+    for text in [
+        // Without a unit nothing is looked at.
+        "model M { param k = 1.0; 1 a { I m { inertia: 1.0 } R r { effort: k * f + f * f + sin(t) } } }",
+        // A number with a decimal point carries any unit, a number in its place, too.
+        &mass("Se s { effort: 9.81 * mass + 3 + 2.0 * sin(3.0 * t) } -> a; a -> R r { effort: 2.0 * f * abs(f) };"),
+        // Whole numbers count.
+        &mass("output energy: J = mass * powi(a.f, 2) / 2; output twice: N*s = 2 * m.p;"),
+        // A root halves the powers.
+        &mass("param k: N/m = 1.0; output w: rad/s = sqrt(k / mass); output e: J = sqrt(mass * mass) * powi(a.f, 2);"),
+        // What is not declared follows.
+        &mass("param k = 1.0; a -> C c { stiffness: k }; output x: m = c.q; output force: N = k * c.q;"),
+        // Half radians are none.
+        &mass("output angle: rad = c.q / 2.0; a -> C c { stiffness: 1.0 }; output hertz: Hz = a.f / c.q;"),
+        // Each component has its own.
+        "model M { param inertia: kg*m^2 = 1.0; param mass: kg = 1.0; param r: m = 1.0;
+            1 frame[6] { I m { inertia: diag(inertia, inertia, inertia, mass, mass, mass) } R air { resistance: 1.0 } }
+            1 tip[3] { C c { stiffness: 2.0 } }
+            0 sum[3]; frame[3..6] -> sum; sum -> tip;
+            frame[0..3] -> MTF lever { flow: transpose(skew([0.0, 0.0, r])) } -> sum;
+            output speed: m/s = frame.f[3]; output rate: rad/s = frame.f[0]; output way[3]: m = c.q; }",
+        // Heat is its own power.
+        "model M { param capacity: J/K = 1.0; param loss: W/K = 1.0; causality componentwise;
+            0 wall pseudo { C c { compliance: capacity, initial: 300.0 } R r { conductance: loss } }
+            output temperature: K = wall.e; output heat: J = c.q; }",
+    ] {
+        let told: Vec<String> = diagnose(text).iter().map(Diagnostic::text).collect();
+        assert!(told.is_empty(), "{text}: {told:#?}");
+    }
+}
+
+#[test]
+fn a_unit_that_would_scale_values_is_answered_with_the_text_to_type() {
+    for (unit, place, help) in [
+        ("mm", "mm", "write `m`, and each value times 0.001"),
+        ("N/mm", "mm", "write `N/m`, and each value times 1000"),
+        ("kN*m", "kN", "write `N*m`, and each value times 1000"),
+        (
+            "L/min",
+            "L",
+            "write `m^3/s`, and each value times 0.000016666666666666667",
+        ),
+        ("uF", "uF", "write `F`, and each value times 1e-6"),
+        ("g", "g", "write `kg`, and each value times 0.001"),
+        ("mg", "mg", "write `kg`, and each value times 1e-6"),
+        ("bar", "bar", "write `Pa`, and each value times 1e5"),
+        (
+            "deg",
+            "deg",
+            "write `rad`, and each value times 0.017453292519943295",
+        ),
+        (
+            "rpm",
+            "rpm",
+            "write `rad/s`, and each value times 0.10471975511965977",
+        ),
+        (
+            "degC",
+            "degC",
+            "write `K`, and temperatures above absolute zero: 20 degrees Celsius are 293.15",
+        ),
+    ] {
+        let (found, text) = told(&mass(&format!("param x: {unit} = 1.0;")));
+        assert!(found.starts_with(place), "{unit}: at `{found}`");
+        assert!(text.contains("MBG0503") && text.ends_with(help), "{text}");
+    }
+    // What scales twice may scale nothing.
+    assert!(diagnose(&mass("param x: mV/ms = 1.0; output y: V/s = x;")).is_empty());
+}
+
+#[test]
+fn an_unknown_unit_is_answered_with_the_nearest() {
+    for (unit, help) in [
+        ("Ohm", "write `ohm`"),
+        ("HZ", "did you mean `Hz`?"),
+        ("kkg", "did you mean `kg`?"),
+    ] {
+        let (found, text) = told(&mass(&format!("output x: N*{unit} = 1.0;")));
+        assert!(found.starts_with(unit), "{unit}: at `{found}`");
+        assert!(text.contains("MBG0502") && text.ends_with(help), "{text}");
+    }
+    let (_, text) = told(&mass("param x: furlong = 1.0;"));
+    assert!(
+        text.contains("units are products of powers of kg, m, s, A, K"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_mistake_in_an_argument_is_told_at_the_argument() {
+    let text = "component Spring(port a) { param stiffness: N/m; a -> C c { stiffness: stiffness }; }
+model M { param torsion: N*m/rad = 1.0; 1 a { I m { inertia: 2.0 } } s: Spring { stiffness: torsion } (a); }";
+    let (place, text) = told(text);
+    assert!(place.starts_with("torsion } (a)"), "{place}");
+    assert!(
+        text.starts_with("`stiffness` is declared in `N/m`, and this is `N*m`"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_mistake_in_a_loop_is_told_once() {
+    let (place, _) = told(&mass(
+        "param c: F = 1.0; for k in 0..3 { a -> R r { resistance: c }; }",
+    ));
+    assert!(place.starts_with("c }"), "{place}");
+}
+
+#[test]
+fn a_junction_of_pseudo_bonds_is_not_joined_to_another() {
+    let text = mass("0 wall pseudo { C c { compliance: 1.0 } } a -> wall;");
+    let (place, text) = told(&text);
+    assert!(place.starts_with("-> wall"), "{place}");
+    assert!(
+        text.contains("a junction of pseudo bonds to one of true bonds"),
+        "{text}"
+    );
+}
+
+#[test]
+fn heat_flow_times_temperature_is_no_power() {
+    let text = "model M { param capacity: J/K = 1.0; param loss: W/K = 1.0;
+0 wall { C c { compliance: capacity } R r { conductance: loss } }";
+    let (place, told_of) = told(&format!("{text} }}"));
+    assert!(place.starts_with("wall {"), "{place}");
+    assert!(
+        told_of.ends_with("help: write `0 wall pseudo` where effort times flow is no power"),
+        "{told_of}"
+    );
+    let (place, told_of) = told(&format!("{text} output temperature: K = wall.e; }}"));
+    assert!(place.starts_with("wall.e"), "{place}");
+    assert!(
+        told_of.starts_with("`temperature` is declared in `K`, and this is"),
+        "{told_of}"
+    );
+}

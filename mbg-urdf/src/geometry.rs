@@ -1,0 +1,232 @@
+//! Vectors and rotations in space, and rigid bodies that are put together.
+
+/// Three components.
+pub(crate) type Vector = [f64; 3];
+/// By rows.
+pub(crate) type Matrix = [[f64; 3]; 3];
+
+/// No rotation.
+pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Angles this near to a multiple of a right angle are meant to be one, in rad: files give eleven digits of π/2.
+pub(crate) const RIGHT: f64 = 1e-9;
+
+/// A matrix times a matrix. Adding a zero makes no zero negative.
+pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let entry = |i: usize, j: usize| (0..3).map(|k| a[i][k] * b[k][j]).sum::<f64>() + 0.0;
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
+}
+
+/// A matrix times a column.
+pub(crate) fn applied(a: &Matrix, v: &Vector) -> Vector {
+    a.map(|row| (0..3).map(|k| row[k] * v[k]).sum::<f64>() + 0.0)
+}
+
+pub(crate) fn transposed(a: &Matrix) -> Matrix {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
+}
+
+pub(crate) fn plus(a: &Vector, b: &Vector) -> Vector {
+    [0, 1, 2].map(|i| a[i] + b[i])
+}
+
+/// Sine and cosine, exact at multiples of a right angle.
+fn sin_cos(angle: f64) -> (f64, f64) {
+    let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
+    if (angle - quarters * std::f64::consts::FRAC_PI_2).abs() > RIGHT {
+        return angle.sin_cos();
+    }
+    match quarters.rem_euclid(4.0) {
+        0.0 => (0.0, 1.0),
+        1.0 => (1.0, 0.0),
+        2.0 => (0.0, -1.0),
+        _ => (-1.0, 0.0),
+    }
+}
+
+/// The rotation by roll, pitch and yaw about fixed axes: `R_z(yaw) R_y(pitch) R_x(roll)`.
+pub(crate) fn rotation([roll, pitch, yaw]: Vector) -> Matrix {
+    let ((a, b), (c, d), (e, f)) = (sin_cos(roll), sin_cos(pitch), sin_cos(yaw));
+    let about_x = [[1.0, 0.0, 0.0], [0.0, b, -a], [0.0, a, b]];
+    let about_y = [[d, 0.0, c], [0.0, 1.0, 0.0], [-c, 0.0, d]];
+    let about_z = [[f, -e, 0.0], [e, f, 0.0], [0.0, 0.0, 1.0]];
+    product(&product(&about_z, &about_y), &about_x)
+}
+
+/// A coordinate axis, and a rotation that takes it to the direction of `axis`.
+///
+/// None where the direction is a coordinate axis itself, half a turn where it is the opposite of one.
+pub(crate) fn aligned(axis: &Vector) -> (usize, Matrix) {
+    let length = axis.iter().map(|it| it * it).sum::<f64>().sqrt();
+    let unit = axis.map(|it| it / length);
+    for along in 0..3 {
+        let across = [(along + 1) % 3, (along + 2) % 3];
+        if across.iter().any(|it| unit[*it].abs() > RIGHT) {
+            continue;
+        }
+        let mut turn = IDENTITY;
+        if unit[along] < 0.0 {
+            turn[along][along] = -1.0;
+            turn[across[1]][across[1]] = -1.0;
+        }
+        return (along, turn);
+    }
+    if unit[2] >= 0.0 {
+        return (2, tilted(unit));
+    }
+    let half = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
+    (2, product(&tilted(unit.map(|it| -it)), &half))
+}
+
+/// The shortest rotation that takes z to a unit vector, at most a right angle away so that no digits are lost:
+/// `R = 1 + [w] + [w]² / (1 + cos)`, with `w` the vector product of both.
+fn tilted([x, y, z]: Vector) -> Matrix {
+    let scale = 1.0 / (1.0 + z);
+    [
+        [1.0 - scale * x * x, -scale * x * y, x],
+        [-scale * x * y, 1.0 - scale * y * y, y],
+        [-x, -y, z],
+    ]
+}
+
+/// Where a frame stands in another one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pose {
+    pub(crate) place: Vector,
+    /// Takes axes of the frame to those of the other.
+    pub(crate) turn: Matrix,
+}
+
+impl Pose {
+    pub(crate) const NONE: Self = Self {
+        place: [0.0; 3],
+        turn: IDENTITY,
+    };
+
+    /// A pose in this one's frame, in the frame that this one is in.
+    pub(crate) fn of(&self, inner: &Self) -> Self {
+        Self {
+            place: plus(&self.place, &applied(&self.turn, &inner.place)),
+            turn: product(&self.turn, &inner.turn),
+        }
+    }
+}
+
+/// Mass, its centre, and the inertia about that centre, in axes of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    pub(crate) mass: f64,
+    pub(crate) centre: Vector,
+    pub(crate) inertia: Matrix,
+}
+
+impl Body {
+    /// The same body in the frame in which its own has this pose.
+    pub(crate) fn seen(&self, pose: &Pose) -> Self {
+        if pose.turn == IDENTITY {
+            let centre = plus(&pose.place, &self.centre);
+            return Self { centre, ..*self };
+        }
+        let inertia = product(&product(&pose.turn, &self.inertia), &transposed(&pose.turn));
+        Self {
+            mass: self.mass,
+            centre: plus(&pose.place, &applied(&pose.turn, &self.centre)),
+            inertia: symmetric(&inertia),
+        }
+    }
+
+    /// Both as one rigid body: by Steiner's theorem `J = Σ Jᵢ + m₁ m₂ / (m₁ + m₂) (d² 1 − d dᵀ)`, with the distance `d`
+    /// of the centres.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        let mass = self.mass + other.mass;
+        let centre = |i: usize| (self.mass * self.centre[i] + other.mass * other.centre[i]) / mass;
+        let d = [0, 1, 2].map(|i| other.centre[i] - self.centre[i]);
+        let square: f64 = d.iter().map(|it| it * it).sum();
+        let reduced = self.mass * other.mass / mass;
+        let entry = |i: usize, j: usize| {
+            let steiner = if i == j { square } else { 0.0 } - d[i] * d[j];
+            self.inertia[i][j] + other.inertia[i][j] + reduced * steiner
+        };
+        Self {
+            mass,
+            centre: [0, 1, 2].map(centre),
+            inertia: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
+        }
+    }
+}
+
+/// The matrix with what is above its diagonal below it too, free of rounding.
+fn symmetric(matrix: &Matrix) -> Matrix {
+    [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| matrix[i.min(j)][i.max(j)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn assert_near(a: &Matrix, b: &Matrix) {
+        for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
+            assert!((a - b).abs() < 1e-15, "{a} {b}");
+        }
+    }
+
+    #[test]
+    #[allow(clippy::approx_constant, reason = "as files give them")]
+    fn right_angles_are_exact() {
+        let turn = rotation([-1.57079632679, 0.0, 3.14159265359]);
+        assert_eq!(turn, [[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]]);
+        assert!(rotation([1.5708, 0.0, 0.0])[1][1] != 0.0);
+    }
+
+    #[test]
+    fn axes_are_reached_by_rotations() {
+        let axes = [
+            [1.0, 0.0, 0.0],
+            [0.0, -2.0, 0.0],
+            [0.0, 0.0, -1.0],
+            [0.3, -0.4, 1.2],
+            [0.3, 0.4, -1.2],
+            [1e-6, 0.0, -1.0],
+        ];
+        for axis in axes {
+            let (along, turn) = aligned(&axis);
+            assert_near(&product(&turn, &transposed(&turn)), &IDENTITY);
+            let length = axis.iter().map(|it| it * it).sum::<f64>().sqrt();
+            for i in 0..3 {
+                assert!((turn[i][along] - axis[i] / length).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn two_halves_of_a_rod_are_the_rod() {
+        // A rod along x of length 2 and mass 3: m l² / 12 = 1.
+        let half = |at: f64| Body {
+            mass: 1.5,
+            centre: [at, 0.0, 0.0],
+            inertia: [[0.0; 3], [0.0, 0.125, 0.0], [0.0, 0.0, 0.125]],
+        };
+        let rod = half(-0.5).with(&half(0.5));
+        assert_eq!(rod.centre, [0.0; 3]);
+        assert_near(&rod.inertia, &[[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn a_turned_body_keeps_its_principal_inertias() {
+        let body = Body {
+            mass: 1.0,
+            centre: [1.0, 2.0, 3.0],
+            inertia: [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]],
+        };
+        let pose = Pose {
+            place: [0.0, 0.0, 1.0],
+            turn: rotation([std::f64::consts::FRAC_PI_2, 0.0, 0.0]),
+        };
+        let seen = body.seen(&pose);
+        assert_eq!(seen.centre, [1.0, -3.0, 3.0]);
+        assert_eq!(
+            seen.inertia,
+            [[1.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0]]
+        );
+    }
+}

@@ -1,0 +1,73 @@
+//! Prints a robot's URDF file as a component in the language of `mbg!`, which a model includes.
+//!
+//! ```text
+//! mbg-urdf robots/arm.urdf > robots/arm.mbg
+//! ```
+//! ```text
+//! mbg! {
+//!     include "robots/arm.mbg";
+//!     pub model Bench {
+//!         causality componentwise;
+//!         gravity [0.0, 0.0, -9.81];
+//!         input torque[7];
+//!         1 base[6];
+//!         Sf ground[6] { flow: 0.0 } -> base;
+//!         arm: Arm { effort: torque } (base);
+//!         output angles[7] = arm.coordinates;
+//!     }
+//! }
+//! ```
+//!
+//! - Joints: `fixed`, `revolute`, `continuous` and `prismatic`, about any axis. Links that fixed joints hold together become
+//!   one body. Where an axis is no coordinate axis, the printed frame of the link is turned so that it is one.
+//! - Damping becomes that of the joint, dry friction a resistor `friction tanh(rate / slip)` beside it.
+//! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, so that what is zero costs nothing.
+//! - What shows or collides is left out. Every other tag without an equation is named with its line.
+
+mod geometry;
+mod names;
+mod print;
+mod robot;
+
+pub use robot::Remark;
+
+/// What a file was printed as.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Conversion {
+    /// In the language.
+    pub text: String,
+    /// What of the file is not in it, in order of lines.
+    pub remarks: Vec<Remark>,
+}
+
+/// Prints the text of a URDF file as a component that is named after the robot; `source` says in its documentation where
+/// it is from. With `model`, a model of that name follows, in which the base is at rest.
+///
+/// ```
+/// let text = r#"
+///     <robot name="door">
+///       <link name="frame"/>
+///       <link name="leaf">
+///         <inertial>
+///           <origin xyz="0.4 0 0"/> <mass value="20"/> <inertia ixx="7" iyy="8" izz="1"/>
+///         </inertial>
+///       </link>
+///       <joint name="hinge" type="continuous">
+///         <parent link="frame"/> <child link="leaf"/> <axis xyz="0 0 1"/>
+///       </joint>
+///     </robot>"#;
+/// let found = mbg_urdf::convert(text, "door.urdf", None).unwrap();
+/// assert!(found.text.contains("hinge: Revolute {"));
+/// assert_eq!(found.remarks, []);
+/// ```
+///
+/// # Errors
+///
+/// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of another type.
+pub fn convert(text: &str, source: &str, model: Option<&str>) -> Result<Conversion, Remark> {
+    let (robot, remarks) = robot::read(text)?;
+    Ok(Conversion {
+        text: print::print(&robot, source, model),
+        remarks,
+    })
+}

@@ -1,0 +1,346 @@
+//! A robot as text in the language.
+
+use crate::geometry::{Body, IDENTITY, Matrix, Pose, Vector, aligned, transposed};
+use crate::names::{Names, component};
+use crate::robot::{Joint, Motion, Robot, shown};
+
+/// A link, as part of the rigid body to which fixed joints make it.
+struct Part {
+    /// The number of that body.
+    rigid: usize,
+    /// The link's frame in that of the body.
+    pose: Pose,
+}
+
+/// Links that fixed joints hold together.
+struct Rigid {
+    body: Option<Body>,
+    /// The 1-junction of its frame's flow.
+    junction: String,
+    /// Gravity in axes of its frame, and the frame in the world, as expressions.
+    gravity: String,
+    orientation: String,
+    position: String,
+}
+
+/// What has been printed, and what later text needs of it.
+struct Printer<'a> {
+    robot: &'a Robot,
+    names: Names,
+    parts: Vec<Option<Part>>,
+    rigid: Vec<Rigid>,
+    text: String,
+    coordinates: Vec<String>,
+    rates: Vec<String>,
+}
+
+/// The component, and a model of it with its base at rest where that is given a name.
+pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String {
+    let mut printer = Printer {
+        robot,
+        names: Names::new(),
+        parts: robot.links.iter().map(|_| None).collect(),
+        rigid: Vec::new(),
+        text: String::new(),
+        coordinates: Vec::new(),
+        rates: Vec::new(),
+    };
+    printer.parts[robot.root] = Some(Part {
+        rigid: 0,
+        pose: Pose::NONE,
+    });
+    printer.rigid.push(Rigid {
+        body: robot.links[robot.root].body,
+        junction: "base".to_owned(),
+        gravity: "gravity_base".to_owned(),
+        orientation: "orientation_base".to_owned(),
+        position: "position_base".to_owned(),
+    });
+    for joint in &robot.joints {
+        printer.joint(joint);
+    }
+    printer.bodies();
+    printer.poses();
+    let name = component(&robot.name);
+    let moving = || robot.joints.iter().filter(|it| it.motion != Motion::Fixed);
+    let joints: Vec<&str> = moving().map(|it| it.name.as_str()).collect();
+    let mut text = head(robot, &shown(source), &name, &joints);
+    text += &printer.text;
+    text += "}\n";
+    if let Some(model) = model {
+        text += &at_rest(&robot.name, &name, model, joints.len());
+    }
+    text
+}
+
+/// What stands before the joints.
+fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
+    let root = &robot.links[robot.root].name;
+    let mut text = format!(
+        "/// The robot `{}`, printed by `mbg-urdf` from `{source}`.\n///\n/// `base` is the frame of the link `{root}`.\n",
+        robot.name
+    );
+    if !joints.is_empty() {
+        text += "///\n/// Joints in order:\n";
+        for (number, joint) in joints.iter().enumerate() {
+            text += &format!("/// {number}. `{joint}`\n");
+        }
+    }
+    text += &format!("#[derivative]\ncomponent {name}(port base[6]) {{\n");
+    let count = joints.len();
+    if count > 0 {
+        text += &format!(
+            "    /// Torques and forces that drive the joints.\n    param effort[{count}] = 0.0;\n    \
+             /// Angles and travels of the joints at the start.\n    param initial[{count}] = 0.0;\n"
+        );
+    }
+    if robot.joints.iter().any(has_friction) {
+        text += "    /// The rate at which dry friction has three quarters of its value.\n    param slip = 1e-3;\n";
+    }
+    text += "    /// The acceleration of free fall in axes of the base.\n    param gravity_base[3]: m/s^2 = gravity;\n    \
+             /// From axes of the base to those of the world.\n    param orientation_base = 1.0;\n    \
+             /// Of the base in the world.\n    param position_base[3]: m = 0.0;\n";
+    text
+}
+
+/// A model in which the base does not move.
+fn at_rest(robot: &str, component: &str, model: &str, count: usize) -> String {
+    let mut text = format!(
+        "\n/// The robot `{robot}` with its base at rest.\npub model {model} {{\n    causality componentwise;\n    \
+         gravity [0.0, 0.0, -9.81];\n"
+    );
+    if count > 0 {
+        text += &format!("    input effort[{count}];\n");
+    }
+    text += "    1 base[6];\n    Sf ground[6] { flow: 0.0 } -> base;\n";
+    let arguments = if count > 0 { " { effort: effort }" } else { "" };
+    text += &format!("    robot: {component}{arguments} (base);\n");
+    if count > 0 {
+        text += &format!("    output coordinates[{count}] = robot.coordinates;\n");
+    }
+    text + "}\n"
+}
+
+impl Printer<'_> {
+    fn joint(&mut self, joint: &Joint) {
+        // A joint comes after the one that holds its parent.
+        let Some(parent) = &self.parts[joint.parent] else {
+            return;
+        };
+        let (above, at) = (parent.rigid, parent.pose.of(&joint.origin));
+        if joint.motion == Motion::Fixed {
+            self.hold(joint.child, above, at);
+            return;
+        }
+        let (axis, turn) = aligned(&joint.axis);
+        let in_joint = Pose {
+            place: [0.0; 3],
+            turn,
+        };
+        let name = self.names.take(&joint.name);
+        let (parent, child) = (joint.parent, joint.child);
+        let [from, to] = [parent, child].map(|link| &self.robot.links[link].name);
+        self.text += &format!("\n    // {}: from {from} to {to}.\n", joint.name);
+        let foot = self.moved(&name, above, &at.of(&in_joint));
+        let junction = self.names.take(&self.robot.links[child].name);
+        self.text += &format!("    1 {junction}[6];\n");
+        let number = self.coordinates.len();
+        let after = match joint.motion {
+            Motion::Slide => self.slide(joint, &name, (&foot, &junction), axis, number),
+            _ => self.turn(joint, &name, (&foot, &junction), axis, number),
+        };
+        if has_friction(joint) {
+            let friction = self.names.take(&format!("{name}_friction"));
+            self.text += &format!(
+                "    {name}.rate -> R {friction} {{ effort: {:?} * tanh(f / slip) }};\n",
+                joint.friction
+            );
+        }
+        self.rates.push(format!("{name}.rate.f"));
+        self.rigid.push(after);
+        let back = Pose {
+            place: [0.0; 3],
+            turn: transposed(&turn),
+        };
+        let rigid = self.rigid.len() - 1;
+        self.hold(child, rigid, back);
+    }
+
+    /// Makes a link part of a rigid body.
+    fn hold(&mut self, link: usize, rigid: usize, pose: Pose) {
+        if let Some(body) = self.robot.links[link].body {
+            let body = body.seen(&pose);
+            let whole = &mut self.rigid[rigid].body;
+            *whole = Some(whole.map_or(body, |whole| whole.with(&body)));
+        }
+        self.parts[link] = Some(Part { rigid, pose });
+    }
+
+    /// The frame of a rigid body moved to a pose in it, before the joint `name`.
+    fn moved(&mut self, name: &str, rigid: usize, pose: &Pose) -> Rigid {
+        let above = &self.rigid[rigid];
+        let mut frame = Rigid {
+            body: None,
+            junction: above.junction.clone(),
+            gravity: above.gravity.clone(),
+            orientation: above.orientation.clone(),
+            position: above.position.clone(),
+        };
+        if pose.place != [0.0; 3] {
+            let [place, junction] =
+                ["place", "foot"].map(|it| self.names.take(&format!("{name}_{it}")));
+            self.text += &format!(
+                "    1 {junction}[6];\n    {place}: Offset {{ by: {}, orientation: {}, position_a: {} }} ({}, {junction});\n",
+                column(&pose.place),
+                frame.orientation,
+                frame.position,
+                frame.junction
+            );
+            frame.position = format!("{place}.position_b");
+            frame.junction = junction;
+        }
+        if pose.turn != IDENTITY {
+            let [axes, junction] =
+                ["axes", "seat"].map(|it| self.names.take(&format!("{name}_{it}")));
+            self.text += &format!(
+                "    1 {junction}[6];\n    {axes}: Turn {{\n        by: {},\n        gravity_a: {},\n        orientation_a: {}\n    }} ({}, {junction});\n",
+                matrix(&pose.turn),
+                frame.gravity,
+                frame.orientation,
+                frame.junction
+            );
+            frame.gravity = format!("{axes}.gravity_b");
+            frame.orientation = format!("{axes}.orientation_b");
+            frame.junction = junction;
+        }
+        frame
+    }
+
+    fn turn(
+        &mut self,
+        joint: &Joint,
+        name: &str,
+        (foot, junction): (&Rigid, &str),
+        axis: usize,
+        number: usize,
+    ) -> Rigid {
+        self.text += &format!(
+            "    {name}: Revolute {{\n        axis: {axis}, initial: initial[{number}], torque: effort[{number}]{},\n        \
+             gravity_a: {}, orientation_a: {}\n    }} ({}, {junction});\n",
+            damping(joint),
+            foot.gravity,
+            foot.orientation,
+            foot.junction
+        );
+        self.coordinates.push(format!("{name}.angle"));
+        Rigid {
+            body: None,
+            junction: junction.to_owned(),
+            gravity: format!("{name}.gravity_b"),
+            orientation: format!("{name}.orientation_b"),
+            position: foot.position.clone(),
+        }
+    }
+
+    fn slide(
+        &mut self,
+        joint: &Joint,
+        name: &str,
+        (foot, junction): (&Rigid, &str),
+        axis: usize,
+        number: usize,
+    ) -> Rigid {
+        let reached = self.names.take(&format!("{name}_reached"));
+        self.text += &format!(
+            "    {name}: Prismatic {{ axis: {axis}, initial: initial[{number}], force: effort[{number}]{} }} ({}, {junction});\n    \
+             let {reached}[3] = {} + {} * {name}.arm;\n",
+            damping(joint),
+            foot.junction,
+            foot.position,
+            foot.orientation
+        );
+        self.coordinates.push(format!("{name}.travel"));
+        Rigid {
+            body: None,
+            junction: junction.to_owned(),
+            gravity: foot.gravity.clone(),
+            orientation: foot.orientation.clone(),
+            position: reached,
+        }
+    }
+
+    fn bodies(&mut self) {
+        self.text += "\n    // Links that fixed joints hold together are one body.\n";
+        for number in 0..self.rigid.len() {
+            let rigid = &self.rigid[number];
+            let Some(body) = rigid.body else { continue };
+            let name = self.names.take(&format!("{}_body", rigid.junction));
+            self.text += &format!(
+                "    {name}: Body {{\n        mass: {:?},\n        centre: {},\n        inertia: {},\n        gravity_at: {}\n    }} ({});\n",
+                body.mass,
+                column(&body.centre),
+                matrix(&body.inertia),
+                rigid.gravity,
+                rigid.junction
+            );
+        }
+    }
+
+    /// Where each link is, and the motion of the joints.
+    fn poses(&mut self) {
+        self.text += "\n    // Where the links are in the world, and how their axes lie.\n";
+        for (link, part) in self.robot.links.iter().zip(&self.parts) {
+            let Some(part) = part else { continue };
+            let rigid = &self.rigid[part.rigid];
+            let (mut position, mut orientation) =
+                (rigid.position.clone(), rigid.orientation.clone());
+            if part.pose.place != [0.0; 3] {
+                position += &format!(" + {orientation} * {}", column(&part.pose.place));
+            }
+            if part.pose.turn != IDENTITY {
+                orientation += &format!(" * {}", matrix(&part.pose.turn));
+            }
+            let [at, axes] = ["position", "orientation"]
+                .map(|it| self.names.take(&format!("{}_{it}", link.name)));
+            self.text +=
+                &format!("    let {at}[3] = {position};\n    let {axes} = {orientation};\n");
+        }
+        let count = self.coordinates.len();
+        if count > 0 {
+            self.text += "\n    // Angles and travels of the joints, and how fast they change.\n";
+            let (coordinates, rates) = (self.coordinates.join(", "), self.rates.join(", "));
+            self.text += &format!(
+                "    let coordinates[{count}] = [{coordinates}];\n    let rates[{count}] = [{rates}];\n"
+            );
+        }
+    }
+}
+
+fn has_friction(joint: &Joint) -> bool {
+    joint.friction != 0.0 && joint.motion != Motion::Fixed
+}
+
+/// The argument for it, if there is any.
+fn damping(joint: &Joint) -> String {
+    match joint.damping {
+        0.0 => String::new(),
+        damping => format!(", damping: {damping:?}"),
+    }
+}
+
+/// A column, each number with the digits that it needs.
+fn column(vector: &Vector) -> String {
+    let [x, y, z] = vector.map(|it| it + 0.0);
+    format!("[{x:?}, {y:?}, {z:?}]")
+}
+
+/// A matrix by rows, or by its diagonal where that is all of it.
+fn matrix(matrix: &Matrix) -> String {
+    let off = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
+    if off.iter().all(|(i, j)| matrix[*i][*j] == 0.0) {
+        let [x, y, z] = [0, 1, 2].map(|i| matrix[i][i]);
+        return format!("diag({x:?}, {y:?}, {z:?})");
+    }
+    let rows: Vec<String> = matrix.iter().map(column).collect();
+    format!("[{}]", rows.join(", "))
+}

@@ -1,0 +1,394 @@
+//! A robot as a URDF file gives it, checked to be a tree.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use roxmltree::{Document, Node};
+
+use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, rotation};
+
+/// Something about a line of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// The line, from one.
+    pub line: u32,
+    /// What is wrong there, or not converted.
+    pub text: String,
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {}", self.line, self.text)
+    }
+}
+
+impl std::error::Error for Remark {}
+
+/// What a joint lets its links do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    Fixed,
+    Turn,
+    Slide,
+}
+
+pub(crate) struct Link {
+    pub(crate) name: String,
+    /// In its own frame; nothing without mass.
+    pub(crate) body: Option<Body>,
+}
+
+pub(crate) struct Joint {
+    pub(crate) name: String,
+    pub(crate) motion: Motion,
+    /// Links by number.
+    pub(crate) parent: usize,
+    pub(crate) child: usize,
+    /// The frame of the joint, which is the child's when it has not moved, in that of the parent.
+    pub(crate) origin: Pose,
+    /// In axes of the joint.
+    pub(crate) axis: Vector,
+    pub(crate) damping: f64,
+    /// Dry friction.
+    pub(crate) friction: f64,
+    pub(crate) line: u32,
+}
+
+pub(crate) struct Robot {
+    pub(crate) name: String,
+    pub(crate) links: Vec<Link>,
+    /// In the order of a walk from the root: a joint comes after the one that holds its parent.
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) root: usize,
+}
+
+type Checked<T> = Result<T, Remark>;
+
+/// Reads a file, and lists what of it means nothing to the equations of motion.
+pub(crate) fn read(text: &str) -> Checked<(Robot, Vec<Remark>)> {
+    let document = Document::parse(text).map_err(|error| Remark {
+        line: error.pos().row,
+        text: format!("this is no XML: {error}"),
+    })?;
+    let mut reader = Reader {
+        document: &document,
+        remarks: Vec::new(),
+    };
+    let robot = reader.robot(document.root_element())?;
+    reader.remarks.sort_by_key(|remark| remark.line);
+    Ok((robot, reader.remarks))
+}
+
+struct Reader<'a> {
+    document: &'a Document<'a>,
+    remarks: Vec<Remark>,
+}
+
+impl<'a> Reader<'a> {
+    fn line(&self, node: Node<'_, '_>) -> u32 {
+        self.document.text_pos_at(node.range().start).row
+    }
+
+    fn fail<T>(&self, node: Node<'_, '_>, text: impl Into<String>) -> Checked<T> {
+        Err(self.remark(node, text))
+    }
+
+    fn remark(&self, node: Node<'_, '_>, text: impl Into<String>) -> Remark {
+        Remark {
+            line: self.line(node),
+            text: text.into(),
+        }
+    }
+
+    fn note(&mut self, node: Node<'_, '_>, text: impl Into<String>) {
+        let remark = self.remark(node, text);
+        self.remarks.push(remark);
+    }
+
+    /// Names the tags inside `node` that are neither `known` nor without a bearing on the motion.
+    fn note_others(&mut self, node: Node<'_, '_>, known: &[&str]) {
+        for child in node.children().filter(Node::is_element) {
+            let tag = child.tag_name().name();
+            if !known.contains(&tag) && !["visual", "collision", "material"].contains(&tag) {
+                self.note(child, format!("`{tag}` is not converted"));
+            }
+        }
+    }
+
+    fn robot(&mut self, node: Node<'a, 'a>) -> Checked<Robot> {
+        if node.tag_name().name() != "robot" {
+            let found = node.tag_name().name();
+            return self.fail(node, format!("expected a `robot`, found `{found}`"));
+        }
+        self.note_others(node, &["link", "joint"]);
+        let elements = |tag: &'static str| node.children().filter(move |it| it.has_tag_name(tag));
+        let mut links: Vec<Link> = Vec::new();
+        for element in elements("link") {
+            let link = self.link(element)?;
+            if links.iter().any(|other| other.name == link.name) {
+                return self.fail(element, format!("there is another link `{}`", link.name));
+            }
+            links.push(link);
+        }
+        let mut joints: Vec<Joint> = Vec::new();
+        for element in elements("joint") {
+            let joint = self.joint(element, &links)?;
+            if joints.iter().any(|other| other.name == joint.name) {
+                return self.fail(element, format!("there is another joint `{}`", joint.name));
+            }
+            if let Some(other) = joints.iter().find(|other| other.child == joint.child) {
+                let link = &links[joint.child].name;
+                let text = format!("`{link}` hangs on the joint `{}` already", other.name);
+                return self.fail(element, text);
+            }
+            joints.push(joint);
+        }
+        let held: BTreeSet<usize> = joints.iter().map(|joint| joint.child).collect();
+        let roots: Vec<usize> = (0..links.len()).filter(|it| !held.contains(it)).collect();
+        let [root] = roots[..] else {
+            let names: Vec<String> = roots
+                .iter()
+                .map(|it| format!("`{}`", links[*it].name))
+                .collect();
+            let text = match names.len() {
+                0 => "no link is without a joint that holds it".to_owned(),
+                _ => format!("one link is the root, found {}", names.join(", ")),
+            };
+            return self.fail(node, text);
+        };
+        let count = joints.len();
+        let joints = walked(root, joints);
+        if joints.len() < count {
+            let text = format!(
+                "some joints hang on each other and not on `{}`",
+                links[root].name
+            );
+            return self.fail(node, text);
+        }
+        let robot = Robot {
+            name: shown(node.attribute("name").unwrap_or("robot")),
+            links,
+            joints,
+            root,
+        };
+        self.note_massless(&robot);
+        Ok(robot)
+    }
+
+    /// Names the joints that move no mass: their equation is without a solution.
+    fn note_massless(&mut self, robot: &Robot) {
+        let mut heavy: Vec<bool> = robot.links.iter().map(|it| it.body.is_some()).collect();
+        for joint in robot.joints.iter().rev() {
+            if heavy[joint.child] {
+                heavy[joint.parent] = true;
+            } else if joint.motion != Motion::Fixed {
+                let text = format!(
+                    "nothing that `{}` moves has a mass, which `mbg!` will refuse",
+                    joint.name
+                );
+                self.remarks.push(Remark {
+                    line: joint.line,
+                    text,
+                });
+            }
+        }
+    }
+
+    fn link(&mut self, node: Node<'a, 'a>) -> Checked<Link> {
+        let name = shown(self.attribute(node, "name")?);
+        self.note_others(node, &["inertial"]);
+        let body = match child(node, "inertial") {
+            Some(inertial) => self.body(inertial, &name)?,
+            None => None,
+        };
+        Ok(Link { name, body })
+    }
+
+    fn body(&mut self, node: Node<'a, 'a>, link: &str) -> Checked<Option<Body>> {
+        self.note_others(node, &["origin", "mass", "inertia"]);
+        let Some(mass) = child(node, "mass") else {
+            return self.fail(node, "expected a `mass` inside `inertial`");
+        };
+        let mass = self.number(mass, "value")?;
+        if mass == 0.0 {
+            return Ok(None);
+        }
+        let Some(tensor) = child(node, "inertia") else {
+            return self.fail(node, "expected an `inertia` inside `inertial`");
+        };
+        let inertia = self.inertia(tensor)?;
+        if mass < 0.0 || !is_positive(&inertia) {
+            let text = format!(
+                "mass and inertia of `{link}` are not positive, as those of a moving body must be"
+            );
+            self.note(tensor, text);
+        }
+        let body = Body {
+            mass,
+            centre: [0.0; 3],
+            inertia,
+        };
+        Ok(Some(body.seen(&self.origin(node)?)))
+    }
+
+    fn inertia(&self, node: Node<'a, 'a>) -> Checked<Matrix> {
+        let number = |name: &str| match node.attribute(name) {
+            Some(_) => self.number(node, name),
+            None if name[1..2] != name[2..3] => Ok(0.0),
+            None => self.fail(node, format!("`inertia` needs `{name}`")),
+        };
+        let [xx, xy, xz] = [number("ixx")?, number("ixy")?, number("ixz")?];
+        let [yy, yz, zz] = [number("iyy")?, number("iyz")?, number("izz")?];
+        Ok([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    }
+
+    fn joint(&mut self, node: Node<'a, 'a>, links: &[Link]) -> Checked<Joint> {
+        let name = shown(self.attribute(node, "name")?);
+        let motion = match self.attribute(node, "type")? {
+            "fixed" => Motion::Fixed,
+            "revolute" | "continuous" => Motion::Turn,
+            "prismatic" => Motion::Slide,
+            kind @ ("floating" | "planar") => {
+                let text = format!("joint `{name}` is {kind}, which is not supported yet");
+                return self.fail(node, text);
+            }
+            kind => {
+                let text = format!(
+                    "joint `{name}` is of the type `{kind}`, known are `fixed`, `revolute`, `continuous` and `prismatic`"
+                );
+                return self.fail(node, text);
+            }
+        };
+        self.note_others(node, &["origin", "parent", "child", "axis", "dynamics"]);
+        let (mut damping, mut friction) = (0.0, 0.0);
+        if let Some(dynamics) = child(node, "dynamics") {
+            let given = |name: &str| match dynamics.attribute(name) {
+                Some(_) => self.number(dynamics, name),
+                None => Ok(0.0),
+            };
+            (damping, friction) = (given("damping")?, given("friction")?);
+        }
+        Ok(Joint {
+            motion,
+            parent: self.linked(node, "parent", links)?,
+            child: self.linked(node, "child", links)?,
+            origin: self.origin(node)?,
+            axis: self.axis(node)?,
+            damping,
+            friction,
+            line: self.line(node),
+            name,
+        })
+    }
+
+    /// The number of the link that a joint names.
+    fn linked(&self, node: Node<'a, 'a>, tag: &str, links: &[Link]) -> Checked<usize> {
+        let Some(element) = child(node, tag) else {
+            return self.fail(node, format!("expected a `{tag}` inside `joint`"));
+        };
+        let name = shown(self.attribute(element, "link")?);
+        match links.iter().position(|link| link.name == name) {
+            Some(number) => Ok(number),
+            None => self.fail(element, format!("there is no link `{name}`")),
+        }
+    }
+
+    fn axis(&self, node: Node<'a, 'a>) -> Checked<Vector> {
+        let Some(element) = child(node, "axis") else {
+            return Ok([1.0, 0.0, 0.0]);
+        };
+        let axis = self.vector(element, "xyz")?;
+        if axis == [0.0; 3] {
+            return self.fail(element, "an axis has a direction");
+        }
+        Ok(axis)
+    }
+
+    fn origin(&mut self, node: Node<'a, 'a>) -> Checked<Pose> {
+        let Some(element) = child(node, "origin") else {
+            return Ok(Pose::NONE);
+        };
+        let given = |name: &str| match element.attribute(name) {
+            Some(_) => self.vector(element, name),
+            None => Ok([0.0; 3]),
+        };
+        let (place, angles) = (given("xyz")?, given("rpy")?);
+        for angle in angles {
+            let right = std::f64::consts::FRAC_PI_2;
+            let off = (angle - right * (angle / right).round()).abs();
+            if off > RIGHT && off < 1e-4 {
+                let text = format!(
+                    "{angle} is {off:.1e} rad beside a right angle; with {:?} fewer operations are left",
+                    right * (angle / right).round()
+                );
+                self.note(element, text);
+            }
+        }
+        Ok(Pose {
+            place,
+            turn: rotation(angles),
+        })
+    }
+
+    fn attribute(&self, node: Node<'a, 'a>, name: &str) -> Checked<&'a str> {
+        match node.attribute(name) {
+            Some(value) => Ok(value.trim()),
+            None => {
+                let tag = node.tag_name().name();
+                self.fail(node, format!("`{tag}` needs `{name}`"))
+            }
+        }
+    }
+
+    fn number(&self, node: Node<'a, 'a>, name: &str) -> Checked<f64> {
+        let text = self.attribute(node, name)?;
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => self.fail(node, format!("`{name}` is a number, found `{text}`")),
+        }
+    }
+
+    fn vector(&self, node: Node<'a, 'a>, name: &str) -> Checked<Vector> {
+        let text = self.attribute(node, name)?;
+        let numbers = text.split_whitespace().map(str::parse::<f64>);
+        let numbers: Result<Vec<f64>, _> = numbers.collect();
+        match numbers.as_deref() {
+            Ok([x, y, z]) if [x, y, z].iter().all(|it| it.is_finite()) => Ok([*x, *y, *z]),
+            _ => self.fail(node, format!("`{name}` is three numbers, found `{text}`")),
+        }
+    }
+}
+
+/// A name on one line, as comments need it.
+pub(crate) fn shown(name: &str) -> String {
+    name.replace(char::is_control, " ")
+}
+
+/// The first element with this tag.
+fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
+    node.children().find(|it| it.has_tag_name(tag))
+}
+
+/// Whether a symmetric matrix is positive definite, by its leading minors.
+fn is_positive(m: &Matrix) -> bool {
+    let second = m[0][0] * m[1][1] - m[0][1] * m[0][1];
+    let third = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2])
+        - m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2])
+        + m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
+    m[0][0] > 0.0 && second > 0.0 && third > 0.0
+}
+
+/// The joints in the order of a walk from the root; each link hangs on one, so that all are met or a ring is left out.
+fn walked(root: usize, joints: Vec<Joint>) -> Vec<Joint> {
+    let mut left: Vec<Option<Joint>> = joints.into_iter().map(Some).collect();
+    let (mut order, mut open) = (Vec::new(), vec![root]);
+    while let Some(link) = open.pop() {
+        let below = left
+            .iter_mut()
+            .filter(|it| it.as_ref().is_some_and(|joint| joint.parent == link));
+        let below: Vec<Joint> = below.filter_map(Option::take).collect();
+        open.extend(below.iter().rev().map(|joint| joint.child));
+        order.extend(below);
+    }
+    order
+}

@@ -1,0 +1,201 @@
+//! Files that cannot be converted: each is answered with the line and the reason.
+#![allow(clippy::unwrap_used)]
+
+use std::process::Command;
+
+/// A file of two links with `changed` in place of a part of it.
+fn file(part: &str, changed: &str) -> String {
+    let text = "<robot name=\"r\">
+<link name=\"a\"/>
+<link name=\"b\"><inertial>
+<mass value=\"1\"/>
+<inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>
+</inertial></link>
+<joint name=\"j\" type=\"revolute\">
+<origin xyz=\"0 0 1\" rpy=\"0 0 0\"/>
+<parent link=\"a\"/>
+<child link=\"b\"/>
+<axis xyz=\"0 0 1\"/>
+</joint>
+</robot>";
+    assert!(text.contains(part), "{part}");
+    text.replace(part, changed)
+}
+
+/// What is changed, by what, and the answer.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    (
+        "</robot>",
+        "",
+        "1: this is no XML: the root node was opened but never closed",
+    ),
+    ("robot", "model", "1: expected a `robot`, found `model`"),
+    ("name=\"a\"", "name=\"b\"", "3: there is another link `b`"),
+    ("<link name=\"a\"/>", "<link/>", "2: `link` needs `name`"),
+    (
+        "<mass value=\"1\"/>",
+        "",
+        "3: expected a `mass` inside `inertial`",
+    ),
+    (
+        "value=\"1\"",
+        "value=\"1 kg\"",
+        "4: `value` is a number, found `1 kg`",
+    ),
+    (
+        "value=\"1\"",
+        "value=\"inf\"",
+        "4: `value` is a number, found `inf`",
+    ),
+    (" iyy=\"1\"", "", "5: `inertia` needs `iyy`"),
+    (
+        "<inertia ",
+        "<inertias ",
+        "3: expected an `inertia` inside `inertial`",
+    ),
+    (
+        "type=\"revolute\"",
+        "type=\"floating\"",
+        "7: joint `j` is floating, which is not supported yet",
+    ),
+    (
+        "type=\"revolute\"",
+        "type=\"hinge\"",
+        "7: joint `j` is of the type `hinge`, known are `fixed`, `revolute`, `continuous` and `prismatic`",
+    ),
+    ("type=\"revolute\"", "", "7: `joint` needs `type`"),
+    (
+        "\"0 0 1\" rpy",
+        "\"0 1\" rpy",
+        "8: `xyz` is three numbers, found `0 1`",
+    ),
+    (
+        "<parent link=\"a\"/>",
+        "",
+        "7: expected a `parent` inside `joint`",
+    ),
+    (
+        "<parent link=\"a\"/>",
+        "<parent link=\"c\"/>",
+        "9: there is no link `c`",
+    ),
+    (
+        "<axis xyz=\"0 0 1\"/>",
+        "<axis xyz=\"0 0 0\"/>",
+        "11: an axis has a direction",
+    ),
+    (
+        "<parent link=\"a\"/>",
+        "<parent link=\"b\"/>",
+        "1: some joints hang on each other and not on `a`",
+    ),
+    (
+        "</robot>",
+        "<link name=\"c\"/>\n</robot>",
+        "1: one link is the root, found `a`, `c`",
+    ),
+    (
+        "</robot>",
+        "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
+        "13: there is another joint `j`",
+    ),
+    (
+        "</robot>",
+        "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>",
+        "13: `b` hangs on the joint `j` already",
+    ),
+    (
+        "</robot>",
+        "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
+        "1: no link is without a joint that holds it",
+    ),
+];
+
+#[test]
+fn mistakes_are_told_with_their_lines() {
+    for (part, changed, expected) in MISTAKES {
+        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap_err();
+        assert!(
+            found.to_string().starts_with(expected),
+            "found {found}\nexpected {expected}"
+        );
+    }
+}
+
+#[test]
+fn what_is_left_out_is_told() {
+    let cases = [
+        (
+            "<axis ",
+            "<limit effort=\"1\"/><axis ",
+            "11: `limit` is not converted",
+        ),
+        (
+            "izz=\"1\"",
+            "izz=\"-1\"",
+            "5: mass and inertia of `b` are not positive, as those of a moving body must be",
+        ),
+        (
+            "value=\"1\"",
+            "value=\"0\"",
+            "7: nothing that `j` moves has a mass, which `mbg!` will refuse",
+        ),
+    ];
+    for (part, changed, expected) in cases {
+        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap();
+        let told: Vec<String> = found.remarks.iter().map(ToString::to_string).collect();
+        assert_eq!(told, [expected], "{changed}");
+    }
+}
+
+/// What the command prints on standard output and standard error, and whether it succeeds.
+fn run(arguments: &[&str]) -> (String, String, Option<i32>) {
+    let output = Command::new(env!("CARGO_BIN_EXE_mbg-urdf"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (
+        text(output.stdout),
+        text(output.stderr),
+        output.status.code(),
+    )
+}
+
+#[test]
+fn the_command_prints_the_component() {
+    let path = format!("{}/arm.urdf", env!("CARGO_TARGET_TMPDIR"));
+    let text = file("<axis ", "<mimic joint=\"k\"/><axis ");
+    std::fs::write(&path, &text).unwrap();
+    let (printed, told, code) = run(&["--model", "Bench", &path]);
+    let expected = mbg_urdf::convert(&text, &path, Some("Bench")).unwrap();
+    assert_eq!(printed, expected.text);
+    assert!(printed.contains("pub model Bench {"));
+    assert_eq!(told, format!("{path}:11: `mimic` is not converted\n"));
+    assert_eq!(code, Some(0));
+}
+
+#[test]
+fn the_command_says_how_it_is_used() {
+    let (help, told, code) = run(&["--help"]);
+    assert!(help.contains("example:\n  mbg-urdf robots/arm.urdf > robots/arm.mbg"));
+    assert_eq!((told.as_str(), code), ("", Some(0)));
+    let cases: [(&[&str], &str); 5] = [
+        (&[], "mbg-urdf: a file is missing"),
+        (&["a", "b"], "mbg-urdf: one file at a time"),
+        (&["--mode", "b"], "mbg-urdf: `--mode` is not known"),
+        (&["--model"], "mbg-urdf: `--model` needs a name"),
+        (
+            &["--model", "my arm", "a"],
+            "mbg-urdf: `my arm` cannot be the name of a model",
+        ),
+    ];
+    for (arguments, expected) in cases {
+        let (printed, told, code) = run(arguments);
+        assert!(told.starts_with(expected), "{told}");
+        assert_eq!((printed.as_str(), code), ("", Some(2)));
+    }
+    let (_, told, code) = run(&["nowhere.urdf"]);
+    assert!(told.starts_with("nowhere.urdf: "), "{told}");
+    assert_eq!(code, Some(1));
+}

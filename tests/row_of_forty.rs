@@ -1,0 +1,63 @@
+//! A row of forty four-bars: 162 states, 80 closing equations, all of which become dependent at once when the row turns
+//! over through the position in which every link lies on one line.
+//!
+//! The model takes minutes to compile, so this is asked for by name:
+//! `cargo test --release --features long --test row_of_forty -- --nocapture`
+#![cfg(feature = "long")]
+#![allow(unreachable_pub, clippy::unwrap_used)]
+
+#[path = "references/mod.rs"]
+mod references;
+#[path = "models/mechanisms/task.rs"]
+mod task;
+
+use mbg_runtime::{System, mbg};
+use references::four_bar::{DURATION, RATE, tip};
+use task::{Method, Task, apart, states};
+
+const LOOPS: usize = 40;
+
+mbg! {
+    include "tests/models/mechanisms/row.mbg";
+
+    #[derivative]
+    pub(crate) model FourBars40 {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        1 ground[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        row: Row { loops: 40 } (ground);
+    }
+}
+
+#[test]
+fn forty_loops_pass_their_singular_position() {
+    let system = FourBars40::new(FourBars40Parameters::default()).unwrap();
+    let meta = FourBars40::<f64>::META;
+    let mut start = system.initial_state();
+    for (link, rate) in states(meta, "rate.f").into_iter().enumerate() {
+        start[rate] = if link <= LOOPS { RATE } else { -RATE };
+    }
+    let task = Task {
+        mechanism: "40 four-bars",
+        system,
+        start,
+        horizon: DURATION,
+        instants: 20,
+        method: Method::Fixed(1e-3),
+    };
+    let found = task.run(|t, point| apart(point, &tip(LOOPS, t)[0]));
+    println!(
+        "{}: {} states, rank {} of {}, {} operations, point {:.1e} m, gap {:.1e} m, energy {:.1e}, {:.1} s",
+        found.mechanism,
+        meta.states.len(),
+        found.closing[1],
+        found.closing[0],
+        meta.operations.derivative,
+        found.point,
+        found.gap,
+        found.energy,
+        found.seconds
+    );
+    assert!(found.energy < 1e-6 && found.gap < 1e-12 && found.point < 1e-5);
+}

@@ -36,8 +36,9 @@ pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stro
 pub use real::Real;
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use step::{
-    Adaptive, Arrival, Cause, Direction, Dop853, Estimating, Fixed, Gauss6, ImplicitMidpoint,
-    Integrator, Method, Radau5, Rk4, Rodas4, Rodas5P, Ros2, Statistics, Step, Stopped, Tsit5,
+    Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
+    ImplicitMidpoint, Integrator, Method, Picked, Radau5, Reason, Rk4, Rodas4, Rodas5P, Ros2,
+    Statistics, Step, Stopped, Tsit5,
 };
 pub use system::{ParameterError, Power, System, Trouble};
 

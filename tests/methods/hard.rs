@@ -1,8 +1,8 @@
 //! Stiff problems, and long runs of conservative ones.
 
 use mbg_runtime::{
-    Adaptive, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Radau5, Rodas4,
-    Rodas5P, Ros2, Statistics, System,
+    Adaptive, Auto, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Picked,
+    Radau5, Reason, Rodas4, Rodas5P, Ros2, Statistics, System,
 };
 use nalgebra::SVector;
 
@@ -192,4 +192,47 @@ fn a_rigid_body_keeps_its_invariants_for_a_thousand_seconds() {
     assert!(exact.iter().all(|drift| *drift < 1e-14), "{exact:?}");
     let swept = drift(Fixed::new(Gauss6 { sweeps: Some(3) }, 0.01).compensated());
     assert!(swept.iter().all(|drift| *drift < 1e-9), "{swept:?}");
+}
+
+#[test]
+fn auto_tells_what_it_picks_and_meets_the_tolerance() {
+    let auto = Auto::new(1e-6, 1e-6);
+    let pin = StiffPin {
+        stiffness: 1e8,
+        damping: 1e3,
+    };
+    let (strict, _) = end(pin, Adaptive::new(Radau5, 1e-10, 1e-10), 5.0, horizontal());
+    let choice = auto
+        .choose(&Written(pin), &(), 0.0, 5.0, horizontal())
+        .unwrap();
+    println!("{choice}");
+    assert_eq!(choice.method, Picked::Radau5);
+    assert!((end(pin, auto, 5.0, horizontal()).0[2] - strict[2]).abs() < 1e-5);
+
+    let start = SVector::from([2.0, 0.0]);
+    let choice = auto
+        .choose(&Written(VanDerPol), &(), 0.0, 2.0, start)
+        .unwrap();
+    println!("{choice}");
+    assert_eq!(choice.method, Picked::Rodas5P);
+    assert!((end(VanDerPol, auto, 2.0, start).0[0] - 1.706_167_732_170_469).abs() < 1e-4);
+
+    let start = SVector::from([1e-4, 10.0, 6e-4, 1.0, 0.0, 0.0, 0.0]);
+    let choice = auto
+        .choose(&Written(RigidBody), &(), 0.0, 100.0, start)
+        .unwrap();
+    println!("{choice}");
+    assert_eq!(
+        (choice.method, choice.reason),
+        (Picked::Dop853, Reason::Tight)
+    );
+    let choice = Auto::new(1e-4, 1e-4).choose(&Written(RigidBody), &(), 0.0, 100.0, start);
+    assert_eq!(choice.unwrap().reason, Reason::Moderate);
+    let choice = auto
+        .choose(&Written(RigidBody), &(), 0.0, 1.0, start)
+        .unwrap();
+    assert_eq!(
+        (choice.method, choice.reason),
+        (Picked::Tsit5, Reason::ShortPiece)
+    );
 }

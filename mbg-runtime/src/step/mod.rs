@@ -1,6 +1,7 @@
 //! Integrators for initial value problems.
 
 mod adaptive;
+mod auto;
 mod dense;
 mod explicit;
 mod fixed;
@@ -25,6 +26,7 @@ use nalgebra::SVector;
 use crate::{Input, Real, System, Trouble};
 
 pub use adaptive::Adaptive;
+pub use auto::{Auto, Choice, Picked, Reason};
 pub use dense::{Direction, Step};
 pub use explicit::{Dop853, Rk4, Tsit5};
 pub use fixed::Fixed;

@@ -45,7 +45,8 @@ pub struct Rodas4;
 /// |---|---|---|---|---|
 /// | 5 | 4, error of power 5 | 4 | 8 evaluations, a Jacobian, a factorisation, 8 solves | A and L, stiffly accurate |
 ///
-/// For stiff electrical and chemical problems, and for problems that are stiff at times only.
+/// For stiff electrical and chemical problems, and for problems that are stiff at times only. In `f32` its large
+/// coefficients magnify rounding; [`Rodas4`] is better there.
 ///
 /// Source: G. Steinebach, *BIT Numerical Mathematics* 63:27 (2023).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

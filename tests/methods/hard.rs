@@ -235,4 +235,15 @@ fn auto_tells_what_it_picks_and_meets_the_tolerance() {
         (choice.method, choice.reason),
         (Picked::Tsit5, Reason::ShortPiece)
     );
+
+    // Not stiff at the start, soon after it is.
+    let start = SVector::from([1.0, 0.0, 0.0]);
+    let auto = Auto {
+        nominal: &[1.0, 1e-5, 1.0],
+        ..Auto::new(1e-6, 1e-6)
+    };
+    let (x, statistics) = end(Robertson, auto, 1e5, start);
+    println!("{statistics:?}");
+    assert!((x[0] / 0.017_865_921_142_1 - 1.0).abs() < 1e-5, "{x}");
+    assert!(statistics.steps < 1000);
 }

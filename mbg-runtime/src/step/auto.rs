@@ -26,8 +26,9 @@ use crate::{Input, Real, System};
 /// | else | [`Dop853`] |
 ///
 /// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of
-/// steps of the power method. [`Auto::choose`] tells what is picked and why. What a Jacobian at one state cannot know,
-/// as that a problem becomes stiff later on, is not considered: then pick a method yourself.
+/// steps of the power method. [`Auto::choose`] tells what is picked and why. A problem may become stiff later on: every
+/// 50 steps of a method for smooth problems the fastest mode is looked at again, and where stability is what keeps the
+/// steps short, the piece goes on with a method for stiff ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Auto<'a> {
     /// Tolerance in units of the state.
@@ -206,14 +207,48 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        match self.pick(problem, ends, &x).method {
-            Picked::Tsit5 => self.with(Tsit5).piece(problem, ends, x, observer),
-            Picked::Dop853 => self.with(Dop853).piece(problem, ends, x, observer),
-            Picked::Rodas5P => self.with(Rodas5P).piece(problem, ends, x, observer),
-            Picked::Radau5 => self.with(Radau5).piece(problem, ends, x, observer),
+        let picked = self.pick(problem, ends, &x).method;
+        match picked {
+            Picked::Rodas5P => return self.with(Rodas5P).piece(problem, ends, x, observer),
+            Picked::Radau5 => return self.with(Radau5).piece(problem, ends, x, observer),
+            Picked::Tsit5 | Picked::Dop853 => (),
+        }
+        let (system, input, since) = (problem.system, problem.input, problem.since);
+        let mut stiff = None;
+        let mut steps = 0_u32;
+        let mut watch = |step: &mut Step<'_, T, N>| {
+            observer(step)?;
+            steps = (steps + 1) % WATCHED;
+            if steps != 0 {
+                return ControlFlow::Continue(());
+            }
+            let (t, x) = (step.end(), *step.state());
+            let u = input.value(t, since);
+            let jacobian = system.jacobian_state(t, &x, &u, &mut S::Memory::default());
+            let (fastest, oscillates) = fastest(&jacobian.map(seen));
+            let length = seen(t - step.start());
+            if fastest * length > UNSTABLE && fastest * seen(ends.1 - t) > STIFF {
+                stiff = Some((t, x, oscillates));
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        };
+        let ended = match picked {
+            Picked::Tsit5 => self.with(Tsit5).piece(problem, ends, x, &mut watch),
+            _ => self.with(Dop853).piece(problem, ends, x, &mut watch),
+        };
+        match stiff {
+            None => ended,
+            Some((t, x, true)) => self.with(Radau5).piece(problem, (t, ends.1), x, observer),
+            Some((t, x, false)) => self.with(Rodas5P).piece(problem, (t, ends.1), x, observer),
         }
     }
 }
+
+/// Steps between two looks at the fastest mode.
+const WATCHED: u32 = 50;
+/// An angle per step, in rad, that is near the bound of stability of the methods for smooth problems.
+const UNSTABLE: f64 = 2.0;
 
 /// Rounds of the power method.
 const ROUNDS: usize = 60;

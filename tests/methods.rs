@@ -1,4 +1,5 @@
 //! Methods of integration on problems with known answers: orders, dense output, events, hard cases.
+#![allow(clippy::unwrap_used)]
 
 #[path = "../examples/methods/problems.rs"]
 mod problems;

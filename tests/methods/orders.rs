@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Differentiable, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Input, Integrator, Method,
-    Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, System, Tsit5,
+    Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Tsit5,
 };
 use nalgebra::SVector;
 
@@ -19,15 +19,11 @@ struct Task<L, I, const N: usize> {
 const END: f64 = 2.0;
 
 /// The end by Gauss's method in short steps with compensated sums.
-fn solved<L: Law<N, M>, I: Input<f64, M>, const N: usize, const M: usize>(
+fn solved<L: Law<N, M> + Copy, I: Input<f64, M>, const N: usize, const M: usize>(
     law: L,
     input: I,
     starts: [SVector<f64, N>; 3],
-) -> Task<L, I, N>
-where
-    Written<L>: System<f64, N, M, 0>,
-    L: Copy,
-{
+) -> Task<L, I, N> {
     let run = |start| {
         let mut end = start;
         Fixed::new(Gauss6::default(), 1e-3)

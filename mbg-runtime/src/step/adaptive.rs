@@ -258,7 +258,7 @@ impl Control {
 
     fn accept(&mut self, length: f64, error: f64, steady: bool) {
         let needed = power(error, self.exponent) / power(self.before, self.memory) / SAFETY;
-        let proposal = length / needed.max(0.1).min(5.0);
+        let proposal = length / needed.clamp(0.1, 5.0);
         self.length = if self.after_rejection {
             proposal.min(length)
         } else if steady && (1.0..=1.2).contains(&(proposal / length)) {

@@ -329,7 +329,7 @@ where
                     return None;
                 }
                 *rate = theta / (1.0 - theta).max(0.01);
-                let ahead = power(theta, f64::from(SWEEPS - sweep));
+                let ahead = (sweep..SWEEPS).fold(1.0, |ahead, _| ahead * theta);
                 if *rate * size * ahead > enough {
                     return None;
                 }

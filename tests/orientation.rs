@@ -304,7 +304,7 @@ fn navigation_with_quaternions_goes_where_gimbals_lock() {
     let stopped = Rk4::fixed(&angles, &gust, locked, 20.0, 1e-3, x, |_, _| {}).unwrap_err();
     assert!(
         matches!(stopped.cause, Cause::Trouble(Trouble::Singular { name, .. })
-            if name == "cos(ins.joint.gimbal.angles.y)"),
+            if name == "cos(ins.joint.gimbal.angle.y)"),
         "{stopped}"
     );
     let times: Vec<f64> = (0..=200).map(|k| 0.1 * f64::from(k)).collect();

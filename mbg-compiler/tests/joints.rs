@@ -59,8 +59,9 @@ const JOINTS: &[(&str, &str, &str, &[&str])] = &[
     (
         "Spherical",
         "",
-        "initial: [0.3, 0.2, 0.1], stiffness: 5.0, damping: 0.2, friction: 0.4, torque: [1.5, 0.2, 0.3]",
-        &["angles.x", "angles.y", "angles.z"],
+        "first: 2, third: 0, initial: [0.3, 0.2, -0.1], stiffness: 5.0, damping: 0.2, friction: 0.4,
+         torque: [1.5, 0.2, -0.3]",
+        &["angle.x", "angle.y", "angle.z"],
     ),
     (
         "Free",
@@ -68,9 +69,9 @@ const JOINTS: &[(&str, &str, &str, &[&str])] = &[
         "initial: [0.3, 0.2, 0.1], initial_position: [0.1, 0.2, 0.3], stiffness: 5.0, damping: 0.2, friction: 0.4,
          torque: [1.5, 0.2, 0.3], force: [0.1, 0.2, 0.4]",
         &[
-            "angles.x",
-            "angles.y",
-            "angles.z",
+            "angle.x",
+            "angle.y",
+            "angle.z",
             "position.x",
             "position.y",
             "position.z",

@@ -237,7 +237,7 @@ const BESIDE_A_MASS: &[(&str, &[&str])] = &[
         &["MBG0210"],
     ),
     ("I n { inertia: 1.0 } -> a; a -> n;", &["MBG0209"]),
-    ("x: Cog (a);", &["MBG0203"]),
+    ("x: Nothing (a);", &["MBG0203"]),
     ("output y = a;", &["MBG0213"]),
     ("output y = b.f;", &["MBG0203"]),
     ("output y = a.f.y;", &["MBG0204"]),

@@ -52,7 +52,7 @@ fn text(joint: &str) -> String {
             }}
             1 b[3] {{ #[derivative] I body {{ inertia: diag(2.0, 0.5, 1.0), gyroscopic }} }}
             {joint} (a, b);
-            output angles[3] = joint.angles;
+            output angles[3] = joint.angle;
         }}"
     )
 }
@@ -157,11 +157,11 @@ fn a_proper_sequence_needs_a_start() {
     };
     assert_eq!(
         report.message,
-        "the model starts where sin(joint.angles.y) is zero, which it divides by"
+        "the model starts where sin(joint.angle.y) is zero, which it divides by"
     );
     assert_eq!(
         report.helps,
-        ["give `joint.angles` another start, such as `initial: [0.0, 0.5, 0.0]`"]
+        ["give `joint.angle` another start, such as `initial: [0.0, 0.5, 0.0]`"]
     );
     assert_eq!(report.span.start().line, 7);
 }
@@ -181,7 +181,7 @@ fn floating(joint: &str) -> Compiled {
             output a[6] = a.f;
             output b[6] = b.f;
             output quaternion[4] = joint.quaternion;
-            output angles[3] = joint.angles;
+            output angles[3] = joint.angle;
             output down[3] = joint.gravity_b;
         }}"
     ))
@@ -264,7 +264,7 @@ fn a_free_joint_is_one_joint_and_has_no_singular_set_but_that_of_angles() {
         format!("{START}, damping: 0.3, torque: [0.1, 0.2, 0.3], force: [1.0, 2.0, -1.0]");
     let [angles, quaternion, matrix] = ["angles", "quaternion", "matrix"]
         .map(|word| floating(&format!("Free {{ orientation: {word}, {arguments} }}")));
-    assert_eq!(angles.conditioning, ["sin(joint.rotation.gimbal.angles.y)"]);
+    assert_eq!(angles.conditioning, ["sin(joint.rotation.gimbal.angle.y)"]);
     assert!(quaternion.conditioning.is_empty() && matrix.conditioning.is_empty());
     let mut next = noise(3);
     for _ in 0..20 {
@@ -290,7 +290,7 @@ fn a_spring_of_a_quaternion_pulls_by_the_sine_of_the_angle() {
                 1 b[6];
                 joint: Spherical {{ orientation: {word}, initial: [0.0, 0.7, 0.0], stiffness: 2.0 }} (a, b);
                 body: Body {{ mass: 1.0, inertia: 4.0 }} (b);
-                output angles[3] = joint.angles;
+                output angles[3] = joint.angle;
             }}"
         ));
         // From a held point on nothing is divided by.

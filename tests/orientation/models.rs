@@ -23,7 +23,7 @@ mbg! {
         param rate: rad/s;
         1 ground[6] { Sf held { flow: 0.0 } }
         foot: Spherical {
-            orientation: orientation, initial: [tilt, 0.0, 0.0], initial_rates: [0.0, 0.0, rate]
+            orientation: orientation, initial: [tilt, 0.0, 0.0], initial_rate: [0.0, 0.0, rate]
         } (ground, frame);
         // About the foot 0.8 and 0.3 kg m².
         body: Body {
@@ -127,7 +127,7 @@ mbg! {
         1 fuselage[3] { Se wind { effort: gust } }
         1 platform[3];
         ins: Navigation { orientation: angles } (fuselage, platform);
-        output angles[3]: rad = ins.joint.angles;
+        output angles[3]: rad = ins.joint.angle;
         output quaternion[4] = ins.joint.quaternion;
     }
 
@@ -136,7 +136,7 @@ mbg! {
         1 fuselage[3] { Se wind { effort: gust } }
         1 platform[3];
         ins: Navigation { orientation: quaternion } (fuselage, platform);
-        output angles[3]: rad = ins.joint.angles;
+        output angles[3]: rad = ins.joint.angle;
         output quaternion[4] = ins.joint.quaternion;
     }
 
@@ -145,7 +145,7 @@ mbg! {
         1 fuselage[3] { Se wind { effort: gust } }
         1 platform[3];
         ins: Navigation { orientation: matrix } (fuselage, platform);
-        output angles[3]: rad = ins.joint.angles;
+        output angles[3]: rad = ins.joint.angle;
         output quaternion[4] = ins.joint.quaternion;
     }
 
@@ -174,7 +174,7 @@ mbg! {
         plate: Plate { orientation: quaternion } (frame, tip);
         close tip[1..3] -> post[1..3] by multipliers, displacement: plate.gap[1..3];
         output gap[3]: m = plate.gap;
-        output angle: rad = plate.ball.angles.x;
+        output angle: rad = plate.ball.angle.x;
         output potential: J = 20.0 * plate.centre.z;
     }
 
@@ -188,7 +188,7 @@ mbg! {
         plate: Plate { orientation: matrix } (frame, tip);
         close tip[1..3] -> post[1..3] by multipliers, displacement: plate.gap[1..3];
         output gap[3]: m = plate.gap;
-        output angle: rad = plate.ball.angles.x;
+        output angle: rad = plate.ball.angle.x;
         output potential: J = 20.0 * plate.centre.z;
     }
 

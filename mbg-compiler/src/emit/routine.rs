@@ -116,10 +116,20 @@ impl Writer<'_> {
         for (number, part) in parts.iter().enumerate() {
             let mut lines = TokenStream::new();
             let mut made = BTreeMap::new();
-            for step in *part {
-                lines.extend(self.line(step, value));
-                self.make(step, value, &mut made);
-                value += step.results();
+            let mut rest = *part;
+            while let Some(step) = rest.first() {
+                let angles = angles(rest, value);
+                let taken = angles.len().max(1);
+                lines.extend(match angles.len() {
+                    0 | 1 => self.line(step, value),
+                    _ => self.sines_cosines(&angles, value),
+                });
+                let (now, after) = rest.split_at(taken);
+                for step in now {
+                    self.make(step, value, &mut made);
+                    value += step.results();
+                }
+                rest = after;
             }
             if parts.len() == 1 {
                 return lines;
@@ -170,6 +180,7 @@ impl Writer<'_> {
                 let (a, b) = (self.operand(*a), self.operand(*b));
                 quote!(#a * #b)
             }
+            Step::MultiplyAdd(a, b, c) => self.call("multiply_add", &[*a, *b, *c]),
             Step::Divide(a, b) => {
                 let (a, b) = (self.operand(*a), self.operand(*b));
                 quote!(#a / #b)
@@ -186,6 +197,16 @@ impl Writer<'_> {
         };
         let name = &self.names[value];
         quote!(let #name = #expression;)
+    }
+
+    /// Sines and cosines of several angles, side by side.
+    fn sines_cosines(&self, angles: &[Operand], value: usize) -> TokenStream {
+        let pairs = self.names[value..].chunks(2).take(angles.len());
+        let (sines, cosines): (Vec<_>, Vec<_>) = pairs.map(|pair| (&pair[0], &pair[1])).unzip();
+        let angles = angles.iter().map(|angle| self.operand(*angle));
+        quote! {
+            let ([#(#sines),*], [#(#cosines),*]) = <T as ::mbg_runtime::Real>::sines_cosines([#(#angles),*]);
+        }
     }
 
     /// The runtime's iteration, with residuals and Jacobian as a closure over what comes before.
@@ -294,6 +315,21 @@ impl Writer<'_> {
             value
         }
     }
+}
+
+/// Most angles side by side: four `f64` fill a register of AVX, and more at once would not be kept in registers.
+const ANGLES: usize = 4;
+
+/// The angles of the steps at the front that take sine and cosine of what was there before them.
+fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
+    let angle = |step: &Step| match step {
+        Step::SineCosine(angle) => match angle.source {
+            Source::Value(earlier) if earlier >= value => None,
+            _ => Some(*angle),
+        },
+        _ => None,
+    };
+    steps.iter().map_while(angle).take(ANGLES).collect()
 }
 
 /// What holds the unknowns of an iteration.

@@ -1,6 +1,6 @@
 //! Replacing symbols by expressions.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::expression::{Expression, Operation, Symbol};
 use super::pool::Pool;
@@ -9,7 +9,7 @@ use super::walk::Rewritten;
 /// Replaces symbols; what it does not know stays.
 #[derive(Default)]
 pub struct Substitution {
-    values: HashMap<Symbol, Expression>,
+    values: FxHashMap<Symbol, Expression>,
     known: Rewritten,
 }
 
@@ -45,7 +45,7 @@ impl Substitution {
 
 fn rebuild(
     pool: &mut Pool,
-    values: &HashMap<Symbol, Expression>,
+    values: &FxHashMap<Symbol, Expression>,
     known: &Rewritten,
     whole: Expression,
     operation: &Operation,

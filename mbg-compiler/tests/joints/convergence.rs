@@ -15,7 +15,7 @@ const JOINTS: &[(&str, &str, &str)] = &[
     ("Cylindrical", "axis: 0, tilt: rot_y(0.6)", "joint.angle"),
     ("Universal", "first: 2, second: 1", "joint.angle.y"),
     ("Planar", "axis: 2, tilt: rot_x(0.6)", "sunk.z"),
-    ("Spherical", "", "joint.angles.y"),
+    ("Spherical", "", "joint.angle.y"),
     (
         "Spherical",
         "orientation: quaternion",

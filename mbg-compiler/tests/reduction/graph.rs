@@ -163,8 +163,14 @@ impl Graph {
             format!("a{}", self.integrals.len()),
             self.dimension(junction),
         );
-        self.lines
-            .push(format!("integral {name}[{dimension}] = j{junction}.f;"));
+        // At zero a sine by which something is divided would be zero.
+        let start: Vec<String> = (0..dimension)
+            .map(|component| format!("0.{}", 3 + 2 * component + self.integrals.len()))
+            .collect();
+        self.lines.push(format!(
+            "integral {name}[{dimension}] = j{junction}.f, initial: [{}];",
+            start.join(", ")
+        ));
         self.variables.extend(Self::components(&name, dimension));
         self.integrals.push(junction);
     }

@@ -147,6 +147,8 @@ fn rejected(
         Verdict::Dependent(dependent) => {
             among(&unsupported, code)
                 || uniform && among(&drawing, code)
+                // A random graph may happen to start where its determinant is zero.
+                || *code == codes::SINGULAR_START.text
                 // A lost compliance may be empty for ever, and what it modulates then vanishes.
                 || dependent > 0 && graph.is_modulated_by_storages() && *code == codes::SINGULAR_JUNCTIONS.text
         }

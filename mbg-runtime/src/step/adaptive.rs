@@ -239,6 +239,7 @@ struct Control {
     exponent: f64,
     /// Weight of the step before.
     memory: f64,
+    /// Logarithm of the error of the step before.
     before: f64,
     after_rejection: bool,
 }
@@ -251,13 +252,14 @@ impl Control {
             length,
             exponent: 1.0 / order - 0.75 * memory,
             memory,
-            before: 1e-4,
+            before: LEAST,
             after_rejection: false,
         }
     }
 
     fn accept(&mut self, length: f64, error: f64, steady: bool) {
-        let needed = power(error, self.exponent) / power(self.before, self.memory) / SAFETY;
+        let error = Real::ln(error);
+        let needed = Real::exp(self.exponent * error - self.memory * self.before) / SAFETY;
         let proposal = length / needed.clamp(0.1, 5.0);
         self.length = if self.after_rejection {
             proposal.min(length)
@@ -266,7 +268,7 @@ impl Control {
         } else {
             proposal
         };
-        self.before = error.max(1e-4);
+        self.before = error.max(LEAST);
         self.after_rejection = false;
     }
 
@@ -283,6 +285,8 @@ impl Control {
 
 /// The next step is shorter than the error allows by this factor.
 const SAFETY: f64 = 0.9;
+/// Logarithm of 1e-4, the smallest error that is remembered.
+const LEAST: f64 = -9.210_340_371_976_182;
 
 #[cfg(test)]
 mod tests {

@@ -128,6 +128,23 @@ pub(super) fn combination<T: Real, const N: usize>(
     sum
 }
 
+/// Two sums `Σ weight · vector` over the same vectors in one pass, whose additions need not wait for each other.
+#[inline]
+pub(super) fn combinations<T: Real, const N: usize>(
+    [first, second]: [&[T]; 2],
+    vectors: &[SVector<T, N>],
+) -> [SVector<T, N>; 2] {
+    let mut sums = [SVector::<T, N>::from_element(T::from_f64(0.0)); 2];
+    let [low, high] = &mut sums;
+    for ((a, b), vector) in first.iter().zip(second).zip(vectors) {
+        for row in 0..N {
+            low[row] += *a * vector[row];
+            high[row] += *b * vector[row];
+        }
+    }
+    sums
+}
+
 /// `x + factor · direction`.
 #[inline]
 pub(super) fn along<T: Real, const N: usize>(

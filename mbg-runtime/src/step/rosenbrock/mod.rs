@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
 use super::linear::Factors;
-use super::method::{Estimating, Family, Method, Start, Trial, along, combination, converted};
+use super::method::{Estimating, Family, Method, Start, Trial, along, combination, combinations, converted};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use crate::{Input, Real, System};
@@ -135,19 +135,18 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let factors = Factors::shifted(diagonal, one, &self.jacobian);
         for stage in 0..S {
             let (earlier, _) = self.stages.split_at(stage);
+            let weights: [&[T]; 2] = [&self.points[stage], &self.slopes[stage]];
+            let [ahead, coupling] = combinations(weights, earlier);
             let slope = if stage == 0 {
                 start.slope
             } else {
-                let point = x + combination(&self.points[stage], earlier);
-                problem.slope(span.at(T::from_f64(tableau.nodes[stage])), &point)
+                problem.slope(span.at(T::from_f64(tableau.nodes[stage])), &(x + ahead))
             };
-            let coupling = combination(&self.slopes[stage], earlier);
             let by_time = T::from_f64(tableau.times[stage]) * length;
             let right = along(&along(&slope, inverse, &coupling), by_time, &self.by_time);
             self.stages[stage] = factors.solved(&right);
         }
-        let change = combination(&self.result, &self.stages);
-        let error = combination(&self.error, &self.stages);
+        let [change, error] = combinations([&self.result, &self.error], &self.stages);
         Trial {
             error: tolerance.map_or(0.0, |it| it.norm_between(&error, x, &change)),
             change,

@@ -1,0 +1,122 @@
+//! Chaos, closed loops near singular positions, and impacts.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use mbg_runtime::{
+    Adaptive, Direction, Dop853, Integrator, Real, Statistics, Stopped, System, Tsit5, Variable,
+};
+use nalgebra::SVector;
+
+use super::models::{FourBars, FourBarsParameters};
+use super::problems::{Law, Oscillator, Written};
+use super::{Expected, Found, Line, apart};
+
+/// Two rods of 1 m and 1 kg, one below the other; angles from the downward vertical, and their rates.
+#[derive(Clone, Copy)]
+struct DoublePendulum;
+
+impl Law<4, 0> for DoublePendulum {
+    const STATES: &'static [Variable] = &[
+        Variable { name: "first", unit: "rad" },
+        Variable { name: "second", unit: "rad" },
+        Variable { name: "first rate", unit: "rad/s" },
+        Variable { name: "second rate", unit: "rad/s" },
+    ];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
+        let number = T::from_f64;
+        let [first, second, u, v] = x.data.0[0];
+        let (sin, cos) = (first - second).sin_cos();
+        let (a, b, c) = (number(4.0 / 3.0), number(0.5) * cos, number(1.0 / 3.0));
+        let p = -(number(0.5) * sin * v * v) - number(1.5 * 9.81) * first.sin();
+        let q = number(0.5) * sin * u * u - number(0.5 * 9.81) * second.sin();
+        let determinant = a * c - b * b;
+        SVector::from([u, v, (c * p - b * q) / determinant, (a * q - b * p) / determinant])
+    }
+}
+
+/// Errors grow ten thousandfold within 10 s.
+pub(crate) fn double_pendulum() -> Vec<Line> {
+    // By a Taylor series in multiple precision.
+    let expected = [
+        0.299381026131562774,
+        -3.20468710992297462,
+        -3.82168631111751386,
+        -0.0460647134306678934,
+    ];
+    let start = SVector::from([FRAC_PI_2, FRAC_PI_2 + 0.1, 0.0, 0.0]);
+    let run = |tolerance: f64| {
+        let mut last = start;
+        let solver = Adaptive::new(Dop853, tolerance, tolerance);
+        let keep = |step: &mut mbg_runtime::Step<'_, f64, 4>| last = *step.state();
+        let statistics = solver.integrate(&Written(DoublePendulum), &(), 0.0, 10.0, start, keep)?;
+        Ok(Found::new(apart(last.as_slice(), &expected), statistics))
+    };
+    let case = "chaotic double pendulum, 10 s";
+    let reference = "multiple precision";
+    vec![
+        Line::run((case, "Dop853 at 1e-8", reference), Expected::Within(1e-4), || run(1e-8)),
+        Line::run((case, "Dop853 at 1e-12", reference), Expected::Within(1e-8), || run(1e-12)),
+    ]
+}
+
+/// Energy over 10 s, from rates of the cranks at which the loops pass positions where their equations become dependent.
+fn energy(solver: &impl Integrator<10>) -> Result<Found, Stopped> {
+    let Ok(system) = FourBars::new(FourBarsParameters::default()) else {
+        return Ok(Found { error: f64::INFINITY, steps: 0 });
+    };
+    let meta = FourBars::<f64>::META;
+    let balance = meta.outputs.iter().position(|it| it.name.ends_with("balance")).unwrap_or(0);
+    let total = |x: &SVector<f64, 10>| {
+        system.energy(0.0, x) + system.output(0.0, x, &SVector::zeros(), &mut ())[balance]
+    };
+    let mut found = Found { error: 0.0, steps: 0 };
+    for rate in [0.5, 3.0, 7.5, 10.0] {
+        let mut start = system.initial_state();
+        let states = meta.states.iter().enumerate();
+        let rates = states.filter(|(_, it)| it.name.ends_with("rate.f"));
+        for (link, (place, _)) in rates.enumerate() {
+            start[place] = if link <= 2 { rate } else { -rate };
+        }
+        let mut last = start;
+        let keep = |step: &mut mbg_runtime::Step<'_, f64, 10>| last = *step.state();
+        let statistics = solver.integrate(&system, &(), 0.0, 10.0, start, keep)?;
+        found.error = found.error.max((total(&last) / total(&start) - 1.0).abs());
+        found.steps += statistics.steps + statistics.rejected;
+    }
+    Ok(found)
+}
+
+/// Two four-bars that turn over.
+pub(crate) fn four_bars() -> Vec<Line> {
+    let case = "four-bars through singular lines";
+    vec![
+        Line::run((case, "Tsit5 at 1e-6", "energy"), Expected::Within(5e-5), || {
+            energy(&Adaptive::new(Tsit5, 1e-6, 1e-6))
+        }),
+        Line::run((case, "Tsit5 at 1e-8", "energy"), Expected::Within(5e-7), || {
+            energy(&Adaptive::new(Tsit5, 1e-8, 1e-8))
+        }),
+    ]
+}
+
+/// A mass on a spring that a wall throws back with 0.8 of its speed, ten times over.
+pub(crate) fn impacts() -> Vec<Line> {
+    let run = || {
+        let solver = Adaptive::new(Dop853, 1e-12, 1e-14);
+        let (mut t, mut x, mut speed) = (0.0, SVector::from([1.0, 0.0]), 1.0);
+        let (mut error, mut sum) = (0.0_f64, Statistics::default());
+        for impact in 0..10 {
+            let event = (Direction::Falling, |_t: f64, x: &SVector<f64, 2>| x[0]);
+            let arrival = solver.until(&Written(Oscillator), &(), t, 100.0, x, event, |_| ())?;
+            let expected = PI * (0.5 + f64::from(impact));
+            error = error.max(apart(&[arrival.time, arrival.state[1]], &[expected, -speed]));
+            sum.steps += arrival.statistics.steps;
+            (t, x) = (arrival.time, arrival.state);
+            x[1] *= -0.8;
+            speed *= 0.8;
+        }
+        Ok(Found::new(error, sum))
+    };
+    vec![Line::run(("ten impacts as events", "Dop853", "closed form"), Expected::Within(1e-9), run)]
+}

@@ -1,0 +1,152 @@
+//! The cases, and what is expected of each.
+
+mod friction;
+mod inputs;
+#[path = "../../ins/models.rs"]
+#[allow(dead_code)]
+mod ins;
+#[path = "../../ins/reference.rs"]
+#[allow(dead_code)]
+mod ins_reference;
+mod mechanisms;
+mod models;
+mod orientation;
+#[path = "../../methods/problems.rs"]
+#[allow(dead_code)]
+mod problems;
+#[path = "../../../tests/orientation/reference.rs"]
+#[allow(dead_code)]
+mod rotations;
+mod steps;
+mod stiffness;
+
+use std::fmt;
+use std::time::Instant;
+
+use mbg_runtime::{Statistics, Stopped};
+
+/// A case by its name: some methods on one problem.
+pub(crate) type Case = (&'static str, fn() -> Vec<Line>);
+
+/// All cases.
+pub(crate) const CASES: &[Case] = &[
+    ("gimbal lock", orientation::gimbal_lock),
+    ("sleeping top", orientation::sleeping_top),
+    ("tumbling", orientation::tumbling),
+    ("stiff pins", stiffness::pins),
+    ("constants of the INS", stiffness::navigation),
+    ("chaos", mechanisms::double_pendulum),
+    ("singular loops", mechanisms::four_bars),
+    ("impacts", mechanisms::impacts),
+    ("dry friction", friction::dry),
+    ("single precision", steps::single_precision),
+    ("steps too long", steps::too_long),
+    ("steps too short", steps::too_short),
+    ("gust", inputs::gust),
+];
+
+/// What must come of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Expected {
+    /// An error of at most so much.
+    Within(f64),
+    /// A refusal whose text contains this.
+    Refused(&'static str),
+}
+
+/// What came of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub(crate) error: f64,
+    pub(crate) steps: u64,
+}
+
+impl Found {
+    pub(crate) fn new(error: f64, statistics: Statistics) -> Self {
+        Self {
+            error,
+            steps: statistics.steps + statistics.rejected,
+        }
+    }
+}
+
+/// A line of the report.
+pub(crate) struct Line {
+    case: &'static str,
+    method: String,
+    reference: &'static str,
+    expected: Expected,
+    found: Result<Found, Stopped>,
+    /// In s.
+    time: f64,
+}
+
+impl Line {
+    /// Runs a case with a method.
+    pub(crate) fn run(
+        (case, method, reference): (&'static str, impl Into<String>, &'static str),
+        expected: Expected,
+        run: impl FnOnce() -> Result<Found, Stopped>,
+    ) -> Self {
+        let start = Instant::now();
+        let found = run();
+        Self {
+            case,
+            method: method.into(),
+            reference,
+            expected,
+            found,
+            time: start.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// Whether it came as expected.
+    pub(crate) fn holds(&self) -> bool {
+        match (&self.found, self.expected) {
+            (Ok(found), Expected::Within(bound)) => found.error <= bound,
+            (Err(stopped), Expected::Refused(text)) => {
+                stopped.time.is_finite() && stopped.to_string().contains(text)
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Titles of the columns.
+pub(crate) const HEAD: &str = "\
+case                               method               reference                      steps  time / ms  result
+---------------------------------------------------------------------------------------------------------------";
+
+impl fmt::Display for Line {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (case, method, reference, time) =
+            (self.case, &self.method, self.reference, 1e3 * self.time);
+        let steps = match &self.found {
+            Ok(found) => found.steps.to_string(),
+            Err(_) => "-".to_owned(),
+        };
+        write!(
+            formatter,
+            "{case:<35}{method:<21}{reference:<27}{steps:>9}{time:>11.1}  "
+        )?;
+        match (&self.found, self.expected) {
+            (Ok(found), Expected::Within(bound)) => {
+                write!(formatter, "error {:.1e}, at most {bound:.0e}", found.error)?;
+            }
+            (Ok(found), Expected::Refused(_)) => {
+                write!(formatter, "error {:.1e}, not refused", found.error)?;
+            }
+            (Err(stopped), _) => write!(formatter, "{stopped}")?,
+        }
+        formatter.write_str(if self.holds() { "" } else { "  NOT AS EXPECTED" })
+    }
+}
+
+/// The largest difference of components.
+pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
+    let pairs = found.iter().zip(expected);
+    pairs.fold(0.0, |largest, (found, expected)| {
+        let apart = (found - expected).abs();
+        if apart > largest || apart.is_nan() { apart } else { largest }
+    })
+}

@@ -1,0 +1,136 @@
+//! Bodies that turn all the way round.
+
+use std::f64::consts::PI;
+
+use mbg_runtime::{Adaptive, Dop853, Fixed, Gauss6, Input, Integrator, Stopped, System};
+use nalgebra::{SVector, Vector3};
+
+use super::models::{
+    PulledAngles, PulledAnglesParameters, PulledQuaternion, PulledQuaternionParameters, Top,
+    TopParameters,
+};
+use super::problems::{RigidBody, Written};
+use super::rotations::{self, Row};
+use super::{Expected, Found, Line, apart};
+
+/// A torque that pulls the second angle through a right angle, and another one after 2 s.
+struct Switched;
+
+impl Input<f64, 3> for Switched {
+    fn value(&self, _t: f64, since: f64) -> Vector3<f64> {
+        if since < 2.0 {
+            Vector3::new(0.0, PI, 0.0)
+        } else {
+            Vector3::new(0.5, 0.0, -0.4)
+        }
+    }
+
+    fn next_jump(&self, t: f64) -> Option<f64> {
+        (t < 2.0).then_some(2.0)
+    }
+}
+
+/// Runs over the rows of a reference; the outputs are the parts of a quaternion, of either sign.
+fn turned<S, const N: usize, const M: usize>(
+    model: &S,
+    input: &impl Input<f64, M>,
+    rows: &[Row],
+) -> Result<Found, Stopped>
+where
+    S: System<f64, N, M, 4, Memory = ()>,
+{
+    let times: Vec<f64> = rows.iter().map(|row| row.0).collect();
+    let mut error = 0.0_f64;
+    let mut rows = rows.iter();
+    let solver = Adaptive::new(Dop853, 1e-13, 1e-18);
+    let statistics = solver.sample(model, input, 0.0, model.initial_state(), &times, |t, x| {
+        let found = model.output(t, x, &input.at(t), &mut ());
+        if let Some((_, _, expected)) = rows.next() {
+            let opposite = expected.map(|part| -part);
+            error = error.max(apart(found.as_slice(), expected).min(apart(found.as_slice(), &opposite)));
+        }
+    })?;
+    Ok(Found::new(error, statistics))
+}
+
+/// Angles are refused where they lock, a quaternion passes.
+pub(crate) fn gimbal_lock() -> Vec<Line> {
+    let case = "through gimbal lock";
+    let rows = rotations::THROUGH_LOCK;
+    vec![
+        Line::run(
+            (case, "angles, Dop853", "elliptic functions"),
+            Expected::Refused("too near its singular set"),
+            || match PulledAngles::new(PulledAnglesParameters::default()) {
+                Ok(model) => turned::<_, 6, 3>(&model, &Switched, rows),
+                Err(_) => Ok(Found { error: f64::INFINITY, steps: 0 }),
+            },
+        ),
+        Line::run(
+            (case, "quaternion, Dop853", "elliptic functions"),
+            Expected::Within(1e-12),
+            || match PulledQuaternion::new(PulledQuaternionParameters::default()) {
+                Ok(model) => turned::<_, 7, 3>(&model, &Switched, rows),
+                Err(_) => Ok(Found { error: f64::INFINITY, steps: 0 }),
+            },
+        ),
+    ]
+}
+
+/// A top that falls from where it nearly sleeps, and rises again.
+pub(crate) fn sleeping_top() -> Vec<Line> {
+    vec![Line::run(
+        ("sleeping top", "quaternion, Dop853", "elliptic functions"),
+        Expected::Within(2e-10),
+        || match Top::new(TopParameters::default()) {
+            Ok(model) => turned::<_, 7, 0>(&model, &(), rotations::SLEEPING),
+            Err(_) => Ok(Found { error: f64::INFINITY, steps: 0 }),
+        },
+    )]
+}
+
+/// How often the free body turns over.
+const PERIODS: f64 = if cfg!(feature = "long") { 1e6 } else { 1e4 };
+
+/// The period of the momentum of a free body with the inertias 1, 2 and 3 (Landau and Lifshitz, *Mechanics*, §37).
+fn period(momentum: [f64; 3]) -> f64 {
+    let [energy, norm] = RigidBody::invariants(&SVector::from([
+        momentum[0], momentum[1], momentum[2], 1.0, 0.0, 0.0, 0.0,
+    ]));
+    let (twice, square) = (2.0 * energy, norm * norm);
+    let [i1, i2, i3] = if square > 2.0 * twice { [1.0, 2.0, 3.0] } else { [3.0, 2.0, 1.0] };
+    let fast = (i3 - i2) * (square - twice * i1) / (i1 * i2 * i3);
+    let modulus = (i2 - i1) * (twice * i3 - square) / ((i3 - i2) * (square - twice * i1));
+    // The complete elliptic integral by the arithmetic and geometric mean.
+    let (mut a, mut b) = (1.0, (1.0 - modulus).sqrt());
+    for _ in 0..40 {
+        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
+    }
+    4.0 * (0.5 * PI / a) / fast.sqrt()
+}
+
+/// After whole periods the momentum is back where it was; energy, momentum and the length of the quaternion stay.
+pub(crate) fn tumbling() -> Vec<Line> {
+    let momentum = [1.0, 10.0, 0.5];
+    let start = SVector::from([1.0, 10.0, 0.5, 1.0, 0.0, 0.0, 0.0]);
+    let end = PERIODS * period(momentum);
+    let kept = |x: &SVector<f64, 7>| {
+        let [energy, norm] = RigidBody::invariants(x);
+        [energy, norm, x.fixed_rows::<4>(3).norm()]
+    };
+    let mut last = start;
+    let solver = Fixed::new(Gauss6::default(), 0.05).compensated();
+    let ran = solver.integrate(&Written(RigidBody), &(), 0.0, end, start, |step| last = *step.state());
+    let ways = kept(&last).into_iter().zip(kept(&start)).map(|(now, then)| (now / then - 1.0).abs());
+    let drift = ways.fold(0.0, f64::max);
+    let away = apart(&last.as_slice()[..3], &momentum);
+    let case = if cfg!(feature = "long") { "1e6 periods of tumbling" } else { "1e4 periods of tumbling" };
+    vec![
+        Line::run((case, "Gauss 6, h = 0.05 s", "energy, momentum, length"), Expected::Within(1e-13), || {
+            ran.map(|statistics| Found::new(drift, statistics))
+        }),
+        Line::run((case, "Gauss 6, h = 0.05 s", "elliptic functions"), Expected::Within(PERIODS * 1e-5), || {
+            ran.map(|statistics| Found::new(away, statistics))
+        }),
+    ]
+}

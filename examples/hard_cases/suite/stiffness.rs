@@ -1,0 +1,93 @@
+//! Constants that are far apart.
+
+use std::f64::consts::FRAC_PI_2;
+
+use mbg_runtime::{
+    Adaptive, Auto, Dop853, Fixed, Integrator, Method, Radau5, Rk4, Rodas5P, Ros2, Stopped, System,
+};
+use nalgebra::SVector;
+
+use super::ins::{Ins, InsParameters, gust};
+use super::ins_reference::PULSE;
+use super::problems::{StiffPin, Written};
+use super::{Expected, Found, Line, apart};
+
+/// Stiffness, damping, and angle and rate at 5 s, computed with more digits.
+const PINS: [(&str, f64, f64, [f64; 2]); 2] = [
+    ("pin of 1e6 N/m", 1e6, 2e3, [-1.366922113009797, 2.440936668346874]),
+    ("pin of 1e12 N/m", 1e12, 2e6, [-1.366714573477783, 2.44223685380214]),
+];
+
+/// A rod that hangs by its end, level at the start.
+pub(crate) fn horizontal() -> SVector<f64, 6> {
+    SVector::from([0.0, 0.0, FRAC_PI_2, 0.0, 0.0, 0.0])
+}
+
+/// Pendulums on pins that hardly give.
+pub(crate) fn pins() -> Vec<Line> {
+    let mut lines = Vec::new();
+    for (case, stiffness, damping, expected) in PINS {
+        let pin = StiffPin { stiffness, damping };
+        let small = 9.81 / stiffness;
+        let nominal = [small, small, 1.0, 1e-3, 1e-3, 1.0];
+        fn run(
+            pin: StiffPin,
+            expected: [f64; 2],
+            solver: &impl Integrator<6>,
+        ) -> Result<Found, Stopped> {
+            let mut last = horizontal();
+            let keep = |step: &mut mbg_runtime::Step<'_, f64, 6>| last = *step.state();
+            let statistics = solver.integrate(&Written(pin), &(), 0.0, 5.0, horizontal(), keep)?;
+            Ok(Found::new(apart(&[last[2], last[5]], &expected), statistics))
+        }
+        let reference = "more digits";
+        let auto = Auto { nominal: &nominal, ..Auto::new(1e-6, 1e-6) };
+        let radau = Adaptive { nominal: &nominal, ..Adaptive::new(Radau5, 1e-6, 1e-6) };
+        let rodas = Adaptive { nominal: &nominal, ..Adaptive::new(Rodas5P, 1e-6, 1e-6) };
+        lines.push(Line::run((case, Radau5::NAME, reference), Expected::Within(2e-5), || run(pin, expected, &radau)));
+        lines.push(Line::run((case, Rodas5P::NAME, reference), Expected::Within(1e-5), || run(pin, expected, &rodas)));
+        lines.push(Line::run((case, "auto", reference), Expected::Within(2e-5), || run(pin, expected, &auto)));
+        let fixed = Fixed::new(Ros2, 1e-2);
+        lines.push(Line::run((case, "ROS2, h = 10 ms", reference), Expected::Within(0.1), || run(pin, expected, &fixed)));
+        let explicit = Fixed::new(Rk4, 1e-2);
+        lines.push(Line::run((case, "RK4, h = 10 ms", "refusal"), Expected::Refused("not finite"), || {
+            run(pin, expected, &explicit)
+        }));
+    }
+    lines
+}
+
+/// Largest error of a gimbal angle over the instants of the reference.
+pub(crate) fn angles_of_ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
+    let model = ins_model();
+    let times: Vec<f64> = PULSE.iter().map(|instant| instant.time).collect();
+    let (mut error, mut rows) = (0.0_f64, PULSE.iter());
+    let start = model.initial_state();
+    let statistics = solver.sample(&model, &gust(0.1), 0.0, start, &times, |_t, x| {
+        if let Some(row) = rows.next() {
+            error = error.max(apart(&x.as_slice()[6..9], &row.alpha));
+        }
+    })?;
+    Ok(Found::new(error, statistics))
+}
+
+/// The inertial navigation system with the constants of the paper.
+#[allow(clippy::expect_used, reason = "its own constants suit it")]
+pub(crate) fn ins_model() -> Ins<f64> {
+    Ins::new(InsParameters::default()).expect("constants of the paper")
+}
+
+/// Springs of 1e-5 N m/rad beside inertias of 1e4 kg m².
+pub(crate) fn navigation() -> Vec<Line> {
+    let (case, reference) = ("INS, constants from 1e-5 to 1e4", "multiple precision");
+    let dop853 = Adaptive::new(Dop853, 1e-10, 1e-14);
+    let radau5 = Adaptive::new(Radau5, 1e-8, 1e-12);
+    vec![
+        Line::run((case, "auto", reference), Expected::Within(1e-6), || angles_of_ins(&Auto::new(1e-8, 1e-12))),
+        Line::run((case, Dop853::NAME, reference), Expected::Within(1e-9), || angles_of_ins(&dop853)),
+        Line::run((case, Radau5::NAME, reference), Expected::Within(1e-6), || angles_of_ins(&radau5)),
+        Line::run((case, "RK4, h = 10 ms", reference), Expected::Within(1e-8), || {
+            angles_of_ins(&Fixed::new(Rk4, 1e-2))
+        }),
+    ]
+}

@@ -13,7 +13,11 @@ fn assert_holds(name: &str) {
     for line in &lines {
         println!("{line}");
     }
-    let failed: Vec<String> = lines.iter().filter(|it| !it.holds()).map(ToString::to_string).collect();
+    let failed: Vec<String> = lines
+        .iter()
+        .filter(|it| !it.holds())
+        .map(ToString::to_string)
+        .collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 

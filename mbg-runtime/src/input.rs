@@ -37,6 +37,11 @@ pub trait Input<T: Real, const M: usize> {
         quotient(t, ahead, |t| self.value(t, since))
     }
 
+    /// Whether the value stays the same between jumps; if it does, nobody looks for jumps that are not declared.
+    fn is_constant_between_jumps(&self) -> bool {
+        false
+    }
+
     /// The value at `t`; at a jump, the one behind it.
     fn at(&self, t: T) -> SVector<T, M> {
         self.value(t, t)
@@ -55,6 +60,10 @@ impl<T: Real, const M: usize, I: Input<T, M> + ?Sized> Input<T, M> for &I {
     fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
         (**self).rate(t, since, ahead)
     }
+
+    fn is_constant_between_jumps(&self) -> bool {
+        (**self).is_constant_between_jumps()
+    }
 }
 
 impl<T: Real, const M: usize> Input<T, M> for () {
@@ -68,6 +77,10 @@ impl<T: Real, const M: usize> Input<T, M> for () {
 
     fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
         zero()
+    }
+
+    fn is_constant_between_jumps(&self) -> bool {
+        true
     }
 }
 
@@ -89,6 +102,10 @@ impl<T: Real, const M: usize> Input<T, M> for Constant<T, M> {
 
     fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
         zero()
+    }
+
+    fn is_constant_between_jumps(&self) -> bool {
+        true
     }
 }
 
@@ -138,6 +155,10 @@ impl<T: Real, const M: usize> Input<T, M> for Pulse<T, M> {
 
     fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
         zero()
+    }
+
+    fn is_constant_between_jumps(&self) -> bool {
+        true
     }
 }
 
@@ -228,6 +249,10 @@ impl<T: Real, const M: usize, A: Input<T, M>, B: Input<T, M>> Input<T, M> for Su
 
     fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
         self.0.rate(t, since, ahead) + self.1.rate(t, since, ahead)
+    }
+
+    fn is_constant_between_jumps(&self) -> bool {
+        self.0.is_constant_between_jumps() && self.1.is_constant_between_jumps()
     }
 }
 

@@ -10,8 +10,14 @@ use super::{Expected, Found, Line};
 /// A block on a belt, with Coulomb's and with Stribeck's curve.
 pub(crate) fn dry() -> Vec<Line> {
     let mut lines = Vec::new();
-    for (case, breakaway) in [("Coulomb friction on a belt", 2.0), ("Stribeck friction, stick and slip", 4.0)] {
-        let parameters = BeltParameters { breakaway, ..BeltParameters::default() };
+    for (case, breakaway) in [
+        ("Coulomb friction on a belt", 2.0),
+        ("Stribeck friction, stick and slip", 4.0),
+    ] {
+        let parameters = BeltParameters {
+            breakaway,
+            ..BeltParameters::default()
+        };
         let Ok(belt) = Belt::new(parameters) else {
             continue;
         };
@@ -26,26 +32,41 @@ pub(crate) fn dry() -> Vec<Line> {
         ) -> Result<Found, Stopped> {
             let (times, reference) = (&comparison.problem().times, comparison.reference());
             let (mut error, mut rows) = (0.0_f64, reference.states.iter());
-            let statistics = solver.sample(belt, &(), 0.0, belt.initial_state(), times, |_t, x| {
-                if let Some(row) = rows.next() {
-                    let apart: SVector<f64, 2> = x - row;
-                    for (apart, size) in apart.iter().zip(reference.sizes) {
-                        error = error.max(apart.abs() / size);
+            let statistics =
+                solver.sample(belt, &(), 0.0, belt.initial_state(), times, |_t, x| {
+                    if let Some(row) = rows.next() {
+                        let apart: SVector<f64, 2> = x - row;
+                        for (apart, size) in apart.iter().zip(reference.sizes) {
+                            error = error.max(apart.abs() / size);
+                        }
                     }
-                }
-            })?;
+                })?;
             Ok(Found::new(error, statistics))
         }
-        let (radau, rodas) = (Adaptive::new(Radau5, 1e-7, 1e-8), Adaptive::new(Rodas5P, 1e-7, 1e-8));
+        let (radau, rodas) = (
+            Adaptive::new(Radau5, 1e-7, 1e-8),
+            Adaptive::new(Rodas5P, 1e-7, 1e-8),
+        );
         let expected = Expected::Within(1e-4);
-        let none = Found { error: f64::INFINITY, steps: 0 };
+        let none = Found {
+            error: f64::INFINITY,
+            steps: 0,
+        };
         let reference = "two methods at 1e-8";
         lines.push(Line::run((case, Radau5::NAME, reference), expected, || {
-            comparison.as_ref().map_or(Ok(none), |it| run(&belt, it, &radau))
+            comparison
+                .as_ref()
+                .map_or(Ok(none), |it| run(&belt, it, &radau))
         }));
-        lines.push(Line::run((case, Rodas5P::NAME, reference), expected, || {
-            comparison.as_ref().map_or(Ok(none), |it| run(&belt, it, &rodas))
-        }));
+        lines.push(Line::run(
+            (case, Rodas5P::NAME, reference),
+            expected,
+            || {
+                comparison
+                    .as_ref()
+                    .map_or(Ok(none), |it| run(&belt, it, &rodas))
+            },
+        ));
     }
     lines
 }

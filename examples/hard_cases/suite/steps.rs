@@ -1,8 +1,8 @@
 //! Single precision, and steps that are far too long and far too short.
 
 use mbg_runtime::{
-    Adaptive, Dop853, Fixed, ImplicitMidpoint, Input, Integrator, Method, Radau5, Rk4, Ros2, Smooth,
-    Stopped, System, Tsit5,
+    Adaptive, Dop853, Fixed, Gauss6, ImplicitMidpoint, Input, Integrator, Method, Radau5, Rk4,
+    Ros2, Stopped, System, Tsit5,
 };
 use nalgebra::{SVector, Vector3};
 
@@ -12,7 +12,10 @@ use super::problems::{Pendulum, StiffPin, Written};
 use super::stiffness::{angles_of_ins, horizontal};
 use super::{Expected, Found, Line, apart};
 
-const PIN: StiffPin = StiffPin { stiffness: 1e8, damping: 1e3 };
+const PIN: StiffPin = StiffPin {
+    stiffness: 1e8,
+    damping: 1e3,
+};
 
 /// The gust of the paper in single precision.
 struct Gust;
@@ -33,16 +36,26 @@ impl Input<f32, 3> for Gust {
 
 fn ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
     let Ok(model) = Ins::<f32>::new(InsParameters::default()) else {
-        return Ok(Found { error: f64::INFINITY, steps: 0 });
+        return Ok(Found {
+            error: f64::INFINITY,
+            steps: 0,
+        });
     };
     let times: Vec<f32> = PULSE.iter().map(|instant| instant.time as f32).collect();
     let (mut error, mut rows) = (0.0_f64, PULSE.iter());
-    let statistics = solver.sample(&model, &Gust, 0.0, model.initial_state(), &times, |_t, x| {
-        if let Some(row) = rows.next() {
-            let found = [x[6], x[7], x[8]].map(f64::from);
-            error = error.max(apart(&found, &row.alpha));
-        }
-    })?;
+    let statistics = solver.sample(
+        &model,
+        &Gust,
+        0.0,
+        model.initial_state(),
+        &times,
+        |_t, x| {
+            if let Some(row) = rows.next() {
+                let found = [x[6], x[7], x[8]].map(f64::from);
+                error = error.max(apart(&found, &row.alpha));
+            }
+        },
+    )?;
     Ok(Found::new(error, statistics))
 }
 
@@ -55,7 +68,10 @@ fn pin(solver: &impl Integrator<6>) -> Result<Found, Stopped> {
     let mut last = start;
     let keep = |step: &mut mbg_runtime::Step<'_, f32, 6>| last = *step.state();
     let statistics = solver.integrate(&Written(PIN), &(), 0.0_f32, 2.0, start, keep)?;
-    Ok(Found::new((f64::from(last[2]) - reference[2]).abs(), statistics))
+    Ok(Found::new(
+        (f64::from(last[2]) - reference[2]).abs(),
+        statistics,
+    ))
 }
 
 /// Everything in `f32`.
@@ -65,30 +81,68 @@ pub(crate) fn single_precision() -> Vec<Line> {
     let ros2 = Fixed::new(Ros2, 1e-3).compensated();
     let midpoint = Fixed::new(ImplicitMidpoint { sweeps: 2 }, 1e-3).compensated();
     vec![
-        Line::run((case, "RK4, compensated", reference), Expected::Within(1e-6), || ins(&compensated)),
-        Line::run((case, "Tsit5 at 1e-5", reference), Expected::Within(1e-4), || ins(&Adaptive::new(Tsit5, 1e-5, 1e-7))),
-        Line::run(("pin of 1e8 N/m in f32", "ROS2, h = 1 ms", "Radau IIA 5 in f64"), Expected::Within(1e-4), || pin(&ros2)),
-        Line::run(("pin of 1e8 N/m in f32", "midpoint, h = 1 ms", "Radau IIA 5 in f64"), Expected::Within(1e-4), || pin(&midpoint)),
+        Line::run(
+            (case, "RK4, compensated", reference),
+            Expected::Within(1e-6),
+            || ins(&compensated),
+        ),
+        Line::run(
+            (case, "Tsit5 at 1e-5", reference),
+            Expected::Within(1e-4),
+            || ins(&Adaptive::new(Tsit5, 1e-5, 1e-7)),
+        ),
+        Line::run(
+            (
+                "pin of 1e8 N/m in f32",
+                "ROS2, h = 1 ms",
+                "Radau IIA 5 in f64",
+            ),
+            Expected::Within(1e-4),
+            || pin(&ros2),
+        ),
+        Line::run(
+            (
+                "pin of 1e8 N/m in f32",
+                "midpoint, h = 1 ms",
+                "Radau IIA 5 in f64",
+            ),
+            Expected::Within(1e-4),
+            || pin(&midpoint),
+        ),
     ]
 }
 
 /// Steps of seconds where milliseconds are needed.
 pub(crate) fn too_long() -> Vec<Line> {
     fn end(solver: &impl Integrator<6>, duration: f64) -> Result<Found, Stopped> {
-        let statistics = solver.integrate(&Written(PIN), &(), 0.0, duration, horizontal(), |_| ())?;
+        let statistics =
+            solver.integrate(&Written(PIN), &(), 0.0, duration, horizontal(), |_| ())?;
         Ok(Found::new(f64::INFINITY, statistics))
     }
-    let first = Adaptive { first: Some(100.0), ..Adaptive::new(Dop853, 1e-10, 1e-14) };
+    let first = Adaptive {
+        first: Some(100.0),
+        ..Adaptive::new(Dop853, 1e-10, 1e-14)
+    };
     vec![
-        Line::run(("step of 1 s on a pin of 1e8 N/m", Rk4::NAME, "refusal"), Expected::Refused("not finite"), || {
-            end(&Fixed::new(Rk4, 1.0), 100.0)
-        }),
-        Line::run(("step of 1 s on a pin of 1e8 N/m", Radau5::NAME, "refusal"), Expected::Refused("stages"), || {
-            end(&Fixed::new(Radau5, 1.0), 100.0)
-        }),
-        Line::run(("first step of 100 s on the INS", Dop853::NAME, "multiple precision"), Expected::Within(1e-9), || {
-            angles_of_ins(&first)
-        }),
+        Line::run(
+            ("step of 1 s on a pin of 1e8 N/m", Rk4::NAME, "refusal"),
+            Expected::Refused("not finite"),
+            || end(&Fixed::new(Rk4, 1.0), 100.0),
+        ),
+        Line::run(
+            ("step of 1 s on a pin of 1e8 N/m", Radau5::NAME, "refusal"),
+            Expected::Refused("not finite"),
+            || end(&Fixed::new(Radau5, 1.0), 100.0),
+        ),
+        Line::run(
+            (
+                "first step of 100 s on the INS",
+                Dop853::NAME,
+                "multiple precision",
+            ),
+            Expected::Within(1e-9),
+            || angles_of_ins(&first),
+        ),
     ]
 }
 
@@ -96,19 +150,30 @@ pub(crate) fn too_long() -> Vec<Line> {
 pub(crate) fn too_short() -> Vec<Line> {
     fn end(solver: &impl Integrator<2>) -> Result<Found, Stopped> {
         let start = SVector::from([2.0, 1.0]);
-        let statistics = solver.integrate(&Written(Pendulum), &Smooth(|_t: f64| SVector::zeros()), 0.0, 10.0, start, |_| ())?;
-        Ok(Found::new(f64::INFINITY, statistics))
+        let mut ends = [start; 2];
+        let strict = Fixed::new(Gauss6::default(), 1e-3).compensated();
+        let keep = |step: &mut mbg_runtime::Step<'_, f64, 2>| ends[0] = *step.state();
+        strict.integrate(&Written(Pendulum), &(), 0.0, 10.0, start, keep)?;
+        let keep = |step: &mut mbg_runtime::Step<'_, f64, 2>| ends[1] = *step.state();
+        let statistics = solver.integrate(&Written(Pendulum), &(), 0.0, 10.0, start, keep)?;
+        Ok(Found::new((ends[1] - ends[0]).norm(), statistics))
     }
     let small = "step is too small";
     vec![
-        Line::run(("step of 1e-16 s over 10 s", Rk4::NAME, "refusal"), Expected::Refused(small), || {
-            end(&Fixed::new(Rk4, 1e-16))
-        }),
-        Line::run(("tolerance of 1e-20", Tsit5::NAME, "refusal"), Expected::Refused(small), || {
-            end(&Adaptive::new(Tsit5, 1e-20, 1e-20))
-        }),
-        Line::run(("tolerance of 0", Tsit5::NAME, "refusal"), Expected::Refused("tolerance must be"), || {
-            end(&Adaptive::new(Tsit5, 0.0, 0.0))
-        }),
+        Line::run(
+            ("step of 1e-16 s over 10 s", Rk4::NAME, "refusal"),
+            Expected::Refused(small),
+            || end(&Fixed::new(Rk4, 1e-16)),
+        ),
+        Line::run(
+            ("tolerance of 1e-20", Tsit5::NAME, "Gauss 6, compensated"),
+            Expected::Within(1e-11),
+            || end(&Adaptive::new(Tsit5, 1e-20, 1e-20)),
+        ),
+        Line::run(
+            ("tolerance of 0", Tsit5::NAME, "refusal"),
+            Expected::Refused("tolerance must be"),
+            || end(&Adaptive::new(Tsit5, 0.0, 0.0)),
+        ),
     ]
 }

@@ -14,8 +14,18 @@ use super::{Expected, Found, Line, apart};
 
 /// Stiffness, damping, and angle and rate at 5 s, computed with more digits.
 const PINS: [(&str, f64, f64, [f64; 2]); 2] = [
-    ("pin of 1e6 N/m", 1e6, 2e3, [-1.366922113009797, 2.440936668346874]),
-    ("pin of 1e12 N/m", 1e12, 2e6, [-1.366714573477783, 2.44223685380214]),
+    (
+        "pin of 1e6 N/m",
+        1e6,
+        2e3,
+        [-1.366922113009797, 2.440936668346874],
+    ),
+    (
+        "pin of 1e12 N/m",
+        1e12,
+        2e6,
+        [-1.366714573477783, 2.44223685380214],
+    ),
 ];
 
 /// A rod that hangs by its end, level at the start.
@@ -38,21 +48,51 @@ pub(crate) fn pins() -> Vec<Line> {
             let mut last = horizontal();
             let keep = |step: &mut mbg_runtime::Step<'_, f64, 6>| last = *step.state();
             let statistics = solver.integrate(&Written(pin), &(), 0.0, 5.0, horizontal(), keep)?;
-            Ok(Found::new(apart(&[last[2], last[5]], &expected), statistics))
+            Ok(Found::new(
+                apart(&[last[2], last[5]], &expected),
+                statistics,
+            ))
         }
         let reference = "more digits";
-        let auto = Auto { nominal: &nominal, ..Auto::new(1e-6, 1e-6) };
-        let radau = Adaptive { nominal: &nominal, ..Adaptive::new(Radau5, 1e-6, 1e-6) };
-        let rodas = Adaptive { nominal: &nominal, ..Adaptive::new(Rodas5P, 1e-6, 1e-6) };
-        lines.push(Line::run((case, Radau5::NAME, reference), Expected::Within(2e-5), || run(pin, expected, &radau)));
-        lines.push(Line::run((case, Rodas5P::NAME, reference), Expected::Within(1e-5), || run(pin, expected, &rodas)));
-        lines.push(Line::run((case, "auto", reference), Expected::Within(2e-5), || run(pin, expected, &auto)));
+        let auto = Auto {
+            nominal: &nominal,
+            ..Auto::new(1e-6, 1e-6)
+        };
+        let radau = Adaptive {
+            nominal: &nominal,
+            ..Adaptive::new(Radau5, 1e-6, 1e-6)
+        };
+        let rodas = Adaptive {
+            nominal: &nominal,
+            ..Adaptive::new(Rodas5P, 1e-6, 1e-6)
+        };
+        lines.push(Line::run(
+            (case, Radau5::NAME, reference),
+            Expected::Within(2e-5),
+            || run(pin, expected, &radau),
+        ));
+        lines.push(Line::run(
+            (case, Rodas5P::NAME, reference),
+            Expected::Within(1e-5),
+            || run(pin, expected, &rodas),
+        ));
+        lines.push(Line::run(
+            (case, "auto", reference),
+            Expected::Within(2e-5),
+            || run(pin, expected, &auto),
+        ));
         let fixed = Fixed::new(Ros2, 1e-2);
-        lines.push(Line::run((case, "ROS2, h = 10 ms", reference), Expected::Within(0.1), || run(pin, expected, &fixed)));
+        lines.push(Line::run(
+            (case, "ROS2, h = 10 ms", reference),
+            Expected::Within(0.1),
+            || run(pin, expected, &fixed),
+        ));
         let explicit = Fixed::new(Rk4, 1e-2);
-        lines.push(Line::run((case, "RK4, h = 10 ms", "refusal"), Expected::Refused("not finite"), || {
-            run(pin, expected, &explicit)
-        }));
+        lines.push(Line::run(
+            (case, "RK4, h = 10 ms", "refusal"),
+            Expected::Refused("not finite"),
+            || run(pin, expected, &explicit),
+        ));
     }
     lines
 }
@@ -83,11 +123,23 @@ pub(crate) fn navigation() -> Vec<Line> {
     let dop853 = Adaptive::new(Dop853, 1e-10, 1e-14);
     let radau5 = Adaptive::new(Radau5, 1e-8, 1e-12);
     vec![
-        Line::run((case, "auto", reference), Expected::Within(1e-6), || angles_of_ins(&Auto::new(1e-8, 1e-12))),
-        Line::run((case, Dop853::NAME, reference), Expected::Within(1e-9), || angles_of_ins(&dop853)),
-        Line::run((case, Radau5::NAME, reference), Expected::Within(1e-6), || angles_of_ins(&radau5)),
-        Line::run((case, "RK4, h = 10 ms", reference), Expected::Within(1e-8), || {
-            angles_of_ins(&Fixed::new(Rk4, 1e-2))
+        Line::run((case, "auto", reference), Expected::Within(1e-6), || {
+            angles_of_ins(&Auto::new(1e-8, 1e-12))
         }),
+        Line::run(
+            (case, Dop853::NAME, reference),
+            Expected::Within(1e-9),
+            || angles_of_ins(&dop853),
+        ),
+        Line::run(
+            (case, Radau5::NAME, reference),
+            Expected::Within(1e-6),
+            || angles_of_ins(&radau5),
+        ),
+        Line::run(
+            (case, "RK4, h = 10 ms", reference),
+            Expected::Within(1e-8),
+            || angles_of_ins(&Fixed::new(Rk4, 1e-2)),
+        ),
     ]
 }

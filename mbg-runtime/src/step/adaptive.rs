@@ -9,6 +9,7 @@ use super::integrator::Integrator;
 use super::method::{Estimating, Span, Start, along};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
+use super::watch::Watch;
 use super::{Cause, Stopped, check_result, magnitude, seen};
 use crate::scalar::power;
 use crate::{Input, Real, System};
@@ -20,6 +21,10 @@ use crate::{Input, Real, System};
 /// of the step and of the one before (PI control) and starts from the first two derivatives, both as in `dopri5` of
 /// Hairer, Nørsett and Wanner. Steps end exactly on the jumps of the input, and the starting step is chosen anew behind
 /// each. With [`Dual`](crate::Dual) numbers the values alone control the step.
+///
+/// Jumps that the input does not declare cost rejected steps. So that none is stepped over while the system is at rest,
+/// the input is looked at between the ends of each step; what is shorter than a sixty-fourth of the longest step may
+/// still be missed, and [`Adaptive::longest`] is the remedy.
 ///
 /// # Example
 ///
@@ -122,6 +127,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first);
         let smallest =
             |t: T| T::EPSILON * (10.0 * magnitude(t)).max(T::EPSILON * seen(end - start));
+        let mut watch = Watch::new(seen(end - start));
         let mut again = false;
         loop {
             let taken = problem.statistics.steps;
@@ -145,6 +151,11 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                     length,
                 }
             };
+            if watch.is_blind(problem, &span) {
+                problem.statistics.rejected += 1;
+                control.halve(seen(span.length));
+                continue;
+            }
             let from = Start {
                 span,
                 x,
@@ -270,6 +281,12 @@ impl Control {
         };
         self.before = error.max(LEAST);
         self.after_rejection = false;
+    }
+
+    /// Takes back a step that has not been tried.
+    fn halve(&mut self, length: f64) {
+        self.length = 0.5 * length;
+        self.after_rejection = true;
     }
 
     fn reject(&mut self, length: f64, error: f64) {

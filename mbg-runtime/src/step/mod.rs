@@ -17,6 +17,7 @@ mod rosenbrock;
 mod tolerance;
 #[cfg(test)]
 mod trees;
+mod watch;
 
 use core::cell::Cell;
 use core::fmt;

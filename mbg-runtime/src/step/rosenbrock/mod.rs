@@ -7,7 +7,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
 use super::linear::Factors;
-use super::method::{Estimating, Family, Method, Start, Trial, along, combination, combinations, converted};
+use super::method::{
+    Estimating, Family, Method, Start, Trial, along, combination, combinations, converted,
+};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use crate::{Input, Real, System};

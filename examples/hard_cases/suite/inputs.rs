@@ -45,7 +45,7 @@ fn both<S: Estimating>(method: S, lines: &mut Vec<Line>) {
     });
     lines.push(Line::run(
         ("gust, its jumps undeclared", S::NAME, reference),
-        Expected::Within(1e-5),
+        Expected::Within(1e-4),
         || angles(&solver, &undeclared),
     ));
 }

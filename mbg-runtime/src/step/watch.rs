@@ -118,7 +118,8 @@ mod tests {
     #[test]
     fn jumps_that_are_not_declared_are_not_stepped_over() {
         let errors = [pushed(Tsit5), pushed(Dop853)];
-        assert!(errors.iter().all(|error| *error < 1e-5), "{errors:?}");
+        // Stepped over, they would be missing altogether: an error of order one.
+        assert!(errors.iter().all(|error| *error < 1e-4), "{errors:?}");
     }
 
     #[test]

@@ -125,6 +125,17 @@ pub fn symmetric<T: Real, const K: usize>(elements: &[(usize, usize, T)]) -> SMa
     matrix
 }
 
+/// A matrix from row, column and value of the elements that are not zero.
+pub fn sparse<T: Real, const K: usize>(elements: &[(usize, usize, T)]) -> SMatrix<T, K, K> {
+    let mut matrix = SMatrix::<T, K, K>::from_element(T::from_f64(0.0));
+    for (row, column, value) in elements {
+        if let Some(element) = matrix.get_mut((*row, *column)) {
+            *element = *value;
+        }
+    }
+    matrix
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

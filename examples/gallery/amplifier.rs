@@ -1,7 +1,6 @@
 //! The two-transistor amplifier of the test set for initial value problems.
 
 use std::error::Error;
-use std::f64::consts::PI;
 use std::path::Path;
 
 use mbg_runtime::{Smooth, System, mbg};
@@ -9,12 +8,13 @@ use nalgebra::SVector;
 
 use crate::draw::{BLUE, GREEN, GREY, ORANGE, PURPLE, Panel, picture};
 use crate::rectifier::milli;
+use crate::references::transistor_amplifier;
 use crate::run::{over, run};
 
 mbg! { include "examples/gallery/amplifier.mbg"; }
 
 fn signal(t: f64) -> SVector<f64, 1> {
-    SVector::from([0.1 * (200.0 * PI * t).sin()])
+    SVector::from([transistor_amplifier::input(t)])
 }
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
@@ -22,13 +22,17 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let start = amplifier.initial_state();
     let found = run(&amplifier, &Smooth(signal), start, 0.2, 4000)?;
     let node = |place: usize| milli(over(&found, |it| it.output[place]));
+    let known = transistor_amplifier::REFERENCE
+        .map(|(t, nodes)| (t, nodes[7]))
+        .to_vec();
     let ends = Panel::new("What goes in and comes out", "time in ms", "voltage in V")
         .line("load", BLUE, node(7))
         .line(
             "signal",
             ORANGE,
             milli(over(&found, |it| signal(it.time)[0])),
-        );
+        )
+        .dots("reference", GREY, milli(known));
     let nodes = Panel::new("Around the second transistor", "time in ms", "voltage in V")
         .line("collector", GREEN, node(6))
         .line("base", PURPLE, node(4))

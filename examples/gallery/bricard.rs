@@ -7,6 +7,7 @@ use mbg_runtime::{System, mbg};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::draw::{BLUE, GREEN, GREY, ORANGE, Panel, picture, shade};
+use crate::references::bricard;
 use crate::run::{over, run, states};
 use crate::space::{Place, View};
 
@@ -57,14 +58,18 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .dots(
             "on the ground",
             GREY,
-            4,
             view.path(&upright(&[start[0], start[5]])),
         );
+    let known = (0..=10).map(f64::from);
+    let known = known
+        .flat_map(|t| bricard::recorded(t).map(|value| (t, value)))
+        .collect();
     let coordinate = |axis: usize| over(&found, move |it| it.output[6 + axis]);
     let place = Panel::new("Joint P₃", "time in s", "place in m")
         .line("x", BLUE, coordinate(0))
         .line("y", ORANGE, coordinate(1))
-        .line("z", GREEN, coordinate(2));
+        .line("z", GREEN, coordinate(2))
+        .dots("by hand, one coordinate", GREY, known);
     picture(
         path,
         "Bricard's mechanism moves though one of its constraints is redundant",

@@ -1,11 +1,13 @@
 //! Two rods, chaotic.
 
 use std::error::Error;
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 use mbg_runtime::{System, mbg};
 
-use crate::draw::{BLUE, GREY, ORANGE, Panel, Point, picture};
+use crate::draw::{BLUE, GREEN, GREY, ORANGE, Panel, Point, picture};
+use crate::references::double_pendulum;
 use crate::run::{run, states};
 
 mbg! {
@@ -36,10 +38,16 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let found = run(&pendulum, &(), start, 10.0, 4000)?;
     let rods = |place: usize| ends(&found[place].output.as_slice()[..2]);
     let way = (0..found.len()).map(|place| rods(place)[2]).collect();
+    // The reference counts its angles from the vertical.
+    let known = double_pendulum::REFERENCE
+        .iter()
+        .map(|(_, [first, second, ..])| ends(&[first - FRAC_PI_2, second - FRAC_PI_2])[2]);
+    let known = known.collect();
     let plane = Panel::plane("Way of the tip", "x in m", "y in m")
         .stroke(BLUE, 0.75, 1, way)
         .line("at the start", GREY, rods(0))
-        .line("after 10 s", ORANGE, rods(4000));
+        .line("after 10 s", ORANGE, rods(4000))
+        .dots("reference", GREEN, known);
 
     let mut away = Panel::new(
         "Distance to a neighbour",

@@ -1,11 +1,12 @@
 //! Pictures as SVG: panels side by side, each with its title, a legend that covers nothing, and axes with units.
 
-use std::error::Error;
 use std::path::Path;
 
-use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+pub(crate) use crate::curve::Point;
+use crate::curve::{Area, Chart, Curve, Failure, SCALE, Style};
 
 /// Colours that stay apart for colour-blind readers and in grey; the first three are those of the navigation system.
 pub(crate) const BLUE: RGBColor = RGBColor(0, 90, 160);
@@ -13,6 +14,15 @@ pub(crate) const ORANGE: RGBColor = RGBColor(200, 80, 0);
 pub(crate) const GREEN: RGBColor = RGBColor(30, 130, 70);
 pub(crate) const PURPLE: RGBColor = RGBColor(130, 60, 150);
 pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
+
+const TEXT: RGBColor = RGBColor(40, 40, 40);
+const FAINT: RGBColor = RGBColor(228, 228, 228);
+/// Of a picture, in pixels.
+const WIDTH: u32 = 960;
+/// Left of titles.
+const INDENT: i32 = 16;
+/// From one row of a legend to the next.
+const ROW: i32 = 20;
 
 /// A colour between two: at 0 the first, at 1 the second.
 pub(crate) fn shade(first: RGBColor, second: RGBColor, part: f64) -> RGBColor {
@@ -24,31 +34,14 @@ pub(crate) fn shade(first: RGBColor, second: RGBColor, part: f64) -> RGBColor {
     )
 }
 
-const TEXT: RGBColor = RGBColor(40, 40, 40);
-const FAINT: RGBColor = RGBColor(228, 228, 228);
-const WIDTH: u32 = 960;
-const TITLE: u32 = 40;
-const ROW: i32 = 20;
-
-/// A point of a panel.
-pub(crate) type Point = (f64, f64);
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-type Failure = Box<dyn Error>;
-
-#[derive(Clone, Copy)]
-enum Style {
-    Line(u32),
-    Dashes,
-    Dots(u32),
+/// Letters of this height in pixels.
+fn letters<'a>(height: u32) -> TextStyle<'a> {
+    ("sans-serif", SCALE * height).into_font().color(&TEXT)
 }
 
-struct Curve {
-    /// What the legend says; nothing for a curve that it leaves out.
-    name: String,
-    color: RGBAColor,
-    style: Style,
-    points: Vec<Point>,
+fn write(area: &Area, text: &str, [x, y]: [i32; 2], height: u32) -> Result<(), Failure> {
+    let at = (SCALE as i32 * x, SCALE as i32 * y);
+    Ok(area.draw(&Text::new(text.to_owned(), at, letters(height)))?)
 }
 
 /// One diagram of a picture.
@@ -60,8 +53,8 @@ pub(crate) struct Panel {
     equal: bool,
     /// Its part of the width of the picture.
     weight: f64,
-    range: Option<[Point; 2]>,
     curves: Vec<Curve>,
+    labels: Vec<(String, Point)>,
 }
 
 impl Panel {
@@ -72,8 +65,8 @@ impl Panel {
             axes: Some([along.to_owned(), upwards.to_owned()]),
             equal: false,
             weight: 1.0,
-            range: None,
             curves: Vec::new(),
+            labels: Vec::new(),
         }
     }
 
@@ -98,14 +91,6 @@ impl Panel {
         Self { weight, ..self }
     }
 
-    /// Shows these values along and upwards, whatever the curves need.
-    pub(crate) fn range(self, along: Point, upwards: Point) -> Self {
-        Self {
-            range: Some([along, upwards]),
-            ..self
-        }
-    }
-
     /// A line with its name.
     pub(crate) fn line(self, name: &str, color: RGBColor, points: Vec<Point>) -> Self {
         self.curve(name, color.to_rgba(), Style::Line(2), points)
@@ -116,7 +101,7 @@ impl Panel {
         self.curve(name, color.to_rgba(), Style::Dashes, points)
     }
 
-    /// A line without a name, of a width and an opacity.
+    /// A line without a name, of an opacity and a width.
     pub(crate) fn stroke(
         self,
         color: RGBColor,
@@ -128,8 +113,14 @@ impl Panel {
     }
 
     /// Filled circles.
-    pub(crate) fn dots(self, name: &str, color: RGBColor, radius: u32, points: Vec<Point>) -> Self {
-        self.curve(name, color.to_rgba(), Style::Dots(radius), points)
+    pub(crate) fn dots(self, name: &str, color: RGBColor, points: Vec<Point>) -> Self {
+        self.curve(name, color.to_rgba(), Style::Dots(4), points)
+    }
+
+    /// A word at a point.
+    pub(crate) fn label(mut self, text: &str, at: Point) -> Self {
+        self.labels.push((text.to_owned(), at));
+        self
     }
 
     fn curve(mut self, name: &str, color: RGBAColor, style: Style, points: Vec<Point>) -> Self {
@@ -143,89 +134,99 @@ impl Panel {
         self
     }
 
-    fn draw(&self, area: &Area) -> Result<(), Failure> {
-        let (width, _) = area.dim_in_pixel();
-        let font = ("sans-serif", 15).into_font().color(&TEXT);
-        area.draw(&Text::new(self.title.clone(), (16, 4), font))?;
-        let below = self.legend(area, width as i32 - 16)?;
-        let (_, area) = area.split_vertically(below);
-        let [label_x, label_y] = if self.axes.is_some() {
+    /// Where the legend shows each curve that it names, in an area of a width in pixels.
+    fn legend(&self, width: i32) -> Vec<(&Curve, [i32; 2])> {
+        let (mut x, mut y) = (INDENT, 34);
+        let mut placed = Vec::new();
+        for curve in self.curves.iter().filter(|curve| !curve.name.is_empty()) {
+            let wide = 44 + 7 * curve.name.chars().count() as i32;
+            if x + wide > width && x > INDENT {
+                (x, y) = (INDENT, y + ROW);
+            }
+            placed.push((curve, [x, y]));
+            x += wide;
+        }
+        placed
+    }
+
+    /// Draws it with its axes from so many pixels below its top.
+    fn draw(&self, area: &Area, below: i32) -> Result<(), Failure> {
+        write(area, &self.title, [INDENT, 4], 15)?;
+        for (curve, [x, y]) in self.legend(shown_width(area)) {
+            curve.sample(area, x, y)?;
+            write(area, &curve.name, [x + 30, y - 7], 13)?;
+        }
+        let (_, area) = area.split_vertically(SCALE as i32 * below);
+        let labels = if self.axes.is_some() {
             [40, 62]
         } else {
             [8, 8]
         };
         let (width, height) = area.dim_in_pixel();
-        let inside = [width - label_y - 24, height - label_x - 16].map(f64::from);
-        let [x, y] = self.shown(inside);
+        let inside = [
+            f64::from(width - SCALE * (labels[1] + 24)),
+            f64::from(height - SCALE * (labels[0] + 16)),
+        ];
+        let [x, y] = self.ranges(inside);
         let mut chart = ChartBuilder::on(&area)
-            .margin_top(8)
-            .margin_bottom(8)
-            .margin_left(4)
-            .margin_right(20)
-            .x_label_area_size(label_x)
-            .y_label_area_size(label_y)
+            .margin_top(SCALE * 8)
+            .margin_bottom(SCALE * 8)
+            .margin_left(SCALE * 4)
+            .margin_right(SCALE * 20)
+            .x_label_area_size(SCALE * labels[0])
+            .y_label_area_size(SCALE * labels[1])
             .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
-        if let Some([along, upwards]) = &self.axes {
-            let size = [width, height].map(|side| (side / 80).clamp(3, 8) as usize);
-            chart
-                .configure_mesh()
-                .x_desc(along)
-                .y_desc(upwards)
-                .x_labels(size[0])
-                .y_labels(size[1] + 2)
-                .bold_line_style(FAINT)
-                .light_line_style(WHITE)
-                .axis_style(GREY)
-                .label_style(("sans-serif", 12).into_font().color(&TEXT))
-                .axis_desc_style(("sans-serif", 14).into_font().color(&TEXT))
-                .draw()?;
+        self.mesh(&mut chart, [width, height].map(|side| side / SCALE))?;
+        let unit = [inside[0] / (x.1 - x.0), inside[1] / (y.1 - y.0)];
+        for curve in &self.curves {
+            curve.draw(&mut chart, unit)?;
         }
-        self.curves
-            .iter()
-            .try_for_each(|curve| curve.draw(&mut chart))
+        let style = letters(14).pos(Pos::new(HPos::Center, VPos::Center));
+        let words = self.labels.iter();
+        chart.draw_series(words.map(|(text, at)| Text::new(text.clone(), *at, style.clone())))?;
+        Ok(())
     }
 
-    /// Draws the legend in as many rows as it takes, and tells where it ends.
-    fn legend(&self, area: &Area, width: i32) -> Result<i32, Failure> {
-        let (mut x, mut y) = (16, 34);
-        let font = ("sans-serif", 13).into_font().color(&TEXT);
-        for curve in self.curves.iter().filter(|curve| !curve.name.is_empty()) {
-            let wide = 44 + 7 * curve.name.chars().count() as i32;
-            if x + wide > width && x > 16 {
-                (x, y) = (16, y + ROW);
-            }
-            curve.sample(area, x, y)?;
-            area.draw(&Text::new(
-                curve.name.clone(),
-                (x + 30, y - 7),
-                font.clone(),
-            ))?;
-            x += wide;
-        }
-        Ok(if x > 16 { y + 12 } else { 24 })
+    fn mesh(&self, chart: &mut Chart, [width, height]: [u32; 2]) -> Result<(), Failure> {
+        let Some([along, upwards]) = &self.axes else {
+            return Ok(());
+        };
+        // What is left of a step by rounding is no digit.
+        let digits = |value: &f64| format!("{}", (value * 1e6).round() / 1e6 + 0.0);
+        chart
+            .configure_mesh()
+            .x_desc(along)
+            .y_desc(upwards)
+            .x_labels((width / 80).clamp(3, 8) as usize)
+            .y_labels((height / 60).clamp(4, 8) as usize)
+            .x_label_formatter(&digits)
+            .y_label_formatter(&digits)
+            .bold_line_style(FAINT.stroke_width(SCALE))
+            .light_line_style(WHITE.mix(0.0))
+            .axis_style(GREY.stroke_width(SCALE))
+            .set_all_tick_mark_size(SCALE * 4)
+            .label_style(letters(12))
+            .axis_desc_style(letters(14))
+            .draw()?;
+        Ok(())
     }
 
-    /// The ranges of both axes in an area of this size in pixels.
-    fn shown(&self, inside: [f64; 2]) -> [Point; 2] {
+    /// The ranges of both axes in an area of this size.
+    fn ranges(&self, inside: [f64; 2]) -> [Point; 2] {
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
-        let extent = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            })
-        };
         let wider = |(low, high): Point, by: f64| (low - by, high + by);
-        let margin = |range: Point, part: f64| {
-            let length = (range.1 - range.0).max(f64::MIN_POSITIVE);
-            wider(range, part * length)
+        let extent = |values: &mut dyn Iterator<Item = f64>, part: f64| {
+            let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+            let all = values.fold(nothing, |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+            wider(all, part * (all.1 - all.0).max(f64::MIN_POSITIVE))
         };
-        let [x, y] = self.range.unwrap_or_else(|| {
-            let along = extent(&mut points().map(|point| point.0));
-            let upwards = extent(&mut points().map(|point| point.1));
-            [
-                margin(along, if self.equal { 0.05 } else { 0.0 }),
-                margin(upwards, 0.05),
-            ]
-        });
+        let x = extent(
+            &mut points().map(|point| point.0),
+            if self.equal { 0.05 } else { 0.0 },
+        );
+        let y = extent(&mut points().map(|point| point.1), 0.05);
         if !self.equal {
             return [x, y];
         }
@@ -236,43 +237,9 @@ impl Panel {
     }
 }
 
-impl Curve {
-    fn draw(&self, chart: &mut Chart) -> Result<(), Failure> {
-        let points = self.points.iter().copied();
-        match self.style {
-            Style::Line(width) => {
-                chart.draw_series(LineSeries::new(points, self.color.stroke_width(width)))?;
-            }
-            Style::Dashes => {
-                let style = self.color.stroke_width(2);
-                chart.draw_series(DashedLineSeries::new(points, 6, 5, style))?;
-            }
-            Style::Dots(radius) => {
-                let dot = |at| Circle::new(at, radius, self.color.filled());
-                chart.draw_series(points.map(dot))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// What the legend shows of it, 24 pixels long.
-    fn sample(&self, area: &Area, x: i32, y: i32) -> Result<(), Failure> {
-        let line = |from: i32, to: i32, width| {
-            PathElement::new(vec![(from, y), (to, y)], self.color.stroke_width(width))
-        };
-        match self.style {
-            Style::Line(width) => area.draw(&line(x, x + 24, width))?,
-            Style::Dashes => {
-                for start in [0, 9, 18] {
-                    area.draw(&line(x + start, x + start + 6, 2))?;
-                }
-            }
-            Style::Dots(radius) => {
-                area.draw(&Circle::new((x + 12, y), radius, self.color.filled()))?;
-            }
-        }
-        Ok(())
-    }
+/// How wide a legend may be, in pixels of the picture.
+fn shown_width(area: &Area) -> i32 {
+    (area.dim_in_pixel().0 / SCALE) as i32 - INDENT
 }
 
 /// Writes a picture of this height in pixels.
@@ -285,18 +252,34 @@ pub(crate) fn picture(
     height: u32,
     panels: &[Panel],
 ) -> Result<(), Failure> {
-    let root = SVGBackend::new(path, (WIDTH, height)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let font = ("sans-serif", 19).into_font().color(&TEXT);
-    root.draw(&Text::new(title.to_owned(), (16, 12), font))?;
-    let (_, mut rest) = root.split_vertically(TITLE);
-    let whole: f64 = panels.iter().map(|panel| panel.weight).sum();
-    for panel in panels {
-        let wide = f64::from(WIDTH) * panel.weight / whole;
-        let (area, next) = rest.split_horizontally(wide as i32);
-        panel.draw(&area)?;
-        rest = next;
+    let large = (SCALE * WIDTH, SCALE * height);
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, large).into_drawing_area();
+        root.fill(&WHITE)?;
+        write(&root, title, [INDENT, 12], 19)?;
+        let (_, mut rest) = root.split_vertically(SCALE * 40);
+        let whole: f64 = panels.iter().map(|panel| panel.weight).sum();
+        let mut areas = Vec::new();
+        for panel in panels {
+            let wide = f64::from(large.0) * panel.weight / whole;
+            let (area, next) = rest.split_horizontally(wide as i32);
+            areas.push(area);
+            rest = next;
+        }
+        // All diagrams begin below the longest legend.
+        let legends = panels.iter().zip(&areas).flat_map(|(panel, area)| {
+            let placed = panel.legend(shown_width(area));
+            placed.into_iter().map(|(_, [_, y])| y + 12)
+        });
+        let below = legends.max().unwrap_or(24);
+        for (panel, area) in panels.iter().zip(&areas) {
+            panel.draw(area, below)?;
+        }
+        root.present()?;
     }
-    root.present()?;
+    let size = |(width, height)| format!("width=\"{width}\" height=\"{height}\"");
+    let text = text.replacen(&size(large), &size((WIDTH, height)), 1);
+    std::fs::write(path, text)?;
     Ok(())
 }

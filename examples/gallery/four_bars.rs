@@ -5,7 +5,7 @@ use std::path::Path;
 
 use mbg_runtime::{System, mbg};
 
-use crate::draw::{BLUE, GREEN, GREY, ORANGE, Panel, Point, picture, shade};
+use crate::draw::{BLUE, GREY, ORANGE, Panel, Point, picture, shade};
 use crate::run::{over, run, states};
 
 mbg! {
@@ -58,7 +58,6 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .dots(
             "on the ground",
             GREY,
-            4,
             vec![(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)],
         );
 
@@ -73,12 +72,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .collect();
     let rate = Panel::new("The cranks", "time in s", "rate in rad/s")
         .line("cranks", BLUE, over(&found, |it| it.state[rates[0]]))
-        .line(
-            "first coupler",
-            GREEN,
-            over(&found, |it| it.state[rates[0]] + it.state[rates[3]]),
-        )
-        .dots("all links on one line", ORANGE, 4, flat);
+        .dots("all links on one line", ORANGE, flat);
     picture(
         path,
         "Two four-bars in a row pass their singular position",

@@ -1,60 +1,54 @@
-//! A navigation system whose gimbals lock, and one with a quaternion, which does not.
+//! A navigation system that comes near gimbal lock: its gimbals whirl, a quaternion notices nothing.
 
 use std::error::Error;
 use std::path::Path;
 
-use mbg_runtime::{DormandPrince, Pulse, System, mbg};
+use mbg_runtime::{Pulse, System, mbg};
 use nalgebra::Vector3;
 
-use crate::draw::{BLUE, GREY, ORANGE, Panel, picture};
+use crate::draw::{BLUE, GREEN, ORANGE, PURPLE, Panel, picture};
 use crate::run::{over, run};
 
 mbg! { include "examples/gallery/navigation.mbg"; }
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let gust = Pulse {
-        amplitude: Vector3::new(0.0, 1e4, 0.0),
+        amplitude: Vector3::new(300.0, 1e4, 150.0),
         start: 1.0,
         end: 2.0,
     };
     let quaternion = NavigationQuaternion::<f64>::new(NavigationQuaternionParameters::default())?;
-    let found = run(&quaternion, &gust, quaternion.initial_state(), 20.0, 2000)?;
+    let passing = run(&quaternion, &gust, quaternion.initial_state(), 10.0, 4000)?;
     let gimbals = NavigationAngles::<f64>::new(NavigationAnglesParameters::default())?;
-    let (mut pitch, mut conditioning) = (Vec::new(), Vec::new());
-    let stopped = DormandPrince::new(1e-10, 1e-13).integrate(
-        &gimbals,
-        &gust,
-        0.0,
-        20.0,
-        gimbals.initial_state(),
-        |step| {
-            let (t, u) = (step.end(), Vector3::zeros());
-            let output = gimbals.output(t, step.state(), &u, &mut ());
-            pitch.push((t, -output[1].to_degrees()));
-            conditioning.push((t, gimbals.conditioning(t, step.state(), &u)[0].abs()));
-        },
-    );
-    println!("{stopped:?} {:?}", conditioning.last());
-    let last = |points: &[(f64, f64)]| points.last().copied().into_iter().collect::<Vec<_>>();
-    let end = (last(&pitch), last(&conditioning));
-    let turned = over(&found, |it| {
-        // The platform stays; what turns against it is the fuselage.
-        let half = (-it.output[5]).atan2(it.output[3]);
-        2.0 * half.to_degrees()
+    let whirling = run(&gimbals, &gust, gimbals.initial_state(), 10.0, 4000)?;
+
+    let angle = |axis: usize| over(&whirling, move |it| it.output[axis].to_degrees());
+    let angles = Panel::new("Gimbals", "time in s", "angle in °")
+        .line("outer", BLUE, angle(0))
+        .line("middle", ORANGE, angle(1))
+        .line("inner", GREEN, angle(2));
+    let part = |part: usize| over(&passing, move |it| it.output[3 + part]);
+    let parts = Panel::new("Quaternion", "time in s", "part")
+        .line("w", PURPLE, part(0))
+        .line("x", BLUE, part(1))
+        .line("y", ORANGE, part(2))
+        .line("z", GREEN, part(3));
+    let still = Vector3::zeros();
+    let conditioning = over(&whirling, |it| {
+        gimbals.conditioning(it.time, &it.state, &still)[0]
+            .abs()
+            .log10()
     });
-    let attitudes = Panel::new("Pitch", "time in s", "angle in °")
-        .line("with a quaternion", BLUE, turned)
-        .line("with three gimbals", ORANGE, pitch)
-        .dots("stopped", GREY, 5, end.0);
-    let cosine = over(&found, |it| it.output[4 - 3].cos().abs());
-    let blocks = Panel::new("Conditioning of the gimbals", "time in s", "determinant")
-        .dashes("at the quaternion's attitude", BLUE, cosine)
-        .line("of the run with gimbals", ORANGE, conditioning)
-        .dots("stopped", GREY, 5, end.1);
+    let block = Panel::new(
+        "Conditioning of the gimbals",
+        "time in s",
+        "log₁₀ of |cos(middle)|",
+    )
+    .line("what is divided by", ORANGE, conditioning);
     picture(
         path,
-        "A rotorcraft pitches over: the gimbals lock, the quaternion passes",
-        400,
-        &[attitudes, blocks],
+        "A rotorcraft pitches over: gimbals come near their lock, the quaternion has none",
+        380,
+        &[angles, parts, block],
     )
 }

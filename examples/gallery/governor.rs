@@ -6,23 +6,27 @@ use std::path::Path;
 
 use mbg_runtime::{System, mbg};
 
-use crate::draw::{BLUE, ORANGE, Panel, picture};
+use crate::draw::{BLUE, GREY, ORANGE, Panel, picture};
+use crate::references::governor;
 use crate::run::{over, run, states};
 
 mbg! { include "tests/models/mechanisms/governor.mbg"; }
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
-    let governor = Governor::<f64>::new(GovernorParameters::default())?;
-    let rate = states(&governor, "bearing.rate.f")[0];
-    let travel = states(&governor, "slide.travel")[0];
-    let mut start = governor.initial_state();
+    let model = Governor::<f64>::new(GovernorParameters::default())?;
+    let rate = states(&model, "bearing.rate.f")[0];
+    let travel = states(&model, "slide.travel")[0];
+    let mut start = model.initial_state();
     start[rate] = TAU;
-    let found = run(&governor, &(), start, 5.0, 2000)?;
+    let found = run(&model, &(), start, 5.0, 2000)?;
     let slider = Panel::new("Slider", "time in s", "height in m").line(
         "height",
         BLUE,
         over(&found, |it| it.state[travel]),
     );
+    let known = (0..=20).map(|k| 0.25 * f64::from(k));
+    let known = known.map(|t| (t, governor::motion(governor::START, (0.0, t)).0[1]));
+    let slider = slider.dots("by hand", GREY, known.collect());
     let shaft = Panel::new("Shaft", "time in s", "rate in rad/s").line(
         "rate",
         ORANGE,

@@ -6,6 +6,7 @@ mod amplifier;
 mod arm;
 mod bricard;
 mod chain;
+mod curve;
 mod double_pendulum;
 mod draw;
 mod four_bars;
@@ -19,6 +20,8 @@ mod motor;
 mod orientation;
 mod quarter_car;
 mod rectifier;
+#[path = "../../tests/references/mod.rs"]
+mod references;
 mod run;
 mod sleeping_top;
 mod slider_crank;

@@ -22,7 +22,6 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .dots(
             "matrix exponential",
             GREY,
-            4,
             shown.map(|it| (it.time, it.output[0])).collect(),
         );
     let speed = Panel::new("Shaft", "time in s", "speed in rad/s")

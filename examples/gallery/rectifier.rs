@@ -7,20 +7,22 @@ use std::path::Path;
 use mbg_runtime::{System, mbg};
 
 use crate::draw::{BLUE, GREY, ORANGE, Panel, picture};
+use crate::references::rectifier;
 use crate::run::{over, run};
 
 mbg! { include "examples/gallery/rectifier.mbg"; }
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
-    let rectifier = Rectifier::<f64>::new(RectifierParameters::default())?;
-    let found = run(&rectifier, &(), rectifier.initial_state(), 0.06, 3000)?;
+    let model = Rectifier::<f64>::new(RectifierParameters::default())?;
+    let found = run(&model, &(), model.initial_state(), 0.06, 3000)?;
     let voltages = Panel::new("Voltages", "time in ms", "voltage in V")
         .line(
             "source",
             GREY,
             milli(over(&found, |it| 10.0 * (100.0 * PI * it.time).sin())),
         )
-        .line("capacitor", BLUE, milli(over(&found, |it| it.output[0])));
+        .line("capacitor", BLUE, milli(over(&found, |it| it.output[0])))
+        .dots("reference", ORANGE, milli(rectifier::REFERENCE.to_vec()));
     let current = Panel::new("Current", "time in ms", "current in mA").line(
         "diode",
         ORANGE,

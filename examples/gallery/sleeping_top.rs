@@ -32,7 +32,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         falls = falls.line(&format!("{rate} rad/s"), color, points);
     }
     let known = SLEEPING.iter().map(|row| (row.0, tilt(&row.2))).collect();
-    falls = falls.dots("elliptic functions", GREY, 4, known);
+    falls = falls.dots("elliptic functions", GREY, known);
 
     let mut largest = Vec::new();
     for step in 0..=80 {

@@ -6,6 +6,7 @@ use std::path::Path;
 use mbg_runtime::{System, mbg};
 
 use crate::draw::{BLUE, GREY, ORANGE, Panel, picture, shade};
+use crate::references::slider_crank;
 use crate::run::{over, run, states};
 use crate::space::{Place, View};
 
@@ -31,12 +32,12 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let found = run(&mechanism, &(), start, 5.0, 5000)?;
     let point = mechanism_point(&mechanism);
 
-    let view = View::from(-50.0, 25.0);
-    let mut space = Panel::view("Every 0.02 s of the first second");
-    for shot in found.iter().take(1001).step_by(20) {
+    let view = View::from(-28.0, 22.0);
+    let mut space = Panel::view("Every 0.03 s of the first 0.57 s");
+    for shot in found.iter().take(571).step_by(30) {
         let [foot, tip] = crank(shot.output[point]);
         let slider = [shot.output[point + 1], 0.0, 0.0];
-        let color = shade(GREY, BLUE, shot.time);
+        let color = shade(GREY, BLUE, shot.time / 0.57);
         space = space.stroke(color, 0.55, 1, view.path(&[foot, tip, slider]));
     }
     let tips: Vec<Place> = found.iter().map(|it| crank(it.output[point])[1]).collect();
@@ -55,6 +56,9 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         BLUE,
         travel.into_iter().map(|(t, x)| (t, 1e3 * x)).collect(),
     );
+    let known = (0..=20).map(|k| 0.25 * f64::from(k));
+    let known = known.map(|t| (t, 1e3 * slider_crank::slider(slider_crank::angle(t))));
+    let slide = slide.dots("by hand, one coordinate", GREY, known.collect());
     picture(
         path,
         "A crank in space drives a slider",

@@ -14,7 +14,7 @@ mbg! { include "examples/gallery/top.mbg"; }
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let top = TopQuaternion::<f64>::new(TopQuaternionParameters::default())?;
-    let view = View::from(-60.0, 40.0);
+    let view = View::from(-60.0, 52.0);
     let mut panels = Vec::new();
     for (title, precession) in [
         ("Let go: cusps", 0.0),
@@ -38,7 +38,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
                 .filter(|row| row.0 < 9.0)
                 .map(|row| axis(&row.2))
                 .collect();
-            panel = panel.dots("elliptic functions", ORANGE, 4, view.path(&known));
+            panel = panel.dots("elliptic functions", ORANGE, view.path(&known));
         }
         panels.push(panel);
     }

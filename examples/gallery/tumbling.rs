@@ -6,7 +6,7 @@ use std::path::Path;
 use mbg_runtime::{System, mbg};
 use nalgebra::Vector3;
 
-use crate::draw::{BLUE, GREEN, ORANGE, Panel, picture};
+use crate::draw::{BLUE, GREEN, GREY, ORANGE, Panel, picture};
 use crate::run::{over, run};
 use crate::space::{Place, View, on_sphere, sphere};
 
@@ -21,7 +21,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .line("y, middle", ORANGE, rate(1))
         .line("z, greatest", GREEN, rate(2));
 
-    let view = View::from(35.0, 22.0);
+    let view = View::from(58.0, 24.0);
     let title = "Angular momentum in axes of the body";
     let mut polhodes = sphere(Panel::view(title).weight(0.75), view);
     let momentum = 10.0;
@@ -47,6 +47,17 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .map(|it| on_unit(it.state.as_slice()))
         .collect();
     polhodes = on_sphere(polhodes, view, ORANGE, 2, 1.0, &way);
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let mut end = [0.0; 3];
+        end[axis] = 1.0;
+        let mut word = end;
+        (end[axis], word[axis]) = (1.2, 1.3);
+        let mut start = end;
+        start[axis] = 1.0;
+        polhodes = polhodes
+            .stroke(GREY, 1.0, 2, view.path(&[start, end]))
+            .label(name, view.seen(word));
+    }
     picture(
         path,
         "A body that turns about its middle axis flips over, again and again",

@@ -47,12 +47,14 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|it| places(it.output.as_slice())[4])
         .collect();
-    space = space.line("hand, 3 s", ORANGE, view.path(&way)).stroke(
-        GREY,
-        1.0,
-        3,
-        view.path(&places(found[0].output.as_slice())),
-    );
+    let foot = (0..=60).map(|k| {
+        let (sine, cosine) = (f64::from(k) * 6.0).to_radians().sin_cos();
+        [0.1 * cosine, 0.1 * sine, 0.0]
+    });
+    space = space
+        .stroke(GREY, 1.0, 2, view.path(&foot.collect::<Vec<Place>>()))
+        .line("hand, 3 s", ORANGE, view.path(&way))
+        .stroke(GREY, 1.0, 3, view.path(&places(found[0].output.as_slice())));
     let coordinate = |axis: usize| over(&found, move |it| it.output[9 + axis]);
     let hand = Panel::new("Hand", "time in s", "place in m")
         .line("x", BLUE, coordinate(0))

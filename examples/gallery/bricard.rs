@@ -69,7 +69,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .line("x", BLUE, coordinate(0))
         .line("y", ORANGE, coordinate(1))
         .line("z", GREEN, coordinate(2))
-        .dots("by hand, one coordinate", GREY, known);
+        .dots("reduced by hand", GREY, known);
     picture(
         path,
         "Bricard's mechanism moves though one of its constraints is redundant",

@@ -198,7 +198,7 @@ impl Panel {
             .x_desc(along)
             .y_desc(upwards)
             .x_labels((width / 80).clamp(3, 8) as usize)
-            .y_labels((height / 60).clamp(4, 8) as usize)
+            .y_labels((height / 45).clamp(4, 8) as usize)
             .x_label_formatter(&digits)
             .y_label_formatter(&digits)
             .bold_line_style(FAINT.stroke_width(SCALE))

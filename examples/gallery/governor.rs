@@ -26,7 +26,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     );
     let known = (0..=20).map(|k| 0.25 * f64::from(k));
     let known = known.map(|t| (t, governor::motion(governor::START, (0.0, t)).0[1]));
-    let slider = slider.dots("by hand", GREY, known.collect());
+    let slider = slider.dots("reduced by hand", GREY, known.collect());
     let shaft = Panel::new("Shaft", "time in s", "rate in rad/s").line(
         "rate",
         ORANGE,

@@ -30,8 +30,8 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     }
     let inside = |it: &crate::run::Instant<9, 13>| 4.0 * (it.output[2] - it.output[3]);
     let flow = Panel::new("Heat flow", "time in s", "heat flow in W")
-        .line("in", ORANGE, over(&found[1..], inside))
-        .line("out", BLUE, over(&found[1..], |it| it.output[1]));
+        .line("in", ORANGE, over(&found, inside))
+        .line("out", BLUE, over(&found, |it| it.output[1]));
     picture(
         path,
         "A wall of ten layers, heated from one side",

@@ -27,6 +27,7 @@ mod sleeping_top;
 mod slider_crank;
 mod space;
 mod stiff_pin;
+mod through_lock;
 mod top;
 mod tumbling;
 
@@ -36,8 +37,9 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 18] = [
+const SCENES: [(&str, Draw); 19] = [
     ("gimbal_lock", gimbal_lock::draw),
+    ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
     ("top", top::draw),
     ("sleeping_top", sleeping_top::draw),

@@ -58,7 +58,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     );
     let known = (0..=20).map(|k| 0.25 * f64::from(k));
     let known = known.map(|t| (t, 1e3 * slider_crank::slider(slider_crank::angle(t))));
-    let slide = slide.dots("by hand, one coordinate", GREY, known.collect());
+    let slide = slide.dots("reduced by hand", GREY, known.collect());
     picture(
         path,
         "A crank in space drives a slider",

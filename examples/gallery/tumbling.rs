@@ -37,7 +37,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
             start
                 .fixed_rows_mut::<3>(0)
                 .copy_from(&(momentum * direction));
-            let way = run(&body, &(), start, 12.0, 1200)?;
+            let way = run(&body, &(), start, 7.0, 700)?;
             let way: Vec<Place> = way.iter().map(|it| on_unit(it.state.as_slice())).collect();
             polhodes = on_sphere(polhodes, view, color, 1, 0.8, &way);
         }

@@ -3,6 +3,7 @@
 //! | to | look at |
 //! |---|---|
 //! | write a model | the [`language`] |
+//! | see what models do | `docs/gallery.md` of the repository, a picture for each scene of its example `gallery` |
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Rk4`] at a fixed step, [`DormandPrince`] at a tolerance; [`Input`] |
 //! | compute with other numbers | [`Real`], [`Dual`] |

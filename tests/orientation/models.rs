@@ -3,19 +3,9 @@
 use mbg_runtime::mbg;
 
 mbg! {
+    include "examples/gallery/flying.mbg";
     include "examples/gallery/top.mbg";
     include "examples/gallery/navigation.mbg";
-
-    /// A body that nothing holds.
-    component Flying(port frame[6]) {
-        param orientation: angles | quaternion | matrix = angles;
-        param inertia: kg*m^2;
-        1 ground[6] { Sf held { flow: 0.0 } }
-        joint: Free { orientation: orientation } (ground, frame);
-        body: Body { mass: 1.0, inertia: inertia } (frame);
-        let quaternion[4] = joint.quaternion;
-        let momentum[3] = joint.turn * body.spin.p;
-    }
 
     /// With a quaternion.
     pub(crate) model FlyingQuaternion {
@@ -59,15 +49,6 @@ mbg! {
         output quaternion[4] = top.quaternion;
         output momentum[2]: N*m*s = top.momentum;
         output potential: J = top.potential;
-    }
-
-    pub(crate) model PulledQuaternion {
-        input torque[3]: N*m;
-        1 frame[6] { }
-        flying: Flying { orientation: quaternion, inertia: diag(1.0, 2.0, 1.5) } (frame);
-        Se pull[3] { effort: torque } -> frame[0..3];
-        output rates[3]: rad/s = frame.f[0..3];
-        output quaternion[4] = flying.quaternion;
     }
 
     pub(crate) model PulledMatrix {

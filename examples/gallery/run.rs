@@ -1,6 +1,6 @@
 //! A model from its start to an end, at equal times.
 
-use mbg_runtime::{DormandPrince, Input, Stopped, System};
+use mbg_runtime::{Adaptive, Dop853, Input, Integrator, Stopped, System};
 use nalgebra::SVector;
 
 use crate::draw::Point;
@@ -12,7 +12,7 @@ pub(crate) struct Instant<const N: usize, const P: usize> {
     pub(crate) output: SVector<f64, P>,
 }
 
-/// Runs with the adaptive pair from a state, at this many times after the start.
+/// Runs with an adaptive method of order 8 from a state, at this many times after the start.
 ///
 /// # Errors
 /// As the stepper.
@@ -30,7 +30,7 @@ where
         .map(|k| end * f64::from(k) / f64::from(count))
         .collect();
     let (mut instants, mut memory) = (Vec::new(), S::Memory::default());
-    DormandPrince::new(1e-10, 1e-13).sample(model, input, 0.0, start, &times, |time, state| {
+    Adaptive::new(Dop853, 1e-10, 1e-13).sample(model, input, 0.0, start, &times, |time, state| {
         let output = model.output(time, state, &input.at(time), &mut memory);
         instants.push(Instant {
             time,

@@ -1,6 +1,6 @@
 //! Gimbals without mass as the limit of gimbals with it.
 
-use mbg_runtime::{DormandPrince, System, mbg};
+use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 use crate::ins::gust;
@@ -44,7 +44,7 @@ fn gimbals_lose_their_effect_with_their_inertia() {
     for (ring, effect) in EFFECTS {
         let model = Heavy::<f64>::new(HeavyParameters { ring }).unwrap();
         let mut last = SVector::zeros();
-        DormandPrince::new(1e-12, 1e-15)
+        Adaptive::new(Dop853, 1e-12, 1e-15)
             .sample(
                 &model,
                 &gust(1.0),

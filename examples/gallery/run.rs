@@ -30,14 +30,21 @@ where
         .map(|k| end * f64::from(k) / f64::from(count))
         .collect();
     let (mut instants, mut memory) = (Vec::new(), S::Memory::default());
-    Adaptive::new(Dop853, 1e-10, 1e-13).sample(model, input, 0.0, start, &times, |time, state| {
-        let output = model.output(time, state, &input.at(time), &mut memory);
-        instants.push(Instant {
-            time,
-            state: *state,
-            output,
-        });
-    })?;
+    Adaptive::new(Dop853, 1e-10, 1e-13).sample(
+        model,
+        input,
+        0.0,
+        start,
+        &times,
+        |time, state| {
+            let output = model.output(time, state, &input.at(time), &mut memory);
+            instants.push(Instant {
+                time,
+                state: *state,
+                output,
+            });
+        },
+    )?;
     Ok(instants)
 }
 

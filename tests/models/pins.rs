@@ -309,7 +309,7 @@ fn a_pendulum_meets_its_elliptic_functions() {
     let model = Simple::new(SimpleParameters::default()).unwrap();
     let times = SIMPLE.map(|row| row.0);
     let (mut rows, mut worst) = (SIMPLE.iter(), 0.0_f64);
-    Adaptive::new(Dop853, 1e-14, 1e-15)
+    Adaptive::new(Dop853, 1e-13, 1e-15)
         .sample(&model, &(), 0.0, model.initial_state(), &times, |t, x| {
             let found = model.output(t, x, &SVector::zeros(), &mut ());
             let expected = SVector::from(rows.next().unwrap().1);
@@ -325,7 +325,7 @@ fn a_rod_on_an_ideal_pin_is_the_limit() {
     let model = RigidPin::new(RigidPinParameters::default()).unwrap();
     let times = SOFT.map(|row| row.0);
     let (mut rows, mut worst) = (RIGID.iter(), 0.0_f64);
-    Adaptive::new(Dop853, 1e-14, 1e-15)
+    Adaptive::new(Dop853, 1e-13, 1e-15)
         .sample(&model, &(), 0.0, model.initial_state(), &times, |t, x| {
             let found = model.output(t, x, &SVector::zeros(), &mut ());
             let [angle, rate] = rows.next().unwrap();
@@ -351,46 +351,22 @@ fn errors(found: &[[f64; 6]], rows: &[(f64, [f64; 6])]) -> [f64; 3] {
 
 #[test]
 fn a_rod_on_a_pin_that_gives_way_meets_the_reference() {
-    let model = StiffPin::new(StiffPinParameters::default()).unwrap();
-    let mut found = Vec::new();
-    let pair = Adaptive::new(Dop853, 1e-10, 1e-14);
-    let times = SOFT.map(|row| row.0);
-    pair.sample(&model, &(), 0.0, model.initial_state(), &times, |_, x| {
-        found.push(shown(&model, x))
-    })
-    .unwrap();
-    let errors = errors(&found, &SOFT);
-    assert!(
-        errors[0] < 1e-9 && errors[1] < 1e-10 && errors[2] < 1e-7,
-        "{errors:?}"
-    );
-}
-
-#[test]
-fn a_hard_pin_meets_the_reference_by_an_implicit_method() {
-    let model = StiffPin::new(StiffPinParameters {
-        stiffness: 1e12,
-        damping: 2e6,
-    })
-    .unwrap();
-    let mut found = Vec::new();
-    let times = HARD.map(|row| row.0);
-    Adaptive::new(Radau5, 1e-11, 1e-18)
-        .sample(&model, &(), 0.0, model.initial_state(), &times, |_, x| {
-            found.push(shown(&model, x));
-        })
-        .unwrap();
-    let errors = errors(&found, &HARD);
-    // The velocity of the pin, 1e-10 m/s, is a difference of velocities of 1 m/s.
-    assert!(
-        errors[0] < 2e-8 && errors[1] < 1e-11 && errors[2] < 1e-4,
-        "{errors:?}"
-    );
-    let apart = found
-        .iter()
-        .zip(RIGID)
-        .map(|(found, rigid)| (found[2] - rigid[0]).abs());
-    assert!(apart.fold(0.0, f64::max) < 3e-10);
+    for (stiffness, damping, rows) in [(1e6, 2e3, &SOFT), (1e12, 2e6, &HARD)] {
+        let model = StiffPin::new(StiffPinParameters { stiffness, damping }).unwrap();
+        let mut found = Vec::new();
+        let times = rows.map(|row| row.0);
+        Adaptive::new(Radau5, 1e-12, 1e-18)
+            .sample(&model, &(), 0.0, model.initial_state(), &times, |_, x| {
+                found.push(shown(&model, x));
+            })
+            .unwrap();
+        let errors = errors(&found, rows);
+        // The velocity of the hard pin, 1e-10 m/s, is a difference of velocities of 1 m/s.
+        assert!(
+            errors[0] < 1e-9 && errors[1] < 1e-11 && errors[2] < 1e-2,
+            "{stiffness}: {errors:?}"
+        );
+    }
 }
 
 #[test]

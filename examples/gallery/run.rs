@@ -30,7 +30,7 @@ where
         .map(|k| end * f64::from(k) / f64::from(count))
         .collect();
     let (mut instants, mut memory) = (Vec::new(), S::Memory::default());
-    Adaptive::new(Dop853, 1e-10, 1e-13).sample(
+    Adaptive::new(Dop853, 1e-12, 1e-15).sample(
         model,
         input,
         0.0,

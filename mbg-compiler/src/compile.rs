@@ -93,6 +93,7 @@ impl Routines {
     pub const CHECKS: usize = 8;
     pub const CLOSED_POSITIONS: usize = 9;
     pub const CLOSED_FLOWS: usize = 10;
+    pub const DERIVATIVE_TIME: usize = 11;
 }
 
 /// Largest product of states and operations of the derivative up to which Jacobians are straight-line code. `rustc` takes
@@ -169,6 +170,7 @@ fn finish(
         checked,
         positions.evaluated(),
         flows.evaluated(),
+        jacobian(&mut pool, &answers.rates, &[Symbol::Time]).entries,
     ];
     share(&mut pool, &requests[Routines::DERIVATIVE]);
     let program = build(&pool, scalars, solution, &answers, &requests);

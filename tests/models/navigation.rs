@@ -66,7 +66,7 @@ fn rk4_meets_the_reference() {
 
 #[test]
 fn the_adaptive_pair_meets_the_reference() {
-    meet_the_reference(Method::DormandPrince(1e-10), 1e-2, 1e-8);
+    meet_the_reference(Method::Dop853(1e-10), 1e-2, 1e-8);
 }
 
 /// The equations by hand, in matrices: Newton and Euler, `α̇ = J⁻¹(C ω_p − ω_f)`, `τ = −J⁻ᵀ e`.

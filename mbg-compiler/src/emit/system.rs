@@ -103,6 +103,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let body = |routine: usize, build: Build| body(compiled, routine, build);
     let initial = body(Routines::INITIAL, &vector);
     let derivative = body(Routines::DERIVATIVE, &vector);
+    let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
     let (derivative_and_jacobian, jacobian_input) = if compiled.unrolled {
         (derivative_and_jacobian(compiled), jacobian_input(compiled))
@@ -152,6 +153,10 @@ fn system(compiled: &Compiled) -> TokenStream {
             #[inline]
             fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
                 #jacobian_input
+            }
+            #[inline]
+            fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> ::mbg_runtime::__private::SVector<T, #n> {
+                #derivative_time
             }
             #[inline]
             fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }

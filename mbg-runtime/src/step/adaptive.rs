@@ -134,23 +134,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             if taken.saturating_add(problem.statistics.rejected) >= self.most {
                 return Err(Stopped::new(t, Cause::TooManySteps));
             }
-            let rest = end - t;
-            let h = control.length.min(self.longest);
-            let last = 1.01 * h >= seen(rest);
-            let span = if last {
-                Span {
-                    start: t,
-                    end,
-                    length: rest,
-                }
-            } else {
-                let length = T::from_f64(h);
-                Span {
-                    start: t,
-                    end: t + length,
-                    length,
-                }
-            };
+            let (span, last) = next_span(t, end, control.length.min(self.longest));
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
                 control.halve(seen(span.length));
@@ -242,6 +226,15 @@ impl<M: Estimating> Adaptive<'_, M> {
             trial
         }
     }
+}
+
+/// A step of this length, or up to the end where that is hardly farther; and whether it is the last.
+fn next_span<T: Real>(start: T, end: T, length: f64) -> (Span<T>, bool) {
+    let rest = end - start;
+    let last = 1.01 * length >= seen(rest);
+    let length = if last { rest } else { T::from_f64(length) };
+    let end = if last { end } else { start + length };
+    (Span { start, end, length }, last)
 }
 
 /// Control of the length of the next step by the errors of this one and of the one before.

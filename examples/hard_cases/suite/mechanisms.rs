@@ -56,10 +56,10 @@ impl Law<4, 0> for DoublePendulum {
 pub(crate) fn double_pendulum() -> Vec<Line> {
     // By a Taylor series in multiple precision.
     let expected = [
-        0.299381026131562774,
-        -3.20468710992297462,
-        -3.82168631111751386,
-        -0.0460647134306678934,
+        0.299_381_026_131_562_8,
+        -3.204_687_109_922_974_6,
+        -3.821_686_311_117_514,
+        -0.046_064_713_430_667_89,
     ];
     let start = SVector::from([FRAC_PI_2, FRAC_PI_2 + 0.1, 0.0, 0.0]);
     let run = |tolerance: f64| {

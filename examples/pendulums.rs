@@ -5,7 +5,7 @@
 
 use std::error::Error;
 
-use mbg_runtime::{DormandPrince, System, mbg};
+use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 mbg! {
@@ -54,8 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     println!("{}", titles.map(|title| format!("{title:>12}")).concat());
     let times: Vec<f64> = (0..=10).map(|k| 0.5 * f64::from(k)).collect();
-    let pair = DormandPrince::new(1e-11, 1e-12);
-    pair.sample(&model, &(), 0.0, model.initial_state(), &times, |t, x| {
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-12);
+    solver.sample(&model, &(), 0.0, model.initial_state(), &times, |t, x| {
         let [cart, tip_x, tip_y, potential] = model.output(t, x, &SVector::zeros(), &mut ()).into();
         // At the start both are zero.
         let drift = model.energy(t, x) + potential;

@@ -1,4 +1,4 @@
-//! Speed against error on the inertial navigation system: RK4 over steps, the adaptive pair over tolerances.
+//! Speed against error on the inertial navigation system: RK4 over steps, adaptive methods over tolerances.
 //!
 //! `cargo run --release --example speed_against_error`
 
@@ -12,7 +12,7 @@ mod reference;
 use std::error::Error;
 use std::time::Instant;
 
-use mbg_runtime::{DormandPrince, Rk4, Statistics, Stopped, System};
+use mbg_runtime::{Adaptive, Dop853, Integrator, Rk4, Statistics, Stopped, System, Tsit5};
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
 use plotters::prelude::*;
@@ -88,22 +88,31 @@ fn main() -> Result<(), Box<dyn Error>> {
             })
         })?);
     }
-    let mut adaptive = Vec::new();
+    let mut tsit5 = Vec::new();
+    let mut dop853 = Vec::new();
     for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-        let pair = DormandPrince::new(tolerance, tolerance * 1e-4);
-        adaptive.push(measure(format!("rtol = {tolerance:e}"), |found| {
-            pair.sample(&model, &gust, 0.0, start, &times, |t, x| {
+        let setting = || format!("rtol = {tolerance:e}");
+        tsit5.push(measure(setting(), |found| {
+            let solver = Adaptive::new(Tsit5, tolerance, tolerance * 1e-4);
+            solver.sample(&model, &gust, 0.0, start, &times, |t, x| {
+                found.push((t, *x))
+            })
+        })?);
+        dop853.push(measure(setting(), |found| {
+            let solver = Adaptive::new(Dop853, tolerance, tolerance * 1e-4);
+            solver.sample(&model, &gust, 0.0, start, &times, |t, x| {
                 found.push((t, *x))
             })
         })?);
     }
+    let series = [("RK4", &fixed), ("Tsit5", &tsit5), ("Dop853", &dop853)];
     println!("gimbal angles of the INS, 0 to 20 s, gust of 0.1 s, median of 31 runs\n");
     println!(
         "{:<10}{:<16}{:>12}{:>14}{:>14}",
         "method", "setting", "error", "evaluations", "time / µs"
     );
-    for (method, points) in [("RK4", &fixed), ("DP 5(4)", &adaptive)] {
-        for point in points {
+    for (method, points) in &series {
+        for point in *points {
             println!(
                 "{method:<10}{:<16}{:>12.1e}{:>14}{:>14.1}",
                 point.setting, point.error, point.evaluations, point.microseconds
@@ -111,7 +120,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     std::fs::create_dir_all("out")?;
-    draw(&[("RK4", &fixed), ("Dormand–Prince 5(4)", &adaptive)])?;
+    draw(&series)?;
     println!("\nwrote out/speed_against_error.svg");
     Ok(())
 }
@@ -143,10 +152,11 @@ fn draw(series: &[(&str, &Vec<Point>)]) -> Result<(), Box<dyn Error>> {
         .y_label_formatter(&|value| format!("{value:.0e}"))
         .light_line_style(WHITE)
         .draw()?;
-    for ((name, points), color) in series
-        .iter()
-        .zip([RGBColor(0, 90, 160), RGBColor(200, 80, 0)])
-    {
+    for ((name, points), color) in series.iter().zip([
+        RGBColor(0, 90, 160),
+        RGBColor(200, 80, 0),
+        RGBColor(0, 130, 90),
+    ]) {
         let line: Vec<(f64, f64)> = points
             .iter()
             .map(|point| (point.microseconds, point.error))

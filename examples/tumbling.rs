@@ -6,7 +6,7 @@
 
 use std::error::Error;
 
-use mbg_runtime::{DormandPrince, System, mbg};
+use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 mbg! {
@@ -41,11 +41,11 @@ mbg! {
 fn main() -> Result<(), Box<dyn Error>> {
     let quaternion = Tumbling::new(TumblingParameters::default())?;
     let matrix = TumblingMatrix::new(TumblingMatrixParameters::default())?;
-    let (pair, nothing) = (DormandPrince::new(1e-13, 1e-18), SVector::from([]));
+    let (solver, nothing) = (Adaptive::new(Dop853, 1e-13, 1e-18), SVector::from([]));
     let times: Vec<f64> = (0..=20).map(|k| 2.0 * f64::from(k)).collect();
 
     let mut axes = Vec::new();
-    pair.sample(&matrix, &(), 0.0, matrix.initial_state(), &times, |t, x| {
+    solver.sample(&matrix, &(), 0.0, matrix.initial_state(), &times, |t, x| {
         axes.push(matrix.output(t, x, &nothing, &mut ()));
     })?;
 
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .fixed_rows::<3>(6)
         .into_owned();
     let mut axes = axes.iter();
-    pair.sample(&quaternion, &(), 0.0, x0, &times, |t, x| {
+    solver.sample(&quaternion, &(), 0.0, x0, &times, |t, x| {
         let output = quaternion.output(t, x, &nothing, &mut ());
         let length = x.fixed_rows::<4>(3).norm() - 1.0;
         let lost = quaternion.energy(t, x) / energy - 1.0;

@@ -8,14 +8,16 @@ mod reference;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use mbg_runtime::{Cause, DormandPrince, Dual, Input, Pulse, Rk4, Smooth, System, Trouble};
+use mbg_runtime::{
+    Adaptive, Cause, Dop853, Dual, Input, Integrator, Pulse, Rk4, Smooth, System, Trouble,
+};
 use nalgebra::{SVector, Vector3};
 
 use models::*;
 use reference::Row;
 
 /// Accurate to rounding, even for rates that begin at 1e-4 rad/s.
-const FINE: DormandPrince = DormandPrince::new(1e-13, 1e-18);
+const FINE: Adaptive<'static, Dop853> = Adaptive::new(Dop853, 1e-13, 1e-18);
 
 macro_rules! build {
     ($($model:ident, $parameters:ident;)*) => {
@@ -404,28 +406,31 @@ where
 {
     let hinged = build! { Hinged, HingedParameters; };
     let (u, times) = (SVector::from([]), [0.0, 0.5, 1.0, 2.0, 5.0]);
-    let pair = DormandPrince::new(1e-12, 1e-12);
+    let solver = Adaptive::new(Dop853, 1e-12, 1e-12);
     let mut angles = Vec::new();
-    pair.sample(&hinged, &(), 0.0, hinged.initial_state(), &times, |t, x| {
-        angles.push(hinged.output(t, x, &u, &mut ())[0]);
-    })
-    .unwrap();
+    solver
+        .sample(&hinged, &(), 0.0, hinged.initial_state(), &times, |t, x| {
+            angles.push(hinged.output(t, x, &u, &mut ())[0]);
+        })
+        .unwrap();
     let (mut angles, mut start, mut worst) = (angles.into_iter(), None, [0.0_f64; 3]);
     let x0 = model.initial_state();
-    pair.integrate(model, &(), 0.0, 5.0, x0, |step| {
-        let (t, x) = (step.end(), step.state());
-        let output = model.output(t, x, &u, &mut S::Memory::default());
-        let energy = model.energy(t, x) + output[4];
-        worst[0] = worst[0].max(output.fixed_rows::<3>(0).amax());
-        worst[1] = worst[1].max((energy - *start.get_or_insert(energy)).abs());
-    })
-    .unwrap();
-    pair.sample(model, &(), 0.0, x0, &times, |t, x| {
-        let angle = model.output(t, x, &u, &mut S::Memory::default())[3];
-        let turns = (angle - angles.next().unwrap()) / (2.0 * PI);
-        worst[2] = worst[2].max((turns - turns.round()).abs());
-    })
-    .unwrap();
+    solver
+        .integrate(model, &(), 0.0, 5.0, x0, |step| {
+            let (t, x) = (step.end(), step.state());
+            let output = model.output(t, x, &u, &mut S::Memory::default());
+            let energy = model.energy(t, x) + output[4];
+            worst[0] = worst[0].max(output.fixed_rows::<3>(0).amax());
+            worst[1] = worst[1].max((energy - *start.get_or_insert(energy)).abs());
+        })
+        .unwrap();
+    solver
+        .sample(model, &(), 0.0, x0, &times, |t, x| {
+            let angle = model.output(t, x, &u, &mut S::Memory::default())[3];
+            let turns = (angle - angles.next().unwrap()) / (2.0 * PI);
+            worst[2] = worst[2].max((turns - turns.round()).abs());
+        })
+        .unwrap();
     worst
 }
 

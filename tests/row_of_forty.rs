@@ -12,6 +12,7 @@ mod references;
 mod task;
 
 use mbg_runtime::{System, mbg};
+use nalgebra::SVector;
 use references::four_bar::{DURATION, RATE, tip};
 use task::{Method, Task, apart, states};
 
@@ -30,14 +31,35 @@ mbg! {
     }
 }
 
-#[test]
-fn forty_loops_pass_their_singular_position() {
+/// The row, and its start.
+fn row() -> (FourBars40, SVector<f64, 162>) {
     let system = FourBars40::new(FourBars40Parameters::default()).unwrap();
-    let meta = FourBars40::<f64>::META;
     let mut start = system.initial_state();
-    for (link, rate) in states(meta, "rate.f").into_iter().enumerate() {
+    let rates = states(FourBars40::<f64>::META, "rate.f");
+    for (link, rate) in rates.into_iter().enumerate() {
         start[rate] = if link <= LOOPS { RATE } else { -RATE };
     }
+    (system, start)
+}
+
+#[test]
+fn its_jacobian_comes_from_dual_numbers() {
+    let (system, start) = row();
+    let derivative = |x: &SVector<f64, 162>| system.derivative(0.0, x, &SVector::zeros(), &mut ());
+    let (value, jacobian) = system.derivative_and_jacobian(0.0, &start, &SVector::zeros(), &mut ());
+    assert_eq!(value, derivative(&start));
+    let along = SVector::<f64, 162>::from_fn(|state, _| (1.3 * state as f64 + 0.4).sin());
+    let difference =
+        (derivative(&(start + along * 1e-6)) - derivative(&(start - along * 1e-6))) / 2e-6;
+    let exact = jacobian * along;
+    let error = (difference - exact).amax() / exact.amax();
+    assert!(error < 1e-6, "{error:e}");
+}
+
+#[test]
+fn forty_loops_pass_their_singular_position() {
+    let (system, start) = row();
+    let meta = FourBars40::<f64>::META;
     let task = Task {
         mechanism: "40 four-bars",
         system,

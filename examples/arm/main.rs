@@ -7,7 +7,7 @@ mod model;
 
 use std::error::Error;
 
-use mbg_runtime::{Constant, DormandPrince, System};
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System};
 use nalgebra::SVector;
 
 use model::{Arm, ArmParameters};
@@ -21,9 +21,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("angles under sine and cosine: {}\n", meta.operations.angles);
     let idle = SVector::<f64, 7>::zeros();
     let times: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
-    let pair = DormandPrince::new(1e-10, 1e-11);
+    let solver = Adaptive::new(Dop853, 1e-10, 1e-11);
     println!("time / s    hand x / m    hand y / m    hand z / m    kinetic energy / J");
-    pair.sample(
+    solver.sample(
         &model,
         &Constant(idle),
         0.0,

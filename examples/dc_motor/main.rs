@@ -7,7 +7,7 @@ mod model;
 use std::error::Error;
 use std::fmt::Display;
 
-use mbg_runtime::{DormandPrince, System};
+use mbg_runtime::{Adaptive, Dop853, Integrator, System};
 use model::{Motor, MotorParameters, REFERENCE, brake, error};
 use nalgebra::SVector;
 
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let times = REFERENCE.map(|instant| instant.time);
     let mut reference = REFERENCE.iter();
-    DormandPrince::new(1e-10, 1e-13).sample(
+    Adaptive::new(Dop853, 1e-10, 1e-13).sample(
         &motor,
         &brake(),
         0.0,

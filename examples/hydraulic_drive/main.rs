@@ -6,7 +6,7 @@ mod model;
 
 use std::error::Error;
 
-use mbg_runtime::{DormandPrince, Pulse, System};
+use mbg_runtime::{Adaptive, Dop853, Integrator, Pulse, System};
 use model::{Drive, DriveParameters};
 use nalgebra::SVector;
 
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let units = ["s", "MPa", "MPa", "MPa", "m", "m/s", "kJ"];
     println!("{}\n{}", row(&columns), row(&units));
-    DormandPrince::new(1e-9, 1e-12).sample(
+    Adaptive::new(Dop853, 1e-9, 1e-12).sample(
         &drive,
         &load(),
         0.0,

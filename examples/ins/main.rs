@@ -26,15 +26,15 @@ usage: cargo run --release --example ins -- [options]
 
   --pulse SECONDS     width of the gust; there is a reference for 0.1 and for 1   (0.1)
   --method NAME       rk4: steps of constant length                               (rk4)
-                      dp54: the adaptive pair of Dormand and Prince
-  --step SECONDS      rk4: length of a step; dp54: time between two samples       (1e-3)
-  --tolerance NUMBER  dp54: relative error of a step                              (1e-10)
+                      dop853: order 8 at a tolerance
+  --step SECONDS      rk4: length of a step; dop853: time between two samples       (1e-3)
+  --tolerance NUMBER  dop853: relative error of a step                              (1e-10)
   --out DIR           where CSV and figures go                                    (out/ins)
   --help              this text
 
 examples:
   cargo run --release --example ins -- --pulse 1 --step 2e-3 --out out/hard
-  cargo run --release --example ins -- --method dp54 --tolerance 1e-8 --step 1e-2";
+  cargo run --release --example ins -- --method dop853 --tolerance 1e-8 --step 1e-2";
 
 struct Options {
     pulse: f64,
@@ -66,8 +66,8 @@ fn options() -> Result<Options, Box<dyn Error>> {
     }
     let method = match (method.as_str(), tolerance) {
         ("rk4", None) => Method::Rk4,
-        ("rk4", Some(_)) => return Err("--tolerance goes with --method dp54".into()),
-        ("dp54", tolerance) => Method::DormandPrince(tolerance.unwrap_or(1e-10)),
+        ("rk4", Some(_)) => return Err("--tolerance goes with --method dop853".into()),
+        ("dop853", tolerance) => Method::Dop853(tolerance.unwrap_or(1e-10)),
         _ => return Err(format!("method `{method}` is not known\n\n{HELP}").into()),
     };
     Ok(Options {
@@ -151,7 +151,7 @@ fn print_errors(options: &Options, proposed: &[Sample], classic: &[Sample]) {
     };
     let method = match options.method {
         Method::Rk4 => format!("rk4, h = {} s", options.step),
-        Method::DormandPrince(tolerance) => format!("dp54, tolerance {tolerance:e}"),
+        Method::Dop853(tolerance) => format!("dop853, tolerance {tolerance:e}"),
     };
     println!("\nlargest error from 0 to 20 s, relative to the largest value; {method}");
     println!("{:<34}{:>12}{:>12}", "quantity", "Fig. 13", "Fig. 12");

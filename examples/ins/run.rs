@@ -1,7 +1,7 @@
 //! Running one architecture and comparing it with the reference.
 
 use mbg_runtime::attitude::{euler_xyz, rotation_from_quaternion};
-use mbg_runtime::{DormandPrince, Input, Rk4, Stopped, System};
+use mbg_runtime::{Adaptive, Dop853, Input, Integrator, Rk4, Stopped, System};
 use nalgebra::{SVector, Vector3, Vector4};
 
 use crate::reference::Instant;
@@ -25,8 +25,8 @@ pub(crate) struct Sample {
 pub(crate) enum Method {
     /// The classical method of Runge and Kutta, one step from sample to sample.
     Rk4,
-    /// The adaptive pair of Dormand and Prince at this relative tolerance, samples interpolated.
-    DormandPrince(f64),
+    /// The adaptive method of order 8 at this relative tolerance, samples interpolated.
+    Dop853(f64),
 }
 
 /// Runs an observed model from rest and keeps what it shows every `step`.
@@ -49,15 +49,15 @@ pub(crate) fn run(
     let start = model.initial_state();
     match method {
         Method::Rk4 => Rk4::fixed(model, wind, 0.0, end, step, start, observer)?,
-        Method::DormandPrince(tolerance) => {
+        Method::Dop853(tolerance) => {
             // The platform turns by less than a millionth of what the fuselage does.
-            let pair = DormandPrince::new(tolerance, tolerance * 1e-6);
+            let solver = Adaptive::new(Dop853, tolerance, tolerance * 1e-6);
             let times: Vec<f64> = (0..)
                 .map(|number| f64::from(number) * step)
                 .take_while(|time| *time < end - 1e-9)
                 .chain([end])
                 .collect();
-            pair.sample(model, wind, 0.0, start, &times, observer)?
+            solver.sample(model, wind, 0.0, start, &times, observer)?
         }
     };
     Ok(samples)

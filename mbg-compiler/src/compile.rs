@@ -16,6 +16,7 @@ use crate::program::{self, Program};
 use crate::start;
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
+use crate::symbolic::substitute::operations;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
 use crate::syntax::ast;
 use crate::units;
@@ -44,6 +45,8 @@ pub struct Compiled {
     pub dependent: Vec<String>,
     /// Causal strokes by bond: true where the effort enters at `to`.
     pub strokes: Vec<bool>,
+    /// Whether the Jacobians are in the program; those of large models are taken from dual numbers.
+    pub unrolled: bool,
     /// Things worth knowing.
     pub notes: Vec<String>,
 }
@@ -90,7 +93,14 @@ impl Routines {
     pub const CHECKS: usize = 8;
     pub const CLOSED_POSITIONS: usize = 9;
     pub const CLOSED_FLOWS: usize = 10;
+    pub const DERIVATIVE_TIME: usize = 11;
 }
+
+/// Largest product of states and operations of the derivative up to which Jacobians are straight-line code. `rustc` takes
+/// about a minute for what is beyond.
+const UNROLLED: usize = 250_000;
+
+const BY_COLUMNS: &str = "the Jacobians are taken column by column from dual numbers: unrolled, they would be too large to compile";
 
 /// Compiles one model; none if anything was reported.
 #[must_use]
@@ -143,12 +153,16 @@ fn finish(
         .states
         .iter()
         .map(|state| model.states[*state].initial);
-    let by_states = jacobian(&mut pool, &answers.rates, &by_state);
+    let unrolled = answers.states.len() * operations(&pool, &answers.rates) <= UNROLLED;
+    let [by_states, by_inputs] = [&by_state, &by_input].map(|by| {
+        let by: &[Symbol] = if unrolled { by } else { &[] };
+        jacobian(&mut pool, &answers.rates, by).entries
+    });
     let requests = [
         answers.rates.clone(),
         answers.outputs.clone(),
-        [&answers.rates[..], &by_states.entries].concat(),
-        jacobian(&mut pool, &answers.rates, &by_input).entries,
+        [&answers.rates[..], &by_states].concat(),
+        by_inputs,
         vec![answers.energy],
         vec![answers.supplied, answers.dissipated],
         conditioning.clone(),
@@ -156,6 +170,7 @@ fn finish(
         checked,
         positions.evaluated(),
         flows.evaluated(),
+        jacobian(&mut pool, &answers.rates, &[Symbol::Time]).entries,
     ];
     share(&mut pool, &requests[Routines::DERIVATIVE]);
     let program = build(&pool, scalars, solution, &answers, &requests);
@@ -173,6 +188,9 @@ fn finish(
     let mut notes = verdict.notes;
     notes.extend(unused_initial_values(&model, &answers));
     notes.extend(unused_initial_flows(&model));
+    if !unrolled {
+        notes.push(BY_COLUMNS.to_owned());
+    }
     Some(Compiled {
         program,
         conditioning: conditioning.iter().map(written).collect(),
@@ -183,6 +201,7 @@ fn finish(
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,
+        unrolled,
         notes,
         states: answers.states,
         model,

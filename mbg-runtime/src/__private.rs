@@ -7,7 +7,7 @@ pub use crate::solve::ITERATIONS;
 use crate::solve::project;
 use crate::step::magnitude;
 pub use crate::{
-    Bond, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
+    Bond, Dual, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };
 
 /// What the chosen causality relies on; each condition implies that the value is finite.
@@ -94,6 +94,22 @@ pub fn close<T: Real, const M: usize, const N: usize>(
         name: meta.closures.get(closure).copied().unwrap_or(""),
         residual: found.residual.find(|_| true).unwrap_or(f64::NAN),
     })
+}
+
+/// A function and its Jacobian, one column after the other.
+pub fn by_columns<T: Real, const N: usize, const K: usize>(
+    x: &SVector<T, N>,
+    function: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, K>,
+) -> (SVector<T, K>, SMatrix<T, K, N>) {
+    let constant = x.map(Dual::constant);
+    let value = function(&constant).map(|it| it.value);
+    let mut jacobian = SMatrix::<T, K, N>::from_element(T::from_f64(0.0));
+    for (column, mut entries) in jacobian.column_iter_mut().enumerate() {
+        let mut along = constant;
+        along[column].slope = T::from_f64(1.0);
+        entries.copy_from(&function(&along).map(|it| it.slope));
+    }
+    (value, jacobian)
 }
 
 /// A symmetric matrix from row, column and value of the elements below and on its diagonal that are not zero.

@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
-use crate::Real;
 use crate::step::less;
+use crate::{Dual, Real};
 
 /// An input `u(t)` that is smooth but for jumps at times known in advance.
 ///
@@ -16,6 +16,7 @@ use crate::step::less;
 /// | [`Constant`] | a constant |
 /// | [`Pulse`] | a constant for a time, zero else |
 /// | [`Smooth`] | a function of time without jumps |
+/// | [`Differentiable`] | the same on dual numbers, with its exact time derivative |
 /// | [`Sum`] | two inputs added |
 /// | `&I` | what `I` is |
 pub trait Input<T: Real, const M: usize> {
@@ -27,6 +28,14 @@ pub trait Input<T: Real, const M: usize> {
 
     /// The first jump later than `t`.
     fn next_jump(&self, t: T) -> Option<T>;
+
+    /// The time derivative at `t` on the piece that begins at `since` and does not end within the time `ahead`.
+    ///
+    /// Methods for stiff problems ask for it. Unless it is given, it is a difference quotient over five values ahead,
+    /// whose error falls with the fourth power of `ahead`, the length of the step. Of [`Differentiable`] it is exact.
+    fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
+        quotient(t, ahead, |t| self.value(t, since))
+    }
 
     /// The value at `t`; at a jump, the one behind it.
     fn at(&self, t: T) -> SVector<T, M> {
@@ -42,6 +51,10 @@ impl<T: Real, const M: usize, I: Input<T, M> + ?Sized> Input<T, M> for &I {
     fn next_jump(&self, t: T) -> Option<T> {
         (**self).next_jump(t)
     }
+
+    fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
+        (**self).rate(t, since, ahead)
+    }
 }
 
 impl<T: Real, const M: usize> Input<T, M> for () {
@@ -51,6 +64,10 @@ impl<T: Real, const M: usize> Input<T, M> for () {
 
     fn next_jump(&self, _t: T) -> Option<T> {
         None
+    }
+
+    fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
+        zero()
     }
 }
 
@@ -68,6 +85,10 @@ impl<T: Real, const M: usize> Input<T, M> for Constant<T, M> {
 
     fn next_jump(&self, _t: T) -> Option<T> {
         None
+    }
+
+    fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
+        zero()
     }
 }
 
@@ -114,6 +135,10 @@ impl<T: Real, const M: usize> Input<T, M> for Pulse<T, M> {
             None
         }
     }
+
+    fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
+        zero()
+    }
 }
 
 /// A function of time without jumps.
@@ -143,6 +168,41 @@ impl<T: Real, const M: usize, F: Fn(T) -> SVector<T, M>> Input<T, M> for Smooth<
     }
 }
 
+/// A function of time without jumps, on dual numbers: its time derivative is exact.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Differentiable, Dual, Input, Real};
+/// use nalgebra::SVector;
+///
+/// let sway = Differentiable(|t: Dual<f64>| SVector::from([t.sin()]));
+/// assert_eq!(sway.at(0.3), SVector::from([0.3_f64.sin()]));
+/// assert_eq!(sway.rate(0.3, 0.0, 1.0), SVector::from([0.3_f64.cos()]));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Differentiable<F>(
+    /// The function.
+    pub F,
+);
+
+impl<T: Real, const M: usize, F> Input<T, M> for Differentiable<F>
+where
+    F: Fn(Dual<T>) -> SVector<Dual<T>, M>,
+{
+    fn value(&self, t: T, _since: T) -> SVector<T, M> {
+        (self.0)(Dual::constant(t)).map(|it| it.value)
+    }
+
+    fn next_jump(&self, _t: T) -> Option<T> {
+        None
+    }
+
+    fn rate(&self, t: T, _since: T, _ahead: T) -> SVector<T, M> {
+        (self.0)(Dual::variable(t)).map(|it| it.slope)
+    }
+}
+
 /// Two inputs added, with the jumps of both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sum<A, B>(
@@ -165,6 +225,27 @@ impl<T: Real, const M: usize, A: Input<T, M>, B: Input<T, M>> Input<T, M> for Su
             (a, b) => a.or(b),
         }
     }
+
+    fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
+        self.0.rate(t, since, ahead) + self.1.rate(t, since, ahead)
+    }
+}
+
+/// The derivative at `t` of what is smooth from `t` over the time `ahead`, from five values in its first sixteenth.
+pub(crate) fn quotient<T: Real, const K: usize>(
+    t: T,
+    ahead: T,
+    value: impl FnMut(T) -> SVector<T, K>,
+) -> SVector<T, K> {
+    let distance = ahead * T::from_f64(1.0 / 64.0);
+    let times = [0.0, 1.0, 2.0, 3.0, 4.0].map(|part| t + T::from_f64(part) * distance);
+    let [a, b, c, d, e] = times.map(value);
+    let [p, q, r, s] = [48.0, -36.0, 16.0, -3.0].map(T::from_f64);
+    let by = T::from_f64(1.0 / 12.0) / distance;
+    // Differences first, so that a constant has no rate at all.
+    let sum = (b - a).map(|it| p * it) + (c - a).map(|it| q * it);
+    let sum = sum + (d - a).map(|it| r * it) + (e - a).map(|it| s * it);
+    sum.map(|sum| by * sum)
 }
 
 fn zero<T: Real, const M: usize>() -> SVector<T, M> {

@@ -4,8 +4,8 @@
 //! |---|---|
 //! | write a model | the [`language`] |
 //! | ask a model | [`System`], [`Meta`] |
-//! | run it | [`Rk4`] at a fixed step, [`DormandPrince`] at a tolerance; [`Input`] |
-//! | compute with other numbers | [`Real`], [`Dual`] |
+//! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; [`Input`] |
+//! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 #![no_std]
 #[cfg(any(test, feature = "std"))]
@@ -16,6 +16,8 @@ pub mod __private;
 pub mod attitude;
 mod dual;
 mod input;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 #[cfg(feature = "macros")]
 #[doc = include_str!("language.md")]
 pub mod language {}
@@ -23,19 +25,23 @@ pub mod language {}
 #[doc = include_str!("joints.md")]
 pub mod joints {}
 mod meta;
-mod polynomial;
 mod real;
 mod scalar;
+mod sine;
 pub mod solve;
 mod step;
 mod system;
 
 pub use dual::Dual;
-pub use input::{Constant, Input, Pulse, Smooth, Sum};
+pub use input::{Constant, Differentiable, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
-pub use real::Real;
+pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
-pub use step::{Cause, Dense, DormandPrince, Rk4, Statistics, Stopped};
+pub use step::{
+    Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
+    ImplicitMidpoint, Integrator, Method, Picked, Radau5, Reason, Rk4, Rodas4, Rodas5P, Ros2,
+    Statistics, Step, Stopped, Tsit5,
+};
 pub use system::{ParameterError, Power, System, Trouble};
 
 #[cfg(feature = "macros")]

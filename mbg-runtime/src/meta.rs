@@ -139,7 +139,7 @@ pub struct Operations {
     pub derivative: usize,
     /// Of `output`.
     pub output: usize,
-    /// Of `derivative_and_jacobian`.
+    /// Of `derivative_and_jacobian`; where it goes by columns, those of a dual number count as one.
     pub derivative_and_jacobian: usize,
     /// Of `jacobian_input`.
     pub jacobian_input: usize,

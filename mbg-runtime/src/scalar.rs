@@ -2,14 +2,15 @@
 
 use crate::Real;
 
-/// Functions of one argument: from the standard library where there is one, else from `libm`.
+/// Functions of one argument: from the standard library where there is one and its last digits may differ from one
+/// system to another, else from `libm`.
 macro_rules! elementary {
     ($scalar:ident: $($name:ident = $bare:ident),*) => { $(
         #[inline]
         fn $name(self) -> Self {
-            #[cfg(any(test, feature = "std"))]
+            #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
             return $scalar::$name(self);
-            #[cfg(not(any(test, feature = "std")))]
+            #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
             return libm::$bare(self);
         }
     )* };
@@ -29,6 +30,25 @@ macro_rules! ordered {
         fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
             let lane = f64::from(self);
             test(lane).then_some(lane)
+        }
+
+        #[inline]
+        fn multiply_add(self, factor: Self, addend: Self) -> Self {
+            #[cfg(any(test, feature = "std"))]
+            if crate::FUSED {
+                return $scalar::mul_add(self, factor, addend);
+            }
+            self * factor + addend
+        }
+
+        #[inline]
+        fn sin_cos(self) -> (Self, Self) {
+            crate::sine::sin_cos(self)
+        }
+
+        #[inline]
+        fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+            crate::sine::sines_cosines(angles)
         }
 
         #[inline]
@@ -79,18 +99,10 @@ impl Real for f64 {
     elementary!(f64: tan = tan, asin = asin, acos = acos, exp = exp, ln = log, sqrt = sqrt, tanh = tanh);
 
     #[inline]
-    fn sin_cos(self) -> (Self, Self) {
-        #[cfg(any(test, feature = "std"))]
-        return f64::sin_cos(self);
-        #[cfg(not(any(test, feature = "std")))]
-        return libm::sincos(self);
-    }
-
-    #[inline]
     fn atan2(self, x: Self) -> Self {
-        #[cfg(any(test, feature = "std"))]
+        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
         return f64::atan2(self, x);
-        #[cfg(not(any(test, feature = "std")))]
+        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
         return libm::atan2(self, x);
     }
 }
@@ -102,18 +114,10 @@ impl Real for f32 {
     elementary!(f32: tan = tanf, asin = asinf, acos = acosf, exp = expf, ln = logf, sqrt = sqrtf, tanh = tanhf);
 
     #[inline]
-    fn sin_cos(self) -> (Self, Self) {
-        #[cfg(any(test, feature = "std"))]
-        return f32::sin_cos(self);
-        #[cfg(not(any(test, feature = "std")))]
-        return crate::polynomial::sin_cos(self);
-    }
-
-    #[inline]
     fn atan2(self, x: Self) -> Self {
-        #[cfg(any(test, feature = "std"))]
+        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
         return f32::atan2(self, x);
-        #[cfg(not(any(test, feature = "std")))]
+        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
         return libm::atan2f(self, x);
     }
 }
@@ -121,9 +125,9 @@ impl Real for f32 {
 /// `base` to the power of `exponent`, for step control.
 #[inline]
 pub(crate) fn power(base: f64, exponent: f64) -> f64 {
-    #[cfg(any(test, feature = "std"))]
+    #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
     return base.powf(exponent);
-    #[cfg(not(any(test, feature = "std")))]
+    #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
     return libm::pow(base, exponent);
 }
 

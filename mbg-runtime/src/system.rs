@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::input::quotient;
 use crate::{Loop, Memory, Meta, Real, Solver};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
@@ -72,6 +73,21 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         u: &SVector<T, M>,
         memory: &mut Self::Memory,
     ) -> SMatrix<T, N, M>;
+
+    /// `∂f/∂t` at a fixed state and input.
+    ///
+    /// Generated models give it exactly. Unless it is given, it is a difference quotient over five evaluations of
+    /// [`System::derivative`] ahead, whose error falls with the fourth power of `ahead`, the length of the step.
+    fn derivative_time(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+        ahead: T,
+    ) -> SVector<T, N> {
+        quotient(t, ahead, |t| self.derivative(t, x, u, memory))
+    }
 
     /// Energy stored, in joule when the model is in SI units.
     fn energy(&self, t: T, x: &SVector<T, N>) -> T;

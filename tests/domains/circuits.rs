@@ -1,6 +1,6 @@
 //! Circuits and a motor.
 
-use mbg_runtime::{Constant, DormandPrince, Pulse, Rk4, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Pulse, Rk4, System, mbg};
 use nalgebra::SVector;
 
 use super::balance;
@@ -158,7 +158,7 @@ fn a_motor_of_the_library_starts_a_load_through_a_rigid_gear() {
     let times = GEARED.map(|(time, _)| time);
     let mut expected = GEARED.iter();
     let mut worst = 0.0_f64;
-    DormandPrince::new(1e-11, 1e-14)
+    Adaptive::new(Dop853, 1e-11, 1e-14)
         .sample(
             &model,
             &brake,
@@ -190,7 +190,7 @@ fn a_diode_of_the_library_rectifies() {
     let times = rectifier::REFERENCE.map(|(time, _)| time);
     let mut expected = rectifier::REFERENCE.iter();
     let mut worst = 0.0_f64;
-    DormandPrince::new(1e-11, 1e-13)
+    Adaptive::new(Dop853, 1e-11, 1e-13)
         .sample(
             &model,
             &Constant(SVector::zeros()),

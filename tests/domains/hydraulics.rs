@@ -1,6 +1,6 @@
 //! Hydraulics.
 
-use mbg_runtime::{Constant, DormandPrince, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 use super::balance;
@@ -93,7 +93,7 @@ fn a_hydraulic_drive_equals_its_derivation_by_hand() {
     let input = Constant(SVector::from([load]));
     let (mut time, mut by_hand) = (0.0, [0.0, 0.0, 0.0, 0.0, 8e-4]);
     let mut worst = 0.0_f64;
-    DormandPrince::new(1e-11, 1e-16)
+    Adaptive::new(Dop853, 1e-11, 1e-16)
         .sample(
             &model,
             &input,

@@ -1,7 +1,7 @@
 //! The transistor amplifier as a bond graph: two transistors, five capacitors, and a nonlinear algebraic loop around
 //! the base of each transistor, against the published reference.
 
-use mbg_runtime::{DormandPrince, Smooth, Solver, System, mbg};
+use mbg_runtime::{Adaptive, Dop853, Integrator, Smooth, Solver, System, mbg};
 use nalgebra::SVector;
 
 use crate::references::transistor_amplifier as reference;
@@ -95,12 +95,13 @@ fn amplifier_meets_the_published_reference() {
     );
     let times = reference::REFERENCE.map(|(time, _)| time);
     let mut found = Vec::new();
-    let pair = DormandPrince::new(1e-11, 1e-17);
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-17);
     let x = model.initial_state();
-    pair.sample(&model, &Smooth(voltage), 0.0, x, &times, |t, x| {
-        found.push(nodes(t, x))
-    })
-    .unwrap();
+    solver
+        .sample(&model, &Smooth(voltage), 0.0, x, &times, |t, x| {
+            found.push(nodes(t, x))
+        })
+        .unwrap();
     for (found, (time, expected)) in found.iter().zip(reference::REFERENCE) {
         let error = (found - SVector::from(expected)).amax();
         assert!(error < 1.5e-8, "{time}: {error:e}");

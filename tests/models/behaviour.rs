@@ -1,6 +1,6 @@
 //! Small models against closed forms.
 
-use mbg_runtime::{Constant, DormandPrince, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 use crate::dc_motor::{Motor, MotorParameters, REFERENCE, brake, error};
@@ -37,17 +37,18 @@ mbg! {
 #[test]
 fn oscillator_equals_its_closed_form() {
     let model = Oscillator::new(OscillatorParameters::default()).unwrap();
-    let pair = DormandPrince::new(1e-11, 1e-13);
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-13);
     let mut last = model.initial_state();
-    pair.sample(
-        &model,
-        &Constant(SVector::from([0.0])),
-        0.0,
-        last,
-        &[3.0],
-        |_, x| last = *x,
-    )
-    .unwrap();
+    solver
+        .sample(
+            &model,
+            &Constant(SVector::from([0.0])),
+            0.0,
+            last,
+            &[3.0],
+            |_, x| last = *x,
+        )
+        .unwrap();
     let (decay, frequency) = (1.5_f64 / 4.0, (25.0_f64 - (1.5_f64 / 4.0).powi(2)).sqrt());
     let (sine, cosine) = (3.0 * frequency).sin_cos();
     let expected = f64::exp(-3.0 * decay) * (0.1 * cosine + (0.5 + decay * 0.1) / frequency * sine);
@@ -61,21 +62,22 @@ fn oscillator_equals_its_closed_form() {
 #[test]
 fn motor_with_flexible_shaft_meets_the_reference() {
     let model = Motor::new(MotorParameters::default()).unwrap();
-    let pair = DormandPrince::new(1e-11, 1e-14);
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-14);
     let mut reference = REFERENCE.iter();
-    pair.sample(
-        &model,
-        &brake(),
-        0.0,
-        model.initial_state(),
-        &REFERENCE.map(|instant| instant.time),
-        |time, x| {
-            let output = model.output(time, x, &SVector::zeros(), &mut ());
-            let error = error(&output, reference.next().unwrap());
-            assert!(error < 1e-9, "{error:e} at {time}");
-        },
-    )
-    .unwrap();
+    solver
+        .sample(
+            &model,
+            &brake(),
+            0.0,
+            model.initial_state(),
+            &REFERENCE.map(|instant| instant.time),
+            |time, x| {
+                let output = model.output(time, x, &SVector::zeros(), &mut ());
+                let error = error(&output, reference.next().unwrap());
+                assert!(error < 1e-9, "{error:e} at {time}");
+            },
+        )
+        .unwrap();
     assert!(reference.next().is_none());
 }
 

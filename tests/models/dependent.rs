@@ -1,6 +1,6 @@
 //! Storages that depend on each other, in models small enough for a closed form.
 
-use mbg_runtime::{Constant, DormandPrince, Dual, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Dual, Integrator, System, mbg};
 use nalgebra::{Matrix2, Matrix3, SVector, Vector2, Vector3};
 
 use super::audit::{Probe, audit, near};
@@ -180,8 +180,9 @@ fn flywheels_turn_as_one() {
     let mut state = model.initial_state();
     let start = model.output(0.0, &state, &SVector::zeros(), &mut ())[0];
     let torque = Constant(SVector::from([5.0, -1.0]));
-    let pair = DormandPrince::new(1e-12, 1e-14);
-    pair.sample(&model, &torque, 0.0, state, &[2.0], |_, x| state = *x)
+    let solver = Adaptive::new(Dop853, 1e-12, 1e-14);
+    solver
+        .sample(&model, &torque, 0.0, state, &[2.0], |_, x| state = *x)
         .unwrap();
     let end = model.output(2.0, &state, &SVector::zeros(), &mut ())[0];
     near(end, closed.omega(start, [5.0, -1.0], 2.0), 1e-10);
@@ -204,7 +205,7 @@ fn capacitors_in_parallel_are_one() {
     let voltage = |x| model.output(0.0, &x, &SVector::zeros(), &mut ())[0];
     let start = model.initial_state();
     let mut end = start;
-    DormandPrince::new(1e-12, 1e-14)
+    Adaptive::new(Dop853, 1e-12, 1e-14)
         .sample(&model, &(), 0.0, start, &[3.0], |_, x| end = *x)
         .unwrap();
     near(voltage(end), voltage(start) * f64::exp(-3.0 / 4.0), 1e-10);

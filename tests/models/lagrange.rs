@@ -1,6 +1,6 @@
 //! Mechanisms whose bodies depend on each other, against Lagrange's equations.
 
-use mbg_runtime::{Constant, DormandPrince, Dual, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Dual, Integrator, System, mbg};
 use nalgebra::SVector;
 
 use super::audit::{Probe, audit, near};
@@ -170,7 +170,7 @@ fn a_double_pendulum_meets_the_published_numbers() {
         .map(|it| it.0)
         .collect();
     let mut reference = double_pendulum::REFERENCE.iter();
-    DormandPrince::new(1e-13, 1e-14)
+    Adaptive::new(Dop853, 1e-13, 1e-14)
         .sample(&model, &(), 0.0, model.initial_state(), &times, |t, x| {
             let y = model.output(t, x, &SVector::zeros(), &mut ());
             let found = [y[0] + quarter, y[1] + quarter, y[2], y[3]];

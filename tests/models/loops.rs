@@ -1,7 +1,8 @@
 //! Nonlinear algebraic loops against closed forms, bisection, references and identities.
 
 use mbg_runtime::{
-    Cause, Constant, DormandPrince, Dual, Loop, Rk4, Smooth, Solver, System, Trouble, mbg,
+    Adaptive, Cause, Constant, Dop853, Dual, Integrator, Loop, Rk4, Smooth, Solver, System,
+    Trouble, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -291,16 +292,17 @@ fn diode_current_equals_bisection_from_either_side() {
 fn rectifier_meets_the_reference() {
     let (model, _) = both!(Rectifier, RectifierParameters);
     let supply = Smooth(|t: f64| SVector::from([rectifier::source(t)]));
-    let pair = DormandPrince::new(1e-11, 1e-15);
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-15);
     let times = rectifier::REFERENCE.map(|(time, _)| time);
     let mut found = Vec::new();
     let mut memory = Default::default();
     let x = model.initial_state();
-    pair.sample(model, &supply, 0.0, x, &times, |t, x| {
-        let u = SVector::from([rectifier::source(t)]);
-        found.push(model.output(t, x, &u, &mut memory));
-    })
-    .unwrap();
+    solver
+        .sample(model, &supply, 0.0, x, &times, |t, x| {
+            let u = SVector::from([rectifier::source(t)]);
+            found.push(model.output(t, x, &u, &mut memory));
+        })
+        .unwrap();
     for (found, (time, voltage)) in found.iter().zip(rectifier::REFERENCE) {
         let error = f64::abs(found[0] - voltage);
         assert!(error < 1e-10, "{time}: {error:e}");
@@ -475,7 +477,7 @@ fn integrators_stop_where_a_loop_has_no_solution() {
     let falling = Smooth(|t: f64| SVector::from([1.0 - t]));
     let runs = [
         Rk4::fixed(model, &falling, 0.0, 2.0, 0.03, SVector::zeros(), |_, _| {}),
-        DormandPrince::new(1e-6, 1e-9).integrate(
+        Adaptive::new(Tsit5, 1e-6, 1e-9).integrate(
             model,
             &falling,
             0.0,

@@ -1,6 +1,7 @@
 //! The inertial navigation system of the paper.
 
-use mbg_runtime::{Dual, System, Trouble};
+use mbg_runtime::lanes::{Lanes, f32x8, f64x4, pack, unpack};
+use mbg_runtime::{Dual, Real, System, Trouble};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::ins::{
@@ -65,7 +66,7 @@ fn rk4_meets_the_reference() {
 
 #[test]
 fn the_adaptive_pair_meets_the_reference() {
-    meet_the_reference(Method::DormandPrince(1e-10), 1e-2, 1e-8);
+    meet_the_reference(Method::Dop853(1e-10), 1e-2, 1e-8);
 }
 
 /// The equations by hand, in matrices: Newton and Euler, `α̇ = J⁻¹(C ω_p − ω_f)`, `τ = −J⁻ᵀ e`.
@@ -118,8 +119,9 @@ fn the_singular_set_is_the_cosine_of_the_second_angle() {
     for _ in 0..100 {
         let x = random_state(&mut next);
         let u = SVector::zeros();
-        assert_eq!(proposed().conditioning(0.0, &x, &u), [f64::cos(x[7])]);
-        assert_eq!(classic().conditioning(0.0, &x, &u), [f64::cos(x[7])]);
+        let cosine = Real::cos(x[7]);
+        assert_eq!(proposed().conditioning(0.0, &x, &u), [cosine]);
+        assert_eq!(classic().conditioning(0.0, &x, &u), [cosine]);
     }
     let mut locked = SVector::<f64, 9>::zeros();
     locked[7] = std::f64::consts::FRAC_PI_2;
@@ -203,4 +205,46 @@ fn jacobians_equal_dual_numbers() {
             }
         }
     }
+}
+
+/// Models of different parameters at different states, in lanes and each alone.
+fn assert_lanes<L: Lanes>() {
+    let mut next = noise(7);
+    for _ in 0..50 {
+        let runs: Vec<_> = (0..L::COUNT)
+            .map(|_| {
+                let parameters = [1e3, 1.0, 1.0].map(|scale| scale * (2.0 + next()));
+                let x = random_state(&mut next).map(L::Lane::from_f64);
+                let u = SVector::<f64, 3>::from_fn(|_, _| 100.0 * next());
+                (parameters, x, u.map(L::Lane::from_f64))
+            })
+            .collect();
+        let together =
+            |number: usize| L::from_lanes(|lane| L::Lane::from_f64(runs[lane].0[number]));
+        let model = Ins::<L>::new(InsParameters {
+            drag: together(0),
+            stiffness: together(1),
+            damping: together(2),
+        });
+        let states: Vec<_> = runs.iter().map(|run| run.1).collect();
+        let inputs: Vec<_> = runs.iter().map(|run| run.2).collect();
+        let (x, u): (SVector<L, 9>, SVector<L, 3>) = (pack(&states), pack(&inputs));
+        let found = model.unwrap().derivative(L::from_f64(0.0), &x, &u, &mut ());
+        for (lane, ([drag, stiffness, damping], x, u)) in runs.iter().enumerate() {
+            let alone = Ins::new(InsParameters {
+                drag: L::Lane::from_f64(*drag),
+                stiffness: L::Lane::from_f64(*stiffness),
+                damping: L::Lane::from_f64(*damping),
+            });
+            let time = L::Lane::from_f64(0.0);
+            let alone = alone.unwrap().derivative(time, x, u, &mut ());
+            assert_eq!(unpack(&found, lane), alone);
+        }
+    }
+}
+
+#[test]
+fn lanes_give_what_each_model_gives_alone() {
+    assert_lanes::<f64x4>();
+    assert_lanes::<f32x8>();
 }

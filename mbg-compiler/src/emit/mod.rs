@@ -4,6 +4,7 @@
 //! code is flat, generic over the scalar, refers to everything by absolute path, and is the same for the same input.
 
 mod close;
+mod columns;
 mod meta;
 mod parameters;
 mod routine;

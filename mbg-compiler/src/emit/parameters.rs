@@ -52,7 +52,7 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
 /// A number of the scalar's type.
 fn number(value: f64) -> TokenStream {
     let literal = Literal::f64_suffixed(value.abs());
-    let positive = quote!(<T as ::mbg_runtime::Real>::from_f64(#literal));
+    let positive = quote!(T::from_f64(#literal));
     if value < 0.0 {
         quote!(-#positive)
     } else {

@@ -102,6 +102,23 @@ impl Made {
     }
 }
 
+/// The last part that reads what is made; what is returned is read behind all parts.
+fn last_parts(parts: &[&[Step]], results: &[Operand]) -> BTreeMap<Made, usize> {
+    let mut last = BTreeMap::new();
+    if parts.len() == 1 {
+        return last;
+    }
+    for (number, part) in parts.iter().enumerate() {
+        let factors = part.iter().filter_map(Made::needed_by);
+        let read = part.iter().flat_map(Step::operands);
+        let read = read.filter_map(|operand| Made::of(operand.source));
+        last.extend(read.chain(factors).map(|made| (made, number)));
+    }
+    let returned = results.iter().filter_map(|result| Made::of(result.source));
+    last.extend(returned.map(|made| (made, parts.len())));
+    last
+}
+
 struct Writer<'a> {
     compiled: &'a Compiled,
     names: Vec<Ident>,
@@ -112,29 +129,32 @@ impl Writer<'_> {
     /// Steps whose values begin with number `value`, of which `results` are read afterwards.
     fn lines(&self, steps: &[Step], mut value: usize, results: &[Operand]) -> TokenStream {
         let parts: Vec<&[Step]> = steps.chunks(PART).collect();
+        let last_part = last_parts(&parts, results);
         let mut body = TokenStream::new();
         for (number, part) in parts.iter().enumerate() {
             let mut lines = TokenStream::new();
             let mut made = BTreeMap::new();
-            for step in *part {
-                lines.extend(self.line(step, value));
-                self.make(step, value, &mut made);
-                value += step.results();
+            let mut rest = *part;
+            while let Some(step) = rest.first() {
+                let angles = angles(rest, value);
+                let taken = angles.len().max(1);
+                lines.extend(match angles.len() {
+                    0 | 1 => self.line(step, value),
+                    _ => self.sines_cosines(&angles, value),
+                });
+                let (now, after) = rest.split_at(taken);
+                for step in now {
+                    self.make(step, value, &mut made);
+                    value += step.results();
+                }
+                rest = after;
             }
             if parts.len() == 1 {
                 return lines;
             }
-            let later = parts[number + 1..].iter().copied().flatten();
-            let factors = later.clone().filter_map(Made::needed_by);
-            let read: BTreeSet<Made> = later
-                .flat_map(Step::operands)
-                .chain(results.iter().copied())
-                .filter_map(|operand| Made::of(operand.source))
-                .chain(factors)
-                .collect();
             let live: Vec<&Ident> = made
                 .iter()
-                .filter(|(made, _)| read.contains(made))
+                .filter(|(made, _)| last_part.get(made).is_some_and(|last| *last > number))
                 .map(|(_, name)| name)
                 .collect();
             body.extend(quote!(let (#(#live,)*) = { #lines (#(#live,)*) };));
@@ -170,6 +190,7 @@ impl Writer<'_> {
                 let (a, b) = (self.operand(*a), self.operand(*b));
                 quote!(#a * #b)
             }
+            Step::MultiplyAdd(a, b, c) => self.call("multiply_add", &[*a, *b, *c]),
             Step::Divide(a, b) => {
                 let (a, b) = (self.operand(*a), self.operand(*b));
                 quote!(#a / #b)
@@ -177,7 +198,7 @@ impl Writer<'_> {
             Step::SineCosine(a) => {
                 let (sine, cosine) = (&self.names[value], &self.names[value + 1]);
                 let a = self.operand(*a);
-                return quote!(let (#sine, #cosine) = ::mbg_runtime::Real::sin_cos(#a););
+                return quote!(let (#sine, #cosine) = T::sin_cos(#a););
             }
             Step::Sine(a) => self.call("sin", &[*a]),
             Step::Cosine(a) => self.call("cos", &[*a]),
@@ -186,6 +207,16 @@ impl Writer<'_> {
         };
         let name = &self.names[value];
         quote!(let #name = #expression;)
+    }
+
+    /// Sines and cosines of several angles, side by side.
+    fn sines_cosines(&self, angles: &[Operand], value: usize) -> TokenStream {
+        let pairs = self.names[value..].chunks(2).take(angles.len());
+        let (sines, cosines): (Vec<_>, Vec<_>) = pairs.map(|pair| (&pair[0], &pair[1])).unzip();
+        let angles = angles.iter().map(|angle| self.operand(*angle));
+        quote! {
+            let ([#(#sines),*], [#(#cosines),*]) = T::sines_cosines([#(#angles),*]);
+        }
     }
 
     /// The runtime's iteration, with residuals and Jacobian as a closure over what comes before.
@@ -254,14 +285,14 @@ impl Writer<'_> {
     fn call(&self, function: &str, arguments: &[Operand]) -> TokenStream {
         let function = format_ident!("{}", function);
         let arguments = arguments.iter().map(|argument| self.operand(*argument));
-        quote!(::mbg_runtime::Real::#function(#(#arguments),*))
+        quote!(T::#function(#(#arguments),*))
     }
 
     fn operand(&self, operand: Operand) -> TokenStream {
         let value = match operand.source {
             Source::Constant(value) => {
                 let literal = Literal::f64_suffixed(value);
-                quote!(<T as ::mbg_runtime::Real>::from_f64(#literal))
+                quote!(T::from_f64(#literal))
             }
             Source::Symbol(Symbol::Parameter(index)) => {
                 let name = &self.compiled.model.parameters[index].name;
@@ -294,6 +325,21 @@ impl Writer<'_> {
             value
         }
     }
+}
+
+/// Most angles side by side: four `f64` fill a register of AVX, and more at once would not be kept in registers.
+const ANGLES: usize = 4;
+
+/// The angles of the steps at the front that take sine and cosine of what was there before them.
+fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
+    let angle = |step: &Step| match step {
+        Step::SineCosine(angle) => match angle.source {
+            Source::Value(earlier) if earlier >= value => None,
+            _ => Some(*angle),
+        },
+        _ => None,
+    };
+    steps.iter().map_while(angle).take(ANGLES).collect()
 }
 
 /// What holds the unknowns of an iteration.

@@ -4,8 +4,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::close;
-use super::meta;
 use super::routine::{Setting, lines};
+use super::{columns, meta};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
 use crate::program::{Operand, Source};
@@ -103,12 +103,13 @@ fn system(compiled: &Compiled) -> TokenStream {
     let body = |routine: usize, build: Build| body(compiled, routine, build);
     let initial = body(Routines::INITIAL, &vector);
     let derivative = body(Routines::DERIVATIVE, &vector);
+    let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
-    let derivative_and_jacobian = derivative_and_jacobian(compiled);
-    let jacobian_input = body(Routines::JACOBIAN_INPUT, &|results| {
-        let entries = &compiled.program.routines[Routines::JACOBIAN_INPUT].results;
-        jacobian(compiled, entries, results, compiled.model.inputs.len())
-    });
+    let (derivative_and_jacobian, jacobian_input) = if compiled.unrolled {
+        (derivative_and_jacobian(compiled), jacobian_input(compiled))
+    } else {
+        columns::jacobians(compiled)
+    };
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -154,6 +155,10 @@ fn system(compiled: &Compiled) -> TokenStream {
                 #jacobian_input
             }
             #[inline]
+            fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> ::mbg_runtime::__private::SVector<T, #n> {
+                #derivative_time
+            }
+            #[inline]
             fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }
             #[inline]
             fn power(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::Power<T> { #power }
@@ -187,6 +192,14 @@ fn derivative_and_jacobian(compiled: &Compiled) -> TokenStream {
     })
 }
 
+fn jacobian_input(compiled: &Compiled) -> TokenStream {
+    let routine = Routines::JACOBIAN_INPUT;
+    body(compiled, routine, &|results| {
+        let entries = &compiled.program.routines[routine].results;
+        jacobian(compiled, entries, results, compiled.model.inputs.len())
+    })
+}
+
 /// A vector of results.
 fn vector(results: &[TokenStream]) -> TokenStream {
     let size = Literal::usize_suffixed(results.len());
@@ -217,7 +230,7 @@ fn jacobian(
     });
     quote! {{
         let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
-            <T as ::mbg_runtime::Real>::from_f64(0.0),
+            T::from_f64(0.0),
         );
         #(#entries)*
         jacobian

@@ -77,6 +77,15 @@ fn line(step: &Step, value: usize) -> String {
             )
         }
         Step::Multiply(a, b) => format!("v{value} = {} * {}", operand(*a), operand(*b)),
+        Step::MultiplyAdd(a, b, c) => {
+            let sign = if c.negative { '-' } else { '+' };
+            format!(
+                "v{value} = {} * {} {sign} {}",
+                operand(*a),
+                operand(*b),
+                operand(Operand::plain(c.source))
+            )
+        }
         Step::Divide(a, b) => format!("v{value} = {} / {}", operand(*a), operand(*b)),
         Step::SineCosine(a) => format!("v{value}, v{} = sin_cos({})", value + 1, operand(*a)),
         Step::Sine(a) => format!("v{value} = sin({})", operand(*a)),

@@ -54,6 +54,7 @@ impl Machine<'_> {
             let value = match step {
                 Step::Add(a, b) => self.read(a) + self.read(b),
                 Step::Multiply(a, b) => self.read(a) * self.read(b),
+                Step::MultiplyAdd(a, b, c) => self.read(a) * self.read(b) + self.read(c),
                 Step::Divide(a, b) => self.read(a) / self.read(b),
                 Step::Sine(a) => self.read(a).sin(),
                 Step::Cosine(a) => self.read(a).cos(),

@@ -3,6 +3,7 @@
 //! Input: expressions for everything a model is asked. Output: a [`Program`]: one list of steps per function, each
 //! with only what it needs, and one list that is worked out once, when a model is built. No error is reported here.
 
+mod contract;
 mod dump;
 mod interpret;
 mod iterate;
@@ -45,6 +46,8 @@ pub enum Step {
     Add(Operand, Operand),
     /// Product.
     Multiply(Operand, Operand),
+    /// The product of the first two, and the third.
+    MultiplyAdd(Operand, Operand, Operand),
     /// Quotient.
     Divide(Operand, Operand),
     /// Sine and cosine of one angle; gives two values, the sine first.
@@ -102,6 +105,7 @@ impl Step {
     pub fn operands(&self) -> Vec<Operand> {
         match self {
             Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => vec![*a, *b],
+            Self::MultiplyAdd(a, b, c) => vec![*a, *b, *c],
             Self::SineCosine(a) | Self::Sine(a) | Self::Cosine(a) => vec![*a],
             Self::Call(_, operands) => operands.clone(),
             Self::Solve(solve) => {
@@ -111,11 +115,15 @@ impl Step {
         }
     }
 
-    /// How many operations it counts: sine and cosine of one angle two, an iteration those of one evaluation,
-    /// anything else one.
+    /// How many operations it counts: sine and cosine of one angle two, a product and a sum two, an iteration those of
+    /// one evaluation, anything else one.
     #[must_use]
     pub fn operations(&self) -> usize {
-        self.results()
+        match self {
+            Self::MultiplyAdd(..) | Self::SineCosine(_) => 2,
+            Self::Solve(solve) => solve.steps.iter().map(Self::operations).sum(),
+            _ => 1,
+        }
     }
 
     /// Angles of which it takes sine or cosine.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::contract::contract;
 use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
@@ -121,9 +122,42 @@ struct Context<'a> {
 struct Draft {
     routine: Routine,
     values: BTreeMap<usize, usize>,
-    count: usize,
+    /// Reciprocals by the node of the divisor.
+    reciprocals: BTreeMap<usize, usize>,
     /// Iterations that have been run, and the one that is being written.
     solved: BTreeSet<usize>,
+}
+
+impl Draft {
+    /// Appends a step; gives the number of its first value.
+    fn push(&mut self, step: Step, names: &[String]) -> usize {
+        let first = self.routine.names.len();
+        self.routine.names.extend_from_slice(names);
+        self.routine.steps.push(step);
+        first
+    }
+
+    /// The reciprocal of a divisor, made where it is not there.
+    fn reciprocal(&mut self, node: usize, divisor: Operand) -> usize {
+        if let Some(value) = self.reciprocals.get(&node) {
+            return *value;
+        }
+        let one = Operand::plain(Source::Constant(1.0));
+        let value = self.push(Step::Divide(one, divisor), &[String::new()]);
+        self.reciprocals.insert(node, value);
+        value
+    }
+}
+
+/// What several steps have in common.
+struct Common {
+    /// Angles of which both sine and cosine are needed, with the two nodes.
+    angles: BTreeMap<usize, (usize, usize)>,
+    /// Those of them that are at hand from the start, with their sines.
+    early: Vec<(Expression, Expression)>,
+    /// Divisors of several quotients. These become products with one reciprocal: a division takes the time of five to ten
+    /// multiplications and seldom overlaps with another, and the second rounding costs half a unit of the last place.
+    divisors: BTreeSet<usize>,
 }
 
 impl Context<'_> {
@@ -133,7 +167,7 @@ impl Context<'_> {
         let mut draft = Draft {
             routine: Routine::default(),
             values: BTreeMap::new(),
-            count: 0,
+            reciprocals: BTreeMap::new(),
             solved: BTreeSet::new(),
         };
         self.steps(&mut draft, roots, folding);
@@ -141,14 +175,40 @@ impl Context<'_> {
             .iter()
             .map(|root| self.operand(&draft, *root, folding))
             .collect();
-        draft.routine
+        contract(&draft.routine)
     }
 
     /// Appends what the roots still need.
     fn steps(&self, draft: &mut Draft, roots: &[Expression], folding: bool) {
-        let paired = self.paired_angles(roots, folding);
+        let common = self.common(draft, roots, folding);
+        self.early_angles(draft, folding, &common);
         for root in roots {
-            self.visit(draft, root.magnitude(), folding, &paired);
+            self.visit(draft, root.magnitude(), folding, &common);
+        }
+    }
+
+    /// Angles that are at hand from the start come first, so that their sines are evaluated side by side.
+    fn early_angles(&self, draft: &mut Draft, folding: bool, common: &Common) {
+        let early = || common.early.iter();
+        for (angle, _) in early() {
+            self.visit(draft, *angle, folding, common);
+        }
+        for (_, sine) in early() {
+            self.visit(draft, *sine, folding, common);
+        }
+    }
+
+    /// Whether it is a sum or product of what is at hand from the start.
+    fn is_early(&self, expression: Expression, folding: bool) -> bool {
+        if self.is_leaf(expression, folding) {
+            return true;
+        }
+        match self.pool.operation(expression) {
+            Operation::Add(a, b) | Operation::Multiply(a, b) => {
+                self.is_leaf(*b, folding) && self.is_early(*a, folding)
+                    || self.is_leaf(*a, folding) && self.is_early(*b, folding)
+            }
+            _ => false,
         }
     }
 
@@ -172,42 +232,47 @@ impl Context<'_> {
         }
     }
 
-    /// Angles of which both sine and cosine are needed, with the two nodes.
-    fn paired_angles(
-        &self,
-        roots: &[Expression],
-        folding: bool,
-    ) -> BTreeMap<usize, (usize, usize)> {
+    /// What several of the steps have in common that the roots still need.
+    fn common(&self, draft: &Draft, roots: &[Expression], folding: bool) -> Common {
         let mut sines = BTreeMap::new();
         let mut cosines = BTreeMap::new();
+        let mut quotients: BTreeMap<usize, usize> = BTreeMap::new();
         let mut seen = vec![false; self.pool.len()];
         let mut pending: Vec<Expression> = roots.to_vec();
         while let Some(current) = pending.pop() {
-            if std::mem::replace(&mut seen[current.node()], true) || self.is_leaf(current, folding)
-            {
+            let known =
+                self.is_leaf(current, folding) || draft.values.contains_key(&current.node());
+            if std::mem::replace(&mut seen[current.node()], true) || known {
                 continue;
             }
             let operation = self.pool.operation(current);
             match operation {
-                Operation::Sine(angle) => drop(sines.insert(angle.node(), current.node())),
-                Operation::Cosine(angle) => drop(cosines.insert(angle.node(), current.node())),
+                Operation::Sine(angle) => drop(sines.insert(*angle, current.magnitude())),
+                Operation::Cosine(angle) => drop(cosines.insert(*angle, current.magnitude())),
+                Operation::Divide(_, divisor) => *quotients.entry(divisor.node()).or_default() += 1,
                 _ => {}
             }
             pending.extend(self.before(current));
         }
-        sines
-            .into_iter()
-            .filter_map(|(angle, sine)| cosines.get(&angle).map(|cosine| (angle, (sine, *cosine))))
-            .collect()
+        sines.retain(|angle, _| cosines.contains_key(angle));
+        let early = sines
+            .iter()
+            .map(|(angle, sine)| (*angle, *sine))
+            .filter(|(angle, _)| self.is_early(*angle, folding))
+            .collect();
+        let paired = |(angle, sine): (Expression, Expression)| {
+            let cosine = cosines.get(&angle)?;
+            Some((angle.node(), (sine.node(), cosine.node())))
+        };
+        quotients.retain(|_, quotients| *quotients > 1 && !folding);
+        Common {
+            angles: sines.into_iter().filter_map(paired).collect(),
+            early,
+            divisors: quotients.into_keys().collect(),
+        }
     }
 
-    fn visit(
-        &self,
-        draft: &mut Draft,
-        root: Expression,
-        folding: bool,
-        paired: &BTreeMap<usize, (usize, usize)>,
-    ) {
+    fn visit(&self, draft: &mut Draft, root: Expression, folding: bool, common: &Common) {
         let mut pending = vec![(root, false)];
         while let Some((current, ready)) = pending.pop() {
             if draft.values.contains_key(&current.node()) || self.is_leaf(current, folding) {
@@ -229,7 +294,7 @@ impl Context<'_> {
             }
             match place {
                 Some(place) => self.solve(draft, place.number),
-                None => self.step(draft, current, operation, folding, paired),
+                None => self.step(draft, current, operation, folding, common),
             }
         }
     }
@@ -274,11 +339,11 @@ impl Context<'_> {
     /// The steps of one evaluation of an iteration, and its results. Nothing that it works out is seen outside, since
     /// there the unknowns have their final values.
     fn evaluation(&self, draft: &mut Draft, evaluated: &[Expression]) -> (Vec<Step>, Vec<Operand>) {
-        let outside = draft.values.clone();
+        let outside = (draft.values.clone(), draft.reciprocals.clone());
         let before = std::mem::take(&mut draft.routine.steps);
         self.steps(draft, evaluated, false);
         let results = self.operands(draft, evaluated);
-        draft.values = outside;
+        (draft.values, draft.reciprocals) = outside;
         (std::mem::replace(&mut draft.routine.steps, before), results)
     }
 
@@ -293,25 +358,32 @@ impl Context<'_> {
         current: Expression,
         operation: &Operation,
         folding: bool,
-        paired: &BTreeMap<usize, (usize, usize)>,
+        common: &Common,
     ) {
         let operand = |expression: &Expression| self.operand(draft, *expression, folding);
         let step = match operation {
             Operation::Constant(_) | Operation::Symbol(_) => return,
             Operation::Add(a, b) => Step::Add(operand(a), operand(b)),
             Operation::Multiply(a, b) => Step::Multiply(operand(a), operand(b)),
+            Operation::Divide(a, b) if common.divisors.contains(&b.node()) => {
+                let (dividend, divisor) = (operand(a), operand(b));
+                let reciprocal = draft.reciprocal(b.node(), divisor);
+                if *a == Expression::ONE {
+                    draft.values.insert(current.node(), reciprocal);
+                    return;
+                }
+                Step::Multiply(dividend, Operand::plain(Source::Value(reciprocal)))
+            }
             Operation::Divide(a, b) => Step::Divide(operand(a), operand(b)),
             Operation::Sine(a) | Operation::Cosine(a) => {
                 let angle = operand(a);
-                if let Some((sine, cosine)) = paired.get(&a.node()) {
-                    draft.values.insert(*sine, draft.count);
-                    draft.values.insert(*cosine, draft.count + 1);
-                    draft
-                        .routine
-                        .names
-                        .extend([self.name(*sine), self.name(*cosine)]);
-                    draft.routine.steps.push(Step::SineCosine(angle));
-                    draft.count += 2;
+                if let Some((sine, cosine)) = common.angles.get(&a.node()) {
+                    let first = draft.push(
+                        Step::SineCosine(angle),
+                        &[self.name(*sine), self.name(*cosine)],
+                    );
+                    draft.values.insert(*sine, first);
+                    draft.values.insert(*cosine, first + 1);
                     return;
                 }
                 if matches!(operation, Operation::Sine(_)) {
@@ -324,10 +396,8 @@ impl Context<'_> {
                 Step::Call(*function, arguments.iter().map(operand).collect())
             }
         };
-        draft.values.insert(current.node(), draft.count);
-        draft.routine.names.push(self.name(current.node()));
-        draft.routine.steps.push(step);
-        draft.count += 1;
+        let value = draft.push(step, &[self.name(current.node())]);
+        draft.values.insert(current.node(), value);
     }
 
     fn name(&self, node: usize) -> String {

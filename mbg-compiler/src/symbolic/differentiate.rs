@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::expression::{Expression, Function, Operation, Symbol};
+use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::implicit::Method;
 use super::linear::Linear;
 use super::matrix::Matrix;
@@ -87,6 +87,11 @@ impl Differentiator {
     fn driven(&mut self, pool: &mut Pool, linear: &Linear, row: usize) -> Expression {
         let mut driven = rewrite(&mut self.known, &self.slopes, pool, linear.right[row]);
         for (column, coefficient) in &linear.matrix[row] {
+            if pool.rate(*coefficient) == Rate::Constant
+                || linear.values[*column] == Expression::ZERO
+            {
+                continue;
+            }
             let slope = rewrite(&mut self.known, &self.slopes, pool, *coefficient);
             let product = pool.multiply(slope, linear.values[*column]);
             driven = pool.subtract(driven, product);

@@ -72,6 +72,9 @@ pub fn back_substitute(
     for step in eliminations.iter().rev() {
         let mut rest = right[step.row];
         for (other, coefficient) in &step.others {
+            if solution[*other] == Expression::ZERO {
+                continue;
+            }
             let product = pool.multiply(*coefficient, solution[*other]);
             rest = pool.subtract(rest, product);
         }
@@ -84,6 +87,9 @@ impl Linear {
     /// The solution with another right side; none if that divides by zero.
     pub fn solve(&self, pool: &mut Pool, mut right: Vec<Expression>) -> Option<Vec<Expression>> {
         for step in &self.eliminations {
+            if right[step.row] == Expression::ZERO {
+                continue;
+            }
             for (other, factor) in &step.factors {
                 let product = pool.multiply(*factor, right[step.row]);
                 right[*other] = pool.subtract(right[*other], product);

@@ -5,8 +5,10 @@
 //! zero. The first form in which a function was built is the one that is kept. Negation is a bit of the handle and
 //! costs nothing.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::rc::Rc;
+
+use rustc_hash::FxHashMap;
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
@@ -35,7 +37,7 @@ pub(super) enum Definition {
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
-    found: HashMap<Image, u32>,
+    found: FxHashMap<Image, u32>,
     implicit: Vec<Implicit>,
     /// Images of states that depend on each other, such as the parts of a quaternion.
     located: BTreeMap<usize, Image>,
@@ -59,7 +61,7 @@ impl Pool {
     pub fn new() -> Self {
         let mut pool = Self {
             nodes: Vec::new(),
-            found: HashMap::new(),
+            found: FxHashMap::default(),
             implicit: Vec::new(),
             located: BTreeMap::new(),
             definitions: Vec::new(),

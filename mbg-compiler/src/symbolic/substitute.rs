@@ -1,6 +1,6 @@
 //! Replacing symbols by expressions.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::expression::{Expression, Operation, Symbol};
 use super::pool::Pool;
@@ -9,7 +9,7 @@ use super::walk::Rewritten;
 /// Replaces symbols; what it does not know stays.
 #[derive(Default)]
 pub struct Substitution {
-    values: HashMap<Symbol, Expression>,
+    values: FxHashMap<Symbol, Expression>,
     known: Rewritten,
 }
 
@@ -45,7 +45,7 @@ impl Substitution {
 
 fn rebuild(
     pool: &mut Pool,
-    values: &HashMap<Symbol, Expression>,
+    values: &FxHashMap<Symbol, Expression>,
     known: &Rewritten,
     whole: Expression,
     operation: &Operation,
@@ -71,17 +71,35 @@ fn rebuild(
 /// The symbols that expressions depend on, in order of first sight by depth; what an unknown depends on included.
 #[must_use]
 pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
-    let mut seen = vec![false; pool.len()];
     let mut found = Vec::new();
+    visit(pool, expressions, |operation| {
+        if let Operation::Symbol(symbol) = operation {
+            found.push(*symbol);
+        }
+    });
+    found
+}
+
+/// How many operations the expressions take, shared ones once.
+#[must_use]
+pub fn operations(pool: &Pool, expressions: &[Expression]) -> usize {
+    let mut count = 0;
+    visit(pool, expressions, |operation| {
+        let free = matches!(operation, Operation::Symbol(_) | Operation::Constant(_));
+        count += usize::from(!free);
+    });
+    count
+}
+
+/// Each node that the expressions depend on, once.
+fn visit<'a>(pool: &'a Pool, expressions: &[Expression], mut each: impl FnMut(&'a Operation)) {
+    let mut seen = vec![false; pool.len()];
     let mut pending: Vec<Expression> = expressions.iter().rev().copied().collect();
     while let Some(current) = pending.pop() {
         if std::mem::replace(&mut seen[current.node()], true) {
             continue;
         }
-        if let Operation::Symbol(symbol) = pool.operation(current) {
-            found.push(*symbol);
-        }
+        each(pool.operation(current));
         pending.extend(pool.causes(current).into_iter().rev());
     }
-    found
 }

@@ -1,13 +1,13 @@
 //! The walk that every rewriting of the graph shares.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::expression::{Expression, Operation};
 use super::pool::Pool;
 
 /// What nodes were rewritten to.
 #[derive(Default)]
-pub(super) struct Rewritten(HashMap<usize, Expression>);
+pub(super) struct Rewritten(FxHashMap<usize, Expression>);
 
 impl Rewritten {
     /// What an expression was rewritten to, with its sign.

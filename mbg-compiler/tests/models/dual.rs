@@ -26,6 +26,7 @@ fn run(routine: &Routine, point: &Point, folded: &[Dual<f64>]) -> Vec<Dual<f64>>
         let value = match step {
             Step::Add(a, b) => read(a) + read(b),
             Step::Multiply(a, b) => read(a) * read(b),
+            Step::MultiplyAdd(a, b, c) => read(a) * read(b) + read(c),
             Step::Divide(a, b) => read(a) / read(b),
             Step::Sine(a) => read(a).sin(),
             Step::Cosine(a) => read(a).cos(),

@@ -83,7 +83,7 @@ impl Real for Pair {
 }
 
 /// Numbers in (−1, 1), the same in every run: a linear congruence (Knuth, MMIX).
-pub(super) fn random() -> impl FnMut() -> f64 {
+pub(crate) fn random() -> impl FnMut() -> f64 {
     let mut state: u64 = 1;
     move || {
         state = state

@@ -7,7 +7,7 @@
 
 mod dense;
 #[cfg(test)]
-mod lanes;
+pub(crate) mod lanes;
 mod least_norm;
 mod memory;
 mod newton;

@@ -1,25 +1,159 @@
 //! Steps of constant length.
 
+use core::ops::ControlFlow;
+
 use nalgebra::SVector;
 
-use super::{
-    Cause, Statistics, Stopped, advance, check_finite, check_result, check_times, closed, less,
-    magnitude, piece_end, same_time, seen,
-};
+use super::dense::Step;
+use super::explicit::Rk4;
+use super::integrator::{Integrator, begin};
+use super::method::{Family, Method, Span, Start};
+use super::problem::Problem;
+use super::{Cause, Statistics, Stopped, check_result, magnitude, seen};
 use crate::{Constant, Input, Real, System};
 
-/// The classical method of Runge and Kutta, of order 4, with four evaluations a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rk4;
+/// A method at steps of constant length.
+///
+/// The grid is `t0 + k · h`. It starts anew at each jump of the input; the step before a jump, or before `t1`, is
+/// shortened to end there. Where `h` divides the way up to rounding, all steps are equal and no tiny one remains.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Fixed, Gauss6, Integrator, Stopped, System};
+/// use nalgebra::SVector;
+///
+/// /// The state after 1000 seconds.
+/// fn coast<const P: usize>(model: &impl System<f64, 7, 0, P>) -> Result<SVector<f64, 7>, Stopped> {
+///     let solver = Fixed::new(Gauss6::default(), 1e-2).compensated();
+///     let mut last = model.initial_state();
+///     solver.integrate(model, &(), 0.0, 1000.0, last, |step| last = *step.state())?;
+///     Ok(last)
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fixed<Method> {
+    /// The method.
+    pub method: Method,
+    /// Length of a step.
+    pub step: f64,
+    /// Whether what rounding takes off the sum of all steps is kept and added to the next (Kahan's summation).
+    pub compensated: bool,
+}
+
+impl<M: Method> Fixed<M> {
+    /// A method at steps of this length.
+    pub const fn new(method: M, step: f64) -> Self {
+        Self {
+            method,
+            step,
+            compensated: false,
+        }
+    }
+
+    /// The same with compensated sums: for `f32`, and for long runs of conservative systems.
+    #[must_use]
+    pub const fn compensated(self) -> Self {
+        Self {
+            compensated: true,
+            ..self
+        }
+    }
+}
+
+#[allow(private_interfaces, reason = "no integrator is written outside")]
+impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
+    fn check_settings<T: Real>(&self, t0: T, t1: T) -> Result<(), Stopped> {
+        if !self.step.is_finite() || self.step <= 0.0 {
+            let what = "the step must be finite and larger than zero";
+            return Err(Stopped::new(t0, Cause::Argument(what)));
+        }
+        if self.step <= 4.0 * T::EPSILON * magnitude(t0).max(magnitude(t1)) {
+            return Err(Stopped::new(t0, Cause::StepTooSmall));
+        }
+        Ok(())
+    }
+
+    fn piece<T, S, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (start, end): (T, T),
+        mut x: SVector<T, N>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let (count, step) = divide(start, end, T::from_f64(self.step));
+        let mut work = self.method.prepare::<T, N>();
+        let mut lost = SVector::from_element(T::from_f64(0.0));
+        let mut t = start;
+        for index in 1..=count {
+            let span = if index == count {
+                let length = end - t;
+                Span {
+                    start: t,
+                    end,
+                    length,
+                }
+            } else {
+                let end = start + T::from_f64(index as f64) * step;
+                Span {
+                    start: t,
+                    end,
+                    length: step,
+                }
+            };
+            let slope = problem.slope(t, &x);
+            problem.check(t, &x, &slope)?;
+            let from = Start {
+                span,
+                x,
+                slope,
+                again: false,
+            };
+            let trial = self.method.attempt(&mut work, problem, &from, None);
+            if !trial.error.is_finite() {
+                check_result(problem.system, t, &trial.change, &problem.memory)?;
+                return Err(Stopped::new(t, Cause::Diverged));
+            }
+            x = if self.compensated {
+                summed(&x, &trial.change, &mut lost)
+            } else {
+                x + trial.change
+            };
+            t = span.end;
+            check_result(problem.system, t, &x, &problem.memory)?;
+            x = problem.close(t, x)?;
+            problem.statistics.steps += 1;
+            let mut dense = || Scheme::polynomial(&mut work, problem, &from, (&x, None));
+            let mut step = Step::new(span, (from.x, x), &mut dense);
+            if observer(&mut step).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(x))
+    }
+}
+
+/// `x + change`, where `lost` is what rounding took off the sums before.
+fn summed<T: Real, const N: usize>(
+    x: &SVector<T, N>,
+    change: &SVector<T, N>,
+    lost: &mut SVector<T, N>,
+) -> SVector<T, N> {
+    let whole = change + *lost;
+    let sum = x + whole;
+    *lost = x.zip_zip_map(&sum, &whole, |x, sum, whole| (x - sum) + whole);
+    sum
+}
 
 impl Rk4 {
-    /// Runs from `t0` to `t1` in steps of `h`.
+    /// Runs from `t0` to `t1` in steps of `h`: [`Fixed`] with [`Rk4`], with states alone for an observer.
     ///
-    /// The grid is `t0 + k · h`. It starts anew at each jump of the input; the step before a jump, or before `t1`, is
-    /// shortened to end there. Where `h` divides the way up to rounding, all steps are equal and no tiny one remains.
-    ///
-    /// `observer` is given the start and the end of each step. The system is asked for [`System::trouble`] once a
-    /// step, at its start.
+    /// `observer` is given the start and the end of each step.
     ///
     /// # Errors
     ///
@@ -53,68 +187,14 @@ impl Rk4 {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        check_times(t0, t1)?;
-        let length = seen(h);
-        if !length.is_finite() || length <= 0.0 {
-            return Err(Stopped::new(
-                t0,
-                Cause::Argument("the step must be finite and larger than zero"),
-            ));
-        }
-        if length <= 4.0 * T::EPSILON * magnitude(t0).max(magnitude(t1)) {
-            return Err(Stopped::new(t0, Cause::StepTooSmall));
-        }
-        check_finite(system, t0, &x0)?;
-
-        let mut statistics = Statistics::default();
-        let mut memory = S::Memory::default();
-        let mut x = closed(system, input, t0, x0)?;
+        let fixed = Fixed::new(Self, seen(h));
+        let (mut problem, x) = begin(&fixed, system, input, (t0, t1), x0)?;
         observer(t0, &x);
-
-        let mut start = t0;
-        while less(start, t1) {
-            let end = piece_end(input, start, t1, length)?;
-            if same_time(start, end, length) {
-                start = end;
-                continue;
-            }
-            let (count, step) = divide(start, end, h);
-            let mut t = start;
-            let mut index = 0;
-            while index < count {
-                index += 1;
-                let next = if index == count {
-                    end
-                } else {
-                    start + T::from_f64(index as f64) * step
-                };
-                let h = if index == count { end - t } else { step };
-
-                let u = input.value(t, start);
-                let k1 = system.derivative(t, &x, &u, &mut memory);
-                if let Some(trouble) = system.trouble(t, &x, &u, &memory) {
-                    return Err(Stopped::new(t, Cause::Trouble(trouble)));
-                }
-                x = finish(
-                    system,
-                    &|t| input.value(t, start),
-                    (t, next, h),
-                    &x,
-                    &k1,
-                    &mut memory,
-                );
-                check_result(system, next, &x, &memory)?;
-                x = system
-                    .close(next, x, &input.value(next, start), &[])
-                    .map_err(|trouble| Stopped::new(next, Cause::Trouble(trouble)))?;
-                t = next;
-                statistics.steps += 1;
-                statistics.evaluations += 4;
-                observer(t, &x);
-            }
-            start = end;
-        }
-        Ok(statistics)
+        fixed.run(&mut problem, (t0, t1), x, &mut |step| {
+            observer(step.end(), step.state());
+            ControlFlow::Continue(())
+        })?;
+        Ok(problem.statistics)
     }
 
     /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock.
@@ -133,46 +213,24 @@ impl Rk4 {
         S: System<T, N, M, P>,
     {
         let input = Constant(*u);
-        let k1 = system.derivative(t, x, u, memory);
-        finish(
-            system,
-            &|t| input.value(t, t),
-            (t, t + h, h),
-            x,
-            &k1,
-            memory,
-        )
+        let mut problem = Problem::new(system, &input, t);
+        problem.memory = *memory;
+        let slope = problem.slope(t, x);
+        let span = Span {
+            start: t,
+            end: t + h,
+            length: h,
+        };
+        let start = Start {
+            span,
+            x: *x,
+            slope,
+            again: false,
+        };
+        let trial = Self.attempt(&mut Self.prepare(), &mut problem, &start, None);
+        *memory = problem.memory;
+        x + trial.change
     }
-}
-
-/// The remaining three stages and the new state.
-fn finish<T, S, const N: usize, const M: usize, const P: usize>(
-    system: &S,
-    input: &impl Fn(T) -> SVector<T, M>,
-    (t, next, h): (T, T, T),
-    x: &SVector<T, N>,
-    k1: &SVector<T, N>,
-    memory: &mut S::Memory,
-) -> SVector<T, N>
-where
-    T: Real,
-    S: System<T, N, M, P>,
-{
-    let middle = t + T::from_f64(0.5) * h;
-    let u = input(middle);
-    let k2 = system.derivative(middle, &advance(x, h, [(0.5, k1)]), &u, memory);
-    let k3 = system.derivative(middle, &advance(x, h, [(0.5, &k2)]), &u, memory);
-    let k4 = system.derivative(next, &advance(x, h, [(1.0, &k3)]), &input(next), memory);
-    advance(
-        x,
-        h,
-        [
-            (1.0 / 6.0, k1),
-            (1.0 / 3.0, &k2),
-            (1.0 / 3.0, &k3),
-            (1.0 / 6.0, &k4),
-        ],
-    )
 }
 
 /// Number and length of the steps from `start` to `end`: of length `h`, or what is next to it when `h` divides the

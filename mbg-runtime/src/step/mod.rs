@@ -1,9 +1,22 @@
 //! Integrators for initial value problems.
 
 mod adaptive;
+mod auto;
+mod dense;
+mod explicit;
 mod fixed;
+mod gauss;
+mod integrator;
+mod linear;
+mod method;
 #[cfg(test)]
 mod models;
+mod problem;
+mod radau;
+mod rosenbrock;
+mod tolerance;
+#[cfg(test)]
+mod trees;
 
 use core::cell::Cell;
 use core::fmt;
@@ -12,8 +25,16 @@ use nalgebra::SVector;
 
 use crate::{Input, Real, System, Trouble};
 
-pub use adaptive::{Dense, DormandPrince};
-pub use fixed::Rk4;
+pub use adaptive::Adaptive;
+pub use auto::{Auto, Choice, Picked, Reason};
+pub use dense::{Direction, Step};
+pub use explicit::{Dop853, Rk4, Tsit5};
+pub use fixed::Fixed;
+pub use gauss::{Gauss6, ImplicitMidpoint};
+pub use integrator::{Arrival, Integrator};
+pub use method::{Estimating, Method};
+pub use radau::Radau5;
+pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
 
 /// What a simulation took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +45,10 @@ pub struct Statistics {
     pub rejected: u64,
     /// Evaluations of [`System::derivative`].
     pub evaluations: u64,
+    /// Evaluations of [`System::jacobian_state`].
+    pub jacobians: u64,
+    /// Matrices factorised.
+    pub factorisations: u64,
 }
 
 /// A simulation that could not go on.
@@ -52,6 +77,8 @@ pub enum Cause {
     StepTooSmall,
     /// More steps than allowed.
     TooManySteps,
+    /// The stages of an implicit method were not found; a shorter step may help.
+    Diverged,
     /// The simulation was not set up properly.
     Argument(&'static str),
 }
@@ -71,6 +98,8 @@ impl fmt::Display for Cause {
             }
             Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
             Self::TooManySteps => formatter.write_str("more steps than allowed"),
+            Self::Diverged => formatter
+                .write_str("the stages of the step were not found, which a shorter one may help"),
             Self::Argument(what) => formatter.write_str(what),
         }
     }
@@ -85,22 +114,6 @@ impl Stopped {
             cause,
         }
     }
-}
-
-/// The initial state with all loops closed.
-fn closed<T, S, const N: usize, const M: usize, const P: usize>(
-    system: &S,
-    input: &impl Input<T, M>,
-    t: T,
-    x: SVector<T, N>,
-) -> Result<SVector<T, N>, Stopped>
-where
-    T: Real,
-    S: System<T, N, M, P>,
-{
-    system
-        .close(t, x, &input.value(t, t), &[])
-        .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))
 }
 
 /// The number, seen as `f64`; of several lanes the first.
@@ -202,26 +215,4 @@ where
         Some(trouble) => Stopped::new(time, Cause::Trouble(trouble)),
         None => stopped,
     })
-}
-
-/// `x + h · Σ weight · slope`.
-fn advance<T: Real, const N: usize, const K: usize>(
-    x: &SVector<T, N>,
-    h: T,
-    terms: [(f64, &SVector<T, N>); K],
-) -> SVector<T, N> {
-    let increment = weighted(terms);
-    x.zip_map(&increment, |x, increment| x + h * increment)
-}
-
-/// `Σ weight · slope`.
-fn weighted<T: Real, const N: usize, const K: usize>(
-    terms: [(f64, &SVector<T, N>); K],
-) -> SVector<T, N> {
-    let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
-    for (weight, slope) in terms {
-        let weight = T::from_f64(weight);
-        sum.zip_apply(slope, |sum, slope| *sum += weight * slope);
-    }
-    sum
 }

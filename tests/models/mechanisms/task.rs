@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use mbg_runtime::solve::least_norm;
-use mbg_runtime::{Constant, DormandPrince, Meta, Rk4, Stopped, System};
+use mbg_runtime::{Adaptive, Constant, Integrator, Meta, Rk4, Stopped, System, Tsit5};
 use nalgebra::{SMatrix, SVector};
 
 /// What a run shows.
@@ -108,7 +108,7 @@ impl<S, const N: usize> Task<S, N> {
     {
         let input = Constant(SVector::zeros());
         let statistics = match self.method {
-            Method::Pair(tolerance) => DormandPrince::new(tolerance, tolerance).integrate(
+            Method::Pair(tolerance) => Adaptive::new(Tsit5, tolerance, tolerance).integrate(
                 &self.system,
                 &input,
                 from,

@@ -1,0 +1,302 @@
+//! Problems written by hand, for measurements of methods.
+
+use mbg_runtime::{Dual, Meta, Operations, Power, Real, System, Variable};
+use nalgebra::{SMatrix, SVector};
+
+/// A right-hand side; its Jacobians follow on dual numbers.
+pub(crate) trait Law<const N: usize, const M: usize> {
+    /// Names of the states.
+    const STATES: &'static [Variable];
+
+    /// The derivative.
+    fn slope<T: Real>(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> SVector<T, N>;
+}
+
+/// A law as a system.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Written<L>(pub L);
+
+impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> for Written<L> {
+    const META: &'static Meta = &Meta {
+        name: "written by hand",
+        parameters: &[],
+        states: L::STATES,
+        inputs: &[],
+        outputs: &[],
+        bonds: &[],
+        dependent: &[],
+        eliminated: &[],
+        conditioning: &[],
+        loops: &[],
+        closures: &[],
+        assumptions: &[],
+        notes: &[],
+        operations: Operations {
+            derivative: 0,
+            output: 0,
+            derivative_and_jacobian: 0,
+            jacobian_input: 0,
+            energy: 0,
+            power: 0,
+            angles: 0,
+        },
+        diagram: "",
+    };
+    type Memory = ();
+    type Conditioning = [T; 0];
+
+    fn initial_state(&self) -> SVector<T, N> {
+        SVector::from_element(T::from_f64(0.0))
+    }
+
+    #[inline]
+    fn derivative(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, _: &mut ()) -> SVector<T, N> {
+        self.0.slope(t, x, u)
+    }
+
+    fn output(&self, _: T, _: &SVector<T, N>, _: &SVector<T, M>, _: &mut ()) -> SVector<T, 0> {
+        SVector::from_element(T::from_f64(0.0))
+    }
+
+    fn jacobian_state(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        _: &mut (),
+    ) -> SMatrix<T, N, N> {
+        let (t, u) = (Dual::constant(t), u.map(Dual::constant));
+        let mut jacobian = SMatrix::<T, N, N>::from_element(T::from_f64(0.0));
+        for column in 0..N {
+            let mut x = x.map(Dual::constant);
+            x[column].slope = T::from_f64(1.0);
+            jacobian.set_column(column, &self.0.slope(t, &x, &u).map(|it| it.slope));
+        }
+        jacobian
+    }
+
+    fn jacobian_input(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        _: &mut (),
+    ) -> SMatrix<T, N, M> {
+        let (t, x) = (Dual::constant(t), x.map(Dual::constant));
+        let mut jacobian = SMatrix::<T, N, M>::from_element(T::from_f64(0.0));
+        for column in 0..M {
+            let mut u = u.map(Dual::constant);
+            u[column].slope = T::from_f64(1.0);
+            jacobian.set_column(column, &self.0.slope(t, &x, &u).map(|it| it.slope));
+        }
+        jacobian
+    }
+
+    fn derivative_time(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        _: &mut (),
+        _: T,
+    ) -> SVector<T, N> {
+        let (x, u) = (x.map(Dual::constant), u.map(Dual::constant));
+        self.0.slope(Dual::variable(t), &x, &u).map(|it| it.slope)
+    }
+
+    fn energy(&self, _: T, _: &SVector<T, N>) -> T {
+        T::from_f64(0.0)
+    }
+
+    fn power(&self, _: T, _: &SVector<T, N>, _: &SVector<T, M>, _: &mut ()) -> Power<T> {
+        let nothing = T::from_f64(0.0);
+        Power {
+            supplied: nothing,
+            dissipated: nothing,
+        }
+    }
+
+    fn conditioning(&self, _: T, _: &SVector<T, N>, _: &SVector<T, M>) -> [T; 0] {
+        []
+    }
+}
+
+const fn state(name: &'static str) -> Variable {
+    Variable { name, unit: "" }
+}
+
+/// `ẍ + x = u`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Oscillator;
+
+impl Law<2, 1> for Oscillator {
+    const STATES: &'static [Variable] = &[state("way"), state("velocity")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, u: &SVector<T, 1>) -> SVector<T, 2> {
+        SVector::from([x[1], u[0] - x[0]])
+    }
+}
+
+/// `ẍ + sin x = 0`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pendulum;
+
+impl Law<2, 0> for Pendulum {
+    const STATES: &'static [Variable] = &[state("angle"), state("rate")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        SVector::from([x[1], -x[0].sin()])
+    }
+}
+
+/// Hunters and hunted, after Lotka and Volterra.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hunters;
+
+impl Law<2, 0> for Hunters {
+    const STATES: &'static [Variable] = &[state("hunted"), state("hunters")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let one = T::from_f64(1.0);
+        SVector::from([x[0] * (one - x[1]), x[1] * (x[0] - one)])
+    }
+}
+
+/// A free rigid body with the principal inertias 1, 2 and 3: momentum in its own axes and quaternion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RigidBody;
+
+impl RigidBody {
+    /// Energy and the norm of the momentum, of a state in any precision.
+    pub(crate) fn invariants<T: Real>(x: &SVector<T, 7>) -> [T; 2] {
+        let [a, b, c] = [x[0] * x[0], x[1] * x[1], x[2] * x[2]];
+        let energy = a * T::from_f64(0.5) + b * T::from_f64(0.25) + c * T::from_f64(1.0 / 6.0);
+        [energy, (a + b + c).sqrt()]
+    }
+}
+
+impl Law<7, 0> for RigidBody {
+    const STATES: &'static [Variable] = &[
+        state("h.x"),
+        state("h.y"),
+        state("h.z"),
+        state("q.w"),
+        state("q.x"),
+        state("q.y"),
+        state("q.z"),
+    ];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 7>, _: &SVector<T, 0>) -> SVector<T, 7> {
+        let half = T::from_f64(0.5);
+        let [h1, h2, h3, w, i, j, k] = x.data.0[0];
+        let [a, b, c] = [h1, half * h2, T::from_f64(1.0 / 3.0) * h3];
+        SVector::from([
+            h2 * c - h3 * b,
+            h3 * a - h1 * c,
+            h1 * b - h2 * a,
+            -(half * (i * a + j * b + k * c)),
+            half * (w * a + j * c - k * b),
+            half * (w * b + k * a - i * c),
+            half * (w * c + i * b - j * a),
+        ])
+    }
+}
+
+/// A pendulum whose torque follows its angle within so many seconds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Follower(pub f64);
+
+impl Law<3, 0> for Follower {
+    const STATES: &'static [Variable] = &[state("angle"), state("rate"), state("torque")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 3>, _: &SVector<T, 0>) -> SVector<T, 3> {
+        let [angle, rate, torque] = x.data.0[0];
+        let behind = torque + angle.sin();
+        SVector::from([rate, torque, -(behind * T::from_f64(1.0 / self.0))])
+    }
+}
+
+/// The problem of Kaps: `x = e^{-2t}`, `y = e^{-t}` whatever the small number is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kaps(pub f64);
+
+impl Law<2, 0> for Kaps {
+    const STATES: &'static [Variable] = &[state("x"), state("y")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let stiffness = T::from_f64(1.0 / self.0);
+        let [x, y] = x.data.0[0];
+        let behind = x - y * y;
+        SVector::from([
+            -(T::from_f64(2.0) * x) - stiffness * behind,
+            x - y * (T::from_f64(1.0) + y),
+        ])
+    }
+}
+
+/// Van der Pol's oscillator with the parameter 1e-6.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VanDerPol;
+
+impl Law<2, 0> for VanDerPol {
+    const STATES: &'static [Variable] = &[state("x"), state("y")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let one = T::from_f64(1.0);
+        let slope = ((one - x[0] * x[0]) * x[1] - x[0]) * T::from_f64(1e6);
+        SVector::from([x[1], slope])
+    }
+}
+
+/// Robertson's reactions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Robertson;
+
+impl Law<3, 0> for Robertson {
+    const STATES: &'static [Variable] = &[state("a"), state("b"), state("c")];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 3>, _: &SVector<T, 0>) -> SVector<T, 3> {
+        let first = T::from_f64(0.04) * x[0];
+        let second = T::from_f64(1e4) * x[1] * x[2];
+        let third = T::from_f64(3e7) * x[1] * x[1];
+        SVector::from([second - first, first - second - third, third])
+    }
+}
+
+/// A rod of 1 m and 1 kg that hangs by a spring and a damper at its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StiffPin {
+    /// Stiffness in N/m.
+    pub stiffness: f64,
+    /// Damping in N s/m.
+    pub damping: f64,
+}
+
+impl Law<6, 0> for StiffPin {
+    const STATES: &'static [Variable] = &[
+        state("pin.x"),
+        state("pin.y"),
+        state("angle"),
+        state("velocity.x"),
+        state("velocity.y"),
+        state("rate"),
+    ];
+
+    fn slope<T: Real>(&self, _: T, x: &SVector<T, 6>, _: &SVector<T, 0>) -> SVector<T, 6> {
+        let [px, py, angle, vx, vy, rate] = x.data.0[0];
+        let [k, c] = [self.stiffness, self.damping].map(T::from_f64);
+        let (fx, fy) = (-(k * px) - c * vx, -(k * py) - c * vy);
+        let (sin, cos) = angle.sin_cos();
+        let half = T::from_f64(0.5);
+        let turning = -(T::from_f64(6.0) * (sin * fy + cos * fx));
+        let inward = half * rate * rate;
+        SVector::from([
+            vx,
+            vy,
+            rate,
+            fx - half * turning * cos + inward * sin,
+            fy - T::from_f64(9.81) - half * turning * sin - inward * cos,
+            turning,
+        ])
+    }
+}

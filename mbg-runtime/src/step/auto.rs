@@ -1,0 +1,329 @@
+//! A choice of method by what is known of a problem.
+
+use core::fmt;
+use core::ops::ControlFlow;
+
+use nalgebra::{SMatrix, SVector};
+
+use super::adaptive::Adaptive;
+use super::dense::Step;
+use super::explicit::{Dop853, Tsit5};
+use super::integrator::{Integrator, begin};
+use super::method::Method;
+use super::problem::Problem;
+use super::radau::Radau5;
+use super::rosenbrock::Rodas5P;
+use super::{Stopped, magnitude, piece_end, seen};
+use crate::{Input, Real, System};
+
+/// Integrates with a method that it picks for each piece between two jumps of the input.
+///
+/// | what is known at the start of the piece | method |
+/// |---|---|
+/// | the fastest mode moves more than 10 000 rad within the piece; it is an oscillation | [`Radau5`] |
+/// | the same, and it decays | [`Rodas5P`] |
+/// | closed loops, a relative tolerance above 3e-6, or less than 20 rad within the piece | [`Tsit5`] |
+/// | else | [`Dop853`] |
+///
+/// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of
+/// steps of the power method. [`Auto::choose`] tells what is picked and why. A problem may become stiff later on: every
+/// 50 steps of a method for smooth problems the fastest mode is looked at again, and where stability is what keeps the
+/// steps short, the piece goes on with a method for stiff ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Auto<'a> {
+    /// Tolerance in units of the state.
+    pub relative: f64,
+    /// Tolerance where the state is near zero, in units of its nominal size.
+    pub absolute: f64,
+    /// Nominal sizes of the states, in their order; a state without one has size 1.
+    pub nominal: &'a [f64],
+}
+
+/// A method and why it was picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// The method.
+    pub method: Picked,
+    /// Why.
+    pub reason: Reason,
+    /// The fastest mode, in rad/s.
+    pub fastest: f64,
+    /// How long the input has no jump, in s.
+    pub horizon: f64,
+}
+
+/// A method that [`Auto`] picks from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "named after the methods")]
+pub enum Picked {
+    Tsit5,
+    Dop853,
+    Rodas5P,
+    Radau5,
+}
+
+/// Why [`Auto`] picked a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// Stiff, the fastest mode oscillates.
+    StiffOscillation,
+    /// Stiff, the fastest mode decays.
+    StiffDecay,
+    /// Closed loops may pass singular positions.
+    ClosedLoops,
+    /// Little happens before the next jump.
+    ShortPiece,
+    /// Smooth, to a moderate tolerance.
+    Moderate,
+    /// Smooth, to a tight tolerance.
+    Tight,
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let method = match self.method {
+            Picked::Tsit5 => Tsit5::NAME,
+            Picked::Dop853 => Dop853::NAME,
+            Picked::Rodas5P => Rodas5P::NAME,
+            Picked::Radau5 => Radau5::NAME,
+        };
+        let reason = match self.reason {
+            Reason::StiffOscillation => "stiff, and the fastest mode oscillates",
+            Reason::StiffDecay => "stiff, and the fastest mode decays",
+            Reason::ClosedLoops => "not stiff, with closed loops that may pass singular positions",
+            Reason::ShortPiece => "not stiff, and little happens before the next jump",
+            Reason::Moderate => "not stiff, and the tolerance is moderate",
+            Reason::Tight => "not stiff, and the tolerance is tight",
+        };
+        let Self {
+            fastest, horizon, ..
+        } = self;
+        write!(
+            formatter,
+            "{method}: {reason}; fastest mode {fastest:.1e} rad/s, {horizon:.1e} s without a jump"
+        )
+    }
+}
+
+impl Auto<'_> {
+    /// Picks methods for these relative and absolute tolerances.
+    pub const fn new(relative: f64, absolute: f64) -> Self {
+        Self {
+            relative,
+            absolute,
+            nominal: &[],
+        }
+    }
+
+    /// What is picked for the piece that begins at `t0`.
+    ///
+    /// # Errors
+    ///
+    /// Times or states that are not finite, a loop that cannot be closed at the start.
+    pub fn choose<T, S, I, const N: usize, const M: usize, const P: usize>(
+        &self,
+        system: &S,
+        input: &I,
+        t0: T,
+        t1: T,
+        x0: SVector<T, N>,
+    ) -> Result<Choice, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
+        let end = piece_end(input, t0, t1, seen(t1 - t0))?;
+        Ok(self.pick(&mut problem, (t0, end), &x))
+    }
+
+    fn pick<T, S, I, const N: usize, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (start, end): (T, T),
+        x: &SVector<T, N>,
+    ) -> Choice
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let jacobian = problem.jacobian(start, x);
+        let (fastest, oscillates) = fastest(&jacobian.map(seen));
+        let horizon = seen(end - start);
+        let angle = fastest * horizon;
+        let (method, reason) = if angle > STIFF && oscillates {
+            (Picked::Radau5, Reason::StiffOscillation)
+        } else if angle > STIFF {
+            (Picked::Rodas5P, Reason::StiffDecay)
+        } else if !S::META.closures.is_empty() {
+            (Picked::Tsit5, Reason::ClosedLoops)
+        } else if angle < SHORT {
+            (Picked::Tsit5, Reason::ShortPiece)
+        } else if self.relative > MODERATE {
+            (Picked::Tsit5, Reason::Moderate)
+        } else {
+            (Picked::Dop853, Reason::Tight)
+        };
+        Choice {
+            method,
+            reason,
+            fastest,
+            horizon,
+        }
+    }
+
+    fn with<M>(&self, method: M) -> Adaptive<'_, M> {
+        Adaptive {
+            nominal: self.nominal,
+            ..Adaptive::new(method, self.relative, self.absolute)
+        }
+    }
+}
+
+/// An angle that the fastest mode moves through, in rad, above which an explicit method takes thousands of steps.
+const STIFF: f64 = 1e4;
+/// An angle within which long steps do not pay.
+const SHORT: f64 = 20.0;
+/// Above this relative tolerance the method of low order pays.
+const MODERATE: f64 = 3e-6;
+
+#[allow(private_interfaces, reason = "no integrator is written outside")]
+impl<const N: usize> Integrator<N> for Auto<'_> {
+    fn check_settings<T: Real>(&self, t0: T, t1: T) -> Result<(), Stopped> {
+        Integrator::<N>::check_settings(&self.with(Tsit5), t0, t1)
+    }
+
+    fn piece<T, S, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        ends: (T, T),
+        x: SVector<T, N>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let picked = self.pick(problem, ends, &x).method;
+        match picked {
+            Picked::Rodas5P => return self.with(Rodas5P).piece(problem, ends, x, observer),
+            Picked::Radau5 => return self.with(Radau5).piece(problem, ends, x, observer),
+            Picked::Tsit5 | Picked::Dop853 => (),
+        }
+        let (system, input, since) = (problem.system, problem.input, problem.since);
+        let mut stiff = None;
+        let mut steps = 0_u32;
+        let mut watch = |step: &mut Step<'_, T, N>| {
+            observer(step)?;
+            steps = (steps + 1) % WATCHED;
+            if steps != 0 {
+                return ControlFlow::Continue(());
+            }
+            let (t, x) = (step.end(), *step.state());
+            let u = input.value(t, since);
+            let jacobian = system.jacobian_state(t, &x, &u, &mut S::Memory::default());
+            let (fastest, oscillates) = fastest(&jacobian.map(seen));
+            let length = seen(t - step.start());
+            if fastest * length > UNSTABLE && fastest * seen(ends.1 - t) > STIFF {
+                stiff = Some((t, x, oscillates));
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        };
+        let ended = match picked {
+            Picked::Tsit5 => self.with(Tsit5).piece(problem, ends, x, &mut watch),
+            _ => self.with(Dop853).piece(problem, ends, x, &mut watch),
+        };
+        match stiff {
+            None => ended,
+            Some((t, x, true)) => self.with(Radau5).piece(problem, (t, ends.1), x, observer),
+            Some((t, x, false)) => self.with(Rodas5P).piece(problem, (t, ends.1), x, observer),
+        }
+    }
+}
+
+/// Steps between two looks at the fastest mode.
+const WATCHED: u32 = 50;
+/// An angle per step, in rad, that is near the bound of stability of the methods for smooth problems.
+const UNSTABLE: f64 = 2.0;
+
+/// Rounds of the power method.
+const ROUNDS: usize = 60;
+
+/// Size of the largest eigenvalue, and whether it is one of a pair whose angle to the negative axis exceeds 45°.
+///
+/// The last three vectors of the power method are nearly dependent: `v″ = a v′ + b v` has the eigenvalues as roots.
+fn fastest<const N: usize>(jacobian: &SMatrix<f64, N, N>) -> (f64, bool) {
+    let scale = jacobian
+        .iter()
+        .fold(0.0, |largest: f64, it| largest.max(it.abs()));
+    if N == 0 || scale == 0.0 || !scale.is_finite() {
+        return (0.0, false);
+    }
+    // Uneven, so that no symmetry of the model hides a mode.
+    let mut v = SVector::<f64, N>::from_fn(|row, _| 1.0 + 0.37 * Real::sin(row as f64 * 1.7));
+    let matrix = jacobian.map(|it| it / scale);
+    for _ in 0..ROUNDS {
+        let next = balanced(&(matrix * v));
+        if next.iter().all(|it| *it == 0.0) {
+            return (0.0, false);
+        }
+        v = next;
+    }
+    let first = matrix * v;
+    let second = matrix * first;
+    let [vv, fv, ff] = [v.dot(&v), first.dot(&v), first.dot(&first)];
+    let [sv, sf] = [second.dot(&v), second.dot(&first)];
+    let determinant = ff * vv - fv * fv;
+    if determinant <= 1e-12 * ff * vv {
+        // One real eigenvalue: the vectors are parallel.
+        return (scale * Real::sqrt(ff / vv), false);
+    }
+    let a = (sf * vv - sv * fv) / determinant;
+    let b = (sv * ff - sf * fv) / determinant;
+    let discriminant = 0.25 * a * a + b;
+    if discriminant < 0.0 {
+        let (size, real) = (Real::sqrt(-b), 0.5 * a);
+        return (
+            scale * size,
+            real.abs() < size * core::f64::consts::FRAC_1_SQRT_2,
+        );
+    }
+    let root = Real::sqrt(discriminant);
+    (scale * (0.5 * a.abs() + root), false)
+}
+
+/// A vector with largest component one.
+fn balanced<const N: usize>(v: &SVector<f64, N>) -> SVector<f64, N> {
+    let largest = v
+        .iter()
+        .fold(0.0, |largest: f64, it| largest.max(magnitude(*it)));
+    if largest > 0.0 && largest.is_finite() {
+        v.map(|it| it / largest)
+    } else {
+        SVector::from_element(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fastest_modes_are_found() {
+        let (size, oscillates) = fastest(&SMatrix::from([[0.0, -1e8], [1.0, -10.0]]));
+        assert!((size / 1e4 - 1.0).abs() < 1e-6 && oscillates, "{size}");
+        let (size, oscillates) = fastest(&SMatrix::from([[-1e6, 3.0], [2.0, -1.0]]));
+        assert!((size / 1e6 - 1.0).abs() < 1e-6 && !oscillates, "{size}");
+        let (size, oscillates) = fastest(&SMatrix::from([[0.0, 1.0], [1.0, 0.0]]));
+        assert!((size - 1.0).abs() < 1e-9 && !oscillates, "{size}");
+        assert_eq!(
+            fastest(&SMatrix::from([[0.0, 0.0], [1.0, 0.0]])),
+            (0.0, false)
+        );
+        assert_eq!(fastest(&SMatrix::<f64, 0, 0>::from([])), (0.0, false));
+    }
+}

@@ -1,0 +1,199 @@
+//! Steps with what lies between their ends.
+
+use nalgebra::SVector;
+
+use super::method::Span;
+use super::{less, seen};
+use crate::Real;
+
+/// A polynomial over a step, in the form of Hairer's codes: with `s` from 0 to 1 and `r = 1 - s`,
+/// `x + s (c₀ + r (c₁ + s (c₂ + r (c₃ + s (c₄ + r (c₅ + s c₆))))))`.
+///
+/// It gives the states at both ends exactly, whatever its degree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial<T, const N: usize> {
+    pub(super) start: SVector<T, N>,
+    pub(super) coefficients: [SVector<T, N>; 7],
+}
+
+impl<T: Real, const N: usize> Polynomial<T, N> {
+    /// The straight line between two states.
+    pub(super) fn line(start: &SVector<T, N>, end: &SVector<T, N>) -> Self {
+        let zero = SVector::from_element(T::from_f64(0.0));
+        let mut coefficients = [zero; 7];
+        coefficients[0] = end.zip_map(start, |end, start| end - start);
+        Self {
+            start: *start,
+            coefficients,
+        }
+    }
+
+    /// The cubic with these states and, times the length of the step, derivatives at its ends.
+    pub(super) fn cubic(
+        (start, first): (&SVector<T, N>, SVector<T, N>),
+        (end, last): (&SVector<T, N>, SVector<T, N>),
+    ) -> Self {
+        let mut cubic = Self::line(start, end);
+        let [change, bend, twist, ..] = &mut cubic.coefficients;
+        *bend = first.zip_map(change, |first, change| first - change);
+        *twist = change.zip_zip_map(&last, bend, |change, last, bend| change - last - bend);
+        cubic
+    }
+
+    pub(super) fn at(&self, s: T) -> SVector<T, N> {
+        let rest = T::from_f64(1.0) - s;
+        let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
+        for (place, coefficient) in self.coefficients.iter().enumerate().rev() {
+            let factor = if place % 2 == 0 { s } else { rest };
+            sum.zip_apply(coefficient, |sum, coefficient| {
+                *sum = factor * (coefficient + *sum);
+            });
+        }
+        self.start.zip_map(&sum, |start, sum| start + sum)
+    }
+}
+
+/// A step with its dense output.
+pub struct Step<'a, T, const N: usize> {
+    span: Span<T>,
+    first: SVector<T, N>,
+    state: SVector<T, N>,
+    polynomial: Option<Polynomial<T, N>>,
+    source: &'a mut dyn FnMut() -> Polynomial<T, N>,
+}
+
+impl<'a, T: Real, const N: usize> Step<'a, T, N> {
+    pub(super) fn new(
+        span: Span<T>,
+        (first, state): (SVector<T, N>, SVector<T, N>),
+        source: &'a mut dyn FnMut() -> Polynomial<T, N>,
+    ) -> Self {
+        Self {
+            span,
+            first,
+            state,
+            polynomial: None,
+            source,
+        }
+    }
+
+    /// The time at which the step starts.
+    pub fn start(&self) -> T {
+        self.span.start
+    }
+
+    /// The time at which the step ends.
+    pub fn end(&self) -> T {
+        self.span.end
+    }
+
+    /// The state at the end, not interpolated.
+    pub fn state(&self) -> &SVector<T, N> {
+        &self.state
+    }
+
+    /// The state at the start.
+    pub fn first(&self) -> &SVector<T, N> {
+        &self.first
+    }
+
+    /// The state at a time of the step, interpolated with [`Method::DENSE_ORDER`](super::Method::DENSE_ORDER); outside
+    /// of the step an extrapolation.
+    ///
+    /// The first call may evaluate the derivative, up to four times.
+    pub fn at(&mut self, t: T) -> SVector<T, N> {
+        let polynomial = self.polynomial.get_or_insert_with(&mut self.source);
+        polynomial.at((t - self.span.start) / self.span.length)
+    }
+
+    /// The first time in the step, not counting its start, at which `guard` goes through zero in this direction.
+    ///
+    /// `guard` is asked at the ends of eight equal parts of the step, so that a pair of crossings closer than that may
+    /// be missed. Within a part the time is found by the Illinois method, and bisection where that is slow, in at most
+    /// [`Step::SEARCH`] evaluations, to the last bits. Lanes share their time: the first decides.
+    pub fn crossing(
+        &mut self,
+        direction: Direction,
+        mut guard: impl FnMut(T, &SVector<T, N>) -> T,
+    ) -> Option<T> {
+        let (start, length) = (self.span.start, self.span.length);
+        let mut before = (start, seen(guard(start, &self.first)));
+        for part in 1..=8 {
+            let after = if part == 8 {
+                (self.span.end, seen(guard(self.span.end, &self.state)))
+            } else {
+                let t = start + T::from_f64(f64::from(part) / 8.0) * length;
+                let x = self.at(t);
+                (t, seen(guard(t, &x)))
+            };
+            if direction.crosses(before.1, after.1) {
+                return Some(self.locate(before, after, guard));
+            }
+            before = after;
+        }
+        None
+    }
+
+    /// Most evaluations of a guard in the search for its zero.
+    pub const SEARCH: usize = 64;
+
+    /// The time behind a change of sign; at it, the guard has the sign of the far side or is zero.
+    fn locate(
+        &mut self,
+        (mut before, mut low): (T, f64),
+        (mut after, mut high): (T, f64),
+        mut guard: impl FnMut(T, &SVector<T, N>) -> T,
+    ) -> T {
+        let positive = low > 0.0;
+        let mut advanced = None;
+        for round in 0..Self::SEARCH {
+            let width = seen(after - before);
+            let resolution = 2.0 * T::EPSILON * seen(after.abs()).max(seen(before.abs()));
+            if high == 0.0 || width <= resolution {
+                break;
+            }
+            let secant = low / (low - high);
+            let fraction = if round % 3 == 2 { 0.5 } else { secant };
+            let inner = (fraction * width).max(0.5 * resolution);
+            let t = before + T::from_f64(inner.min(width - 0.5 * resolution));
+            if !less(before, t) || !less(t, after) {
+                break;
+            }
+            let x = self.at(t);
+            let value = seen(guard(t, &x));
+            let advances = value != 0.0 && (value > 0.0) == positive;
+            // The end that stays for the second time counts half.
+            let half = if advanced == Some(advances) { 0.5 } else { 1.0 };
+            advanced = Some(advances);
+            if advances {
+                (before, low, high) = (t, value, half * high);
+            } else {
+                (after, high, low) = (t, value, half * low);
+            }
+        }
+        after
+    }
+}
+
+/// How a guard goes through zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From positive to zero or negative.
+    Falling,
+    /// From negative to zero or positive.
+    Rising,
+    /// Either.
+    Either,
+}
+
+impl Direction {
+    fn crosses(self, before: f64, after: f64) -> bool {
+        let falls = before > 0.0 && after <= 0.0;
+        let rises = before < 0.0 && after >= 0.0;
+        match self {
+            Self::Falling => falls,
+            Self::Rising => rises,
+            Self::Either => falls || rises,
+        }
+    }
+}

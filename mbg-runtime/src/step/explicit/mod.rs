@@ -1,0 +1,325 @@
+//! Explicit methods of Runge and Kutta.
+
+mod dop853;
+mod tsit5;
+
+use nalgebra::SVector;
+
+use super::dense::Polynomial;
+use super::method::{Estimating, Family, Method, Start, Trial, along, combination, converted};
+use super::problem::Problem;
+use super::seen;
+use super::tolerance::Tolerance;
+use crate::{Input, Real, System};
+use dop853::DOP853;
+use tsit5::TSIT5;
+
+/// The classical method of Runge and Kutta.
+///
+/// | order | in between | estimate | evaluations a step | stable for real `hλ` from | for imaginary `hλ` up to |
+/// |---|---|---|---|---|---|
+/// | 4 | 4 | none | 4 | −2.79 | 2.83 |
+///
+/// For smooth problems at a fixed step, above all on a microcontroller: the cost per step is known in advance. Rounding
+/// in `f32` is kept out by [`Fixed::compensated`](super::Fixed::compensated).
+///
+/// Source: W. Kutta, *Zeitschrift für Mathematik und Physik* 46 (1901), 435–453; dense output by Hermite's cubic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rk4;
+
+/// The pair of Tsitouras.
+///
+/// | order | in between | estimate | evaluations a step | stable for real `hλ` from | for imaginary `hλ` up to |
+/// |---|---|---|---|---|---|
+/// | 5 | 4 free of charge, error of power 5 | 4 | 6, the last being the first of the next step | −3.51 | 0 |
+///
+/// For smooth problems to relative errors of about 1e-5, between jumps that are close together, and for closed loops.
+///
+/// Source: Ch. Tsitouras, *Computers and Mathematics with Applications* 62 (2011), 770–775.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tsit5;
+
+/// The method of Dormand and Prince of order 8 with estimates of orders 5 and 3.
+///
+/// | order | in between | estimate | evaluations a step | stable for real `hλ` from | for imaginary `hλ` up to |
+/// |---|---|---|---|---|---|
+/// | 8 | 7, error of power 8; 3 more evaluations | 7 | 12 | −6.15 | 0 |
+///
+/// For smooth problems to tight tolerances, from about 1e-6 on. Where closed loops pass positions in which their
+/// equations become dependent, its long steps end too near them at times and the run stops; [`Tsit5`] passes them.
+///
+/// Source: `dop853` in Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dop853;
+
+/// Coefficients of a method with `S` stages; `F` counts the slope at the end and stages for the dense output too.
+struct Tableau<const S: usize, const F: usize> {
+    nodes: [f64; F],
+    /// Weights of the slopes before it: of each stage, then of the result, then of each further stage.
+    rows: [&'static [f64]; F],
+    /// Weights of the error; where there are two, the second keeps the first from being too good by chance.
+    errors: [&'static [f64]; 2],
+    /// Weights of the coefficients of the polynomial behind those of the cubic.
+    dense: [&'static [f64]; 4],
+}
+
+const RK4: Tableau<4, 5> = Tableau {
+    nodes: [0.0, 0.5, 0.5, 1.0, 1.0],
+    rows: [
+        &[],
+        &[0.5],
+        &[0.0, 0.5],
+        &[0.0, 0.0, 1.0],
+        &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+    ],
+    errors: [&[], &[]],
+    dense: [&[], &[], &[], &[]],
+};
+
+/// A tableau in the scalar of the run, and the slopes of the last step.
+pub struct Work<T, const N: usize, const S: usize, const F: usize> {
+    nodes: [T; F],
+    rows: [[T; F]; F],
+    slopes: [SVector<T, N>; F],
+}
+
+impl<T: Real, const N: usize, const S: usize, const F: usize> Work<T, N, S, F> {
+    fn new(tableau: &Tableau<S, F>) -> Self {
+        Self {
+            nodes: converted(&tableau.nodes),
+            rows: tableau.rows.map(converted),
+            slopes: [SVector::from_element(T::from_f64(0.0)); F],
+        }
+    }
+
+    /// What a row of weights adds to the state.
+    fn change(&self, row: usize, length: T) -> SVector<T, N> {
+        let (weights, slopes) = (&self.rows[row][..row], &self.slopes[..row]);
+        combination(weights, slopes).map(|sum| length * sum)
+    }
+
+    /// Evaluates the stages from `first` to before `end`.
+    fn evaluate<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        stages: core::ops::Range<usize>,
+    ) where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        for stage in stages {
+            let weights = &self.rows[stage][..stage];
+            let direction = combination(weights, &self.slopes[..stage]);
+            let x = along(&start.x, start.span.length, &direction);
+            self.slopes[stage] = problem.slope(start.span.at(self.nodes[stage]), &x);
+        }
+    }
+
+    fn attempt<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        tableau: &Tableau<S, F>,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        tolerance: Option<&Tolerance<N>>,
+    ) -> Trial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let length = start.span.length;
+        self.slopes[0] = start.slope;
+        self.evaluate(problem, start, 1..S);
+        let change = self.change(S, length);
+        let [fine, coarse] = tableau.errors;
+        // An estimate that weighs the slope at the end makes it the first of the next step.
+        let slope = (tolerance.is_some() && fine.len() > S).then(|| {
+            self.slopes[S] = problem.slope(start.span.end, &(start.x + change));
+            self.slopes[S]
+        });
+        let norm = |tolerance: &Tolerance<N>, weights: &[f64]| {
+            let error = combination(&converted::<T, F>(weights), &self.slopes);
+            seen(length) * tolerance.norm_between(&error, &start.x, &change)
+        };
+        let error = match (tolerance, fine, coarse) {
+            (None, ..) | (_, [], _) => 0.0,
+            (Some(tolerance), _, []) => norm(tolerance, fine),
+            (Some(tolerance), ..) => both(norm(tolerance, fine), norm(tolerance, coarse)),
+        };
+        Trial {
+            change,
+            slope,
+            error,
+        }
+    }
+
+    fn polynomial<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        tableau: &Tableau<S, F>,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        (end, slope): (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let length = start.span.length;
+        let last = slope.unwrap_or_else(|| problem.slope(start.span.end, end));
+        self.slopes[S] = last;
+        self.evaluate(problem, start, S + 1..F);
+        let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
+        let mut polynomial =
+            Polynomial::cubic((&start.x, scaled(start.slope)), (end, scaled(last)));
+        let higher = polynomial.coefficients.iter_mut().skip(3);
+        for (coefficient, weights) in higher.zip(tableau.dense) {
+            *coefficient = scaled(combination(&converted::<T, F>(weights), &self.slopes));
+        }
+        polynomial
+    }
+}
+
+/// One error from a fine and a coarse estimate, as `dop853` does it.
+fn both(fine: f64, coarse: f64) -> f64 {
+    if fine == 0.0 {
+        return 0.0;
+    }
+    fine * fine / Real::sqrt(fine * fine + 0.01 * coarse * coarse)
+}
+
+/// A method of this family.
+macro_rules! explicit {
+    ($name:ident, $tableau:ident: $stages:literal of $all:literal, $text:literal, order $order:literal, $dense:literal) => {
+        impl Method for $name {
+            const NAME: &'static str = $text;
+            const ORDER: u32 = $order;
+            const DENSE_ORDER: u32 = $dense;
+        }
+
+        #[allow(private_interfaces, reason = "no method is written outside")]
+        impl Family for $name {
+            type Work<T: Real, const N: usize> = Work<T, N, $stages, $all>;
+
+            fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
+                Work::new(&$tableau)
+            }
+
+            fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
+                &self,
+                work: &mut Self::Work<T, N>,
+                problem: &mut Problem<'_, T, S, I, N, M, P>,
+                start: &Start<T, N>,
+                tolerance: Option<&Tolerance<N>>,
+            ) -> Trial<T, N>
+            where
+                T: Real,
+                S: System<T, N, M, P>,
+                I: Input<T, M>,
+            {
+                work.attempt(&$tableau, problem, start, tolerance)
+            }
+
+            fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
+                work: &mut Self::Work<T, N>,
+                problem: &mut Problem<'_, T, S, I, N, M, P>,
+                start: &Start<T, N>,
+                end: (&SVector<T, N>, Option<SVector<T, N>>),
+            ) -> Polynomial<T, N>
+            where
+                T: Real,
+                S: System<T, N, M, P>,
+                I: Input<T, M>,
+            {
+                work.polynomial(&$tableau, problem, start, end)
+            }
+        }
+    };
+}
+
+explicit!(Rk4, RK4: 4 of 5, "RK4", order 4, 4);
+explicit!(Tsit5, TSIT5: 6 of 7, "Tsit5", order 5, 5);
+explicit!(Dop853, DOP853: 12 of 16, "Dop853", order 8, 8);
+
+impl Estimating for Tsit5 {
+    const ESTIMATE_ORDER: u32 = 5;
+}
+
+impl Estimating for Dop853 {
+    const ESTIMATE_ORDER: u32 = 8;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::trees::Scheme;
+    use std::vec::Vec;
+
+    fn padded(row: &[f64], length: usize) -> Vec<f64> {
+        let zeros = core::iter::repeat(&0.0);
+        row.iter().chain(zeros).take(length).copied().collect()
+    }
+
+    fn scheme<const S: usize, const F: usize>(tableau: &Tableau<S, F>) -> Scheme {
+        let rows: Vec<Vec<f64>> = tableau.rows.iter().map(|row| padded(row, F)).collect();
+        for (row, node) in rows.iter().zip(tableau.nodes) {
+            let sum: f64 = row.iter().sum();
+            assert!((sum - node).abs() < 1e-13, "{sum} {node}");
+        }
+        Scheme {
+            several: rows.clone(),
+            single: rows,
+        }
+    }
+
+    /// Weights of all slopes in the state after the fraction `s` of a step.
+    fn between<const S: usize, const F: usize>(tableau: &Tableau<S, F>, s: f64) -> Vec<f64> {
+        let unit = |place: usize| SVector::<f64, F>::from_fn(|row, _| f64::from(row == place));
+        let end = SVector::from_row_slice(&padded(tableau.rows[S], F));
+        let zero = SVector::zeros();
+        let mut polynomial = Polynomial::cubic((&zero, unit(0)), (&end, unit(S)));
+        for (coefficient, weights) in polynomial
+            .coefficients
+            .iter_mut()
+            .skip(3)
+            .zip(tableau.dense)
+        {
+            *coefficient = SVector::from_row_slice(&padded(weights, F));
+        }
+        polynomial.at(s).iter().copied().collect()
+    }
+
+    fn assert_orders<const S: usize, const F: usize>(
+        name: &str,
+        tableau: &Tableau<S, F>,
+        [order, dense]: [usize; 2],
+    ) {
+        let scheme = scheme(tableau);
+        let result = padded(tableau.rows[S], F);
+        scheme.assert_order(name, &result, order, 1.0, 1e-13);
+        for s in [0.1, 0.35, 0.8] {
+            scheme.assert_order(name, &between(tableau, s), dense, s, 1e-12);
+        }
+    }
+
+    #[test]
+    fn conditions_of_order_hold() {
+        assert_orders("RK4", &RK4, [4, 3]);
+        assert_orders("Tsit5", &TSIT5, [5, 4]);
+        assert_orders("Dop853", &DOP853, [8, 7]);
+    }
+
+    #[test]
+    fn estimates_have_their_orders() {
+        let embedded = |result: &[f64], error: &[f64], all: usize| -> Vec<f64> {
+            let pairs = padded(result, all).into_iter().zip(padded(error, all));
+            pairs.map(|(result, error)| result - error).collect()
+        };
+        let result = embedded(TSIT5.rows[6], TSIT5.errors[0], 7);
+        scheme(&TSIT5).assert_order("Tsit5", &result, 4, 1.0, 1e-12);
+        let scheme = scheme(&DOP853);
+        for (error, order) in DOP853.errors.iter().zip([5, 3]) {
+            let result = embedded(DOP853.rows[12], error, 16);
+            scheme.assert_order("Dop853", &result, order, 1.0, 1e-12);
+        }
+    }
+}

@@ -1,0 +1,378 @@
+//! Gauss's methods of collocation, solved by sweeps over the stages.
+
+use nalgebra::SVector;
+
+use super::dense::Polynomial;
+use super::linear::Factors;
+use super::method::{
+    Family, Method, Progress, Settling, Start, Trial, along, combination, converted, relative,
+};
+use super::problem::Problem;
+use super::seen;
+use super::tolerance::Tolerance;
+use crate::{Input, Real, System};
+
+/// Gauss's method with three stages.
+///
+/// | order | in between | estimate | a step costs | stability |
+/// |---|---|---|---|---|
+/// | 6 | 3, error of power 4 | none | three evaluations a sweep: about ten sweeps to rounding | A, symplectic, symmetric |
+///
+/// For conservative problems over long times: with [`Fixed::compensated`](super::Fixed::compensated) and sweeps to
+/// rounding, quadratic invariants stay where they were. A fixed number of sweeps makes the cost per step known in
+/// advance; three keep the order. The first step, and the first behind a jump, takes two more, since it has no step
+/// before it to start from. Sweeps do not converge where `h |∂f/∂x|` exceeds about 2: no method for stiff problems.
+///
+/// Source: J. C. Butcher, *Mathematics of Computation* 18 (1964), 50–64; Hairer, Lubich and Wanner, *Geometric
+/// Numerical Integration*, 2nd ed. (2006), II.1.3 and VIII.6.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gauss6 {
+    /// Number of sweeps; to rounding when there is none.
+    pub sweeps: Option<u32>,
+}
+
+/// The implicit midpoint rule, solved by Newton's method with the Jacobian at the start of the step.
+///
+/// | order | in between | estimate | a step costs | stability |
+/// |---|---|---|---|---|
+/// | 2 | 2 | none | a Jacobian, a factorisation, one evaluation and one solve a sweep | A, symplectic, symmetric |
+///
+/// For stiff mechanics at a fixed step on a microcontroller, where energy must neither grow nor vanish. The number of
+/// sweeps is fixed: 2 or 3 suffice, where the Jacobian changes little over a step.
+///
+/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.5 and IV.8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImplicitMidpoint {
+    /// Number of Newton's sweeps.
+    pub sweeps: u32,
+}
+
+impl Default for ImplicitMidpoint {
+    /// Three sweeps.
+    fn default() -> Self {
+        Self { sweeps: 3 }
+    }
+}
+
+/// Coefficients of a method with `S` stages.
+struct Tableau<const S: usize> {
+    nodes: [f64; S],
+    matrix: [[f64; S]; S],
+    weights: [f64; S],
+    /// Weights of `d₁, d₂` in `x + s (Δ + (1 − s) (d₁ + s d₂))`.
+    dense: [[f64; S]; 2],
+}
+
+const MIDPOINT: Tableau<1> = Tableau {
+    nodes: [0.5],
+    matrix: [[0.5]],
+    weights: [1.0],
+    dense: [[0.0]; 2],
+};
+
+/// √15.
+const Q: f64 = 3.872_983_346_207_417;
+
+const GAUSS6: Tableau<3> = Tableau {
+    nodes: [0.5 - Q / 10.0, 0.5, 0.5 + Q / 10.0],
+    matrix: [
+        [5.0 / 36.0, 2.0 / 9.0 - Q / 15.0, 5.0 / 36.0 - Q / 30.0],
+        [5.0 / 36.0 + Q / 24.0, 2.0 / 9.0, 5.0 / 36.0 - Q / 24.0],
+        [5.0 / 36.0 + Q / 30.0, 2.0 / 9.0 + Q / 15.0, 5.0 / 36.0],
+    ],
+    weights: [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0],
+    dense: [
+        [
+            (0.5 + Q / 10.0) / 0.6 - 5.0 / 18.0,
+            -2.0 / 3.0 - 4.0 / 9.0,
+            (0.5 - Q / 10.0) / 0.6 - 5.0 / 18.0,
+        ],
+        [-1.0 / 0.9, 1.0 / 0.45, -1.0 / 0.9],
+    ],
+};
+
+/// How the stages are found.
+#[derive(Clone, Copy)]
+enum Solve {
+    /// By sweeps `k ← f(x + h A k)`, so many or to rounding.
+    Sweeps(Option<u32>),
+    /// By so many sweeps of Newton's method, one stage after the other.
+    Newton(u32),
+}
+
+/// Most sweeps to rounding.
+const MOST: u32 = 50;
+
+/// A tableau in the scalar of the run, and the stages of the last step.
+pub struct Work<T, const N: usize, const S: usize> {
+    matrix: [[T; S]; S],
+    weights: [T; S],
+    slopes: [SVector<T, N>; S],
+    /// Length of the last step; none at the start and behind a jump.
+    length: Option<T>,
+}
+
+impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
+    fn new(tableau: &Tableau<S>) -> Self {
+        Self {
+            matrix: tableau.matrix.map(|row| converted(&row)),
+            weights: converted(&tableau.weights),
+            slopes: [SVector::from_element(T::from_f64(0.0)); S],
+            length: None,
+        }
+    }
+
+    /// The stages as the last step continues; without one, the derivative at the start.
+    fn predict(&mut self, tableau: &Tableau<S>, start: &Start<T, N>) {
+        let Some(before) = self.length.filter(|_| !start.again) else {
+            self.slopes = [start.slope; S];
+            return;
+        };
+        let ratio = seen(start.span.length / before);
+        let known = self.slopes;
+        for (node, slope) in tableau.nodes.iter().zip(&mut self.slopes) {
+            let weights = lagrange(&tableau.nodes, 1.0 + node * ratio);
+            *slope = combination(&converted::<T, S>(&weights), &known);
+        }
+    }
+
+    fn attempt<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        tableau: &Tableau<S>,
+        solve: Solve,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+    ) -> Trial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let first = self.length.is_none();
+        self.predict(tableau, start);
+        let found = match solve {
+            Solve::Newton(sweeps) => {
+                let factors = self.factors(problem, start);
+                for _ in 0..sweeps {
+                    self.sweep(tableau, problem, start, Some(&factors));
+                }
+                true
+            }
+            Solve::Sweeps(Some(sweeps)) => {
+                for _ in 0..if first { sweeps + 2 } else { sweeps } {
+                    self.sweep(tableau, problem, start, None);
+                }
+                true
+            }
+            Solve::Sweeps(None) => self.settle(tableau, problem, start),
+        };
+        let length = start.span.length;
+        self.length = Some(length);
+        Trial {
+            change: combination(&self.weights, &self.slopes).map(|sum| length * sum),
+            slope: None,
+            error: if found { 0.0 } else { f64::INFINITY },
+        }
+    }
+
+    /// Sweeps to rounding; whether it came to that.
+    fn settle<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        tableau: &Tableau<S>,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+    ) -> bool
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut settling = Settling::new();
+        for _ in 0..MOST {
+            let change = self.sweep(tableau, problem, start, None);
+            match settling.after::<T>(change) {
+                Progress::Settled => return true,
+                Progress::Lost => return false,
+                Progress::Going => (),
+            }
+        }
+        settling.suffices::<T>()
+    }
+
+    /// `I − h a J` of the first stage.
+    fn factors<Y, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+    ) -> Factors<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let jacobian = problem.jacobian(start.span.start, &start.x);
+        problem.statistics.factorisations += 1;
+        let scale = start.span.length * self.matrix[0][0];
+        Factors::shifted(T::from_f64(1.0), scale, &jacobian)
+    }
+
+    /// One sweep over all stages; gives the largest change of a stage relative to the state.
+    fn sweep<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        tableau: &Tableau<S>,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        newton: Option<&Factors<T, N>>,
+    ) -> f64
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let length = start.span.length;
+        let known = self.slopes;
+        let mut largest = 0.0_f64;
+        for stage in 0..S {
+            let direction = combination(&self.matrix[stage], &known);
+            let x = along(&start.x, length, &direction);
+            let t = start.span.at(T::from_f64(tableau.nodes[stage]));
+            let slope = problem.slope(t, &x);
+            let mut change = slope - known[stage];
+            if let Some(factors) = newton {
+                change = factors.solved(&change);
+                self.slopes[stage] = known[stage] + change;
+            } else {
+                self.slopes[stage] = slope;
+            }
+            let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
+            let change = relative(&scaled(change), &start.x, &scaled(slope));
+            if change > largest || change.is_nan() {
+                largest = change;
+            }
+        }
+        largest
+    }
+
+    fn polynomial(
+        &self,
+        tableau: &Tableau<S>,
+        start: &Start<T, N>,
+        end: &SVector<T, N>,
+    ) -> Polynomial<T, N> {
+        let mut polynomial = Polynomial::line(&start.x, end);
+        let higher = polynomial.coefficients.iter_mut().skip(1);
+        for (coefficient, weights) in higher.zip(&tableau.dense) {
+            let sum = combination(&converted::<T, S>(weights), &self.slopes);
+            *coefficient = sum.map(|sum| start.span.length * sum);
+        }
+        polynomial
+    }
+}
+
+/// Weights of the values at the nodes in the polynomial through them, at `s`.
+fn lagrange<const S: usize>(nodes: &[f64; S], s: f64) -> [f64; S] {
+    core::array::from_fn(|own| {
+        let others = (0..S).filter(|other| *other != own);
+        others.fold(1.0, |product, other| {
+            product * (s - nodes[other]) / (nodes[own] - nodes[other])
+        })
+    })
+}
+
+/// A method of this family.
+macro_rules! gauss {
+    ($name:ident, $tableau:ident: $stages:literal, $text:literal, order $order:literal, $dense:literal, |$method:ident| $solve:expr) => {
+        impl Method for $name {
+            const NAME: &'static str = $text;
+            const ORDER: u32 = $order;
+            const DENSE_ORDER: u32 = $dense;
+        }
+
+        #[allow(private_interfaces, reason = "no method is written outside")]
+        impl Family for $name {
+            type Work<T: Real, const N: usize> = Work<T, N, $stages>;
+
+            fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
+                Work::new(&$tableau)
+            }
+
+            fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
+                &self,
+                work: &mut Self::Work<T, N>,
+                problem: &mut Problem<'_, T, S, I, N, M, P>,
+                start: &Start<T, N>,
+                _tolerance: Option<&Tolerance<N>>,
+            ) -> Trial<T, N>
+            where
+                T: Real,
+                S: System<T, N, M, P>,
+                I: Input<T, M>,
+            {
+                let $method = self;
+                work.attempt(&$tableau, $solve, problem, start)
+            }
+
+            fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
+                work: &mut Self::Work<T, N>,
+                _problem: &mut Problem<'_, T, S, I, N, M, P>,
+                start: &Start<T, N>,
+                (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+            ) -> Polynomial<T, N>
+            where
+                T: Real,
+                S: System<T, N, M, P>,
+                I: Input<T, M>,
+            {
+                work.polynomial(&$tableau, start, end)
+            }
+        }
+    };
+}
+
+gauss!(Gauss6, GAUSS6: 3, "Gauss 6", order 6, 4, |method| Solve::Sweeps(method.sweeps));
+gauss!(ImplicitMidpoint, MIDPOINT: 1, "implicit midpoint", order 2, 2, |method| Solve::Newton(method.sweeps));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::trees::Scheme;
+
+    fn assert_order<const S: usize>(name: &str, tableau: &Tableau<S>, order: usize) {
+        let rows = tableau.matrix.map(|row| row.to_vec()).to_vec();
+        let scheme = Scheme {
+            several: rows.clone(),
+            single: rows,
+        };
+        scheme.assert_order(name, &tableau.weights, order, 1.0, 1e-15);
+        // Quadratic invariants stay: bᵢ aᵢⱼ + bⱼ aⱼᵢ = bᵢ bⱼ.
+        for i in 0..S {
+            for j in 0..S {
+                let (b, a) = (tableau.weights, tableau.matrix);
+                let sum = b[i] * a[i][j] + b[j] * a[j][i] - b[i] * b[j];
+                assert!(sum.abs() < 1e-16, "{name} {i} {j} {sum:e}");
+            }
+        }
+        let mut work = Work::<f64, S, S>::new(tableau);
+        work.slopes =
+            core::array::from_fn(|stage| SVector::from_fn(|row, _| f64::from(row == stage)));
+        let span = crate::step::method::Span {
+            start: 0.0,
+            end: 1.0,
+            length: 1.0,
+        };
+        let zero = SVector::zeros();
+        let start = Start {
+            span,
+            x: zero,
+            slope: zero,
+            again: false,
+        };
+        let between = work.polynomial(tableau, &start, &SVector::from(tableau.weights));
+        for s in [0.1, 0.35, 0.8] {
+            let weights = between.at(s);
+            scheme.assert_order(name, weights.as_slice(), S, s, 1e-14);
+        }
+    }
+
+    #[test]
+    fn conditions_of_order_hold() {
+        assert_order("implicit midpoint", &MIDPOINT, 2);
+        assert_order("Gauss 6", &GAUSS6, 6);
+    }
+}

@@ -1,0 +1,261 @@
+//! What can be asked of everything that integrates.
+
+use core::ops::ControlFlow;
+
+use nalgebra::SVector;
+
+use super::dense::{Direction, Step};
+use super::problem::Problem;
+use super::{
+    Cause, Statistics, Stopped, check_finite, check_times, less, piece_end, same_time, seen,
+};
+use crate::{Input, Real, System};
+
+/// Where and when a run until an event has ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival<T, const N: usize> {
+    /// The time of the event, or the end.
+    pub time: T,
+    /// The state there; at an event interpolated.
+    pub state: SVector<T, N>,
+    /// Whether it was the event.
+    pub found: bool,
+    /// What it took.
+    pub statistics: Statistics,
+}
+
+/// A method with its step size or tolerance: [`Fixed`](super::Fixed), [`Adaptive`](super::Adaptive) or
+/// [`Auto`](super::Auto).
+///
+/// Every run
+///
+/// - starts by closing the loops of the system, and closes them after every step ([`System::close`]);
+/// - ends a step at each jump of the input and starts anew behind it;
+/// - asks [`System::trouble`] at the start, after each step and behind each jump.
+pub trait Integrator<const N: usize> {
+    /// Refuses settings that cannot be met.
+    #[doc(hidden)]
+    fn check_settings<T: Real>(&self, t0: T, t1: T) -> Result<(), Stopped>;
+
+    /// Runs over one piece of the input, from closed loops; gives the state at its end unless the observer breaks off.
+    #[doc(hidden)]
+    #[allow(private_interfaces, reason = "no integrator is written outside")]
+    fn piece<T, S, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        ends: (T, T),
+        x: SVector<T, N>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>;
+
+    /// Runs from `t0` to `t1` until the observer breaks off.
+    #[doc(hidden)]
+    #[allow(private_interfaces, reason = "no integrator is written outside")]
+    fn run<T, S, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (t0, t1): (T, T),
+        mut x: SVector<T, N>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+    ) -> Result<(), Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let span = seen(t1 - t0);
+        let mut since = t0;
+        while less(since, t1) {
+            let end = piece_end(problem.input, since, t1, span)?;
+            problem.since = since;
+            if !same_time(since, end, span) {
+                match self.piece(problem, (since, end), x, observer)? {
+                    ControlFlow::Continue(next) => x = next,
+                    ControlFlow::Break(()) => return Ok(()),
+                }
+            }
+            since = end;
+        }
+        Ok(())
+    }
+
+    /// Runs from `t0` to `t1`; `observer` is given each step with its dense output.
+    ///
+    /// # Errors
+    ///
+    /// A trouble, a state or derivative that is not finite, a step that became too small or failed, too many steps.
+    fn integrate<T, S, I, const M: usize, const P: usize>(
+        &self,
+        system: &S,
+        input: &I,
+        t0: T,
+        t1: T,
+        x0: SVector<T, N>,
+        mut observer: impl FnMut(&mut Step<'_, T, N>),
+    ) -> Result<Statistics, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
+        self.run(&mut problem, (t0, t1), x, &mut |step| {
+            observer(step);
+            ControlFlow::Continue(())
+        })?;
+        Ok(problem.statistics)
+    }
+
+    /// Runs from `t0` to the last of `times`, which must ascend; `observer` is given the state at each of them.
+    ///
+    /// Between the ends of steps it is interpolated. The times have no influence on the steps, but for the last one,
+    /// at which the last step ends.
+    ///
+    /// # Errors
+    ///
+    /// As [`Integrator::integrate`], and times that do not ascend or begin before `t0`.
+    fn sample<T, S, I, const M: usize, const P: usize>(
+        &self,
+        system: &S,
+        input: &I,
+        t0: T,
+        x0: SVector<T, N>,
+        times: &[T],
+        mut observer: impl FnMut(T, &SVector<T, N>),
+    ) -> Result<Statistics, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut last = t0;
+        for &time in times {
+            check_times(t0, time)?;
+            if less(time, last) {
+                let what = "the times of samples must ascend";
+                return Err(Stopped::new(time, Cause::Argument(what)));
+            }
+            last = time;
+        }
+        let (mut problem, mut x) = begin(self, system, input, (t0, last), x0)?;
+        let mut rest = times;
+        while let [time, others @ ..] = rest
+            && !less(t0, *time)
+        {
+            observer(*time, &x);
+            rest = others;
+        }
+        self.run(&mut problem, (t0, last), x, &mut |step| {
+            while let [time, others @ ..] = rest
+                && !less(step.end(), *time)
+            {
+                if less(*time, step.end()) {
+                    observer(*time, &step.at(*time));
+                } else {
+                    observer(*time, step.state());
+                }
+                rest = others;
+            }
+            x = *step.state();
+            ControlFlow::Continue(())
+        })?;
+        // Left are times that differ from the end by rounding alone.
+        for time in rest {
+            observer(*time, &x);
+        }
+        Ok(problem.statistics)
+    }
+
+    /// Runs from `t0` until `guard` goes through zero, at the latest until `t1`; `observer` is given the steps before
+    /// the one with the event.
+    ///
+    /// The time of the event is found as [`Step::crossing`] tells, in a bounded number of evaluations of the guard. To
+    /// go on, change the state and run again from there: a guard that is zero, or on the far side by rounding, at
+    /// the start counts when it comes back.
+    ///
+    /// # Errors
+    ///
+    /// As [`Integrator::integrate`].
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use mbg_runtime::{Adaptive, Direction, Integrator, Stopped, System, Tsit5};
+    ///
+    /// /// When the first state becomes negative.
+    /// fn landing<const P: usize>(model: &impl System<f64, 2, 0, P>) -> Result<Option<f64>, Stopped> {
+    ///     let solver = Adaptive::new(Tsit5, 1e-8, 1e-10);
+    ///     let start = model.initial_state();
+    ///     let height = (Direction::Falling, |_t, x: &nalgebra::SVector<f64, 2>| x[0]);
+    ///     let arrival = solver.until(model, &(), 0.0, 10.0, start, height, |_step| ())?;
+    ///     Ok(arrival.found.then_some(arrival.time))
+    /// }
+    /// ```
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "the arguments of a run, and an event"
+    )]
+    fn until<T, S, I, const M: usize, const P: usize>(
+        &self,
+        system: &S,
+        input: &I,
+        t0: T,
+        t1: T,
+        x0: SVector<T, N>,
+        (direction, mut guard): (Direction, impl FnMut(T, &SVector<T, N>) -> T),
+        mut observer: impl FnMut(&mut Step<'_, T, N>),
+    ) -> Result<Arrival<T, N>, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
+        let (mut time, mut state, mut found) = (t1, x, false);
+        self.run(&mut problem, (t0, t1), x, &mut |step| {
+            if let Some(crossing) = step.crossing(direction, &mut guard) {
+                (time, state, found) = (crossing, step.at(crossing), true);
+                return ControlFlow::Break(());
+            }
+            state = *step.state();
+            observer(step);
+            ControlFlow::Continue(())
+        })?;
+        Ok(Arrival {
+            time,
+            state,
+            found,
+            statistics: problem.statistics,
+        })
+    }
+}
+
+/// Checks what a run is given, and closes the loops of its start.
+#[allow(
+    clippy::type_complexity,
+    reason = "a problem has the parameters of a system"
+)]
+pub(super) fn begin<'a, D, T, S, I, const N: usize, const M: usize, const P: usize>(
+    integrator: &D,
+    system: &'a S,
+    input: &'a I,
+    (t0, t1): (T, T),
+    x0: SVector<T, N>,
+) -> Result<(Problem<'a, T, S, I, N, M, P>, SVector<T, N>), Stopped>
+where
+    D: Integrator<N> + ?Sized,
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M>,
+{
+    check_times(t0, t1)?;
+    integrator.check_settings(t0, t1)?;
+    check_finite(system, t0, &x0)?;
+    let problem = Problem::new(system, input, t0);
+    let x = problem.close(t0, x0)?;
+    Ok((problem, x))
+}

@@ -1,0 +1,213 @@
+//! Linear systems of fixed size over real and complex numbers.
+
+use core::ops::{Add, Mul, Sub};
+
+use nalgebra::{SMatrix, SVector};
+
+use super::magnitude;
+use crate::Real;
+
+/// A number that elimination works on.
+pub(super) trait Element:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// Its reciprocal.
+    fn reciprocal(self) -> Self;
+    /// A size to choose pivots by; of several lanes the largest.
+    fn size(self) -> f64;
+}
+
+impl<T: Real> Element for T {
+    fn reciprocal(self) -> Self {
+        T::from_f64(1.0) / self
+    }
+
+    fn size(self) -> f64 {
+        magnitude(self)
+    }
+}
+
+/// A complex number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Complex<T> {
+    pub(super) real: T,
+    pub(super) imaginary: T,
+}
+
+impl<T: Real> Add for Complex<T> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            real: self.real + other.real,
+            imaginary: self.imaginary + other.imaginary,
+        }
+    }
+}
+
+impl<T: Real> Sub for Complex<T> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self {
+            real: self.real - other.real,
+            imaginary: self.imaginary - other.imaginary,
+        }
+    }
+}
+
+impl<T: Real> Mul for Complex<T> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self {
+            real: self.real * other.real - self.imaginary * other.imaginary,
+            imaginary: self.real * other.imaginary + self.imaginary * other.real,
+        }
+    }
+}
+
+impl<T: Real> Element for Complex<T> {
+    /// Divides by the larger part first, so that no square overflows.
+    fn reciprocal(self) -> Self {
+        let one = T::from_f64(1.0);
+        if magnitude(self.real) >= magnitude(self.imaginary) {
+            let ratio = self.imaginary / self.real;
+            let scale = one / (self.real + self.imaginary * ratio);
+            Self {
+                real: scale,
+                imaginary: -(ratio * scale),
+            }
+        } else {
+            let ratio = self.real / self.imaginary;
+            let scale = one / (self.real * ratio + self.imaginary);
+            Self {
+                real: ratio * scale,
+                imaginary: -scale,
+            }
+        }
+    }
+
+    fn size(self) -> f64 {
+        magnitude(self.real) + magnitude(self.imaginary)
+    }
+}
+
+/// `P A = L U` with partial pivoting; the pivots' reciprocals are kept in their place.
+///
+/// Of a singular matrix the solutions are not finite. Lanes share their pivots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factors<E, const N: usize> {
+    rows: [[E; N]; N],
+    order: [usize; N],
+}
+
+impl<E: Element, const N: usize> Factors<E, N> {
+    pub(super) fn new(mut rows: [[E; N]; N]) -> Self {
+        let mut order = core::array::from_fn(|row| row);
+        for k in 0..N {
+            let mut pivot = k;
+            let mut largest = rows[k][k].size();
+            for (i, row) in rows.iter().enumerate().skip(k + 1) {
+                let size = row[k].size();
+                if size > largest {
+                    (pivot, largest) = (i, size);
+                }
+            }
+            rows.swap(k, pivot);
+            order.swap(k, pivot);
+            let (above, below) = rows.split_at_mut(k + 1);
+            let pivot_row = &mut above[k];
+            pivot_row[k] = pivot_row[k].reciprocal();
+            for row in below {
+                let factor = row[k] * pivot_row[k];
+                row[k] = factor;
+                for (element, pivot) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
+                    *element = *element - factor * *pivot;
+                }
+            }
+        }
+        Self { rows, order }
+    }
+
+    /// The `x` of `A x = right`.
+    pub(super) fn solve(&self, right: [E; N]) -> [E; N] {
+        let mut x = self.order.map(|row| right[row]);
+        for i in 1..N {
+            for j in 0..i {
+                x[i] = x[i] - self.rows[i][j] * x[j];
+            }
+        }
+        for i in (0..N).rev() {
+            for j in i + 1..N {
+                x[i] = x[i] - self.rows[i][j] * x[j];
+            }
+            x[i] = x[i] * self.rows[i][i];
+        }
+        x
+    }
+}
+
+impl<T: Real, const N: usize> Factors<T, N> {
+    /// Of `diagonal · I − scale · matrix`.
+    pub(super) fn shifted(diagonal: T, scale: T, matrix: &SMatrix<T, N, N>) -> Self {
+        Self::new(core::array::from_fn(|row| {
+            core::array::from_fn(|column| {
+                let element = -(scale * matrix[(row, column)]);
+                if row == column {
+                    element + diagonal
+                } else {
+                    element
+                }
+            })
+        }))
+    }
+
+    pub(super) fn solved(&self, right: &SVector<T, N>) -> SVector<T, N> {
+        SVector::from(self.solve(right.data.0[0]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    #[test]
+    fn solves_what_needs_pivots() {
+        let matrix: SMatrix<f64, 3, 3> =
+            SMatrix::from([[0.0, 2.0, 1e20], [1e-20, 1.0, 0.0], [3.0, 0.0, 1e20]]);
+        let x = SVector::from([1.0, -2.0, 3.0]);
+        let found = Factors::shifted(0.0, -1.0, &matrix).solved(&(matrix * x));
+        assert!((found - x).norm() < 1e-14, "{found}");
+    }
+
+    #[test]
+    fn a_singular_matrix_gives_nothing_finite() {
+        let matrix: SMatrix<f64, 2, 2> = SMatrix::from([[1.0, 2.0], [2.0, 4.0]]);
+        let x = Factors::shifted(0.0, -1.0, &matrix).solved(&SVector::from([1.0, 1.0]));
+        assert!(x.iter().all(|x| !x.is_finite()), "{x}");
+    }
+
+    #[test]
+    fn complex_solutions_fulfil_their_equations() {
+        let number = |real: f64, imaginary: f64| Complex { real, imaginary };
+        let rows = [
+            [number(0.0, 1e-3), number(2.0, -1.0), number(1.0, 0.0)],
+            [number(1.0, 1.0), number(0.5, 0.0), number(-3.0, 2.0)],
+            [number(-2.0, 0.3), number(1.0, 4.0), number(0.0, 7.0)],
+        ];
+        let x = [number(1.0, 2.0), number(-0.5, 0.0), number(3.0, -1.0)];
+        let right: Vec<_> = rows
+            .iter()
+            .map(|row| {
+                let terms = row.iter().zip(x).map(|(a, x)| *a * x);
+                terms.fold(number(0.0, 0.0), |sum, term| sum + term)
+            })
+            .collect();
+        let found = Factors::new(rows).solve([right[0], right[1], right[2]]);
+        for (found, x) in found.iter().zip(x) {
+            assert!((*found - x).size() < 1e-14, "{found:?}");
+        }
+    }
+}

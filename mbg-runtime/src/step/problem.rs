@@ -1,0 +1,90 @@
+//! The problem as a method of integration sees it: a system with its input on one piece, counted calls.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Cause, Statistics, Stopped, check_result};
+use crate::{Input, Real, System};
+
+/// What a run carries from step to step besides the state.
+pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    pub(super) system: &'a S,
+    pub(super) input: &'a I,
+    pub(super) statistics: Statistics,
+    pub(super) memory: S::Memory,
+    /// Where the present piece of the input begins.
+    pub(super) since: T,
+}
+
+impl<'a, T, S, I, const N: usize, const M: usize, const P: usize> Problem<'a, T, S, I, N, M, P>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M>,
+{
+    pub(super) fn new(system: &'a S, input: &'a I, start: T) -> Self {
+        Self {
+            system,
+            input,
+            statistics: Statistics::default(),
+            memory: S::Memory::default(),
+            since: start,
+        }
+    }
+
+    /// The derivative.
+    pub(super) fn slope(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
+        self.statistics.evaluations += 1;
+        let u = self.input.value(t, self.since);
+        self.system.derivative(t, x, &u, &mut self.memory)
+    }
+
+    /// `∂f/∂x`.
+    pub(super) fn jacobian(&mut self, t: T, x: &SVector<T, N>) -> SMatrix<T, N, N> {
+        self.statistics.jacobians += 1;
+        let u = self.input.value(t, self.since);
+        self.system.jacobian_state(t, x, &u, &mut self.memory)
+    }
+
+    /// The derivative of `f(t, x, u(t))` by time at a fixed state, for a step of this length.
+    pub(super) fn slope_by_time(&mut self, t: T, x: &SVector<T, N>, length: T) -> SVector<T, N> {
+        let u = self.input.value(t, self.since);
+        let mut change = self
+            .system
+            .derivative_time(t, x, &u, &mut self.memory, length);
+        let rate = self.input.rate(t, self.since, length);
+        if rate.iter().any(|rate| *rate != T::from_f64(0.0)) {
+            let by_input = self.system.jacobian_input(t, x, &u, &mut self.memory);
+            for (rate, column) in rate.iter().zip(by_input.column_iter()) {
+                change.zip_apply(&column, |change, by| *change += by * *rate);
+            }
+        }
+        change
+    }
+
+    /// Refuses a point where the state, the derivative or the model is in trouble.
+    pub(super) fn check(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        slope: &SVector<T, N>,
+    ) -> Result<(), Stopped> {
+        let u = self.input.value(t, self.since);
+        if let Some(trouble) = self.system.trouble(t, x, &u, &self.memory) {
+            return Err(Stopped::new(t, Cause::Trouble(trouble)));
+        }
+        check_result(self.system, t, x, &self.memory)?;
+        check_result(self.system, t, slope, &self.memory)
+    }
+
+    /// The state on the closed loops next to `x`.
+    pub(super) fn close(&self, t: T, x: SVector<T, N>) -> Result<SVector<T, N>, Stopped> {
+        let u = self.input.value(t, self.since);
+        self.system
+            .close(t, x, &u, &[])
+            .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))
+    }
+}

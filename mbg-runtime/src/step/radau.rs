@@ -1,0 +1,486 @@
+//! Radau's method IIA with three stages.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::dense::Polynomial;
+use super::linear::{Complex, Factors};
+use super::method::{Estimating, Family, Method, Progress, Settling, Start, Trial, relative};
+use super::problem::Problem;
+use super::tolerance::Tolerance;
+use crate::scalar::power;
+use crate::{Input, Real, System};
+
+/// Radau's method IIA of order 5.
+///
+/// | order | in between | estimate | a step costs | stability |
+/// |---|---|---|---|---|
+/// | 5 | 3, error of power 4 | 3 | three evaluations, a real and a complex solve a sweep, 2 to 4 sweeps; Jacobian and factorisations when needed | A and L, stiffly accurate |
+///
+/// For stiff mechanics, above all where fast modes are lightly damped.
+///
+/// The stages are found by Newton's method in the coordinates in which the tableau is diagonal; the estimate is
+/// filtered. Coefficients and decisions follow `radau5`. At a fixed step the sweeps go to rounding.
+///
+/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.8.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Radau5;
+
+/// √6.
+const Q: f64 = 2.449_489_742_783_178;
+const NODES: [f64; 2] = [(4.0 - Q) / 10.0, (4.0 + Q) / 10.0];
+
+/// Eigenvectors of the inverse of the tableau's matrix, the last of which is `[0.966…, 1, 0]`.
+const VECTORS: [[f64; 3]; 3] = [
+    [
+        0.091_232_394_870_892_94,
+        -0.141_255_295_020_954_2,
+        -0.030_029_194_105_147_424,
+    ],
+    [
+        0.241_717_932_707_107,
+        0.204_129_352_293_799_94,
+        0.382_942_112_757_261_9,
+    ],
+    [0.966_048_182_615_093, 1.0, 0.0],
+];
+/// The inverse of the matrix of them.
+const INVERSE: [[f64; 3]; 3] = [
+    [
+        4.325_579_890_063_155,
+        0.339_199_251_815_809_84,
+        0.541_770_539_935_874_9,
+    ],
+    [
+        -4.178_718_591_551_905,
+        -0.327_682_820_761_062_4,
+        0.476_623_554_500_550_44,
+    ],
+    [
+        -0.502_872_634_945_786_9,
+        2.571_926_949_855_605,
+        -0.596_039_204_828_224_9,
+    ],
+];
+/// The real eigenvalue.
+const REAL: f64 = 3.637_834_252_744_496;
+/// Real and imaginary part of the others.
+const PAIR: [f64; 2] = [2.681_082_873_627_752_3, 3.050_430_199_247_411];
+/// Weights of the stages in the estimate of the error.
+const ERROR: [f64; 3] = [-(13.0 + 7.0 * Q) / 3.0, (-13.0 + 7.0 * Q) / 3.0, -1.0 / 3.0];
+/// Most sweeps in a step that is controlled by its error.
+const SWEEPS: i32 = 8;
+/// Most sweeps to rounding.
+const MOST: i32 = 20;
+/// A sweep that reduces the error so much keeps the Jacobian.
+const FAST: f64 = 1e-3;
+
+/// What a step leaves for the next.
+pub struct Work<T, const N: usize> {
+    jacobian: SMatrix<T, N, N>,
+    /// Whether the Jacobian may serve for another step.
+    keeps: bool,
+    /// Whether the Jacobian is that of the present start.
+    fresh: bool,
+    factors: Option<(T, Factors<T, N>, Factors<Complex<T>, N>)>,
+    /// Last step: its length and the coefficients of its polynomial; none at the start and behind a jump.
+    last: Option<(T, [SVector<T, N>; 3])>,
+    tried: (T, [SVector<T, N>; 3]),
+    /// How fast sweeps converge, from step to step.
+    rate: f64,
+    rejected: bool,
+}
+
+type Stages<T, const N: usize> = [SVector<T, N>; 3];
+
+impl<T: Real, const N: usize> Work<T, N> {
+    fn new() -> Self {
+        let zero = T::from_f64(0.0);
+        Self {
+            jacobian: SMatrix::from_element(zero),
+            keeps: false,
+            fresh: false,
+            factors: None,
+            last: None,
+            tried: (zero, [SVector::from_element(zero); 3]),
+            rate: 1.0,
+            rejected: false,
+        }
+    }
+
+    fn attempt<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        tolerance: Option<&Tolerance<N>>,
+    ) -> Trial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let length = start.span.length;
+        if !start.again {
+            self.last = (self.tried.0 != T::from_f64(0.0)).then_some(self.tried);
+            self.fresh = false;
+        }
+        self.factorise(problem, start);
+        let mut stages = self.predict(length);
+        let Some((_, real, pair)) = &self.factors else {
+            return failed(&stages);
+        };
+        let mut newton = Newton {
+            problem,
+            start,
+            real,
+            pair,
+        };
+        let found = match tolerance {
+            Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
+            None => newton.settled(&mut stages).then_some(f64::INFINITY),
+        };
+        let Some(theta) = found else {
+            (self.keeps, self.rejected, self.rate) = (false, true, 1.0);
+            return failed(&stages);
+        };
+        self.keeps = theta <= FAST;
+        let error = tolerance.map_or(0.0, |tolerance| {
+            newton.error(&stages, tolerance, self.rejected || self.last.is_none())
+        });
+        self.rejected = error.is_nan() || error > 1.0;
+        self.tried = (length, coefficients(&stages));
+        Trial {
+            change: stages[2],
+            slope: None,
+            error,
+        }
+    }
+
+    /// A Jacobian and factors that serve for this step.
+    fn factorise<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+    ) where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        if !self.keeps && !self.fresh {
+            self.jacobian = problem.jacobian(start.span.start, &start.x);
+            (self.fresh, self.factors) = (true, None);
+        }
+        let length = start.span.length;
+        if self
+            .factors
+            .as_ref()
+            .is_some_and(|(known, ..)| *known == length)
+        {
+            return;
+        }
+        problem.statistics.factorisations += 2;
+        let by = |number: f64| T::from_f64(number) / length;
+        let zero = T::from_f64(0.0);
+        let [alpha, beta] = PAIR.map(by);
+        let rows = core::array::from_fn(|row| {
+            core::array::from_fn(|column| {
+                let element = -self.jacobian[(row, column)];
+                let (real, imaginary) = if row == column {
+                    (element + alpha, beta)
+                } else {
+                    (element, zero)
+                };
+                Complex { real, imaginary }
+            })
+        });
+        let real = Factors::shifted(by(REAL), T::from_f64(1.0), &self.jacobian);
+        self.factors = Some((length, real, Factors::new(rows)));
+    }
+
+    /// The stages as the last step continues.
+    fn predict(&self, length: T) -> Stages<T, N> {
+        let Some((before, [change, bend, twist])) = &self.last else {
+            return [SVector::from_element(T::from_f64(0.0)); 3];
+        };
+        let one = T::from_f64(1.0);
+        let ratio = length / *before;
+        [NODES[0], NODES[1], 1.0].map(|node| {
+            let s = one + ratio * T::from_f64(node);
+            let ahead = ratio * T::from_f64(node);
+            bend.zip_zip_map(twist, change, |bend, twist, change| {
+                ahead * (change - s * (bend + s * twist))
+            })
+        })
+    }
+}
+
+/// A step that did not come off.
+fn failed<T: Real, const N: usize>(stages: &Stages<T, N>) -> Trial<T, N> {
+    Trial {
+        change: stages[2],
+        slope: None,
+        error: f64::INFINITY,
+    }
+}
+
+/// Coefficients of the polynomial through the stages.
+fn coefficients<T: Real, const N: usize>([first, second, third]: &Stages<T, N>) -> Stages<T, N> {
+    let [c1, c2] = NODES;
+    let slope = |stage: &SVector<T, N>, c: f64| {
+        let (by, rest) = (T::from_f64(1.0 / c), T::from_f64(1.0 / (1.0 - c)));
+        stage.zip_map(third, |stage, third| (stage * by - third) * rest)
+    };
+    let (low, high) = (slope(first, c1), slope(second, c2));
+    let by = T::from_f64(1.0 / (c2 - c1));
+    let twist = high.zip_map(&low, |high, low| (high - low) * by);
+    let bend = low.zip_map(&twist, |low, twist| low - T::from_f64(c1) * twist);
+    [*third, bend, twist]
+}
+
+/// A matrix of numbers times three vectors.
+fn transformed<T: Real, const N: usize>(
+    matrix: &[[f64; 3]; 3],
+    [a, b, c]: &Stages<T, N>,
+) -> Stages<T, N> {
+    matrix.map(|row| {
+        let [p, q, r] = row.map(T::from_f64);
+        a.zip_zip_map(b, c, |a, b, c| p * a + q * b + r * c)
+    })
+}
+
+/// The search for the stages of one step.
+struct Newton<'a, 'b, T, Y, I, const N: usize, const M: usize, const P: usize>
+where
+    T: Real,
+    Y: System<T, N, M, P>,
+{
+    problem: &'a mut Problem<'b, T, Y, I, N, M, P>,
+    start: &'a Start<T, N>,
+    real: &'a Factors<T, N>,
+    pair: &'a Factors<Complex<T>, N>,
+}
+
+impl<T, Y, I, const N: usize, const M: usize, const P: usize> Newton<'_, '_, T, Y, I, N, M, P>
+where
+    T: Real,
+    Y: System<T, N, M, P>,
+    I: Input<T, M>,
+{
+    /// One sweep; gives what it changed in the transformed stages.
+    fn sweep(&mut self, stages: &mut Stages<T, N>, inner: &mut Stages<T, N>) -> Stages<T, N> {
+        let Start { span, x, .. } = self.start;
+        let nodes = [NODES[0], NODES[1], 1.0];
+        let mut slopes = *stages;
+        for (slope, node) in slopes.iter_mut().zip(nodes) {
+            *slope = self
+                .problem
+                .slope(span.at(T::from_f64(node)), &(x + *slope));
+        }
+        let [first, second, third] = transformed(&INVERSE, &slopes);
+        let by = |number: f64| T::from_f64(number) / span.length;
+        let (real, [alpha, beta]) = (by(REAL), PAIR.map(by));
+        let [a, b, c] = &*inner;
+        let one = self
+            .real
+            .solved(&first.zip_map(a, |slope, a| slope - real * a));
+        let rights = core::array::from_fn(|row| Complex {
+            real: second[row] - (alpha * b[row] - beta * c[row]),
+            imaginary: third[row] - (alpha * c[row] + beta * b[row]),
+        });
+        let both = self.pair.solve(rights);
+        let changes = [
+            one,
+            SVector::from(both.map(|it| it.real)),
+            SVector::from(both.map(|it| it.imaginary)),
+        ];
+        for (inner, change) in inner.iter_mut().zip(&changes) {
+            *inner += change;
+        }
+        *stages = transformed(&VECTORS, inner);
+        changes
+    }
+
+    /// Sweeps until what is left is small beside the tolerance; gives the last rate of convergence, or nothing when
+    /// the bound on sweeps is not going to suffice.
+    fn controlled(
+        &mut self,
+        stages: &mut Stages<T, N>,
+        tolerance: &Tolerance<N>,
+        rate: &mut f64,
+    ) -> Option<f64> {
+        let relative = tolerance.relative.max(1e-300);
+        let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(0.03));
+        let mut inner = transformed(&INVERSE, stages);
+        let (mut before, mut quotient, mut theta) = (0.0, 0.0, FAST);
+        *rate = power(rate.max(T::EPSILON), 0.8);
+        for sweep in 1..=SWEEPS {
+            let changes = self.sweep(stages, &mut inner);
+            let norms = changes.map(|change| tolerance.norm(&change, &self.start.x));
+            let size = Real::sqrt(norms.iter().fold(0.0, |sum, it| sum + it * it) / 3.0);
+            if !size.is_finite() {
+                return None;
+            }
+            if sweep > 1 {
+                let next = size / before;
+                theta = if sweep == 2 {
+                    next
+                } else {
+                    Real::sqrt(next * quotient)
+                };
+                quotient = next;
+                if theta >= 0.99 && size > 0.0 {
+                    return None;
+                }
+                *rate = theta / (1.0 - theta).max(0.01);
+                let ahead = (sweep..SWEEPS).fold(1.0, |ahead, _| ahead * theta);
+                if *rate * size * ahead > enough {
+                    return None;
+                }
+            }
+            before = size.max(f64::MIN_POSITIVE);
+            if *rate * size <= enough {
+                return Some(theta);
+            }
+        }
+        None
+    }
+
+    /// Sweeps to rounding; whether it came to that.
+    fn settled(&mut self, stages: &mut Stages<T, N>) -> bool {
+        let mut inner = transformed(&INVERSE, stages);
+        let mut settling = Settling::new();
+        for _ in 0..MOST {
+            let old = *stages;
+            self.sweep(stages, &mut inner);
+            let sizes = old
+                .iter()
+                .zip(&*stages)
+                .map(|(old, new)| relative(&(new - old), &self.start.x, new));
+            let change = sizes.fold(0.0, |largest: f64, size| {
+                if size > largest || size.is_nan() {
+                    size
+                } else {
+                    largest
+                }
+            });
+            match settling.after::<T>(change) {
+                Progress::Settled => return true,
+                Progress::Lost => return false,
+                Progress::Going => (),
+            }
+        }
+        settling.suffices::<T>()
+    }
+
+    /// The filtered estimate; a second filter takes care of large ones where `doubtful`.
+    fn error(&mut self, stages: &Stages<T, N>, tolerance: &Tolerance<N>, doubtful: bool) -> f64 {
+        let Start { span, x, slope, .. } = self.start;
+        let [a, b, c] = ERROR.map(|weight| T::from_f64(weight) / span.length);
+        let [first, second, third] = stages;
+        let sum = first.zip_zip_map(second, third, |x, y, z| a * x + b * y + c * z);
+        let estimate = self.real.solved(&(sum + slope));
+        let size = tolerance.norm_between(&estimate, x, third);
+        if size <= 1.0 || !doubtful || size.is_nan() {
+            return size;
+        }
+        let slope = self.problem.slope(span.start, &(x + estimate));
+        tolerance.norm_between(&self.real.solved(&(sum + slope)), x, third)
+    }
+}
+
+impl Method for Radau5 {
+    const NAME: &'static str = "Radau IIA 5";
+    const ORDER: u32 = 5;
+    const DENSE_ORDER: u32 = 4;
+}
+
+impl Estimating for Radau5 {
+    const ESTIMATE_ORDER: u32 = 4;
+}
+
+#[allow(private_interfaces, reason = "no method is written outside")]
+impl Family for Radau5 {
+    type Work<T: Real, const N: usize> = Work<T, N>;
+
+    const STEADY: bool = true;
+
+    fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
+        Work::new()
+    }
+
+    fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
+        &self,
+        work: &mut Self::Work<T, N>,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        tolerance: Option<&Tolerance<N>>,
+    ) -> Trial<T, N>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        work.attempt(problem, start, tolerance)
+    }
+
+    fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
+        work: &mut Self::Work<T, N>,
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut polynomial = Polynomial::line(&start.x, end);
+        let [_, bend, twist, ..] = &mut polynomial.coefficients;
+        [*bend, *twist] = [work.tried.1[1], work.tried.1[2]];
+        polynomial
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::trees::Scheme;
+
+    /// The tableau's matrix `T Λ⁻¹ T⁻¹` meets the conditions of order 5 with its last row as result.
+    #[test]
+    fn conditions_of_order_hold() {
+        let [alpha, beta] = PAIR;
+        let blocks = SMatrix::from([[REAL, 0.0, 0.0], [0.0, alpha, beta], [0.0, -beta, alpha]]);
+        let [vectors, inverse] =
+            [VECTORS, INVERSE].map(|rows| SMatrix::<f64, 3, 3>::from(rows).transpose());
+        let identity: SMatrix<f64, 3, 3> = vectors * inverse;
+        assert!((identity - SMatrix::identity()).norm() < 1e-14);
+        let slopes: SMatrix<f64, 3, 3> = vectors * blocks * inverse;
+        let factors = Factors::shifted(0.0, -1.0, &slopes);
+        let columns = [0, 1, 2].map(|column| {
+            factors.solved(&SVector::<f64, 3>::from_fn(|row, _| {
+                f64::from(row == column)
+            }))
+        });
+        let matrix = SMatrix::<f64, 3, 3>::from_columns(&columns);
+        let rows: std::vec::Vec<std::vec::Vec<f64>> = matrix
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect();
+        for (row, node) in rows.iter().zip([NODES[0], NODES[1], 1.0]) {
+            assert!((row.iter().sum::<f64>() - node).abs() < 1e-14);
+        }
+        let scheme = Scheme {
+            several: rows.clone(),
+            single: rows.clone(),
+        };
+        scheme.assert_order("Radau IIA 5", &rows[2], 5, 1.0, 1e-14);
+        // The interpolation as weights of the stages' slopes.
+        let stages = [0, 1, 2].map(|stage| SVector::<f64, 3>::from_row_slice(&rows[stage]));
+        let [change, bend, twist] = coefficients(&stages);
+        for s in [0.1, 0.35, 0.8] {
+            let weights = s * (change + (1.0 - s) * (bend + s * twist));
+            scheme.assert_order("Radau IIA 5", weights.as_slice(), 3, s, 1e-13);
+        }
+        // An L-stable method with this estimate is at least of order 3: e = b̂ − b with a slope at the start.
+        let estimate = SVector::from(ERROR).transpose() * matrix;
+        assert!((estimate.sum() + 1.0).abs() < 1e-13, "{}", estimate.sum());
+    }
+}

@@ -1,0 +1,304 @@
+//! Methods of Rosenbrock: implicit by one linear system per step.
+
+mod rodas4;
+mod rodas5p;
+
+use nalgebra::{SMatrix, SVector};
+
+use super::dense::Polynomial;
+use super::linear::Factors;
+use super::method::{Estimating, Family, Method, Start, Trial, along, combination, converted};
+use super::problem::Problem;
+use super::tolerance::Tolerance;
+use crate::{Input, Real, System};
+use rodas4::RODAS4;
+use rodas5p::RODAS5P;
+
+/// The method of Verwer with two stages.
+///
+/// | order | in between | estimate | a step costs | stability |
+/// |---|---|---|---|---|
+/// | 2 | 2 | 1 | 2 evaluations, a Jacobian, a factorisation, 2 solves | A and L |
+///
+/// For stiff problems at a fixed step on a microcontroller: the work per step is known in advance.
+///
+/// Source: J. G. Verwer, E. J. Spee, J. G. Blom and W. Hundsdorfer, *SIAM Journal on Scientific Computing* 20 (1999),
+/// 1456–1480, with γ = 1 − 1/√2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ros2;
+
+/// The method `rodas` of Hairer and Wanner.
+///
+/// | order | in between | estimate | a step costs | stability |
+/// |---|---|---|---|---|
+/// | 4 | 3, error of power 4 | 3 | 6 evaluations, a Jacobian, a factorisation, 6 solves | A and L, stiffly accurate |
+///
+/// For stiff electrical and chemical problems to errors of about 1e-4.
+///
+/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.7.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rodas4;
+
+/// The method Rodas5P of Steinebach.
+///
+/// | order | in between | estimate | a step costs | stability |
+/// |---|---|---|---|---|
+/// | 5 | 4, error of power 5 | 4 | 8 evaluations, a Jacobian, a factorisation, 8 solves | A and L, stiffly accurate |
+///
+/// For stiff electrical and chemical problems, and for problems that are stiff at times only. In `f32` its large
+/// coefficients magnify rounding; [`Rodas4`] is better there.
+///
+/// Source: G. Steinebach, *BIT Numerical Mathematics* 63:27 (2023).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rodas5P;
+
+/// Coefficients in the form that needs no product with the Jacobian (Hairer and Wanner, IV.7, equation 7.25).
+///
+/// Stage `i` solves `(I/(hγ) − J) Uᵢ = f(t + αᵢh, x + Σ aᵢⱼUⱼ) + Σ cᵢⱼUⱼ/h + γᵢh ∂f/∂t`.
+struct Tableau<const S: usize> {
+    /// γ.
+    diagonal: f64,
+    /// αᵢ.
+    nodes: [f64; S],
+    /// γᵢ.
+    times: [f64; S],
+    /// aᵢⱼ.
+    points: [&'static [f64]; S],
+    /// cᵢⱼ.
+    slopes: [&'static [f64]; S],
+    result: [f64; S],
+    error: [f64; S],
+    /// Weights of `d₁, d₂, d₃` in `x + s (Δ + (1 − s) (d₁ + s (d₂ + s d₃)))`.
+    dense: [&'static [f64]; 3],
+}
+
+/// 1/γ for γ = 1 − 1/√2.
+const G: f64 = 2.0 + core::f64::consts::SQRT_2;
+
+const ROS2: Tableau<2> = Tableau {
+    diagonal: 1.0 / G,
+    nodes: [0.0, 1.0],
+    times: [1.0 / G, -1.0 / G],
+    points: [&[], &[G]],
+    slopes: [&[], &[-2.0 * G]],
+    result: [1.5 * G, 0.5 * G],
+    error: [0.5 * G, 0.5 * G],
+    dense: [&[], &[], &[]],
+};
+
+/// A tableau in the scalar of the run, what is known where the step starts, and the stages of the last step.
+pub struct Work<T, const N: usize, const S: usize> {
+    points: [[T; S]; S],
+    slopes: [[T; S]; S],
+    result: [T; S],
+    error: [T; S],
+    jacobian: SMatrix<T, N, N>,
+    by_time: SVector<T, N>,
+    stages: [SVector<T, N>; S],
+}
+
+impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
+    fn new(tableau: &Tableau<S>) -> Self {
+        let zero = T::from_f64(0.0);
+        Self {
+            points: tableau.points.map(converted),
+            slopes: tableau.slopes.map(converted),
+            result: converted(&tableau.result),
+            error: converted(&tableau.error),
+            jacobian: SMatrix::from_element(zero),
+            by_time: SVector::from_element(zero),
+            stages: [SVector::from_element(zero); S],
+        }
+    }
+
+    fn attempt<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        tableau: &Tableau<S>,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        tolerance: Option<&Tolerance<N>>,
+    ) -> Trial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let Start { span, x, .. } = start;
+        let length = span.length;
+        if !start.again {
+            self.jacobian = problem.jacobian(span.start, x);
+            self.by_time = problem.slope_by_time(span.start, x, length);
+        }
+        let one = T::from_f64(1.0);
+        let inverse = one / length;
+        problem.statistics.factorisations += 1;
+        let diagonal = inverse / T::from_f64(tableau.diagonal);
+        let factors = Factors::shifted(diagonal, one, &self.jacobian);
+        for stage in 0..S {
+            let (earlier, _) = self.stages.split_at(stage);
+            let slope = if stage == 0 {
+                start.slope
+            } else {
+                let point = x + combination(&self.points[stage], earlier);
+                problem.slope(span.at(T::from_f64(tableau.nodes[stage])), &point)
+            };
+            let coupling = combination(&self.slopes[stage], earlier);
+            let by_time = T::from_f64(tableau.times[stage]) * length;
+            let right = along(&along(&slope, inverse, &coupling), by_time, &self.by_time);
+            self.stages[stage] = factors.solved(&right);
+        }
+        let change = combination(&self.result, &self.stages);
+        let error = combination(&self.error, &self.stages);
+        Trial {
+            error: tolerance.map_or(0.0, |it| it.norm_between(&error, x, &change)),
+            change,
+            slope: None,
+        }
+    }
+
+    fn polynomial(
+        &self,
+        tableau: &Tableau<S>,
+        start: &SVector<T, N>,
+        end: &SVector<T, N>,
+    ) -> Polynomial<T, N> {
+        let [first, second, third] = tableau
+            .dense
+            .map(|weights| combination(&converted::<T, S>(weights), &self.stages));
+        let mut polynomial = Polynomial::line(start, end);
+        let [_, bend, twist, turn, ..] = &mut polynomial.coefficients;
+        *bend = first;
+        *twist = second + third;
+        *turn = -third;
+        polynomial
+    }
+}
+
+/// A method of this family.
+macro_rules! rosenbrock {
+    ($name:ident, $tableau:ident: $stages:literal, $text:literal, order $order:literal, $dense:literal, $estimate:literal) => {
+        impl Method for $name {
+            const NAME: &'static str = $text;
+            const ORDER: u32 = $order;
+            const DENSE_ORDER: u32 = $dense;
+        }
+
+        impl Estimating for $name {
+            const ESTIMATE_ORDER: u32 = $estimate;
+        }
+
+        #[allow(private_interfaces, reason = "no method is written outside")]
+        impl Family for $name {
+            type Work<T: Real, const N: usize> = Work<T, N, $stages>;
+
+            fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
+                Work::new(&$tableau)
+            }
+
+            fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
+                &self,
+                work: &mut Self::Work<T, N>,
+                problem: &mut Problem<'_, T, S, I, N, M, P>,
+                start: &Start<T, N>,
+                tolerance: Option<&Tolerance<N>>,
+            ) -> Trial<T, N>
+            where
+                T: Real,
+                S: System<T, N, M, P>,
+                I: Input<T, M>,
+            {
+                work.attempt(&$tableau, problem, start, tolerance)
+            }
+
+            fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
+                work: &mut Self::Work<T, N>,
+                _problem: &mut Problem<'_, T, S, I, N, M, P>,
+                start: &Start<T, N>,
+                (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+            ) -> Polynomial<T, N>
+            where
+                T: Real,
+                S: System<T, N, M, P>,
+                I: Input<T, M>,
+            {
+                work.polynomial(&$tableau, &start.x, end)
+            }
+        }
+    };
+}
+
+rosenbrock!(Ros2, ROS2: 2, "ROS2", order 2, 2, 2);
+rosenbrock!(Rodas4, RODAS4: 6, "Rodas4", order 4, 4, 4);
+rosenbrock!(Rodas5P, RODAS5P: 8, "Rodas5P", order 5, 5, 5);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::trees::Scheme;
+    use std::vec::Vec;
+
+    fn matrix<const S: usize>(rows: &[&[f64]; S]) -> SMatrix<f64, S, S> {
+        SMatrix::from_fn(|row, column| rows[row].get(column).copied().unwrap_or(0.0))
+    }
+
+    /// Back from the form without products to `α`, `γ` and weights of the stages `kᵢ`.
+    fn scheme<const S: usize>(tableau: &Tableau<S>) -> (Scheme, SMatrix<f64, S, S>) {
+        let inverse = SMatrix::<f64, S, S>::identity() / tableau.diagonal - matrix(&tableau.slopes);
+        let columns: Vec<_> = (0..S)
+            .map(|column| {
+                let unit = SVector::<f64, S>::from_fn(|row, _| f64::from(row == column));
+                Factors::shifted(0.0, -1.0, &inverse).solved(&unit)
+            })
+            .collect();
+        let gamma = SMatrix::<f64, S, S>::from_columns(&columns);
+        let alpha = matrix(&tableau.points) * gamma;
+        for row in 0..S {
+            assert!(
+                (alpha.row(row).sum() - tableau.nodes[row]).abs() < 1e-12,
+                "row {row}"
+            );
+            assert!(
+                (gamma.row(row).sum() - tableau.times[row]).abs() < 1e-12,
+                "row {row}"
+            );
+        }
+        let rows = |matrix: SMatrix<f64, S, S>| -> Vec<Vec<f64>> {
+            matrix
+                .row_iter()
+                .map(|row| row.iter().copied().collect())
+                .collect()
+        };
+        let scheme = Scheme {
+            several: rows(alpha),
+            single: rows(alpha + gamma),
+        };
+        (scheme, gamma)
+    }
+
+    fn assert_orders<const S: usize>(
+        name: &str,
+        tableau: &Tableau<S>,
+        [order, estimate, dense]: [usize; 3],
+    ) {
+        let (scheme, gamma) = scheme(tableau);
+        let weights = |stages: SVector<f64, S>| -> Vec<f64> {
+            (gamma.transpose() * stages).iter().copied().collect()
+        };
+        let (result, error) = (SVector::from(tableau.result), SVector::from(tableau.error));
+        scheme.assert_order(name, &weights(result), order, 1.0, 1e-11);
+        scheme.assert_order(name, &weights(result - error), estimate, 1.0, 1e-11);
+        let mut work = Work::<f64, S, S>::new(tableau);
+        work.stages =
+            core::array::from_fn(|stage| SVector::from_fn(|row, _| f64::from(row == stage)));
+        let between = work.polynomial(tableau, &SVector::zeros(), &result);
+        for s in [0.1, 0.35, 0.8] {
+            scheme.assert_order(name, &weights(between.at(s)), dense, s, 1e-11);
+        }
+    }
+
+    #[test]
+    fn conditions_of_order_hold() {
+        assert_orders("ROS2", &ROS2, [2, 1, 1]);
+        assert_orders("Rodas4", &RODAS4, [4, 3, 3]);
+        assert_orders("Rodas5P", &RODAS5P, [5, 4, 4]);
+    }
+}

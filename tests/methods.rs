@@ -1,0 +1,12 @@
+//! Methods of integration on problems with known answers: orders, dense output, events, hard cases.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../examples/methods/problems.rs"]
+mod problems;
+
+#[path = "methods/events.rs"]
+mod events;
+#[path = "methods/hard.rs"]
+mod hard;
+#[path = "methods/orders.rs"]
+mod orders;

@@ -1,0 +1,144 @@
+//! Events, and jumps of inputs.
+
+use mbg_runtime::{
+    Adaptive, Direction, Dop853, Estimating, Fixed, Gauss6, Integrator, Pulse, Radau5, Rk4, Rodas4,
+    Rodas5P, Ros2, Tsit5,
+};
+use nalgebra::SVector;
+
+use crate::problems::{Oscillator, Written};
+
+type State = SVector<f64, 2>;
+
+/// `x = cos t` comes down to 0 at π/2, and to 0.5 at π/3.
+fn first_time(solver: impl Integrator<2>, level: f64, direction: Direction) -> f64 {
+    let guard = |_t: f64, x: &State| x[0] - level;
+    let start = SVector::from([1.0, 0.0]);
+    let arrival = solver
+        .until(
+            &Written(Oscillator),
+            &(),
+            0.0,
+            10.0,
+            start,
+            (direction, guard),
+            |_| (),
+        )
+        .unwrap();
+    assert!(arrival.found);
+    assert!((arrival.state[0] - level).abs() < 1e-12);
+    arrival.time
+}
+
+#[test]
+fn events_are_found_where_they_are() {
+    let (third, half) = (std::f64::consts::FRAC_PI_3, std::f64::consts::FRAC_PI_2);
+    let solver = Adaptive::new(Dop853, 1e-12, 1e-12);
+    assert!((first_time(solver, 0.5, Direction::Falling) - third).abs() < 1e-10);
+    assert!((first_time(solver, 0.5, Direction::Rising) - 5.0 * third).abs() < 1e-10);
+    assert!((first_time(solver, 0.0, Direction::Either) - half).abs() < 1e-10);
+    let fixed = Fixed::new(Rk4, 1e-3);
+    assert!((first_time(fixed, 0.5, Direction::Falling) - third).abs() < 1e-10);
+    let fixed = Fixed::new(Gauss6::default(), 1e-3);
+    assert!((first_time(fixed, 0.5, Direction::Falling) - third).abs() < 1e-10);
+    let solver = Adaptive::new(Radau5, 1e-10, 1e-10);
+    assert!((first_time(solver, 0.5, Direction::Falling) - third).abs() < 1e-6);
+}
+
+/// The search asks no more often than it promises, whatever the guard.
+#[test]
+fn the_search_is_bounded() {
+    let solver = Adaptive::new(Tsit5, 1e-8, 1e-8);
+    let start = SVector::from([1.0, 0.0]);
+    for power in [1, 9, 31] {
+        let mut asked = 0;
+        let mut steps = 0;
+        let guard = |_t: f64, x: &State| {
+            asked += 1;
+            (x[0] - 0.5).powi(power)
+        };
+        let event = (Direction::Falling, guard);
+        let arrival = solver
+            .until(&Written(Oscillator), &(), 0.0, 10.0, start, event, |_| {
+                steps += 1
+            })
+            .unwrap();
+        assert!((arrival.time - std::f64::consts::FRAC_PI_3).abs() < 1e-6);
+        assert!(asked <= 9 * (steps + 1) + 64, "{asked} in {steps} steps");
+    }
+    // A guard of signs alone leaves bisection.
+    let sign = |_t: f64, x: &State| if x[0] > 0.5 { 1.0 } else { -1.0 };
+    let event = (Direction::Falling, sign);
+    let arrival = solver
+        .until(&Written(Oscillator), &(), 0.0, 10.0, start, event, |_| ())
+        .unwrap();
+    assert!((arrival.time - std::f64::consts::FRAC_PI_3).abs() < 1e-7);
+}
+
+#[test]
+fn no_event_runs_to_the_end() {
+    let event = (Direction::Falling, |_t: f64, x: &State| x[0] + 2.0);
+    let solver = Adaptive::new(Tsit5, 1e-10, 1e-12);
+    let start = SVector::from([1.0, 0.0]);
+    let arrival = solver
+        .until(&Written(Oscillator), &(), 0.0, 3.0, start, event, |_| ())
+        .unwrap();
+    assert!(!arrival.found && arrival.time == 3.0);
+    assert!((arrival.state[0] - 3.0_f64.cos()).abs() < 1e-8);
+}
+
+/// A mass on a spring that a wall at 0 throws back with 0.8 of its speed, ten times over.
+#[test]
+fn impacts_go_on_from_the_event() {
+    let solver = Adaptive::new(Dop853, 1e-12, 1e-14);
+    let (mut t, mut x) = (0.0, SVector::from([1.0, 0.0]));
+    let mut speed = 1.0_f64;
+    for impact in 0..10 {
+        let event = (Direction::Falling, |_t: f64, x: &State| x[0]);
+        let arrival = solver
+            .until(&Written(Oscillator), &(), t, 100.0, x, event, |_| ())
+            .unwrap();
+        let expected = std::f64::consts::PI * (0.5 + f64::from(impact));
+        assert!(
+            (arrival.time - expected).abs() < 1e-9,
+            "{impact}: {}",
+            arrival.time
+        );
+        assert!((arrival.state[1] + speed).abs() < 1e-9);
+        (t, x) = (arrival.time, arrival.state);
+        x[1] *= -0.8;
+        speed *= 0.8;
+    }
+}
+
+/// Every adaptive method ends a step on the jumps, and none is stepped over from rest.
+#[test]
+fn jumps_are_met_by_every_method() {
+    fn push<S: Estimating>(method: S) {
+        let (start, end, t1) = (100.123_4, 101.037_7, 102.0);
+        let input = Pulse {
+            amplitude: SVector::from([3.0]),
+            start,
+            end,
+        };
+        let exact = 3.0 * (f64::cos(t1 - end) - f64::cos(t1 - start));
+        let mut ends = Vec::new();
+        let mut last = SVector::from([0.0, 0.0]);
+        let statistics = Adaptive::new(method, 1e-7, 1e-9)
+            .integrate(&Written(Oscillator), &input, 0.0, t1, last, |step| {
+                ends.push(step.end());
+                last = *step.state();
+            })
+            .unwrap();
+        let error = (last[0] - exact).abs();
+        println!("{:<12}{error:.1e} in {} steps", S::NAME, statistics.steps);
+        assert!(error < 1e-5, "{} {error:e}", S::NAME);
+        assert!(ends.contains(&start) && ends.contains(&end));
+    }
+    push(Tsit5);
+    push(Dop853);
+    push(Ros2);
+    push(Rodas4);
+    push(Rodas5P);
+    push(Radau5);
+}

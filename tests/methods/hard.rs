@@ -1,0 +1,249 @@
+//! Stiff problems, and long runs of conservative ones.
+
+use mbg_runtime::{
+    Adaptive, Auto, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Picked,
+    Radau5, Reason, Rodas4, Rodas5P, Ros2, Statistics, System,
+};
+use nalgebra::SVector;
+
+use crate::problems::{Law, RigidBody, Robertson, StiffPin, VanDerPol, Written};
+
+fn end<L, D, const N: usize>(
+    law: L,
+    solver: D,
+    end: f64,
+    start: SVector<f64, N>,
+) -> (SVector<f64, N>, Statistics)
+where
+    L: Law<N, 0> + Copy,
+    D: Integrator<N>,
+{
+    let mut last = start;
+    let statistics = solver
+        .integrate(&Written(law), &(), 0.0, end, start, |step| {
+            last = *step.state()
+        })
+        .unwrap();
+    (last, statistics)
+}
+
+/// Angle and rate of the pendulum at 5 s, computed with more digits.
+const PINS: [(f64, f64, [f64; 2]); 2] = [
+    (1e6, 2e3, [-1.366922113009797, 2.440936668346874]),
+    (1e12, 2e6, [-1.366714573477783, 2.44223685380214]),
+];
+
+fn horizontal() -> SVector<f64, 6> {
+    SVector::from([0.0, 0.0, std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0])
+}
+
+fn pin_error<S: Estimating>(method: S, tolerance: f64, pin: usize) -> f64 {
+    let (stiffness, damping, [angle, rate]) = PINS[pin];
+    let law = StiffPin { stiffness, damping };
+    let small = 9.81 / stiffness;
+    let solver = Adaptive {
+        nominal: &[small, small, 1.0, 1e-3, 1e-3, 1.0],
+        ..Adaptive::new(method, tolerance, tolerance)
+    };
+    let (x, statistics) = end(law, solver, 5.0, horizontal());
+    let error = (x[2] - angle).abs().max((x[5] - rate).abs());
+    println!(
+        "{:<12}k = {stiffness:e}, {tolerance:e}: error {error:.1e}, {statistics:?}",
+        S::NAME
+    );
+    error
+}
+
+#[test]
+fn stiff_pins_at_a_tolerance() {
+    for pin in [0, 1] {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            assert!(pin_error(Radau5, tolerance, pin) < 20.0 * tolerance);
+        }
+        assert!(pin_error(Rodas5P, 1e-6, pin) < 1e-5);
+        assert!(pin_error(Rodas4, 1e-5, pin) < 1e-4);
+    }
+}
+
+#[test]
+fn stiff_pins_at_a_fixed_step() {
+    fn error<S: Method>(method: S, step: f64, pin: usize) -> f64 {
+        let (stiffness, damping, [angle, rate]) = PINS[pin];
+        let law = StiffPin { stiffness, damping };
+        let (x, _) = end(law, Fixed::new(method, step), 5.0, horizontal());
+        let error = (x[2] - angle).abs().max((x[5] - rate).abs());
+        println!(
+            "{:<20}k = {stiffness:e}, h = {step}: error {error:.1e}",
+            S::NAME
+        );
+        error
+    }
+    for pin in [0, 1] {
+        assert!(error(Ros2, 1e-3, pin) < 1e-3);
+        assert!(error(ImplicitMidpoint::default(), 1e-3, pin) < 1e-4);
+        assert!(error(Rodas4, 1e-3, pin) < 1e-5);
+        assert!(error(Rodas5P, 1e-3, pin) < 1e-6);
+        assert!(error(Radau5, 1e-3, pin) < 1e-6);
+        // Stable at a step a hundred thousand times that of the fastest mode.
+        assert!(error(Ros2, 1e-2, pin) < 0.1);
+        assert!(error(ImplicitMidpoint::default(), 1e-2, pin) < 1e-2);
+    }
+}
+
+/// In single precision, k = 1e8: stable at 10 ms, error at most 1e-4 at 1 ms after 2 s.
+#[test]
+fn a_stiff_pin_in_single_precision() {
+    fn last<T: mbg_runtime::Real, S: Method>(method: S, step: f64) -> f64
+    where
+        Written<StiffPin>: System<T, 6, 0, 0>,
+    {
+        let law = StiffPin {
+            stiffness: 1e8,
+            damping: 1e3,
+        };
+        let number = T::from_f64;
+        let mut last = horizontal().map(number);
+        Fixed::new(method, step)
+            .compensated()
+            .integrate(&Written(law), &(), number(0.0), number(2.0), last, |step| {
+                last = *step.state()
+            })
+            .unwrap();
+        last[2].find(|_| true).unwrap()
+    }
+    let reference = last::<f64, _>(Radau5, 1e-4);
+    let ros2 = [1e-2, 1e-3].map(|step| (last::<f32, _>(Ros2, step) - reference).abs());
+    let midpoint = [1e-2, 1e-3]
+        .map(|step| (last::<f32, _>(ImplicitMidpoint { sweeps: 2 }, step) - reference).abs());
+    println!("ROS2 {ros2:?}, implicit midpoint {midpoint:?}");
+    assert!(ros2[0] < 0.05 && ros2[1] < 1e-4, "{ros2:?}");
+    assert!(midpoint[0] < 1e-2 && midpoint[1] < 1e-4, "{midpoint:?}");
+}
+
+/// Published value at t = 2 (Mazzia and Magherini, *Test Set for Initial Value Problem Solvers*, 2008).
+#[test]
+fn van_der_pol() {
+    fn error<S: Estimating>(method: S, tolerance: f64) -> f64 {
+        let solver = Adaptive::new(method, tolerance, tolerance);
+        let (x, statistics) = end(VanDerPol, solver, 2.0, SVector::from([2.0, 0.0]));
+        let error = (x[0] - 1.706_167_732_170_469)
+            .abs()
+            .max((x[1] + 0.892_809_701_024_812_5).abs());
+        println!(
+            "{:<12}{tolerance:e}: error {error:.1e}, {statistics:?}",
+            S::NAME
+        );
+        error
+    }
+    for tolerance in [1e-4, 1e-6, 1e-8] {
+        assert!(error(Radau5, tolerance) < 100.0 * tolerance);
+        assert!(error(Rodas5P, tolerance) < 100.0 * tolerance);
+        assert!(error(Rodas4, tolerance) < 100.0 * tolerance);
+    }
+}
+
+/// Two families agree over eleven decades of time, and with the published value at 1e11.
+#[test]
+fn robertson() {
+    fn found<S: Estimating>(method: S, tolerance: f64, time: f64) -> SVector<f64, 3> {
+        let solver = Adaptive {
+            nominal: &[1.0, 1e-6, 1.0],
+            ..Adaptive::new(method, tolerance, tolerance * 1e-6)
+        };
+        let (x, statistics) = end(Robertson, solver, time, SVector::from([1.0, 0.0, 0.0]));
+        println!(
+            "{:<12}{tolerance:e}, t = {time:e}: {x:?} {statistics:?}",
+            S::NAME
+        );
+        x
+    }
+    let published = SVector::from([
+        0.208_334_014_970_122e-7,
+        0.833_336_077_033_471_3e-13,
+        0.999_999_979_166_505,
+    ]);
+    let apart = |a: SVector<f64, 3>, b: SVector<f64, 3>| {
+        (0..3).fold(0.0, |apart: f64, row| {
+            apart.max((a[row] / b[row] - 1.0).abs())
+        })
+    };
+    assert!(apart(found(Radau5, 1e-8, 1e11), published) < 1e-5);
+    assert!(apart(found(Rodas5P, 1e-8, 1e11), published) < 1e-5);
+    let reference = found(Radau5, 1e-10, 1e5);
+    assert!(apart(found(Rodas5P, 1e-9, 1e5), reference) < 1e-7);
+    assert!(apart(found(Rodas4, 1e-7, 1e5), reference) < 1e-5);
+}
+
+/// 100 000 steps near the middle axis: energy, momentum and the norm of the quaternion stay.
+#[test]
+fn a_rigid_body_keeps_its_invariants_for_a_thousand_seconds() {
+    let law = RigidBody;
+    let start = SVector::from([1e-4, 10.0, 6e-4, 1.0, 0.0, 0.0, 0.0]);
+    let [energy, momentum] = RigidBody::invariants(&start);
+    let drift = |solver: Fixed<Gauss6>| {
+        let (x, _) = end(law, solver, 1000.0, start);
+        let [last, norm] = RigidBody::invariants(&x);
+        let quaternion = x.fixed_rows::<4>(3).norm();
+        let drift = [last / energy - 1.0, norm / momentum - 1.0, quaternion - 1.0].map(f64::abs);
+        println!("{solver:?}: {drift:?}");
+        drift
+    };
+    let exact = drift(Fixed::new(Gauss6::default(), 0.01).compensated());
+    assert!(exact.iter().all(|drift| *drift < 1e-14), "{exact:?}");
+    let swept = drift(Fixed::new(Gauss6 { sweeps: Some(3) }, 0.01).compensated());
+    assert!(swept.iter().all(|drift| *drift < 1e-9), "{swept:?}");
+}
+
+#[test]
+fn auto_tells_what_it_picks_and_meets_the_tolerance() {
+    let auto = Auto::new(1e-6, 1e-6);
+    let pin = StiffPin {
+        stiffness: 1e8,
+        damping: 1e3,
+    };
+    let (strict, _) = end(pin, Adaptive::new(Radau5, 1e-10, 1e-10), 5.0, horizontal());
+    let choice = auto
+        .choose(&Written(pin), &(), 0.0, 5.0, horizontal())
+        .unwrap();
+    println!("{choice}");
+    assert_eq!(choice.method, Picked::Radau5);
+    assert!((end(pin, auto, 5.0, horizontal()).0[2] - strict[2]).abs() < 1e-5);
+
+    let start = SVector::from([2.0, 0.0]);
+    let choice = auto
+        .choose(&Written(VanDerPol), &(), 0.0, 2.0, start)
+        .unwrap();
+    println!("{choice}");
+    assert_eq!(choice.method, Picked::Rodas5P);
+    assert!((end(VanDerPol, auto, 2.0, start).0[0] - 1.706_167_732_170_469).abs() < 1e-4);
+
+    let start = SVector::from([1e-4, 10.0, 6e-4, 1.0, 0.0, 0.0, 0.0]);
+    let choice = auto
+        .choose(&Written(RigidBody), &(), 0.0, 100.0, start)
+        .unwrap();
+    println!("{choice}");
+    assert_eq!(
+        (choice.method, choice.reason),
+        (Picked::Dop853, Reason::Tight)
+    );
+    let choice = Auto::new(1e-4, 1e-4).choose(&Written(RigidBody), &(), 0.0, 100.0, start);
+    assert_eq!(choice.unwrap().reason, Reason::Moderate);
+    let choice = auto
+        .choose(&Written(RigidBody), &(), 0.0, 1.0, start)
+        .unwrap();
+    assert_eq!(
+        (choice.method, choice.reason),
+        (Picked::Tsit5, Reason::ShortPiece)
+    );
+
+    // Not stiff at the start, soon after it is.
+    let start = SVector::from([1.0, 0.0, 0.0]);
+    let auto = Auto {
+        nominal: &[1.0, 1e-5, 1.0],
+        ..Auto::new(1e-6, 1e-6)
+    };
+    let (x, statistics) = end(Robertson, auto, 1e5, start);
+    println!("{statistics:?}");
+    assert!((x[0] / 0.017_865_921_142_1 - 1.0).abs() < 1e-5, "{x}");
+    assert!(statistics.steps < 1000);
+}

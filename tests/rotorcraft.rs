@@ -5,7 +5,7 @@
 #[allow(unreachable_pub)]
 mod model;
 
-use mbg_runtime::{Adaptive, Dop853, System};
+use mbg_runtime::{Adaptive, Dop853, Integrator, System};
 use model::{Coasting, CoastingParameters, Sliding, SlidingParameters};
 use nalgebra::SVector;
 

@@ -1,5 +1,6 @@
 //! Rotors of the library: frequencies against linear theory, what is kept, and what each blade costs.
 #![allow(clippy::unwrap_used)]
+#![allow(clippy::excessive_precision, reason = "numbers as they were computed")]
 
 mod models;
 #[path = "../../tests/references/rotor.rs"]

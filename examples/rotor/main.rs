@@ -7,6 +7,7 @@
 mod model;
 mod picture;
 #[path = "../../tests/references/rotor.rs"]
+#[allow(dead_code, reason = "tests ask for more of it")]
 mod theory;
 
 use std::error::Error;

@@ -112,7 +112,7 @@ impl Rotor {
         };
         for (word, frequency) in ["feather", "flap", "lag"].iter().zip(self.rotating()) {
             add(format!("{word}, collective"), frequency.into());
-            if self.blades % 2 == 0 {
+            if self.blades.is_multiple_of(2) {
                 add(format!("{word}, differential"), frequency.into());
             }
             for harmonic in 1..=(self.blades - 1) / 2 {
@@ -197,17 +197,17 @@ pub(crate) fn matched(
     assert_eq!(expected.len(), found.len());
     let mut left = found.to_vec();
     let mut pair = |of: &Complex<f64>| (*of, left.swap_remove(nearest(&left, *of)));
-    expected.iter().map(|of| pair(of)).collect()
+    expected.iter().map(pair).collect()
 }
 
 /// Coordinates of all blades at an azimuth of the first one, by their own: collective, differential if there are evenly
 /// many, and cosine and sine of each harmonic. With it, how that changes with the azimuth.
 fn multiblade(blades: usize, azimuth: f64) -> [DMatrix<f64>; 2] {
-    let even = usize::from(blades % 2 == 0);
+    let even = usize::from(blades.is_multiple_of(2));
     let count = blades as f64;
     let value = |row: usize, blade: usize, derivative: bool| {
         let angle = azimuth + TAU * blade as f64 / count;
-        let sign = if blade % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if blade.is_multiple_of(2) { 1.0 } else { -1.0 };
         if row <= even {
             let constant = if row == 0 { 1.0 } else { sign };
             return if derivative { 0.0 } else { constant / count };

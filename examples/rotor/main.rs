@@ -129,10 +129,15 @@ fn table(speed: f64) -> Result<(), Box<dyn Error>> {
             mode.name,
             mode.found.im.abs(),
             mode.theory.im.abs(),
-            mode.found.re,
-            mode.theory.re,
+            rounded(mode.found.re),
+            rounded(mode.theory.re),
             modulus(mode.found - mode.theory)
         );
     }
     Ok(())
+}
+
+/// To the digits that are printed, such that zero has no sign.
+fn rounded(growth: f64) -> f64 {
+    (1e8 * growth).round() / 1e8 + 0.0
 }

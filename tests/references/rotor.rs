@@ -196,7 +196,7 @@ pub(crate) fn matched(
 ) -> Vec<(Complex<f64>, Complex<f64>)> {
     assert_eq!(expected.len(), found.len());
     let mut left = found.to_vec();
-    let mut pair = |of: &Complex<f64>| (*of, left.swap_remove(nearest(&left, *of)));
+    let pair = |of: &Complex<f64>| (*of, left.swap_remove(nearest(&left, *of)));
     expected.iter().map(pair).collect()
 }
 

@@ -10,57 +10,113 @@ use crate::Mode;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// What is drawn: the start of the names of its modes, its legend, and a colour that colour-blind readers tell apart.
-const KINDS: [(&str, &str, RGBColor); 4] = [
-    ("lag, c", "lag: collective", RGBColor(150, 150, 150)),
-    ("lag, r", "lag: regressive", RGBColor(200, 80, 0)),
-    ("lag, p", "lag: progressive", RGBColor(0, 90, 160)),
-    ("mast", "mast on its springs", RGBColor(30, 130, 70)),
-];
+/// Colours that colour-blind readers tell apart.
+const WHIRL: RGBColor = RGBColor(200, 80, 0);
+const COLLECTIVE: RGBColor = RGBColor(0, 90, 160);
+
+/// Points over the speed of the rotor.
+type Points = Vec<(f64, f64)>;
+
+/// What is drawn: theory and model in one colour.
+struct Curve {
+    theory: Points,
+    found: Points,
+    color: RGBColor,
+}
 
 /// Draws rings for the model on lines for theory.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub(crate) fn draw(path: &Path, sweep: &[(f64, Vec<Mode>)]) -> Result<(), Box<dyn Error>> {
-    let root = SVGBackend::new(path, (950, 760)).into_drawing_area();
+    let root = SVGBackend::new(path, (960, 760)).into_drawing_area();
     root.fill(&WHITE)?;
-    let (plots, legend) = root.split_horizontally(750);
+    let (plots, side) = root.split_horizontally(750);
     let (upper, lower) = plots.split_vertically(480);
+    let title = "Lag of four blades, seen from a mast on springs";
     panel(
         &upper,
-        "Lag of four blades and a mast on springs: frequencies",
+        title,
         "frequency in rad/s",
-        80.0,
-        sweep,
-        |value| value.im.abs(),
+        100.0,
+        &frequencies(sweep),
     )?;
-    panel(
-        &lower,
-        "Ground resonance",
-        "growth in 1/s",
-        4.0,
-        sweep,
-        |value| value.re.max(0.0),
-    )?;
-    let font = ("sans-serif", 14);
-    for (row, (_, name, color)) in KINDS.iter().enumerate() {
-        let y = 60 + 24 * row as i32;
-        legend.draw(&PathElement::new(
-            vec![(0, y), (26, y)],
-            color.stroke_width(2),
-        ))?;
-        legend.draw(&Text::new(*name, (34, y - 7), font))?;
-    }
-    let y = 60 + 24 * KINDS.len() as i32;
-    legend.draw(&PathElement::new(
-        vec![(0, y), (26, y)],
-        BLACK.stroke_width(2),
-    ))?;
-    legend.draw(&Text::new("Coleman, Feingold", (34, y - 7), font))?;
-    legend.draw(&Circle::new((13, y + 24), 4, BLACK.stroke_width(1)))?;
-    legend.draw(&Text::new("eigenvalues of the model", (34, y + 17), font))?;
+    let title = "Ground resonance: growth of the fastest whirl";
+    panel(&lower, title, "growth in 1/s", 4.0, &[growth(sweep)])?;
+    legend(&side)?;
     root.present()?;
+    Ok(())
+}
+
+/// The four whirls of mast and cyclic lag, from the one against the rotation to the fastest one with it: in this order
+/// they go on without jumps, whatever each is mostly made of.
+fn whirls(modes: &[Mode]) -> Vec<&Mode> {
+    // Of each pair of conjugates one.
+    let cyclic = |mode: &&Mode| {
+        ["mast", "lag, regressive", "lag, progressive"]
+            .iter()
+            .any(|start| mode.name.starts_with(start))
+    };
+    let mut whirls: Vec<&Mode> = modes.iter().step_by(2).filter(cyclic).collect();
+    whirls.sort_by(|a, b| a.theory.im.total_cmp(&b.theory.im));
+    whirls
+}
+
+fn collective(modes: &[Mode]) -> Vec<&Mode> {
+    let is_collective = |mode: &&Mode| mode.name == "lag, collective";
+    modes.iter().filter(is_collective).take(1).collect()
+}
+
+fn frequencies(sweep: &[(f64, Vec<Mode>)]) -> Vec<Curve> {
+    let curve = |select: fn(&[Mode]) -> Vec<&Mode>, rank: usize, color: RGBColor| {
+        let points = |value: fn(&Mode) -> f64| {
+            let modes = sweep
+                .iter()
+                .filter_map(|(speed, modes)| Some((*speed, *select(modes).get(rank)?)));
+            modes.map(|(speed, mode)| (speed, value(mode))).collect()
+        };
+        Curve {
+            theory: points(|mode| mode.theory.im.abs()),
+            found: points(|mode| mode.found.im.abs()),
+            color,
+        }
+    };
+    let mut curves = vec![curve(collective, 0, COLLECTIVE)];
+    curves.extend((0..4).map(|rank| curve(whirls, rank, WHIRL)));
+    curves
+}
+
+fn growth(sweep: &[(f64, Vec<Mode>)]) -> Curve {
+    let points = |value: fn(&Mode) -> f64| {
+        let fastest = |modes: &[Mode]| whirls(modes).into_iter().map(value).fold(0.0, f64::max);
+        let points = sweep.iter().map(|(speed, modes)| (*speed, fastest(modes)));
+        points.collect()
+    };
+    Curve {
+        theory: points(|mode| mode.theory.re),
+        found: points(|mode| mode.found.re),
+        color: WHIRL,
+    }
+}
+
+fn legend(area: &Area) -> Result<(), Box<dyn Error>> {
+    let rows = [
+        ("mast and cyclic lag", Some(WHIRL)),
+        ("collective lag", Some(COLLECTIVE)),
+        ("Coleman and Feingold", Some(BLACK)),
+        ("eigenvalues of the model", None),
+    ];
+    for (row, (name, line)) in rows.into_iter().enumerate() {
+        let y = 60 + 24 * row as i32;
+        match line {
+            Some(color) => area.draw(&PathElement::new(
+                vec![(0, y), (26, y)],
+                color.stroke_width(2),
+            ))?,
+            None => area.draw(&Circle::new((13, y), 4, BLACK.stroke_width(1)))?,
+        }
+        area.draw(&Text::new(name, (34, y - 7), ("sans-serif", 14)))?;
+    }
     Ok(())
 }
 
@@ -69,10 +125,10 @@ fn panel(
     title: &str,
     axis: &str,
     high: f64,
-    sweep: &[(f64, Vec<Mode>)],
-    value: impl Fn(nalgebra::Complex<f64>) -> f64,
+    curves: &[Curve],
 ) -> Result<(), Box<dyn Error>> {
-    let end = sweep.iter().map(|(speed, _)| *speed).fold(0.0, f64::max);
+    let ends = curves.iter().flat_map(|curve| &curve.theory);
+    let end = ends.map(|(speed, _)| *speed).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 20))
         .margin(14)
@@ -87,24 +143,12 @@ fn panel(
         .label_style(("sans-serif", 13))
         .axis_desc_style(("sans-serif", 15))
         .draw()?;
-    for (start, _, color) in KINDS {
-        let count = sweep.first().map_or(0, |(_, modes)| modes.len());
-        // Of each pair of conjugates one is drawn.
-        for mode in (0..count).step_by(2) {
-            let of = sweep
-                .iter()
-                .filter_map(|(speed, modes)| Some((*speed, modes.get(mode)?)));
-            let of: Vec<(f64, &Mode)> = of
-                .filter(|(_, mode)| mode.name.starts_with(start))
-                .collect();
-            let line = of.iter().map(|(speed, mode)| (*speed, value(mode.theory)));
-            chart.draw_series(LineSeries::new(line, color.stroke_width(2)))?;
-            let rings = of
-                .iter()
-                .step_by(4)
-                .map(|(speed, mode)| (*speed, value(mode.found)));
-            chart.draw_series(rings.map(|at| Circle::new(at, 4, color.stroke_width(1))))?;
-        }
+    for curve in curves {
+        let line = curve.theory.iter().copied();
+        chart.draw_series(LineSeries::new(line, curve.color.stroke_width(2)))?;
+        let rings = curve.found.iter().copied().step_by(4);
+        let ring = |at| Circle::new(at, 4, curve.color.stroke_width(1));
+        chart.draw_series(rings.map(ring))?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::input::quotient;
-use crate::{Loop, Memory, Meta, Real, Solver};
+use crate::{Loop, Memory, Meta, Real, Solver, Sparsity};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -15,6 +15,9 @@ use crate::{Loop, Memory, Meta, Real, Solver};
 pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// Names, units, strokes and counts, known at compile time.
     const META: &'static Meta;
+
+    /// Where `∂f/∂x` can differ from zero; everywhere unless it is given.
+    const SPARSITY: Option<&'static Sparsity> = None;
 
     /// Warm start and residual of bounded solves; `()` for a model without any.
     type Memory: Memory;

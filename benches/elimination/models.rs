@@ -90,7 +90,7 @@ mbg! {
 
 /// A system that is taken for dense.
 #[derive(Clone, Copy, Debug)]
-pub struct Dense<S>(pub S);
+pub(crate) struct Dense<S>(pub S);
 
 impl<T, S, const N: usize, const M: usize, const P: usize> System<T, N, M, P> for Dense<S>
 where
@@ -106,16 +106,34 @@ where
     }
 
     #[inline]
-    fn derivative(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut S::Memory) -> SVector<T, N> {
+    fn derivative(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SVector<T, N> {
         self.0.derivative(t, x, u, memory)
     }
 
-    fn output(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut S::Memory) -> SVector<T, P> {
+    fn output(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SVector<T, P> {
         self.0.output(t, x, u, memory)
     }
 
     #[inline]
-    fn jacobian_state(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut S::Memory) -> SMatrix<T, N, N> {
+    fn jacobian_state(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SMatrix<T, N, N> {
         self.0.jacobian_state(t, x, u, memory)
     }
 
@@ -130,7 +148,13 @@ where
         self.0.derivative_and_jacobian(t, x, u, memory)
     }
 
-    fn jacobian_input(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut S::Memory) -> SMatrix<T, N, M> {
+    fn jacobian_input(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SMatrix<T, N, M> {
         self.0.jacobian_input(t, x, u, memory)
     }
 
@@ -150,7 +174,13 @@ where
         self.0.energy(t, x)
     }
 
-    fn power(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, memory: &mut S::Memory) -> Power<T> {
+    fn power(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> Power<T> {
         self.0.power(t, x, u, memory)
     }
 
@@ -158,7 +188,13 @@ where
         self.0.conditioning(t, x, u)
     }
 
-    fn close(&self, t: T, x: SVector<T, N>, u: &SVector<T, M>, held: &[usize]) -> Result<SVector<T, N>, Trouble> {
+    fn close(
+        &self,
+        t: T,
+        x: SVector<T, N>,
+        u: &SVector<T, M>,
+        held: &[usize],
+    ) -> Result<SVector<T, N>, Trouble> {
         self.0.close(t, x, u, held)
     }
 }

@@ -40,7 +40,10 @@ pub fn of_dependence(pool: &Pool, rates: &[Expression], states: &[Symbol]) -> Pa
     let places: BTreeMap<Symbol, usize> = numbered.map(|(place, state)| (*state, place)).collect();
     let row = |rate: &Expression| {
         let found = symbols(pool, &[*rate]);
-        found.iter().filter_map(|it| places.get(it).copied()).collect()
+        found
+            .iter()
+            .filter_map(|it| places.get(it).copied())
+            .collect()
     };
     rates.iter().map(row).collect()
 }
@@ -97,7 +100,9 @@ impl Elimination {
     #[must_use]
     pub fn operations(&self) -> usize {
         let multipliers = self.lower.iter().flatten();
-        multipliers.map(|column| 1 + self.upper[*column].len()).sum()
+        multipliers
+            .map(|column| 1 + self.upper[*column].len())
+            .sum()
     }
 
     /// Products that a solution takes.
@@ -105,5 +110,68 @@ impl Elimination {
     pub fn elements(&self) -> usize {
         let both = self.lower.iter().chain(&self.upper);
         self.order.len() + both.map(Vec::len).sum::<usize>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn pattern(rows: &[&[usize]]) -> Pattern {
+        let rows = rows.iter().map(|row| row.iter().copied().collect());
+        rows.collect()
+    }
+
+    #[test]
+    fn an_arrow_does_not_fill() {
+        let plan = Elimination::of(&pattern(&[&[0, 1, 2, 3], &[0, 1], &[0, 2], &[0, 3]]));
+        assert_eq!(plan.order, [1, 2, 0, 3]);
+        assert_eq!((plan.operations(), plan.elements()), (6, 10));
+    }
+
+    #[test]
+    fn kinematics_cost_nothing() {
+        // Displacements 0 and 1 are the integrals of 2 and 3, on which nothing depends but through them.
+        let plan = Elimination::of(&pattern(&[&[2], &[3], &[2, 3], &[2, 3]]));
+        assert_eq!(plan.operations(), 2);
+    }
+
+    proptest! {
+        /// Elimination in the order of the plan, by numbers, leaves nothing beside the patterns of `L` and `U`.
+        #[test]
+        fn every_pattern_is_eliminated(
+            size in 1_usize..12,
+            seed in proptest::collection::vec(any::<(bool, bool, i8)>(), 144),
+        ) {
+            let filled = |row: usize, column: usize| {
+                let (a, b, _) = seed[12 * row + column];
+                a && b
+            };
+            let entry = |row: usize, column: usize| {
+                let number = f64::from(seed[12 * row + column].2) / 128.0 + 0.003;
+                if row == column { 20.0 + number } else if filled(row, column) { number } else { 0.0 }
+            };
+            let row = |row: usize| (0..size).filter(|column| filled(row, *column)).collect();
+            let plan = Elimination::of(&(0..size).map(row).collect());
+            let sorted: BTreeSet<usize> = plan.order.iter().copied().collect();
+            prop_assert_eq!(sorted.len(), size);
+            let mut a: Vec<Vec<f64>> = (0..size).map(|row| (0..size).map(|column| entry(row, column)).collect()).collect();
+            for (place, pivot) in plan.order.iter().copied().enumerate() {
+                let rest = &plan.order[place + 1..];
+                for row in rest.iter().copied() {
+                    prop_assert!(a[row][pivot] == 0.0 || plan.lower[row].contains(&pivot));
+                    prop_assert!(a[pivot][row] == 0.0 || plan.upper[pivot].contains(&row));
+                    let factor = a[row][pivot] / a[pivot][pivot];
+                    for column in rest.iter().copied() {
+                        a[row][column] -= factor * a[pivot][column];
+                    }
+                }
+            }
+            for row in &plan.lower {
+                let places: Vec<_> = row.iter().map(|it| plan.order.iter().position(|other| other == it)).collect();
+                prop_assert!(places.is_sorted());
+            }
+        }
     }
 }

@@ -100,6 +100,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     ]
     .map(Literal::usize_suffixed);
     let meta = meta::constant(compiled);
+    let elimination = sparsity::unrolled(&compiled.pattern);
     let sparsity = sparsity::constant(&compiled.pattern);
     let body = |routine: usize, build: Build| body(compiled, routine, build);
     let initial = body(Routines::INITIAL, &vector);
@@ -167,6 +168,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
             #close
+            #elimination
         }
     }
 }

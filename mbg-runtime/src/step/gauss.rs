@@ -210,7 +210,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let jacobian = problem.jacobian(start.span.start, &start.x);
         problem.statistics.factorisations += 1;
         let scale = start.span.length * self.matrix[0][0];
-        Shifted::new(Y::SPARSITY, T::from_f64(1.0), scale, &jacobian)
+        Shifted::new::<Y, M, P>(T::from_f64(1.0), scale, &jacobian)
     }
 
     /// One sweep over all stages; gives the largest change of a stage relative to the state.
@@ -235,7 +235,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
             let slope = problem.slope(t, &x);
             let mut change = slope - known[stage];
             if let Some(factors) = newton {
-                change = factors.solved(&change);
+                change = factors.solved::<Y, M, P>(&change);
                 self.slopes[stage] = known[stage] + change;
             } else {
                 self.slopes[stage] = slope;

@@ -2,21 +2,26 @@
 
 use core::ops::{Add, Mul, Sub};
 
-use nalgebra::SMatrix;
 #[cfg(test)]
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::magnitude;
 use crate::Real;
 
 /// A number that elimination works on.
-pub trait Element:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
+pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// What it consists of.
     type Part: Real;
     /// A real number.
     fn from_part(part: Self::Part) -> Self;
+    /// Zero.
+    fn zero() -> Self {
+        Self::from_part(Self::Part::from_f64(0.0))
+    }
+    /// Less the product of two others.
+    fn less(self, a: Self, b: Self) -> Self {
+        self - a * b
+    }
     /// Its reciprocal.
     fn reciprocal(self) -> Self;
     /// A size to choose pivots by; of several lanes the largest.
@@ -28,6 +33,10 @@ impl<T: Real> Element for T {
 
     fn from_part(part: T) -> Self {
         part
+    }
+
+    fn less(self, a: T, b: T) -> T {
+        (-a).multiply_add(b, self)
     }
 
     fn reciprocal(self) -> Self {
@@ -167,16 +176,15 @@ impl<E: Element, const N: usize> Factors<E, N> {
         }
         x
     }
+}
 
+#[cfg(test)]
+impl<T: Real, const N: usize> Factors<T, N> {
     /// Of `diagonal · I − scale · matrix`.
-    pub(super) fn shifted(
-        diagonal: E,
-        scale: E::Part,
-        matrix: &SMatrix<E::Part, N, N>,
-    ) -> Self {
+    pub(super) fn shifted(diagonal: T, scale: T, matrix: &SMatrix<T, N, N>) -> Self {
         Self::new(core::array::from_fn(|row| {
             core::array::from_fn(|column| {
-                let element = E::from_part(-(scale * matrix[(row, column)]));
+                let element = -(scale * matrix[(row, column)]);
                 if row == column {
                     element + diagonal
                 } else {
@@ -185,10 +193,7 @@ impl<E: Element, const N: usize> Factors<E, N> {
             })
         }))
     }
-}
 
-#[cfg(test)]
-impl<T: Real, const N: usize> Factors<T, N> {
     pub(super) fn solved(&self, right: &SVector<T, N>) -> SVector<T, N> {
         SVector::from(self.solve(right.data.0[0]))
     }

@@ -181,8 +181,8 @@ impl<T: Real, const N: usize> Work<T, N> {
         let one = T::from_f64(1.0);
         let [real, imaginary] = PAIR.map(by);
         let pair = Complex { real, imaginary };
-        let pair = Shifted::new(Y::SPARSITY, pair, one, &self.jacobian);
-        let real = Shifted::new(Y::SPARSITY, by(REAL), one, &self.jacobian);
+        let pair = Shifted::new::<Y, M, P>(pair, one, &self.jacobian);
+        let real = Shifted::new::<Y, M, P>(by(REAL), one, &self.jacobian);
         self.factors = Some((length, real, pair));
     }
 
@@ -271,12 +271,12 @@ where
         let [a, b, c] = &*inner;
         let one = self
             .real
-            .solved(&first.zip_map(a, |slope, a| slope - real * a));
+            .solved::<Y, M, P>(&first.zip_map(a, |slope, a| slope - real * a));
         let rights = core::array::from_fn(|row| Complex {
             real: second[row] - (alpha * b[row] - beta * c[row]),
             imaginary: third[row] - (alpha * c[row] + beta * b[row]),
         });
-        let both = self.pair.solve(rights);
+        let both = self.pair.solve::<Y, M, P>(rights);
         let changes = [
             one,
             SVector::from(both.map(|it| it.real)),
@@ -367,13 +367,13 @@ where
         let [a, b, c] = ERROR.map(|weight| T::from_f64(weight) / span.length);
         let [first, second, third] = stages;
         let sum = first.zip_zip_map(second, third, |x, y, z| a * x + b * y + c * z);
-        let estimate = self.real.solved(&(sum + slope));
+        let estimate = self.real.solved::<Y, M, P>(&(sum + slope));
         let size = tolerance.norm_between(&estimate, x, third);
         if size <= 1.0 || !doubtful || size.is_nan() {
             return size;
         }
         let slope = self.problem.slope(span.start, &(x + estimate));
-        tolerance.norm_between(&self.real.solved(&(sum + slope)), x, third)
+        tolerance.norm_between(&self.real.solved::<Y, M, P>(&(sum + slope)), x, third)
     }
 }
 

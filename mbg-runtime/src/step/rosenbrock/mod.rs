@@ -132,7 +132,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let inverse = one / length;
         problem.statistics.factorisations += 1;
         let diagonal = inverse / T::from_f64(tableau.diagonal);
-        let factors = Shifted::new(Y::SPARSITY, diagonal, one, &self.jacobian);
+        let factors = Shifted::new::<Y, M, P>(diagonal, one, &self.jacobian);
         for stage in 0..S {
             let (earlier, _) = self.stages.split_at(stage);
             let slope = if stage == 0 {
@@ -144,7 +144,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
             let coupling = combination(&self.slopes[stage], earlier);
             let by_time = T::from_f64(tableau.times[stage]) * length;
             let right = along(&along(&slope, inverse, &coupling), by_time, &self.by_time);
-            self.stages[stage] = factors.solved(&right);
+            self.stages[stage] = factors.solved::<Y, M, P>(&right);
         }
         let change = combination(&self.result, &self.stages);
         let error = combination(&self.error, &self.stages);

@@ -122,6 +122,12 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         }
     }
 
+    /// The solution alone.
+    #[must_use]
+    pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
+        self.solve(right).solution
+    }
+
     fn factorise(&mut self) {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let threshold =

@@ -13,6 +13,7 @@ mod memory;
 mod newton;
 mod project;
 
+pub use dense::Regular;
 pub use least_norm::{LeastNorm, Semidefinite, least_norm};
 pub use memory::{LoopMemory, Memory, Outcome};
 pub use newton::{ITERATIONS, Solved, newton};

@@ -156,3 +156,79 @@ impl<E: Element, const N: usize> Planned<E, N> {
 fn places(states: &'static [u16]) -> impl DoubleEndedIterator<Item = usize> {
     states.iter().map(|state| usize::from(*state))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::lanes::random;
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    const N: usize = 12;
+    type Filled = [[bool; N]; N];
+
+    /// The plan in the order of the states.
+    fn plan(mut filled: Filled) -> &'static Elimination {
+        for pivot in 0..N {
+            let above = filled[pivot];
+            for row in filled.iter_mut().skip(pivot + 1).filter(|row| row[pivot]) {
+                for column in pivot..N {
+                    row[column] |= above[column];
+                }
+            }
+        }
+        let rows = |right: bool| -> &'static [&'static [u16]] {
+            let row = |row: usize| -> &'static [u16] {
+                let columns = (0..N).filter(|column| *column != row && (*column > row) == right);
+                let found = columns.filter(|column| filled[row][*column]);
+                found.map(|column| column as u16).collect::<Vec<_>>().leak()
+            };
+            (0..N).map(row).collect::<Vec<_>>().leak()
+        };
+        Box::leak(Box::new(Elimination {
+            order: (0..N as u16).collect::<Vec<_>>().leak(),
+            lower: rows(false),
+            upper: rows(true),
+        }))
+    }
+
+    #[test]
+    fn plans_of_random_patterns_solve_as_pivots_do() {
+        let mut random = random();
+        for _ in 0..100 {
+            let filled: Filled = core::array::from_fn(|_| core::array::from_fn(|_| random() > 0.5));
+            let mut matrix = [[0.0; N]; N];
+            for (row, entries) in matrix.iter_mut().enumerate() {
+                for (column, entry) in entries.iter_mut().enumerate() {
+                    if row == column || filled[row][column] {
+                        *entry = random() + if row == column { 8.0 } else { 0.0 };
+                    }
+                }
+            }
+            let right: [f64; N] = core::array::from_fn(|_| random());
+            let found = Planned::new(plan(filled), |row, column| matrix[row][column]);
+            let found = found.unwrap().solve(right);
+            for (found, dense) in found.iter().zip(Factors::new(matrix).solve(right)) {
+                assert!((found - dense).abs() < 1e-13, "{found} {dense}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_pivot_does_not_hold_whatever_the_units() {
+        let filled = [[true; N]; N];
+        for unit in [1e-12, 1.0, 1e12] {
+            let entry = |pivot: f64| {
+                move |row: usize, column: usize| match (row, column) {
+                    (0, 0) => unit * pivot,
+                    (0, _) => unit,
+                    (row, column) if row == column => 20.0,
+                    _ => 1.0,
+                }
+            };
+            assert!(Planned::<f64, N>::new(plan(filled), entry(1.0)).is_some());
+            assert!(Planned::<f64, N>::new(plan(filled), entry(1e-6)).is_none());
+            assert!(Planned::<f64, N>::new(plan(filled), entry(0.0)).is_none());
+        }
+    }
+}

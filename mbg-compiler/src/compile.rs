@@ -13,6 +13,7 @@ use crate::equations::{self, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Junction};
 use crate::network::Network;
 use crate::program::{self, Program};
+use crate::sparsity::{self, Pattern};
 use crate::start;
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
@@ -47,6 +48,8 @@ pub struct Compiled {
     pub strokes: Vec<bool>,
     /// Whether the Jacobians are in the program; those of large models are taken from dual numbers.
     pub unrolled: bool,
+    /// Where the Jacobian by the states can differ from zero.
+    pub pattern: Pattern,
     /// Things worth knowing.
     pub notes: Vec<String>,
 }
@@ -156,13 +159,18 @@ fn finish(
     let unrolled = answers.states.len() * operations(&pool, &answers.rates) <= UNROLLED;
     let [by_states, by_inputs] = [&by_state, &by_input].map(|by| {
         let by: &[Symbol] = if unrolled { by } else { &[] };
-        jacobian(&mut pool, &answers.rates, by).entries
+        jacobian(&mut pool, &answers.rates, by)
     });
+    let pattern = if unrolled {
+        sparsity::of_entries(&by_states)
+    } else {
+        sparsity::of_dependence(&pool, &answers.rates, &by_state)
+    };
     let requests = [
         answers.rates.clone(),
         answers.outputs.clone(),
-        [&answers.rates[..], &by_states].concat(),
-        by_inputs,
+        [&answers.rates[..], &by_states.entries].concat(),
+        by_inputs.entries,
         vec![answers.energy],
         vec![answers.supplied, answers.dissipated],
         conditioning.clone(),
@@ -202,6 +210,7 @@ fn finish(
         dependent: verdict.dependent,
         strokes: verdict.strokes,
         unrolled,
+        pattern,
         notes,
         states: answers.states,
         model,

@@ -12,7 +12,7 @@
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
 //! | answers | [`answers`], [`closures`], [`checks`], [`start`] | what functions return, projection makes zero, `new` asks |
-//! | program | [`program`] | straight-line arithmetic |
+//! | program | [`program`], [`sparsity`] | straight-line arithmetic, the pattern of the Jacobian |
 //! | emission | [`emit`] | Rust |
 //!
 //! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`; [`explain`] prints them.
@@ -33,6 +33,7 @@ pub mod graph;
 pub mod inclusion;
 pub mod network;
 pub mod program;
+pub mod sparsity;
 pub mod start;
 pub mod structure;
 pub mod symbolic;

@@ -6,6 +6,7 @@ pub use nalgebra::{SMatrix, SVector};
 pub use crate::solve::ITERATIONS;
 use crate::solve::project;
 use crate::step::magnitude;
+pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
     Bond, Dual, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };

@@ -30,6 +30,7 @@ mod real;
 mod scalar;
 mod sine;
 pub mod solve;
+mod sparsity;
 mod step;
 mod system;
 
@@ -38,6 +39,7 @@ pub use input::{Constant, Differentiable, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
 pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
+pub use sparsity::{Elimination, Sparsity};
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
     ImplicitMidpoint, Integrator, Method, Picked, Radau5, Reason, Rk4, Rodas4, Rodas5P, Ros2,

@@ -3,7 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::input::quotient;
-use crate::{Loop, Memory, Meta, Real, Solver};
+use crate::step::Element;
+use crate::{Loop, Memory, Meta, Real, Solver, Sparsity};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -15,6 +16,12 @@ use crate::{Loop, Memory, Meta, Real, Solver};
 pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// Names, units, strokes and counts, known at compile time.
     const META: &'static Meta;
+
+    /// Where `∂f/∂x` can differ from zero; everywhere unless it is given.
+    ///
+    /// Generated models give it, with a plan by which implicit methods eliminate where that is faster. Where a pivot is too
+    /// small beside its column they search for pivots in the whole matrix.
+    const SPARSITY: Option<&'static Sparsity> = None;
 
     /// Warm start and residual of bounded solves; `()` for a model without any.
     type Memory: Memory;
@@ -153,6 +160,21 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ) -> Result<SVector<T, N>, Trouble> {
         Ok(x)
     }
+
+    /// Whether the plan of elimination is written out below.
+    #[doc(hidden)]
+    const UNROLLED: bool = false;
+
+    /// Factors by the plan of elimination, those of `L` and `U` in the place of the matrix with the pivots' reciprocals on
+    /// the diagonal; whether all pivots hold.
+    #[doc(hidden)]
+    fn eliminate<E: Element>(_entry: impl Fn(usize, usize) -> E, _rows: &mut [[E; N]; N]) -> bool {
+        false
+    }
+
+    /// A solution by the factors that `eliminate` has left.
+    #[doc(hidden)]
+    fn substitute<E: Element>(_rows: &[[E; N]; N], _x: &mut [E; N]) {}
 
     /// The first algebraic loop whose last solve did not converge.
     fn unsolved(memory: &Self::Memory) -> Option<Trouble> {

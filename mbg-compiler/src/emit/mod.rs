@@ -9,6 +9,7 @@ mod meta;
 mod parameters;
 mod routine;
 mod shell;
+mod sparsity;
 mod system;
 
 use proc_macro2::TokenStream;

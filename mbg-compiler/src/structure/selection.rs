@@ -465,20 +465,18 @@ impl NominalEchelon {
         let largest =
             |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |a: f64, b| a.max(b.abs()));
         let size = largest(&row);
-        let mut done = 0;
-        while let Some(next) = row
-            .keys()
-            .filter_map(|unknown| self.leads.get(unknown).copied())
-            .filter(|position| *position >= done)
-            .min()
-        {
+        let position = |unknown: &usize| self.leads.get(unknown).copied();
+        let mut pending: BTreeSet<usize> = row.keys().filter_map(position).collect();
+        while let Some(next) = pending.pop_first() {
             let (lead, pivot) = &self.rows[next];
-            let factor = row.get(lead).copied().unwrap_or(0.0) / pivot[lead];
-            for (unknown, entry) in pivot {
-                *row.entry(*unknown).or_default() -= factor * entry;
+            let factor = row.remove(lead).unwrap_or(0.0) / pivot[lead];
+            if factor == 0.0 {
+                continue;
             }
-            row.remove(lead);
-            done = next + 1;
+            for (unknown, entry) in pivot.iter().filter(|(unknown, _)| *unknown != lead) {
+                *row.entry(*unknown).or_default() -= factor * entry;
+                pending.extend(position(unknown).filter(|position| *position > next));
+            }
         }
         row.retain(|_, value| value.abs() > Self::VANISHED * size);
         (!row.is_empty()).then_some(row)

@@ -185,7 +185,13 @@ impl Solver<'_> {
         let (matrix, right) = system.equations();
         let admitted = |row, column| tree.admits(row, column);
         let all: Columns = (0..equations.len()).collect();
+        // The balance at a massless frame stays open until the level of the hinge that carries the frame.
+        let mut passed = Columns::new();
         for (number, level) in self.levels(equations, unknowns) {
+            if !scalars.closures.is_empty() {
+                passed.clear();
+            }
+            passed.extend(&level.rows);
             let mut delayed = Columns::new();
             let moved = level
                 .last
@@ -205,7 +211,7 @@ impl Solver<'_> {
                 }
             }
             if let Some(column) = level.last
-                && let Some(row) = tree.balance(&system, &level.rows, column)
+                && let Some(row) = tree.balance(&system, &passed, column)
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {

@@ -83,7 +83,7 @@ fn regular(right: &[Dual<f64>], matrix: &[Dual<f64>]) -> Vec<Dual<f64>> {
         for (_, row) in rows.iter_mut().enumerate().filter(|(row, _)| *row != k) {
             let factor = row[k] / pivot[k];
             for (entry, above) in row.iter_mut().zip(&pivot) {
-                *entry = *entry - factor * *above;
+                *entry -= factor * *above;
             }
         }
     }

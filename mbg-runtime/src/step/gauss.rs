@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::dense::Polynomial;
-use super::linear::Factors;
+use super::elimination::Shifted;
 use super::method::{
     Family, Method, Progress, Settling, Start, Trial, along, combination, converted, relative,
 };
@@ -202,7 +202,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         &self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
-    ) -> Factors<T, N>
+    ) -> Shifted<T, N>
     where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
@@ -210,7 +210,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let jacobian = problem.jacobian(start.span.start, &start.x);
         problem.statistics.factorisations += 1;
         let scale = start.span.length * self.matrix[0][0];
-        Factors::shifted(T::from_f64(1.0), scale, &jacobian)
+        Shifted::new::<Y, M, P>(T::from_f64(1.0), scale, &jacobian)
     }
 
     /// One sweep over all stages; gives the largest change of a stage relative to the state.
@@ -219,7 +219,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         tableau: &Tableau<S>,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
-        newton: Option<&Factors<T, N>>,
+        newton: Option<&Shifted<T, N>>,
     ) -> f64
     where
         Y: System<T, N, M, P>,
@@ -235,7 +235,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
             let slope = problem.slope(t, &x);
             let mut change = slope - known[stage];
             if let Some(factors) = newton {
-                change = factors.solved(&change);
+                change = factors.solved::<Y, M, P>(&change);
                 self.slopes[stage] = known[stage] + change;
             } else {
                 self.slopes[stage] = slope;

@@ -2,15 +2,26 @@
 
 use core::ops::{Add, Mul, Sub};
 
+#[cfg(test)]
 use nalgebra::{SMatrix, SVector};
 
 use super::magnitude;
 use crate::Real;
 
 /// A number that elimination works on.
-pub(super) trait Element:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
+pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// What it consists of.
+    type Part: Real;
+    /// A real number.
+    fn from_part(part: Self::Part) -> Self;
+    /// Zero.
+    fn zero() -> Self {
+        Self::from_part(Self::Part::from_f64(0.0))
+    }
+    /// Less the product of two others.
+    fn less(self, a: Self, b: Self) -> Self {
+        self - a * b
+    }
     /// Its reciprocal.
     fn reciprocal(self) -> Self;
     /// A size to choose pivots by; of several lanes the largest.
@@ -18,6 +29,16 @@ pub(super) trait Element:
 }
 
 impl<T: Real> Element for T {
+    type Part = T;
+
+    fn from_part(part: T) -> Self {
+        part
+    }
+
+    fn less(self, a: T, b: T) -> T {
+        (-a).multiply_add(b, self)
+    }
+
     fn reciprocal(self) -> Self {
         T::from_f64(1.0) / self
     }
@@ -29,9 +50,11 @@ impl<T: Real> Element for T {
 
 /// A complex number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Complex<T> {
-    pub(super) real: T,
-    pub(super) imaginary: T,
+pub struct Complex<T> {
+    /// Real part.
+    pub real: T,
+    /// Imaginary part.
+    pub imaginary: T,
 }
 
 impl<T: Real> Add for Complex<T> {
@@ -68,6 +91,13 @@ impl<T: Real> Mul for Complex<T> {
 }
 
 impl<T: Real> Element for Complex<T> {
+    type Part = T;
+
+    fn from_part(real: T) -> Self {
+        let imaginary = T::from_f64(0.0);
+        Self { real, imaginary }
+    }
+
     /// Divides by the larger part first, so that no square overflows.
     fn reciprocal(self) -> Self {
         let one = T::from_f64(1.0);
@@ -97,7 +127,7 @@ impl<T: Real> Element for Complex<T> {
 ///
 /// Of a singular matrix the solutions are not finite. Lanes share their pivots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Factors<E, const N: usize> {
+pub struct Factors<E, const N: usize> {
     rows: [[E; N]; N],
     order: [usize; N],
 }
@@ -148,6 +178,7 @@ impl<E: Element, const N: usize> Factors<E, N> {
     }
 }
 
+#[cfg(test)]
 impl<T: Real, const N: usize> Factors<T, N> {
     /// Of `diagonal · I − scale · matrix`.
     pub(super) fn shifted(diagonal: T, scale: T, matrix: &SMatrix<T, N, N>) -> Self {

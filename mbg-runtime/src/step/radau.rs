@@ -3,7 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
-use super::linear::{Complex, Factors};
+use super::elimination::Shifted;
+use super::linear::Complex;
 use super::method::{Estimating, Family, Method, Progress, Settling, Start, Trial, relative};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -81,7 +82,7 @@ pub struct Work<T, const N: usize> {
     keeps: bool,
     /// Whether the Jacobian is that of the present start.
     fresh: bool,
-    factors: Option<(T, Factors<T, N>, Factors<Complex<T>, N>)>,
+    factors: Option<(T, Shifted<T, N>, Shifted<Complex<T>, N>)>,
     /// Last step: its length and the coefficients of its polynomial; none at the start and behind a jump.
     last: Option<(T, [SVector<T, N>; 3])>,
     tried: (T, [SVector<T, N>; 3]),
@@ -177,21 +178,12 @@ impl<T: Real, const N: usize> Work<T, N> {
         }
         problem.statistics.factorisations += 2;
         let by = |number: f64| T::from_f64(number) / length;
-        let zero = T::from_f64(0.0);
-        let [alpha, beta] = PAIR.map(by);
-        let rows = core::array::from_fn(|row| {
-            core::array::from_fn(|column| {
-                let element = -self.jacobian[(row, column)];
-                let (real, imaginary) = if row == column {
-                    (element + alpha, beta)
-                } else {
-                    (element, zero)
-                };
-                Complex { real, imaginary }
-            })
-        });
-        let real = Factors::shifted(by(REAL), T::from_f64(1.0), &self.jacobian);
-        self.factors = Some((length, real, Factors::new(rows)));
+        let one = T::from_f64(1.0);
+        let [real, imaginary] = PAIR.map(by);
+        let pair = Complex { real, imaginary };
+        let pair = Shifted::new::<Y, M, P>(pair, one, &self.jacobian);
+        let real = Shifted::new::<Y, M, P>(by(REAL), one, &self.jacobian);
+        self.factors = Some((length, real, pair));
     }
 
     /// The stages as the last step continues.
@@ -253,8 +245,8 @@ where
 {
     problem: &'a mut Problem<'b, T, Y, I, N, M, P>,
     start: &'a Start<T, N>,
-    real: &'a Factors<T, N>,
-    pair: &'a Factors<Complex<T>, N>,
+    real: &'a Shifted<T, N>,
+    pair: &'a Shifted<Complex<T>, N>,
 }
 
 impl<T, Y, I, const N: usize, const M: usize, const P: usize> Newton<'_, '_, T, Y, I, N, M, P>
@@ -279,12 +271,12 @@ where
         let [a, b, c] = &*inner;
         let one = self
             .real
-            .solved(&first.zip_map(a, |slope, a| slope - real * a));
+            .solved::<Y, M, P>(&first.zip_map(a, |slope, a| slope - real * a));
         let rights = core::array::from_fn(|row| Complex {
             real: second[row] - (alpha * b[row] - beta * c[row]),
             imaginary: third[row] - (alpha * c[row] + beta * b[row]),
         });
-        let both = self.pair.solve(rights);
+        let both = self.pair.solve::<Y, M, P>(rights);
         let changes = [
             one,
             SVector::from(both.map(|it| it.real)),
@@ -375,13 +367,13 @@ where
         let [a, b, c] = ERROR.map(|weight| T::from_f64(weight) / span.length);
         let [first, second, third] = stages;
         let sum = first.zip_zip_map(second, third, |x, y, z| a * x + b * y + c * z);
-        let estimate = self.real.solved(&(sum + slope));
+        let estimate = self.real.solved::<Y, M, P>(&(sum + slope));
         let size = tolerance.norm_between(&estimate, x, third);
         if size <= 1.0 || !doubtful || size.is_nan() {
             return size;
         }
         let slope = self.problem.slope(span.start, &(x + estimate));
-        tolerance.norm_between(&self.real.solved(&(sum + slope)), x, third)
+        tolerance.norm_between(&self.real.solved::<Y, M, P>(&(sum + slope)), x, third)
     }
 }
 
@@ -441,6 +433,7 @@ impl Family for Radau5 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::step::linear::Factors;
     use crate::step::trees::Scheme;
 
     /// The tableau's matrix `T Λ⁻¹ T⁻¹` meets the conditions of order 5 with its last row as result.

@@ -6,7 +6,7 @@ mod rodas5p;
 use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
-use super::linear::Factors;
+use super::elimination::Shifted;
 use super::method::{
     Estimating, Family, Method, Start, Trial, along, combination, combinations, converted,
 };
@@ -134,7 +134,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let inverse = one / length;
         problem.statistics.factorisations += 1;
         let diagonal = inverse / T::from_f64(tableau.diagonal);
-        let factors = Factors::shifted(diagonal, one, &self.jacobian);
+        let factors = Shifted::new::<Y, M, P>(diagonal, one, &self.jacobian);
         for stage in 0..S {
             let (earlier, _) = self.stages.split_at(stage);
             let weights: [&[T]; 2] = [&self.points[stage], &self.slopes[stage]];
@@ -146,7 +146,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
             };
             let by_time = T::from_f64(tableau.times[stage]) * length;
             let right = along(&along(&slope, inverse, &coupling), by_time, &self.by_time);
-            self.stages[stage] = factors.solved(&right);
+            self.stages[stage] = factors.solved::<Y, M, P>(&right);
         }
         let [change, error] = combinations([&self.result, &self.error], &self.stages);
         Trial {
@@ -234,6 +234,7 @@ rosenbrock!(Rodas5P, RODAS5P: 8, "Rodas5P", order 5, 5, 5);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::step::linear::Factors;
     use crate::step::trees::Scheme;
     use std::vec::Vec;
 

@@ -1,0 +1,212 @@
+//! Factors by the plan of elimination against those with a search for pivots.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../examples/arm/model.rs"]
+#[allow(unreachable_pub)]
+mod arm;
+#[path = "../examples/ins/models.rs"]
+#[allow(unreachable_pub, dead_code)]
+mod ins;
+#[path = "../benches/elimination/models.rs"]
+#[allow(unreachable_pub)]
+mod models;
+
+use arm::{Arm, ArmParameters};
+use ins::{Ins, InsParameters};
+use mbg_runtime::__private::{Complex, Shifted};
+use mbg_runtime::{Adaptive, Fixed, Integrator, Method, Radau5, Rodas5P, System};
+use models::{
+    Chain, ChainParameters, Dense, RingModulator, RingModulatorParameters, Row, RowParameters,
+};
+use nalgebra::{SMatrix, SVector};
+
+/// Numbers in (−1, 1), the same in every run: a linear congruence (Knuth, MMIX).
+fn random() -> impl FnMut() -> f64 {
+    let mut state: u64 = 1;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Largest component of `A x − b` beside those of the terms in its row.
+fn residual<const N: usize>(
+    matrix: &SMatrix<f64, N, N>,
+    x: &SVector<f64, N>,
+    right: &SVector<f64, N>,
+) -> f64 {
+    (0..N).fold(0.0, |largest: f64, row| {
+        let terms: Vec<f64> = (0..N)
+            .map(|column| matrix[(row, column)] * x[column])
+            .collect();
+        let size: f64 = terms.iter().map(|term| term.abs()).sum::<f64>() + right[row].abs();
+        largest.max((terms.iter().sum::<f64>() - right[row]).abs() / size)
+    })
+}
+
+/// Pattern, real and complex solutions on random states, of so many by the plan.
+fn compare<S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
+    size: f64,
+    diagonal: f64,
+) -> usize
+where
+    S: System<f64, N, M, P>,
+{
+    let mut random = random();
+    let sparsity = S::SPARSITY.unwrap();
+    let mut planned = 0;
+    for _ in 0..100 {
+        let x = system.initial_state() + SVector::from_fn(|_, _| size * random());
+        let u = SVector::from_fn(|_, _| random());
+        let jacobian = system.jacobian_state(0.0, &x, &u, &mut S::Memory::default());
+        for (row, columns) in sparsity.rows.iter().enumerate() {
+            for column in 0..N {
+                let empty = columns.binary_search(&(column as u16)).is_err();
+                assert!(!empty || jacobian[(row, column)] == 0.0, "{row} {column}");
+            }
+        }
+        let right = SVector::from_fn(|_, _| random());
+        let factors = Shifted::new::<S, M, P>(diagonal, 1.0, &jacobian);
+        planned += usize::from(!matches!(factors, Shifted::Pivoted(_)));
+        let found = factors.solved::<S, M, P>(&right);
+        let matrix = SMatrix::<f64, N, N>::identity() * diagonal - jacobian;
+        let left = residual(&matrix, &found, &right);
+        assert!(left < 1e-11, "{left:e}");
+        let again = Shifted::new::<S, M, P>(diagonal, 1.0, &jacobian).solved::<S, M, P>(&right);
+        assert_eq!(found, again);
+
+        let pair = Complex {
+            real: 0.7 * diagonal,
+            imaginary: 0.8 * diagonal,
+        };
+        let rights = right.data.0[0].map(|real| Complex {
+            real,
+            imaginary: -real,
+        });
+        let found = Shifted::new::<S, M, P>(pair, 1.0, &jacobian).solve::<S, M, P>(rights);
+        let dense =
+            Shifted::new::<Dense<S>, M, P>(pair, 1.0, &jacobian).solve::<Dense<S>, M, P>(rights);
+        let largest = dense.iter().fold(0.0, |largest: f64, it| {
+            largest.max(it.real.hypot(it.imaginary))
+        });
+        for (found, dense) in found.iter().zip(&dense) {
+            let apart = (found.real - dense.real).hypot(found.imaginary - dense.imaginary);
+            assert!(apart < 1e-10 * largest, "{found:?} {dense:?}");
+        }
+    }
+    planned
+}
+
+#[test]
+fn solutions_fulfil_their_equations() {
+    let ring = RingModulator::new(RingModulatorParameters::default()).unwrap();
+    assert_eq!(compare(&ring, 1e-13, 1e8), 100);
+    let row = Row::new(RowParameters::default()).unwrap();
+    assert_eq!(compare(&row, 1.0, 1e3), 100);
+    let chain = Chain::new(ChainParameters::default()).unwrap();
+    assert_eq!(compare(&chain, 1.0, 1e3), 100);
+    let arm = Arm::new(ArmParameters::default()).unwrap();
+    assert_eq!(compare(&arm, 0.5, 1e3), 100);
+    let ins = Ins::new(InsParameters::default()).unwrap();
+    assert_eq!(compare(&ins, 0.3, 1e3), 100);
+}
+
+#[test]
+fn a_pivot_that_vanishes_is_searched_for() {
+    type Ring = RingModulator<f64>;
+    let system = Ring::new(RingModulatorParameters::default()).unwrap();
+    let mut jacobian =
+        system.jacobian_state(0.0, &system.initial_state(), &SVector::zeros(), &mut ());
+    let first = usize::from(Ring::SPARSITY.unwrap().elimination.unwrap().order[0]);
+    for (pivot, found) in [(1e8, true), (1e-300, false), (0.0, false)] {
+        jacobian[(first, first)] = 1e8 - pivot;
+        let factors = Shifted::new::<Ring, 0, 0>(1e8, 1.0, &jacobian);
+        assert_eq!(!matches!(factors, Shifted::Pivoted(_)), found, "{pivot}");
+        let right = SVector::from_fn(|row, _| 1.0 + row as f64);
+        let matrix = SMatrix::<f64, 15, 15>::identity() * 1e8 - jacobian;
+        let left = residual(&matrix, &factors.solved::<Ring, 0, 0>(&right), &right);
+        assert!(left < 1e-12, "{pivot}: {left:e}");
+    }
+    jacobian[(first, first)] = f64::NAN;
+    assert!(matches!(
+        Shifted::new::<Ring, 0, 0>(1e8, 1.0, &jacobian),
+        Shifted::Pivoted(_)
+    ));
+}
+
+/// Voltages at 1 ms, published with the problem.
+const PUBLISHED: [f64; 7] = [
+    -0.023_390_573_584_867_45,
+    -0.007_367_485_485_540_825,
+    0.258_295_670_929_116_9,
+    -0.406_446_572_128_345,
+    -0.403_945_566_514_979_4,
+    0.260_796_676_542_294_3,
+    0.110_676_186_126_997_5,
+];
+
+#[test]
+fn the_ring_modulator_reaches_its_published_end() {
+    let system = RingModulator::<f64>::new(RingModulatorParameters::default()).unwrap();
+    let names = RingModulator::<f64>::META.states;
+    let nominal = names.iter().map(|state| match state.name {
+        "c1.q" | "c2.q" => 1.6e-8,
+        "c7.q" => 1e-8,
+        name if name.ends_with(".q") => 2e-12,
+        "l1.p" | "l2.p" => 4.45e-6,
+        _ => 5e-7,
+    });
+    let nominal: Vec<f64> = nominal.collect();
+    let solver = Adaptive {
+        nominal: &nominal,
+        ..Adaptive::new(Rodas5P, 1e-5, 1e-5)
+    };
+    let mut last = SVector::zeros();
+    solver
+        .integrate(&system, &(), 0.0, 1e-3, system.initial_state(), |step| {
+            last = *step.state()
+        })
+        .unwrap();
+    for (node, voltage) in PUBLISHED.into_iter().enumerate() {
+        let name = format!("c{}.q", node + 1);
+        let state = names.iter().position(|it| it.name == name).unwrap();
+        let found = last[state]
+            / if node == 6 {
+                1e-8
+            } else if node < 2 {
+                1.6e-8
+            } else {
+                2e-12
+            };
+        assert!((found - voltage).abs() < 2e-3, "{name} {found} {voltage}");
+    }
+}
+
+#[test]
+fn steps_are_those_of_the_dense_system() {
+    fn end<S, D: Method>(system: &S, method: D) -> SVector<f64, 31>
+    where
+        S: System<f64, 31, 0, 0>,
+    {
+        let mut last = system.initial_state();
+        Fixed::new(method, 1e-2)
+            .integrate(system, &(), 0.0, 1.0, last, |step| last = *step.state())
+            .unwrap();
+        last
+    }
+    fn apart<D: Method>(method: D) {
+        let row = Row::<f64>::new(RowParameters::default()).unwrap();
+        let (sparse, dense) = (end(&row, method), end(&Dense(row), method));
+        assert!(
+            (sparse - dense).norm() < 1e-11 * dense.norm(),
+            "{}",
+            D::NAME
+        );
+    }
+    apart(Rodas5P);
+    apart(Radau5);
+    apart(mbg_runtime::ImplicitMidpoint::default());
+}

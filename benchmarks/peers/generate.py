@@ -191,7 +191,7 @@ def attempts():
                 ways["implicit"] = scenes.arm()
             for variant, derivative in ways.items():
                 yield Casadi(), name, states, inputs, variant, derivative, kind
-                if variant == "implicit" or name == "chain64" or (name, kind) == ("arm", "jacobian"):
+                if variant == "implicit":
                     continue
                 yield Symforce(), name, states, inputs, variant, derivative, kind
                 if name in ("ins", "fourbar"):

@@ -22,9 +22,18 @@ use std::path::Path;
 use contestant::Contestant;
 use report::Report;
 
-fn contestants(folder: &Path, target: &str) -> Result<Vec<Contestant>, Box<dyn Error>> {
-    let mut found = ours::contestants(folder)?;
-    found.extend(peers::contestants(folder, target)?);
+/// All in the order in which they are shown, or the one that is named.
+fn contestants(
+    folder: &Path,
+    target: &str,
+    only: Option<&str>,
+) -> Result<Vec<Contestant>, Box<dyn Error>> {
+    let mut found = Vec::new();
+    if only.is_none_or(|name| name.contains(contestant::OURS)) {
+        found.extend(ours::contestants(folder)?);
+    }
+    found.extend(peers::contestants(folder, target, only)?);
+    found.retain(|it| only.is_none_or(|name| it.name() == name));
     found.sort_by_key(|it| {
         report::SCENES
             .iter()
@@ -86,16 +95,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     };
     let folder = Path::new(folder);
-    let mut contestants = contestants(folder, target)?;
+    let only = if let ["count", name, _] = rest {
+        Some(*name)
+    } else {
+        None
+    };
+    let mut contestants = contestants(folder, target, only)?;
     match rest {
         ["list"] => {
             for contestant in &contestants {
                 println!("{}\t{}", contestant.name(), contestant.states);
             }
         }
-        ["count", name, turns] => {
-            let found = contestants.iter_mut().find(|it| it.name() == *name);
-            (found.ok_or("no such contestant")?.run)(turns.parse()?);
+        ["count", _, turns] => {
+            let found = contestants.first_mut().ok_or("no such contestant")?;
+            (found.run)(turns.parse()?);
         }
         ["compare", rounds, output] => {
             let differences = differences(&mut contestants)?;

@@ -123,7 +123,9 @@ fn contestants_of(
         // It factorises the mass matrix, which costs digits in a long chain; all who go link by link agree to 1e-11.
         found[0].tolerance = 1e-10;
     }
-    if entry.kind == "value" && ["ins", "arm"].contains(&entry.name) {
+    // The engines have no code for batches; one after the other takes them what `value` shows.
+    let is_generated = entry.operations.is_some();
+    if is_generated && entry.kind == "value" && ["ins", "arm"].contains(&entry.name) {
         let flat = |result: &Vec<f64>, _| result.clone();
         let label = entry.label("batch");
         found.push(Contestant::batch(label, n, rows, 1, result, evaluate, flat));
@@ -169,13 +171,21 @@ fn by_hand(row: &Vec<f64>, result: &mut SVector<f64, 9>) {
     result.fixed_rows_mut::<3>(6).copy_from(&rates);
 }
 
-/// All peers.
-pub(crate) fn contestants(folder: &Path, target: &str) -> Result<Vec<Contestant>, Box<dyn Error>> {
+/// All peers, or those of which one is named.
+pub(crate) fn contestants(
+    folder: &Path,
+    target: &str,
+    only: Option<&str>,
+) -> Result<Vec<Contestant>, Box<dyn Error>> {
     let manifest = fs::read_to_string(folder.join("manifest"))?;
     let mut found = Vec::new();
     for line in manifest.lines() {
         let entry = Entry::parse(line).ok_or_else(|| format!("manifest: `{line}`"))?;
-        found.extend(contestants_of(&entry, folder, target)?);
+        let ending = format!("/{}/{}", entry.peer, entry.variant);
+        let is_meant = |name: &str| name.starts_with(entry.name) && name.ends_with(&ending);
+        if only.is_none_or(is_meant) {
+            found.extend(contestants_of(&entry, folder, target)?);
+        }
     }
     found.push(Contestant::single(
         Label {

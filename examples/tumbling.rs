@@ -10,24 +10,7 @@ use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 mbg! {
-    /// A body in its own axes, and how it is turned against the world.
-    component Nut(port turning[3]) {
-        turning -> I body {
-            inertia: diag(1.0, 2.0, 3.0), gyroscopic, initial_flow: [1e-4, 5.0, 2e-4]
-        };
-    }
-
-    /// Four states for the orientation.
-    pub model Tumbling {
-        1 turning[3];
-        nut: Nut (turning);
-        attitude orientation = quaternion(turning.f);
-        let turn = matrix_of(orientation);
-        output rates[3]: rad/s = turning.f;
-        // The body's y axis, and the angular momentum, in axes of the world.
-        output axis[3] = turn * [0.0, 1.0, 0.0];
-        output momentum[3]: N*m*s = turn * nut.body.p;
-    }
+    include "examples/tumbling.mbg";
 
     /// Nine states for the orientation.
     pub model TumblingMatrix {

@@ -27,10 +27,12 @@ mod models {
     mod closed;
     mod dependent;
     mod energy;
+    mod gimbals;
     mod lagrange;
     mod loops;
     #[allow(dead_code, reason = "the example prints more of it")]
     mod mechanisms;
     mod navigation;
     mod parameters;
+    mod pins;
 }

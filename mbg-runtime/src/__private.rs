@@ -44,6 +44,7 @@ pub fn check<T: Real>(
 }
 
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.
+#[inline]
 pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
     mut x: SVector<T, N>,
     places: &[[usize; C]; R],
@@ -52,11 +53,14 @@ pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
     if places.iter().flatten().any(|place| held.contains(place)) {
         return x;
     }
-    let rows: SMatrix<T, R, C> = SMatrix::from_fn(|row, column| x[places[row][column]]);
+    let state = |place: usize| x.get(place).copied().unwrap_or(T::from_f64(f64::NAN));
+    let rows: SMatrix<T, R, C> = SMatrix::from_fn(|row, column| state(places[row][column]));
     let rows = crate::attitude::orthonormal(&rows);
     for (row, places) in places.iter().enumerate() {
         for (column, place) in places.iter().enumerate() {
-            x[*place] = rows[(row, column)];
+            if let Some(state) = x.get_mut(*place) {
+                *state = rows[(row, column)];
+            }
         }
     }
     x
@@ -120,6 +124,17 @@ pub fn symmetric<T: Real, const K: usize>(elements: &[(usize, usize, T)]) -> SMa
             if let Some(element) = matrix.get_mut(place) {
                 *element = *value;
             }
+        }
+    }
+    matrix
+}
+
+/// A matrix from row, column and value of the elements that are not zero.
+pub fn sparse<T: Real, const K: usize>(elements: &[(usize, usize, T)]) -> SMatrix<T, K, K> {
+    let mut matrix = SMatrix::<T, K, K>::from_element(T::from_f64(0.0));
+    for (row, column, value) in elements {
+        if let Some(element) = matrix.get_mut((*row, *column)) {
+            *element = *value;
         }
     }
     matrix

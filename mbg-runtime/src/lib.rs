@@ -3,6 +3,7 @@
 //! | to | look at |
 //! |---|---|
 //! | write a model | the [`language`] |
+//! | see what models do | `docs/gallery.md` of the repository, a picture for each scene of its example `gallery` |
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; [`Input`] |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |

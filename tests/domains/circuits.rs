@@ -7,6 +7,8 @@ use super::balance;
 use crate::references::rectifier;
 
 mbg! {
+    include "examples/gallery/rectifier.mbg";
+
     /// A DC motor that turns a load through a rigid gear.
     #[derivative]
     pub(crate) model GearedMotor {
@@ -30,24 +32,6 @@ mbg! {
         output current: A = motor.current;
         output speed: rad/s = shaft.f;
         output turned: rad = angle;
-    }
-
-    /// Source, resistor and diode in series with a capacitor, a load across it.
-    pub(crate) model Rectifier {
-        param amplitude: V = 10.0;
-        param frequency: rad/s = 314.1592653589793;
-        0 source;
-        0 middle;
-        0 out;
-        0 ground;
-        Se supply { effort: amplitude * sin(frequency * t) } -> source;
-        Se earth { effort: 0.0 } -> ground;
-        series: Resistor { resistance: 10.0 } (source, middle);
-        diode: Diode { saturation: 1e-12, thermal: 0.025852 } (middle, out);
-        smooth: Capacitor { capacitance: 1e-4 } (out, ground);
-        load: Resistor { resistance: 1000.0 } (out, ground);
-        output voltage: V = smooth.voltage;
-        output current: A = diode.current;
     }
 
     /// A charged capacitor swings with a coil on the other side of a transformer.

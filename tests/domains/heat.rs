@@ -4,6 +4,8 @@ use mbg_runtime::{Constant, Rk4, System, mbg};
 use nalgebra::SVector;
 
 mbg! {
+    include "examples/gallery/layers.mbg";
+
     /// Two bodies that exchange heat.
     pub(crate) model Pair {
         0 hot pseudo;
@@ -31,22 +33,6 @@ mbg! {
         metal: HeatCapacity { capacity: 50.0, initial: 293.15 } (case);
         surface: Conduction { conductance: 0.8 } (case, air);
         output temperature: K = metal.temperature;
-    }
-
-    /// A wall of ten layers between two rooms.
-    pub(crate) model Layers {
-        let count = 10;
-        sides: for k in 0..count + 1 { 0 side pseudo; }
-        Se inside { effort: 295.0 } -> sides[0].side;
-        Se outside { effort: 275.0 } -> sides[count].side;
-        layers: for k in 0..count {
-            path: Conduction { conductance: 4.0 } (sides[k].side, sides[k+1].side);
-        }
-        bodies: for k in 1..count {
-            store: HeatCapacity { capacity: 30.0, initial: 275.0 } (sides[k].side);
-        }
-        output middle: K = sides[5].side.e;
-        output through: W = layers[count-1].path.heat_flow;
     }
 }
 

@@ -6,31 +6,7 @@ use nalgebra::SVector;
 use super::balance;
 
 mbg! {
-    /// Body, wheel and tyre; displacements from rest.
-    pub(crate) model QuarterCar {
-        param sprung: kg = 300.0;
-        param unsprung: kg = 40.0;
-        param spring: N/m = 16e3;
-        param damper: N*s/m = 1200.0;
-        param tyre: N/m = 190e3;
-        input road: m/s;
-        1 body { I chassis { inertia: sprung } }
-        1 wheel { I hub { inertia: unsprung } }
-        1 travel { C coil { stiffness: spring } R absorber { resistance: damper } }
-        1 patch { C rubber { stiffness: tyre } }
-        0 strut;
-        0 contact;
-        Sf ground { flow: road } -> contact;
-        contact -> patch;
-        contact -> wheel;
-        wheel -> strut;
-        strut -> travel;
-        strut -> body;
-        integral height: m = body.f;
-        integral hop: m = wheel.f;
-        output place[2]: m = [height, hop];
-        output speed[2]: m/s = [body.f, wheel.f];
-    }
+    include "examples/gallery/quarter_car.mbg";
 }
 
 /// Time in s; body and wheel, places in m and speeds in m/s: by the matrix exponential, to 18 digits.

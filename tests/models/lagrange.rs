@@ -10,6 +10,8 @@ use crate::references::{cart, crane, double_pendulum};
 const EXACT: f64 = 1e-11;
 
 mbg! {
+    include "examples/gallery/rods.mbg";
+
     /// A trolley under a force, and a load on a rigid cable.
     #[derivative]
     pub(crate) model Crane {
@@ -42,21 +44,8 @@ mbg! {
     #[derivative]
     pub(crate) model DoublePendulum {
         gravity [0.0, -9.81];
-        let rods = 2;
-        ends: for k in 0..rods + 1 { 1 end[3]; }
-        Sf fixed[3] { flow: 0.0 } -> ends[0].end;
-        links: for k in 0..rods {
-            1 top[3];
-            1 middle[3];
-            let before = if k == 0 { 0.0 } else { links[k-1].hinge.angle_b };
-            hinge: PlanarRevolute { initial: 0.1 * k, angle_a: before } (ends[k].end, top);
-            half: PlanarOffset { angle: hinge.angle_b, x: 0.5 } (top, middle);
-            body: PlanarBody { mass: 1.0, inertia: 1.0 / 12.0 } (middle);
-            whole: PlanarOffset { angle: hinge.angle_b, x: 1.0 } (top, ends[k+1].end);
-            output angle: rad = hinge.angle_b;
-        }
-        output first: rad/s = links[0].hinge.rate.f;
-        output second: rad/s = links[0].hinge.rate.f + links[1].hinge.rate.f;
+        1 ground[3] { Sf fixed { flow: 0.0 } }
+        pendulum: Rods { count: 2, bend: 0.1 } (ground);
     }
 }
 

@@ -3,40 +3,9 @@
 use mbg_runtime::mbg;
 
 mbg! {
-    /// A body that nothing holds.
-    component Flying(port frame[6]) {
-        param orientation: angles | quaternion | matrix = angles;
-        param inertia: kg*m^2;
-        1 ground[6] { Sf held { flow: 0.0 } }
-        joint: Free { orientation: orientation } (ground, frame);
-        body: Body { mass: 1.0, inertia: inertia } (frame);
-        let quaternion[4] = joint.quaternion;
-        let momentum[3] = joint.turn * body.spin.p;
-    }
-
-    /// A body of 1 kg whose centre of mass is 0.5 m above its foot.
-    component Top(port frame[6]) {
-        param orientation: angles | quaternion | matrix = angles;
-        /// About x where it starts.
-        param tilt: rad;
-        /// About its own axis.
-        param rate: rad/s;
-        1 ground[6] { Sf held { flow: 0.0 } }
-        foot: Spherical {
-            orientation: orientation, initial: [tilt, 0.0, 0.0], initial_rate: [0.0, 0.0, rate]
-        } (ground, frame);
-        // About the foot 0.8 and 0.3 kg m².
-        body: Body {
-            mass: 1.0, inertia: diag(0.55, 0.55, 0.3), centre: [0.0, 0.0, 0.5], gravity_at: foot.gravity_b
-        } (frame);
-        let quaternion[4] = foot.quaternion;
-        // About the foot: upwards, and about the body's own axis.
-        let spin[3] = diag(0.8, 0.8, 0.3) * frame.f[0..3];
-        let upward[3] = foot.turn * spin;
-        let momentum[2] = [upward.z, spin.z];
-        let axis[3] = foot.turn * [0.0, 0.0, 1.0];
-        let potential = 5.0 * axis.z;
-    }
+    include "examples/gallery/flying.mbg";
+    include "examples/gallery/top.mbg";
+    include "examples/gallery/navigation.mbg";
 
     /// With a quaternion.
     pub(crate) model FlyingQuaternion {
@@ -70,19 +39,6 @@ mbg! {
     }
 
     #[derivative]
-    pub(crate) model TopQuaternion {
-        gravity [0.0, 0.0, -10.0];
-        param tilt: rad = 0.6;
-        param rate: rad/s = 25.0;
-        1 frame[6];
-        top: Top { orientation: quaternion, tilt: tilt, rate: rate } (frame);
-        output rates[3]: rad/s = frame.f[0..3];
-        output quaternion[4] = top.quaternion;
-        output momentum[2]: N*m*s = top.momentum;
-        output potential: J = top.potential;
-    }
-
-    #[derivative]
     pub(crate) model TopMatrix {
         gravity [0.0, 0.0, -10.0];
         param tilt: rad = 0.6;
@@ -95,15 +51,6 @@ mbg! {
         output potential: J = top.potential;
     }
 
-    pub(crate) model PulledQuaternion {
-        input torque[3]: N*m;
-        1 frame[6] { }
-        flying: Flying { orientation: quaternion, inertia: diag(1.0, 2.0, 1.5) } (frame);
-        Se pull[3] { effort: torque } -> frame[0..3];
-        output rates[3]: rad/s = frame.f[0..3];
-        output quaternion[4] = flying.quaternion;
-    }
-
     pub(crate) model PulledMatrix {
         input torque[3]: N*m;
         1 frame[6] { }
@@ -111,33 +58,6 @@ mbg! {
         Se pull[3] { effort: torque } -> frame[0..3];
         output rates[3]: rad/s = frame.f[0..3];
         output quaternion[4] = flying.quaternion;
-    }
-
-    /// Fuselage in the wind and platform, with the inertias and the drag of Tod et al. (2013), and a joint without springs.
-    component Navigation(port fuselage[3], port platform[3]) {
-        param orientation: angles | quaternion | matrix = angles;
-        fuselage -> I hull { inertia: diag(1e4, 1e4, 5e3), gyroscopic };
-        fuselage -> R air { resistance: 1e3 };
-        platform -> I body { inertia: diag(10.0, 10.0, 10.0), gyroscopic };
-        joint: FreeRotation { orientation: orientation } (fuselage, platform);
-    }
-
-    pub(crate) model NavigationAngles {
-        input gust[3]: N*m;
-        1 fuselage[3] { Se wind { effort: gust } }
-        1 platform[3];
-        ins: Navigation { orientation: angles } (fuselage, platform);
-        output angles[3]: rad = ins.joint.angle;
-        output quaternion[4] = ins.joint.quaternion;
-    }
-
-    pub(crate) model NavigationQuaternion {
-        input gust[3]: N*m;
-        1 fuselage[3] { Se wind { effort: gust } }
-        1 platform[3];
-        ins: Navigation { orientation: quaternion } (fuselage, platform);
-        output angles[3]: rad = ins.joint.angle;
-        output quaternion[4] = ins.joint.quaternion;
     }
 
     pub(crate) model NavigationMatrix {

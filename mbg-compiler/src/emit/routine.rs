@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 
 use crate::compile::Compiled;
 use crate::program::{Operand, Routine, Solve, Solver, Source, Step};
-use crate::symbolic::Symbol;
+use crate::symbolic::{Kind, Symbol};
 
 /// Where a routine finds what it reads.
 #[derive(Clone, Copy, PartialEq)]
@@ -95,7 +95,7 @@ impl Made {
         match step {
             Step::Solve(solve) => match solve.solver {
                 Solver::Slope(of) => Some(Self::Factors(of)),
-                Solver::Newton(_) | Solver::LeastNorm => None,
+                Solver::Newton(_) | Solver::Linear(_) => None,
             },
             _ => None,
         }
@@ -166,7 +166,7 @@ impl Writer<'_> {
     fn make(&self, step: &Step, value: usize, made: &mut BTreeMap<Made, Ident>) {
         if let Step::Solve(solve) = step {
             made.insert(Made::Solved(solve.number), unknowns(solve.number));
-            if solve.solver == Solver::LeastNorm {
+            if matches!(solve.solver, Solver::Linear(_)) {
                 made.insert(Made::Factors(solve.number), factors(solve.number));
             }
             return;
@@ -224,7 +224,7 @@ impl Writer<'_> {
         let unknowns = unknowns(solve.number);
         let number = match solve.solver {
             Solver::Newton(number) => number,
-            Solver::LeastNorm => return self.least_norm(solve),
+            Solver::Linear(kind) => return self.linear(solve, kind),
             Solver::Slope(of) => return self.slope(solve, of),
         };
         let [number, first, size] =
@@ -249,31 +249,36 @@ impl Writer<'_> {
         }
     }
 
-    /// The runtime's solution of least norm, with the factors of its matrix.
-    fn least_norm(&self, solve: &Solve) -> TokenStream {
+    /// The runtime's solution of linear equations, with the factors of their matrix.
+    fn linear(&self, solve: &Solve, kind: Kind) -> TokenStream {
         let (unknowns, factors) = (unknowns(solve.number), factors(solve.number));
         let (right, matrix) = solve.results.split_at(solve.size);
         let entries = matrix.iter().enumerate().filter_map(|(place, entry)| {
             let (row, column) = (place / solve.size, place % solve.size);
-            let needed = column <= row && entry.source != Source::Constant(0.0);
+            let needed = kind == Kind::Regular || column <= row;
             let [row, column] = [row, column].map(Literal::usize_unsuffixed);
-            let entry = self.operand(*entry);
-            needed.then(|| quote!((#row, #column, #entry)))
+            let value = self.operand(*entry);
+            (needed && entry.source != Source::Constant(0.0))
+                .then(|| quote!((#row, #column, #value)))
         });
         let (size, right) = (Literal::usize_suffixed(solve.size), self.column(right));
+        let (factorised, matrix) = match kind {
+            Kind::Semidefinite => (quote!(Semidefinite), quote!(symmetric)),
+            Kind::Regular => (quote!(Regular), quote!(sparse)),
+        };
         quote! {
-            let #factors = ::mbg_runtime::solve::Semidefinite::<T, #size>::new(
-                ::mbg_runtime::__private::symmetric(&[#(#entries),*])
+            let #factors = ::mbg_runtime::solve::#factorised::<T, #size>::new(
+                ::mbg_runtime::__private::#matrix(&[#(#entries),*])
             );
-            let #unknowns = #factors.solve(&#right).solution;
+            let #unknowns = #factors.solution(&#right);
         }
     }
 
-    /// The runtime's solution of least norm with earlier factors.
+    /// The same with earlier factors.
     fn slope(&self, solve: &Solve, of: usize) -> TokenStream {
         let (unknowns, factors) = (unknowns(solve.number), factors(of));
         let right = self.column(&solve.results);
-        quote!(let #unknowns = #factors.solve(&#right).solution;)
+        quote!(let #unknowns = #factors.solution(&#right);)
     }
 
     fn column(&self, operands: &[Operand]) -> TokenStream {

@@ -52,7 +52,7 @@ fn solution(text: &mut String, solve: &Solve, names: &[String], value: usize, de
             list(first),
             list(matrix)
         ),
-        Solver::LeastNorm => writeln!(
+        Solver::Linear(_) => writeln!(
             text,
             "{indent}  right {}\n{indent}  matrix {}",
             list(first),

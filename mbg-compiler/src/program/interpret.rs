@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::iterate::{consistent, iterate};
+use super::iterate::{consistent, iterate, regular};
 use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
-use crate::symbolic::Symbol;
+use crate::symbolic::{Kind, Symbol};
 
 /// What a program is run with.
 pub struct Arguments<'a> {
@@ -45,7 +45,7 @@ struct Machine<'a> {
     /// Unknowns by iteration.
     solved: BTreeMap<usize, Vec<f64>>,
     /// Matrices of linear solves.
-    matrices: BTreeMap<usize, Vec<f64>>,
+    matrices: BTreeMap<usize, (Kind, Vec<f64>)>,
 }
 
 impl Machine<'_> {
@@ -65,13 +65,18 @@ impl Machine<'_> {
                 }
                 Step::Call(function, operands) => function.evaluate(&self.results(operands)),
                 Step::Solve(solve) if !matches!(solve.solver, Solver::Newton(_)) => {
-                    let (right, mut matrix) = self.linear(solve);
-                    if let Solver::Slope(of) = solve.solver {
-                        matrix.clone_from(&self.matrices[&of]);
-                    }
-                    let found = consistent(&right, &matrix);
+                    let (right, matrix) = self.linear(solve);
+                    let (kind, matrix) = match solve.solver {
+                        Solver::Slope(of) => self.matrices[&of].clone(),
+                        Solver::Linear(kind) => (kind, matrix),
+                        Solver::Newton(_) => (Kind::Regular, matrix),
+                    };
+                    let found = match kind {
+                        Kind::Semidefinite => consistent(&right, &matrix),
+                        Kind::Regular => regular(&right, &matrix),
+                    };
                     self.solved.insert(solve.number, found);
-                    self.matrices.insert(solve.number, matrix);
+                    self.matrices.insert(solve.number, (kind, matrix));
                     continue;
                 }
                 Step::Solve(solve) => {

@@ -11,7 +11,7 @@ pub(super) fn iterate(size: usize, evaluate: impl Fn(&[f64]) -> Vec<f64>) -> Vec
     let mut values = evaluate(&point);
     let mut rest = EVALUATIONS;
     while rest > 0 {
-        let step = solve(size, &values);
+        let step = regular(&values[..size], &values[size..]);
         let scale = point.iter().fold(1e-300_f64, |scale, z| scale.max(z.abs()));
         let last = step.iter().all(|step| step.abs() <= 1e-13 * scale);
         let mut factor = 1.0;
@@ -81,13 +81,17 @@ fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum()
 }
 
-/// Residuals divided by the Jacobian: Gaussian elimination with row pivots.
-fn solve(size: usize, values: &[f64]) -> Vec<f64> {
+/// The solution of `A z = b` with a matrix by rows: Gaussian elimination with pivots that are large in their rows.
+pub(super) fn regular(right: &[f64], matrix: &[f64]) -> Vec<f64> {
+    let size = right.len();
     let mut rows: Vec<Vec<f64>> = (0..size)
         .map(|row| {
-            let mut entries = values[size + row * size..][..size].to_vec();
-            entries.push(values[row]);
-            entries
+            let entries = &matrix[row * size..][..size];
+            let largest = entries
+                .iter()
+                .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+            let scaled = |entry: &f64| entry / largest;
+            entries.iter().chain([&right[row]]).map(scaled).collect()
         })
         .collect();
     for column in 0..size {

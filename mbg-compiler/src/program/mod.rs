@@ -9,7 +9,7 @@ mod interpret;
 mod iterate;
 mod schedule;
 
-use crate::symbolic::{Function, Place, Symbol};
+use crate::symbolic::{Function, Kind, Place, Symbol};
 
 pub use dump::dump;
 pub use interpret::{Arguments, evaluate};
@@ -67,8 +67,8 @@ pub enum Step {
 pub enum Solver {
     /// Newton's iteration, with its number among those of the model.
     Newton(usize),
-    /// Least norm of linear equations that may be singular.
-    LeastNorm,
+    /// Linear equations.
+    Linear(Kind),
     /// The same with the matrix of an earlier solve, of which this is the number.
     Slope(usize),
 }

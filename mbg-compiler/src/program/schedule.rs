@@ -66,7 +66,7 @@ fn captured(pool: &Pool, number: usize) -> Vec<Expression> {
     let evaluated = implicit.evaluated();
     match implicit.method {
         Method::Newton { .. } => free_of_unknowns(pool, implicit, evaluated),
-        Method::LeastNorm { .. } => evaluated,
+        Method::Linear { .. } => evaluated,
         Method::Slope { of, .. } => [evaluated, captured(pool, of)].concat(),
     }
 }
@@ -311,7 +311,7 @@ impl Context<'_> {
         let evaluated = implicit.evaluated();
         let (steps, results) = match implicit.method {
             Method::Newton { .. } => self.evaluation(draft, &evaluated),
-            Method::LeastNorm { .. } | Method::Slope { .. } => {
+            Method::Linear { .. } | Method::Slope { .. } => {
                 (Vec::new(), self.operands(draft, &evaluated))
             }
         };
@@ -331,7 +331,7 @@ impl Context<'_> {
             Method::Newton { .. } => {
                 Solver::Newton(implicit[..number].iter().filter(newton).count())
             }
-            Method::LeastNorm { .. } => Solver::LeastNorm,
+            Method::Linear { kind, .. } => Solver::Linear(kind),
             Method::Slope { of, .. } => Solver::Slope(of),
         }
     }

@@ -530,9 +530,8 @@ impl Reducer<'_> {
             .map(|lost| self.coenergy(model, lost.element, lost.component))
             .collect();
         let mut turns = levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
-        // What follows from the states alone is known beforehand.
-        for (turn, determined) in turns.iter_mut().zip(&self.determined) {
-            *turn = turn.filter(|_| !determined);
+        for unknown in self.known_beforehand(matched, &turns) {
+            turns[unknown] = None;
         }
         for equation in &mut self.scalars.equations {
             let about = equation
@@ -549,6 +548,41 @@ impl Reducer<'_> {
         self.independent(model, lost, &turns, definite);
         self.scalars.turns = turns;
         self.scalars.rate_of = self.rate_of.clone();
+    }
+
+    /// Efforts that follow from the states alone and divide by nothing that varies, each after those from which it
+    /// follows. Others, such as the moment between concentric hinges, whose axes may come to lie in one plane, are
+    /// eliminated with the rates that they belong to: so what is divided by are the inertias of the mechanism. Where
+    /// loops are closed, all that follow from the states are known: what is left there has pivots of its own.
+    fn known_beforehand(
+        &self,
+        matched: &BTreeMap<usize, usize>,
+        turns: &[Option<Turn>],
+    ) -> BTreeSet<usize> {
+        let efforts: Vec<(usize, &Equation)> = matched
+            .iter()
+            .filter(|(unknown, _)| turns[**unknown].is_some())
+            .map(|(unknown, row)| (*unknown, &self.scalars.equations[*row]))
+            .collect();
+        let mut open: BTreeSet<usize> = efforts.iter().map(|(unknown, _)| *unknown).collect();
+        if !self.scalars.closures.is_empty() {
+            return open;
+        }
+        let mut known = BTreeSet::new();
+        loop {
+            let is_ready = |(unknown, equation): &&(usize, &Equation)| {
+                let mut others = equation.terms.keys().chain(&equation.signals);
+                open.contains(unknown)
+                    && self.pool.rate(equation.terms[unknown]) != Rate::Varying
+                    && others.all(|other| other == unknown || !open.contains(other))
+            };
+            let ready: Vec<usize> = efforts.iter().filter(is_ready).map(|it| it.0).collect();
+            if ready.is_empty() {
+                return known;
+            }
+            open.retain(|unknown| !ready.contains(unknown));
+            known.extend(ready);
+        }
     }
 
     /// The independent rate of each level.

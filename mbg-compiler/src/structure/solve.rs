@@ -10,10 +10,14 @@ use super::tree::{Columns, Tree};
 use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Owner, Scalars};
+use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::{
-    Differentiator, Expression, Function, Implicit, Linear, Matrix, Method, Pool, Rate, Rest,
-    RestSolver, Substitution, Symbol, dense,
+    Differentiator, Expression, Function, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest,
+    RestSolver, Substitution, Symbol,
 };
+
+/// Up to this size a determinant is expanded by minors, which divides by nothing.
+const LAPLACE: usize = 6;
 
 impl From<Vanished> for Failure {
     fn from(_: Vanished) -> Self {
@@ -181,7 +185,13 @@ impl Solver<'_> {
         let (matrix, right) = system.equations();
         let admitted = |row, column| tree.admits(row, column);
         let all: Columns = (0..equations.len()).collect();
+        // The balance at a massless frame stays open until the level of the hinge that carries the frame.
+        let mut passed = Columns::new();
         for (number, level) in self.levels(equations, unknowns) {
+            if !scalars.closures.is_empty() {
+                passed.clear();
+            }
+            passed.extend(&level.rows);
             let mut delayed = Columns::new();
             let moved = level
                 .last
@@ -201,7 +211,7 @@ impl Solver<'_> {
                 }
             }
             if let Some(column) = level.last
-                && let Some(row) = tree.balance(&system, &level.rows, column)
+                && let Some(row) = tree.balance(&system, &passed, column)
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {
@@ -218,7 +228,7 @@ impl Solver<'_> {
             }
         }
         let (rest, values) = if scalars.closures.is_empty() {
-            self.rest(&mut system, &tree)?
+            self.rest(&mut system, &tree, unknowns)?
         } else {
             self.multipliers(&mut system, equations, unknowns)?
         };
@@ -242,6 +252,7 @@ impl Solver<'_> {
         &mut self,
         system: &mut System,
         tree: &Tree,
+        unknowns: &[usize],
     ) -> Result<(Rest, Vec<Expression>), Failure> {
         let rows = system.open().clone();
         let columns = (0..system.size()).collect();
@@ -249,18 +260,47 @@ impl Solver<'_> {
             tree.allows(row, column)
         })?;
         let (columns, matrix, right) = system.rest();
+        let rows: Vec<usize> = system.open().iter().copied().collect();
         let mut divisor = Expression::ONE;
-        let rest = Rest {
-            rows: system.open().iter().copied().collect(),
-            columns,
-            solver: RestSolver::Dense(matrix.clone()),
-        };
-        if rest.columns.is_empty() {
-            return Ok((rest, Vec::new()));
+        if columns.len() > ADJUGATE {
+            self.note_determinant(&matrix, &right)?;
+            let numbers = columns.iter().map(|column| unknowns[*column]).collect();
+            let method = Method::Linear {
+                matrix: matrix.negated(),
+                right: right.into_iter().map(Expression::negated).collect(),
+                kind: Kind::Regular,
+            };
+            return Ok(self.by_numbers(rows, columns, numbers, method));
         }
-        let values = dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
+        let values = if columns.is_empty() {
+            Vec::new()
+        } else {
+            dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?
+        };
         self.note(divisor, &[]);
+        let solver = RestSolver::Dense(matrix);
+        let rest = Rest {
+            rows,
+            columns,
+            solver,
+        };
         Ok((rest, values))
+    }
+
+    /// Remembers the determinant of a block that is solved with numbers. No pivot of such a block is known not to vanish
+    /// at some state at which the block is regular, so its own solution takes none beforehand.
+    fn note_determinant(&mut self, matrix: &Matrix, right: &[Expression]) -> Result<(), Failure> {
+        let mut determinant = Expression::ONE;
+        if matrix.rows <= LAPLACE {
+            determinant = matrix.determinant(self.pool);
+        } else {
+            dense(self.pool, matrix, right, &mut determinant).ok_or(Failure::Singular)?;
+        }
+        if determinant == Expression::ZERO {
+            return Err(Failure::Singular);
+        }
+        self.note(determinant, &[]);
+        Ok(())
     }
 
     /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
@@ -305,12 +345,25 @@ impl Solver<'_> {
             .collect();
         let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
         let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-        let implicit = Implicit {
-            unknowns: numbers,
-            method: Method::LeastNorm { matrix, right },
+        let method = Method::Linear {
+            matrix,
+            right,
+            kind: Kind::Semidefinite,
         };
+        Ok(self.by_numbers(rows, columns, numbers, method))
+    }
+
+    /// Leaves equations, with both sides negated, to be solved with numbers: what is left, and its values.
+    fn by_numbers(
+        &mut self,
+        rows: Vec<usize>,
+        columns: Vec<usize>,
+        unknowns: Vec<usize>,
+        method: Method,
+    ) -> (Rest, Vec<Expression>) {
+        let implicit = Implicit { unknowns, method };
         let symbols: Vec<Symbol> = implicit.symbols().collect();
-        let solver = RestSolver::LeastNorm(self.pool.implicit().len());
+        let solver = RestSolver::Numbers(self.pool.implicit().len());
         self.pool.define(implicit);
         let values = symbols
             .into_iter()
@@ -321,7 +374,7 @@ impl Solver<'_> {
             columns,
             solver,
         };
-        Ok((rest, values))
+        (rest, values)
     }
 
     fn shift(

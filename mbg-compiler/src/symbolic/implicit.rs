@@ -28,13 +28,14 @@ pub enum Method {
         /// The inverse of the Jacobian.
         inverse: Matrix,
     },
-    /// The equations are linear, `S z = b`, with a symmetric positive semidefinite matrix that may be singular: the
-    /// unknowns are those of least norm.
-    LeastNorm {
-        /// The matrix `S`.
+    /// The equations are linear, `A z = b`, and solved with numbers.
+    Linear {
+        /// The matrix `A`.
         matrix: Matrix,
         /// The right side `b`.
         right: Vec<Expression>,
+        /// What the matrix is like.
+        kind: Kind,
     },
     /// The equations have the matrix of an earlier definition of the kind before, and a right side of their own. Such
     /// are the derivatives of its unknowns; they are not differentiated again.
@@ -44,6 +45,15 @@ pub enum Method {
         /// The right side.
         right: Vec<Expression>,
     },
+}
+
+/// What is known of a matrix of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Symmetric and positive semidefinite; it may be singular, and the unknowns are those of least norm.
+    Semidefinite,
+    /// Regular in general, with pivots that are chosen when the numbers are known.
+    Regular,
 }
 
 /// One unknown of one [`Implicit`] of a pool.
@@ -71,7 +81,7 @@ impl Implicit {
                 jacobian,
                 ..
             } => [&residuals[..], &jacobian.entries].concat(),
-            Method::LeastNorm { matrix, right } => [&right[..], &matrix.entries].concat(),
+            Method::Linear { matrix, right, .. } => [&right[..], &matrix.entries].concat(),
             Method::Slope { right, .. } => right.clone(),
         }
     }
@@ -81,7 +91,7 @@ impl Implicit {
     pub fn earlier(&self) -> Option<usize> {
         match self.method {
             Method::Slope { of, .. } => Some(of),
-            Method::Newton { .. } | Method::LeastNorm { .. } => None,
+            Method::Newton { .. } | Method::Linear { .. } => None,
         }
     }
 }

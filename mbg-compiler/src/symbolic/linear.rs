@@ -43,8 +43,8 @@ pub struct Rest {
 pub enum RestSolver {
     /// By its dense matrix.
     Dense(Matrix),
-    /// By the definition with this number, which is [`Method::LeastNorm`] and has both sides negated.
-    LeastNorm(usize),
+    /// By the definition with this number, which is [`Method::Linear`] and has both sides negated.
+    Numbers(usize),
 }
 
 /// Equations `A z = b` with their solution.
@@ -114,7 +114,7 @@ impl RestSolver {
     fn solve(&self, pool: &mut Pool, right: Vec<Expression>) -> Option<Vec<Expression>> {
         match self {
             Self::Dense(matrix) => dense(pool, matrix, &right, &mut Expression::ONE.clone()),
-            Self::LeastNorm(of) => {
+            Self::Numbers(of) => {
                 let unknowns: Vec<usize> = right.iter().map(|_| pool.fresh_unknown()).collect();
                 let right = right.into_iter().map(Expression::negated).collect();
                 let method = Method::Slope { of: *of, right };

@@ -18,6 +18,13 @@ pub struct Matrix {
 }
 
 impl Matrix {
+    /// Every entry with the other sign.
+    #[must_use]
+    pub fn negated(&self) -> Self {
+        let entries = self.entries.iter().copied().map(Expression::negated);
+        Self::new(self.rows, self.columns, entries.collect())
+    }
+
     /// From entries by rows.
     #[must_use]
     pub fn new(rows: usize, columns: usize, entries: Vec<Expression>) -> Self {

@@ -25,7 +25,7 @@ pub use dense::dense;
 pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;
 pub use expression::{Expression, Function, Operation, Rate, Symbol};
-pub use implicit::{Implicit, Method, Place};
+pub use implicit::{Implicit, Kind, Method, Place};
 pub use linear::{Elimination, Linear, Rest, RestSolver};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::Pool;

@@ -22,6 +22,7 @@ macro_rules! files {
 files! {
     "Accumulator": "accumulator.mbg",
     "Bearing": "bearing.mbg",
+    "Blade": "blade.mbg",
     "Body": "body.mbg",
     "Capacitor": "capacitor.mbg",
     "Conduction": "conduction.mbg",
@@ -60,6 +61,7 @@ files! {
     "Rack": "rack.mbg",
     "Resistor": "resistor.mbg",
     "Revolute": "revolute.mbg",
+    "Rotor": "rotor.mbg",
     "Spherical": "spherical.mbg",
     "Transformer": "transformer.mbg",
     "Turn": "turn.mbg",

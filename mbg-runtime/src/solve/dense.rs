@@ -10,15 +10,18 @@ use crate::Real;
 ///
 /// The scaling makes the pivots independent of the units of the rows. Of a singular matrix the solutions are not
 /// finite.
-pub(super) struct Factors<T, const K: usize> {
+#[derive(Clone, Debug)]
+pub struct Regular<T, const K: usize> {
     /// `U` on and above the diagonal, `L` without its unit diagonal below.
     rows: [[T; K]; K],
     scale: [T; K],
     order: Order<T, K>,
 }
 
-impl<T: Real, const K: usize> Factors<T, K> {
-    pub(super) fn new(matrix: &SMatrix<T, K, K>) -> Self {
+impl<T: Real, const K: usize> Regular<T, K> {
+    /// Factorises a matrix.
+    #[must_use]
+    pub fn new(matrix: SMatrix<T, K, K>) -> Self {
         let mut rows = matrix.transpose().data.0;
         let mut scale = [T::from_f64(1.0); K];
         for (row, scale) in rows.iter_mut().zip(&mut scale) {
@@ -52,7 +55,8 @@ impl<T: Real, const K: usize> Factors<T, K> {
     }
 
     /// The `x` of `A x = right`.
-    pub(super) fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
+    #[must_use]
+    pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
         let scaled = core::array::from_fn(|i| right[i] * self.scale[i]);
         let mut x = self.order.apply(&scaled);
         for i in 1..K {
@@ -74,14 +78,14 @@ mod tests {
     fn solves_what_needs_pivots() {
         let matrix = SMatrix::from([[0.0, 2.0, 1e20], [1e-20, 1.0, 0.0], [3.0, 0.0, 1e20]]);
         let x = SVector::from([1.0, -2.0, 3.0]);
-        let found = Factors::new(&matrix).solve(&(matrix * x));
+        let found = Regular::new(matrix).solution(&(matrix * x));
         assert!((found - x).norm() < 1e-14, "{found}");
     }
 
     #[test]
     fn a_singular_matrix_gives_nothing_finite() {
         let matrix: SMatrix<f64, 2, 2> = SMatrix::from([[1.0, 2.0], [2.0, 4.0]]);
-        let x = Factors::new(&matrix).solve(&SVector::from([1.0, 1.0]));
+        let x = Regular::new(matrix).solution(&SVector::from([1.0, 1.0]));
         assert!(x.iter().all(|x| !x.is_finite()), "{x}");
     }
 
@@ -91,10 +95,10 @@ mod tests {
         for _ in 0..100 {
             let matrix = SMatrix::<_, 5, 5>::from_fn(|_, _| Pair([random(), random()]));
             let right = SVector::<_, 5>::from_fn(|_, _| Pair([random(), random()]));
-            let both = Factors::new(&matrix).solve(&right);
+            let both = Regular::new(matrix).solution(&right);
             for lane in 0..2 {
                 let alone =
-                    Factors::new(&matrix.map(|it| it.0[lane])).solve(&right.map(|it| it.0[lane]));
+                    Regular::new(matrix.map(|it| it.0[lane])).solution(&right.map(|it| it.0[lane]));
                 assert_eq!(both.map(|it| it.0[lane]), alone);
             }
         }

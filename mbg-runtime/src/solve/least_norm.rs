@@ -104,18 +104,12 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
-        let mut solution = self.short.solve(right);
-        let mut rank = K;
-        if let Some(long) = &self.long {
-            let half = T::from_f64(0.5);
-            let careful = long.refined(&self.matrix, right);
-            solution = careful.zip_map(&solution, |careful, plain| {
-                self.short.regular.select_less(half, careful, plain)
-            });
-            if everywhere(self.short.regular, |lane| lane == 0.0) {
-                rank = long.rank;
-            }
-        }
+        let solution = self.solution(right);
+        let some_regular = !everywhere(self.short.regular, |lane| lane == 0.0);
+        let rank = match &self.long {
+            Some(long) if !some_regular => long.rank,
+            _ => K,
+        };
         let zero = T::from_f64(0.0);
         let size = largest(right.iter().copied());
         let residual = largest(remainder(&self.matrix, &solution, right).iter().copied());
@@ -124,6 +118,19 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
             rank,
             residual: residual / zero.select_less(size, size, T::from_f64(1.0)),
         }
+    }
+
+    /// The solution alone.
+    #[must_use]
+    #[inline]
+    pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
+        let plain = self.short.solve(right);
+        let Some(long) = &self.long else { return plain };
+        let half = T::from_f64(0.5);
+        long.refined(&self.matrix, right)
+            .zip_map(&plain, |careful, plain| {
+                self.short.regular.select_less(half, careful, plain)
+            })
     }
 }
 

@@ -14,6 +14,7 @@ mod newton;
 mod project;
 mod regular;
 
+pub use dense::Regular;
 pub use least_norm::{LeastNorm, Semidefinite, least_norm};
 pub use memory::{LoopMemory, Memory, Outcome};
 pub use newton::{ITERATIONS, Solved, newton};

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::dense::Factors;
+use super::dense::Regular;
 use super::{dot, everywhere, largest};
 use crate::Real;
 
@@ -69,8 +69,8 @@ pub fn newton<T: Real, const K: usize>(
     let mut size = start.map(Real::abs);
     let mut was_settled = false;
     for iterations in 1..=ITERATIONS {
-        let factors = Factors::new(&point.jacobian);
-        let correction = factors.solve(&point.residual);
+        let factors = Regular::new(point.jacobian);
+        let correction = factors.solution(&point.residual);
         let settled = settled(&point.x, &correction, &size);
         let all_settled = everywhere(settled, |lane| lane == 1.0);
         if all_settled && was_settled {
@@ -137,7 +137,7 @@ impl<T: Real, const K: usize> Point<T, K> {
     /// times longer.
     fn descend(
         &self,
-        factors: &Factors<T, K>,
+        factors: &Regular<T, K>,
         correction: &SVector<T, K>,
         settled: T,
         size: &SVector<T, K>,
@@ -161,7 +161,7 @@ impl<T: Real, const K: usize> Point<T, K> {
             );
             let shrunk = one - quarter * damping;
             let factor = zero.select_less(settled, T::from_f64(100.0), shrunk * shrunk);
-            let there = square(&factors.solve(&next.residual));
+            let there = square(&factors.solution(&next.residual));
             let monotonic = (factor * here).select_less(there, zero, one);
             let accepted = there.select_less(T::from_f64(f64::INFINITY), monotonic, zero);
             if everywhere(accepted, |lane| lane == 1.0) {

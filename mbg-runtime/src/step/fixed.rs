@@ -7,10 +7,10 @@ use nalgebra::SVector;
 use super::dense::Step;
 use super::explicit::Rk4;
 use super::integrator::{Integrator, begin};
-use super::method::{Family, Method, Span, Start};
+use super::method::{Method, Span, Start, along};
 use super::problem::Problem;
 use super::{Cause, Statistics, Stopped, check_result, magnitude, seen};
-use crate::{Constant, Input, Real, System};
+use crate::{Input, Real, System};
 
 /// A method at steps of constant length.
 ///
@@ -197,9 +197,11 @@ impl Rk4 {
         Ok(problem.statistics)
     }
 
-    /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock.
+    /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock: the same bits as
+    /// those of [`Fixed`], with the least code and stack.
     ///
     /// Nothing is checked: ask [`System::trouble`] and look at the state where it matters.
+    #[inline]
     pub fn step<T, S, const N: usize, const M: usize, const P: usize>(
         system: &S,
         t: T,
@@ -212,25 +214,55 @@ impl Rk4 {
         T: Real,
         S: System<T, N, M, P>,
     {
-        let input = Constant(*u);
-        let mut problem = Problem::new(system, &input, t);
-        problem.memory = *memory;
-        let slope = problem.slope(t, x);
-        let span = Span {
-            start: t,
-            end: t + h,
-            length: h,
-        };
-        let start = Start {
-            span,
-            x: *x,
-            slope,
-            again: false,
-        };
-        let trial = Self.attempt(&mut Self.prepare(), &mut problem, &start, None);
-        *memory = problem.memory;
-        x + trial.change
+        along(x, h, &mean_slope(system, t, x, u, h, memory))
     }
+
+    /// [`Rk4::step`] with compensated sums: `lost` is zero before the first step and goes from each step to the next.
+    #[inline]
+    pub fn compensated_step<T, S, const N: usize, const M: usize, const P: usize>(
+        system: &S,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        h: T,
+        lost: &mut SVector<T, N>,
+        memory: &mut S::Memory,
+    ) -> SVector<T, N>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+    {
+        let slope = mean_slope(system, t, x, u, h, memory);
+        summed(x, &slope.map(|slope| h * slope), lost)
+    }
+}
+
+/// The weighted mean of the four slopes of a step of length `h` from `t` with the input held at `u`.
+#[inline(always)]
+fn mean_slope<T, S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
+    t: T,
+    x: &SVector<T, N>,
+    u: &SVector<T, M>,
+    h: T,
+    memory: &mut S::Memory,
+) -> SVector<T, N>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    let (sixth, third) = (T::from_f64(1.0 / 6.0), T::from_f64(1.0 / 3.0));
+    let half = T::from_f64(0.5) * h;
+    let mut mean = SVector::from_element(T::from_f64(0.0));
+    let (mut stage, mut at) = (*x, t);
+    // One evaluation in a loop takes a quarter of the code of four in a row, and less stack. The last stage is not used.
+    for (weight, ahead) in [(sixth, half), (third, half), (third, h), (sixth, h)] {
+        let slope = system.derivative(at, &stage, u, memory);
+        mean = along(&mean, weight, &slope);
+        stage = along(x, ahead, &slope);
+        at = t + ahead;
+    }
+    mean
 }
 
 /// Number and length of the steps from `start` to `end`: of length `h`, or what is next to it when `h` divides the
@@ -255,7 +287,7 @@ fn divide<T: Real>(start: T, end: T, h: T) -> (u64, T) {
 mod tests {
     use super::*;
     use crate::step::models::{Blocked, Explosion, Oscillator};
-    use crate::{Dual, Pulse, Smooth, Trouble};
+    use crate::{Constant, Dual, Pulse, Smooth, Trouble};
 
     fn last<T: Real>(h: T, t1: T, input: &impl Input<T, 1>) -> (SVector<T, 2>, Statistics) {
         let mut last = SVector::from([T::from_f64(1.0), T::from_f64(0.0)]);
@@ -375,23 +407,27 @@ mod tests {
     }
 
     #[test]
-    fn single_step_is_that_of_the_run() {
-        let x = SVector::from([0.3, -0.7]);
-        let mut end = x;
-        Rk4::fixed(
-            &Oscillator,
-            &Constant(SVector::from([2.0])),
-            0.0,
-            0.1,
-            0.1,
-            x,
-            |_, x| end = *x,
-        )
-        .unwrap();
-        assert_eq!(
-            Rk4::step(&Oscillator, 0.0, &x, &SVector::from([2.0]), 0.1, &mut ()),
-            end
-        );
+    fn single_steps_are_those_of_a_run() {
+        let (model, u, h) = (&Oscillator, SVector::from([2.0_f32]), 0.007_812_5);
+        let mut plain = SVector::from([0.3, -0.7]);
+        let (mut compensated, mut lost) = (plain, SVector::zeros());
+        let mut ends = [plain; 2];
+        let solver = Fixed::new(Rk4, f64::from(h));
+        for (solver, end) in [solver, solver.compensated()].iter().zip(&mut ends) {
+            let start = *end;
+            solver
+                .integrate(model, &Constant(u), 0.0, 1.0, start, |step| {
+                    *end = *step.state()
+                })
+                .unwrap();
+        }
+        for _ in 0..128 {
+            plain = Rk4::step(model, 0.0, &plain, &u, h, &mut ());
+            compensated =
+                Rk4::compensated_step(model, 0.0, &compensated, &u, h, &mut lost, &mut ());
+        }
+        assert_eq!([plain, compensated], ends);
+        assert_ne!(plain, compensated);
     }
 
     #[test]

@@ -8,6 +8,8 @@ use crate::references::integrate::integrate;
 use crate::references::slider_crank::{DURATION, RATE, angle, slider};
 
 mbg! {
+    include "tests/models/mechanisms/slider_crank.mbg";
+
     /// Crank and rod are of 1 m and 1 kg, the slider of 1 kg.
     #[derivative]
     pub(crate) model PlanarSliderCrank {
@@ -25,44 +27,6 @@ mbg! {
         close tip[1..3] -> block[1..3] by multipliers, displacement: open;
         output gap[2]: m = open;
         output point[2] = [crank.hinge.angle, slide.travel];
-    }
-
-    /// The rod hangs on the slider by a universal joint; its other end meets the tip of the crank.
-    #[derivative]
-    pub(crate) model SpatialSliderCrank {
-        causality componentwise;
-        gravity [0.0, 0.0, -9.81];
-        1 ground[6]; 1 crank[6]; 1 tip[6]; 1 block[6]; 1 cross[6]; 1 rod[6]; 1 end[6];
-        1 tip_in_world[6]; 1 end_in_world[6];
-        Sf fixed[6] { flow: 0.0 } -> ground;
-
-        bearing: Revolute { axis: 0 } (ground, crank);
-        crank_body: Body {
-            mass: 0.12, inertia: diag(1e-4, 1e-4, 1e-5), centre: [0.0, 0.0, 0.04], gravity_at: bearing.gravity_b
-        } (crank);
-        crank_arm: Offset {
-            by: [0.0, 0.0, 0.08], orientation: bearing.orientation_b, position_a: [0.0, 0.1, 0.12]
-        } (crank, tip);
-        tip_turn: Turn { by: transpose(bearing.orientation_b) } (tip, tip_in_world);
-
-        slide: Prismatic { axis: 0, initial: 0.2 } (ground, block);
-        slide.rate -> I slider { inertia: 2.0 };
-        roll: Revolute { axis: 0, initial: -0.4636476090008061 } (block, cross);
-        pitch: Revolute {
-            axis: 1, initial: 0.8410686705679303, gravity_a: roll.gravity_b, orientation_a: roll.orientation_b
-        } (cross, rod);
-        rod_body: Body {
-            mass: 0.5, inertia: diag(4e-4, 4e-3, 4e-3), centre: [-0.15, 0.0, 0.0], gravity_at: pitch.gravity_b
-        } (rod);
-        rod_arm: Offset { by: [-0.3, 0.0, 0.0], orientation: pitch.orientation_b, position_a: slide.arm } (rod, end);
-        end_turn: Turn { by: transpose(pitch.orientation_b) } (end, end_in_world);
-
-        let open = crank_arm.position_b - rod_arm.position_b;
-        close tip_in_world[3..6] -> end_in_world[3..6] by multipliers, displacement: open;
-        output gap[3]: m = open;
-        let height = crank_arm.position_b.z;
-        output balance: J = 9.81 * (0.06 * (height + 0.12) + 0.25 * height);
-        output point[2] = [bearing.angle, slide.travel];
     }
 }
 

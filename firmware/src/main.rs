@@ -1,0 +1,65 @@
+//! Runs the generated INS on a microcontroller, or on this machine to compare with.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod flight;
+mod machine;
+mod measure;
+#[path = "../../examples/ins/models.rs"]
+#[allow(dead_code)]
+mod models;
+mod print;
+#[path = "../../examples/ins/reference.rs"]
+#[allow(dead_code)]
+mod reference;
+
+use flight::{compensated, fly, guarded, plain};
+use mbg_runtime::Real;
+use models::{Ins, InsObserved, InsObservedParameters, InsParameters};
+
+fn models<T: Real>() -> Option<(Ins<T>, InsObserved<T>)> {
+    let bare = Ins::new(InsParameters::default()).ok()?;
+    let observed = InsObserved::new(InsObservedParameters::default()).ok()?;
+    Some((bare, observed))
+}
+
+/// Flies both models in both precisions; whether all stayed within their bounds of error.
+fn flights() -> bool {
+    let (Some((bare, observed)), Some((bare64, observed64))) = (models::<f32>(), models::<f64>())
+    else {
+        return false;
+    };
+    #[cfg(feature = "planted")]
+    print::text(["an index that may be out of bounds"][core::hint::black_box(0)]);
+    fly("Ins, f32, plain", &bare, plain, 1e-5)
+        & fly("Ins, f32, compensated", &bare, compensated, 1e-6)
+        & fly("Ins, f32, guarded", &bare, guarded, 1e-6)
+        & fly("InsObserved, f32, plain", &observed, plain, 1e-5)
+        & fly(
+            "InsObserved, f32, compensated",
+            &observed,
+            compensated,
+            1e-6,
+        )
+        & fly("InsObserved, f32, guarded", &observed, guarded, 1e-6)
+        & fly("Ins, f64, plain", &bare64, plain, 1e-10)
+        & fly("InsObserved, f64, guarded", &observed64, guarded, 1e-10)
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    machine::exit(flights());
+}
+
+/// Where the start-up code of a microcontroller goes.
+#[cfg(target_os = "none")]
+#[unsafe(no_mangle)]
+extern "C" fn start() -> ! {
+    machine::exit(flights())
+}
+
+/// Where the start-up code goes with what the machine refuses to do.
+#[cfg(target_os = "none")]
+#[unsafe(no_mangle)]
+extern "C" fn stop(success: bool) -> ! {
+    machine::exit(success)
+}

@@ -1,0 +1,82 @@
+//! A rotor of four blades over many turns: what it keeps, and what it takes to drive it.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../examples/rotor/model.rs"]
+#[allow(unreachable_pub)]
+mod model;
+
+use mbg_runtime::{Adaptive, Dop853, Integrator, System};
+use model::{Coasting, CoastingParameters, Sliding, SlidingParameters};
+use nalgebra::SVector;
+
+const FINE: Adaptive<'static, Dop853> = Adaptive::new(Dop853, 1e-13, 1e-13);
+
+/// The start with all blades away from where they rest, each otherwise.
+fn disturbed<S, const N: usize, const P: usize>(model: &S) -> SVector<f64, N>
+where
+    S: System<f64, N, 0, P>,
+{
+    let mut x = model.initial_state();
+    for (place, state) in S::META.states.iter().enumerate() {
+        if state.name.contains("about_") && state.name.ends_with("spring.q") {
+            x[place] = 0.2 * (1.7 * place as f64).sin();
+        }
+    }
+    x
+}
+
+#[test]
+fn a_free_hub_keeps_energy_and_momentum_about_its_axis() {
+    let model = Coasting::new(CoastingParameters::default()).unwrap();
+    let (x0, u) = (disturbed(&model), SVector::from([]));
+    let start = (model.energy(0.0, &x0), model.output(0.0, &x0, &u, &mut ()));
+    let (mut worst, mut speeds) = ([0.0_f64; 2], [f64::INFINITY, 0.0_f64]);
+    FINE.integrate(&model, &(), 0.0, 5.0, x0, |step| {
+        let (t, x) = (step.end(), step.state());
+        let output = model.output(t, x, &u, &mut ());
+        worst[0] = worst[0].max((model.energy(t, x) / start.0 - 1.0).abs());
+        worst[1] = worst[1].max((output[0] / start.1[0] - 1.0).abs());
+        speeds = [speeds[0].min(output[1]), speeds[1].max(output[1])];
+    })
+    .unwrap();
+    println!(
+        "energy {:.1e}, momentum {:.1e}, speed {speeds:.3?}",
+        worst[0], worst[1]
+    );
+    // The hub swings against its blades all the while.
+    assert!(speeds[1] - speeds[0] > 1.0, "{speeds:?}");
+    assert!(worst[0] < 1e-11 && worst[1] < 1e-11, "{worst:?}");
+}
+
+#[test]
+fn a_driven_hub_takes_what_its_blades_gain() {
+    let model = Sliding::new(SlidingParameters::default()).unwrap();
+    let (x0, u) = (disturbed(&model), SVector::from([]));
+    let start = model.energy(0.0, &x0);
+    let (mut work, mut worst, mut most) = (0.0, 0.0_f64, 0.0_f64);
+    // Gauss and Legendre's rule of three points, in quarters of steps.
+    let rule = [
+        (-0.6_f64.sqrt(), 5.0 / 18.0),
+        (0.0, 8.0 / 18.0),
+        (0.6_f64.sqrt(), 5.0 / 18.0),
+    ];
+    FINE.integrate(&model, &(), 0.0, 2.0, x0, |step| {
+        let (from, to) = (step.start(), step.end());
+        let panel = (to - from) / 4.0;
+        for middle in [0.5, 1.5, 2.5, 3.5] {
+            for (point, weight) in rule {
+                let t = from + panel * (middle + 0.5 * point);
+                let power = model.power(t, &step.at(t), &u, &mut ());
+                assert_eq!(power.dissipated, 0.0);
+                work += weight * panel * power.supplied;
+            }
+        }
+        let gained = model.energy(to, step.state()) - start;
+        most = most.max(gained.abs());
+        worst = worst.max((gained - work).abs());
+    })
+    .unwrap();
+    println!("gained up to {most:.1} J of {start:.1} J, off by {worst:.1e} J");
+    assert!(most > 0.01 * start, "{most}");
+    assert!(worst < 1e-10 * start, "{worst:e}");
+}

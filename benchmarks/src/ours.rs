@@ -26,7 +26,7 @@ fn label(scene: &str, variant: &str, operations: usize) -> Label {
     }
 }
 
-fn scene<const N: usize, const M: usize>(row: &Vec<f64>) -> Scene<f64, N, M> {
+fn scene<const N: usize, const M: usize>(row: &[f64]) -> Scene<f64, N, M> {
     (
         SVector::from_column_slice(&row[..N]),
         SVector::from_column_slice(&row[N..]),
@@ -69,7 +69,7 @@ where
             S::META.operations.derivative,
         ),
         N,
-        rows.iter().map(scene).collect(),
+        rows.iter().map(|row| scene(row)).collect(),
         SVector::zeros(),
         move |scene, result| derivative(&model, scene, result),
         |result| result.as_slice().to_vec(),
@@ -88,7 +88,7 @@ where
     Contestant::single(
         label(&format!("{name}-jacobian"), "f64", operations),
         N,
-        rows.iter().map(scene).collect(),
+        rows.iter().map(|row| scene(row)).collect(),
         (SVector::zeros(), SMatrix::zeros()),
         move |scene, result| jacobian(&model, scene, result),
         |(value, slope)| [value.as_slice(), slope.as_slice()].concat(),
@@ -111,7 +111,7 @@ where
             S::META.operations.derivative,
         ),
         N,
-        rows.iter().map(scene).collect(),
+        rows.iter().map(|row| scene(row)).collect(),
         1,
         SVector::zeros(),
         move |scene, result| derivative(&model, scene, result),
@@ -131,7 +131,7 @@ where
     f64: From<L::Lane>,
     S: System<L, N, M, P> + Clone + 'static,
 {
-    let scenes: Vec<Scene<f64, N, M>> = rows.iter().map(scene).collect();
+    let scenes: Vec<Scene<f64, N, M>> = rows.iter().map(|row| scene(row)).collect();
     let lanes = scenes.chunks(L::COUNT).map(|scenes| {
         let states: Vec<_> = scenes
             .iter()
@@ -178,8 +178,8 @@ pub(crate) fn contestants(folder: &Path) -> Result<Vec<Contestant>, Box<dyn Erro
     let four_bar = FourBar::new(FourBarParameters::default())?;
     let (navigation, poses) = (rows(folder, "ins")?, rows(folder, "arm")?);
     let mut found = vec![
-        value("ins", &navigation[..64], ins.clone()),
-        value_and_jacobian("ins", &navigation[..64], ins.clone()),
+        value("ins", &navigation[..64], ins),
+        value_and_jacobian("ins", &navigation[..64], ins),
         value(
             "chain8",
             &rows(folder, "chain8")?,
@@ -195,8 +195,8 @@ pub(crate) fn contestants(folder: &Path) -> Result<Vec<Contestant>, Box<dyn Erro
             &rows(folder, "chain64")?,
             Chain64::new(Chain64Parameters::default())?,
         ),
-        value("arm", &poses[..64], arm.clone()),
-        value_and_jacobian("arm", &poses[..64], arm.clone()),
+        value("arm", &poses[..64], arm),
+        value_and_jacobian("arm", &poses[..64], arm),
         value("fourbar", &rows(folder, "fourbar")?, four_bar),
         in_turn("ins", &navigation, ins),
         in_turn("arm", &poses, arm),

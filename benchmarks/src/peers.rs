@@ -134,7 +134,7 @@ fn contestants_of(
 }
 
 /// The equations of the inertial navigation system as one writes them with a library of matrices.
-fn by_hand(row: &Vec<f64>, result: &mut SVector<f64, 9>) {
+fn by_hand(row: &[f64], result: &mut SVector<f64, 9>) {
     let part = |first: usize| Vector3::new(row[first], row[first + 1], row[first + 2]);
     let (hull, body, angles, gust) = (part(0), part(3), part(6), part(9));
     let (fuselage, platform) = (
@@ -197,7 +197,7 @@ pub(crate) fn contestants(
         9,
         rows(folder, "ins")?[..64].to_vec(),
         SVector::zeros(),
-        by_hand,
+        |row: &Vec<f64>, result: &mut _| by_hand(row, result),
         |result| result.as_slice().to_vec(),
     ));
     Ok(found)

@@ -50,8 +50,8 @@ impl<T: Real, const K: usize> Regular<T, K> {
                 x[i] -= part;
             }
         }
-        for i in 0..K {
-            x[i] = x[i] * self.lower[i][i];
+        for (i, (x, row)) in x.iter_mut().zip(&self.lower).enumerate() {
+            *x = *x * row[i];
         }
         for k in (0..K).rev() {
             for i in 0..k {

@@ -1,5 +1,7 @@
 //! `f64` and `f32` as [`Real`].
 
+use core::array;
+
 use crate::Real;
 
 /// Functions of one argument: from the standard library where there is one and its last digits may differ from one
@@ -46,8 +48,12 @@ macro_rules! ordered {
             crate::sine::sin_cos(self)
         }
 
-        #[inline]
+        #[inline(always)]
         fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+            if K == 3 && cfg!(target_feature = "avx") {
+                let (sines, cosines) = crate::sine::of_three(array::from_fn(|k| angles[k]));
+                return (array::from_fn(|k| sines[k]), array::from_fn(|k| cosines[k]));
+            }
             crate::sine::sines_cosines(angles)
         }
 

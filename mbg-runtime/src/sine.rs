@@ -51,6 +51,26 @@ pub(crate) fn sines_cosines<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K]
     }
 }
 
+/// Sines and cosines of three angles of a scalar that is no vector, as those of four.
+///
+/// Where registers hold four numbers that saves the exchanges which compilers make of three; and in a call of its own,
+/// whose arguments lie in registers, no number waits until it is in memory.
+#[inline(always)]
+pub(crate) fn of_three<T: Angle>([a, b, c]: [T; 3]) -> ([T; 3], [T; 3]) {
+    if a.is_moderate() & b.is_moderate() & c.is_moderate() {
+        let ([sine_a, sine_b, sine_c, _], [cosine_a, cosine_b, cosine_c, _]) =
+            moderate_four(a, b, c, c);
+        ([sine_a, sine_b, sine_c], [cosine_a, cosine_b, cosine_c])
+    } else {
+        some_far([a, b, c])
+    }
+}
+
+#[inline(never)]
+fn moderate_four<T: Angle>(a: T, b: T, c: T, d: T) -> ([T; 4], [T; 4]) {
+    moderate([a, b, c, d])
+}
+
 #[cold]
 #[inline(never)]
 fn some_far<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {

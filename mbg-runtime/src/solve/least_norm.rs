@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::regular::Regular;
 use super::{Order, dot, everywhere, exchanged, largest};
 use crate::Real;
 
@@ -33,7 +34,8 @@ pub struct LeastNorm<T, const K: usize> {
 /// With the rank `r`, `λ = L (LᵀL)⁻² Lᵀ b` is the solution of least norm. It is computed without the loss of digits of
 /// that formula: remove from `b` its part in the null space, solve the `r` equations of the pivots, and remove from
 /// `λ` its part in the null space, which `[−L₂₁ L₁₁⁻¹, 1]ᵀ` spans with a good condition. A regular matrix has no null
-/// space and is solved as usual. One step of iterative refinement follows. If `b` is not consistent the result is the
+/// space and is solved as usual, without exchanges where it is far from singular, and otherwise one step of iterative
+/// refinement follows. If `b` is not consistent the result is the
 /// least-squares solution of least norm.
 ///
 /// # Example
@@ -47,6 +49,7 @@ pub struct LeastNorm<T, const K: usize> {
 /// assert_eq!((found.rank, found.solution), (1, SVector::from([1.5, 1.5])));
 /// ```
 #[must_use]
+#[inline]
 pub fn least_norm<T: Real, const K: usize>(
     matrix: &SMatrix<T, K, K>,
     right: &SVector<T, K>,
@@ -73,6 +76,67 @@ fn remainder<T: Real, const K: usize>(
 #[derive(Clone, Debug)]
 pub struct Semidefinite<T, const K: usize> {
     matrix: SMatrix<T, K, K>,
+    short: Regular<T, K>,
+    /// Where a lane is near singular.
+    long: Option<Pivoted<T, K>>,
+}
+
+impl<T: Real, const K: usize> Semidefinite<T, K> {
+    /// Factorises the matrix, of which the lower triangle decides on the rank.
+    #[must_use]
+    #[inline]
+    pub fn new(matrix: SMatrix<T, K, K>) -> Self {
+        let short = Regular::new(&matrix);
+        let is_regular = everywhere(short.regular, |lane| lane == 1.0);
+        let long = if is_regular {
+            None
+        } else {
+            Some(Pivoted::new(matrix))
+        };
+        Self {
+            matrix,
+            short,
+            long,
+        }
+    }
+
+    /// The solution of least norm with this right side.
+    #[must_use]
+    #[inline]
+    pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
+        let solution = self.solution(right);
+        let some_regular = !everywhere(self.short.regular, |lane| lane == 0.0);
+        let rank = match &self.long {
+            Some(long) if !some_regular => long.rank,
+            _ => K,
+        };
+        let zero = T::from_f64(0.0);
+        let size = largest(right.iter().copied());
+        let residual = largest(remainder(&self.matrix, &solution, right).iter().copied());
+        LeastNorm {
+            solution,
+            rank,
+            residual: residual / zero.select_less(size, size, T::from_f64(1.0)),
+        }
+    }
+
+    /// The solution alone.
+    #[must_use]
+    #[inline]
+    pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
+        let plain = self.short.solve(right);
+        let Some(long) = &self.long else { return plain };
+        let half = T::from_f64(0.5);
+        long.refined(&self.matrix, right)
+            .zip_map(&plain, |careful, plain| {
+                self.short.regular.select_less(half, careful, plain)
+            })
+    }
+}
+
+/// `P S Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot.
+#[derive(Clone, Debug)]
+struct Pivoted<T, const K: usize> {
     /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
     lower: [[T; K]; K],
     order: Order<T, K>,
@@ -87,13 +151,12 @@ pub struct Semidefinite<T, const K: usize> {
     regular: usize,
 }
 
-impl<T: Real, const K: usize> Semidefinite<T, K> {
-    /// Factorises the matrix, of which the lower triangle decides on the rank.
-    #[must_use]
-    pub fn new(matrix: SMatrix<T, K, K>) -> Self {
+impl<T: Real, const K: usize> Pivoted<T, K> {
+    #[cold]
+    #[inline(never)]
+    fn new(matrix: SMatrix<T, K, K>) -> Self {
         let zero = T::from_f64(0.0);
         let mut factors = Self {
-            matrix,
             lower: matrix.transpose().data.0,
             order: Order::unchanged(),
             kept: [zero; K],
@@ -106,26 +169,13 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         factors
     }
 
-    /// The solution of least norm with this right side, after one step of iterative refinement.
-    #[must_use]
-    pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
+    /// The solution of least norm after one step of iterative refinement.
+    #[cold]
+    #[inline(never)]
+    fn refined(&self, matrix: &SMatrix<T, K, K>, right: &SVector<T, K>) -> SVector<T, K> {
         let first = self.least_squares(right);
-        let refinement = self.least_squares(&remainder(&self.matrix, &first, right));
-        let solution = first.zip_map(&refinement, |first, refinement| first + refinement);
-        let zero = T::from_f64(0.0);
-        let size = largest(right.iter().copied());
-        let residual = largest(remainder(&self.matrix, &solution, right).iter().copied());
-        LeastNorm {
-            solution,
-            rank: self.rank,
-            residual: residual / zero.select_less(size, size, T::from_f64(1.0)),
-        }
-    }
-
-    /// The solution alone.
-    #[must_use]
-    pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        self.solve(right).solution
+        let refinement = self.least_squares(&remainder(matrix, &first, right));
+        first.zip_map(&refinement, |first, refinement| first + refinement)
     }
 
     fn factorise(&mut self) {

@@ -12,6 +12,7 @@ mod least_norm;
 mod memory;
 mod newton;
 mod project;
+mod regular;
 
 pub use dense::Regular;
 pub use least_norm::{LeastNorm, Semidefinite, least_norm};

@@ -1,0 +1,207 @@
+//! Our models.
+
+use std::error::Error;
+use std::path::Path;
+
+use mbg_runtime::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8, pack, unpack};
+use mbg_runtime::{Real, System};
+use nalgebra::{SMatrix, SVector};
+
+use crate::contestant::{Contestant, Label, OURS, rows};
+use crate::models::ins::{Ins, InsParameters};
+use crate::models::{
+    Arm, ArmParameters, Chain8, Chain8Parameters, Chain16, Chain16Parameters, Chain64,
+    Chain64Parameters, FourBar, FourBarParameters,
+};
+
+type Scene<T, const N: usize, const M: usize> = (SVector<T, N>, SVector<T, M>);
+type Linear<const N: usize> = (SVector<f64, N>, SMatrix<f64, N, N>);
+
+fn label(scene: &str, variant: &str, operations: usize) -> Label {
+    Label {
+        scene: scene.into(),
+        peer: OURS.into(),
+        variant: variant.into(),
+        operations: Some(operations),
+    }
+}
+
+fn scene<const N: usize, const M: usize>(row: &[f64]) -> Scene<f64, N, M> {
+    (
+        SVector::from_column_slice(&row[..N]),
+        SVector::from_column_slice(&row[N..]),
+    )
+}
+
+// The code of peers cannot be inlined where it is called, so ours is not.
+
+#[inline(never)]
+fn derivative<T: Real, S: System<T, N, M, P>, const N: usize, const M: usize, const P: usize>(
+    model: &S,
+    (x, u): &Scene<T, N, M>,
+    result: &mut SVector<T, N>,
+) {
+    *result = model.derivative(T::from_f64(0.0), x, u, &mut S::Memory::default());
+}
+
+#[inline(never)]
+fn jacobian<S: System<f64, N, M, P>, const N: usize, const M: usize, const P: usize>(
+    model: &S,
+    (x, u): &Scene<f64, N, M>,
+    result: &mut Linear<N>,
+) {
+    *result = model.derivative_and_jacobian(0.0, x, u, &mut S::Memory::default());
+}
+
+/// The value in `f64`.
+fn value<S, const N: usize, const M: usize, const P: usize>(
+    name: &str,
+    rows: &[Vec<f64>],
+    model: S,
+) -> Contestant
+where
+    S: System<f64, N, M, P> + Clone + 'static,
+{
+    Contestant::single(
+        label(
+            &format!("{name}-value"),
+            "f64",
+            S::META.operations.derivative,
+        ),
+        N,
+        rows.iter().map(|row| scene(row)).collect(),
+        SVector::zeros(),
+        move |scene, result| derivative(&model, scene, result),
+        |result| result.as_slice().to_vec(),
+    )
+}
+
+fn value_and_jacobian<S, const N: usize, const M: usize, const P: usize>(
+    name: &str,
+    rows: &[Vec<f64>],
+    model: S,
+) -> Contestant
+where
+    S: System<f64, N, M, P> + Clone + 'static,
+{
+    let operations = S::META.operations.derivative_and_jacobian;
+    Contestant::single(
+        label(&format!("{name}-jacobian"), "f64", operations),
+        N,
+        rows.iter().map(|row| scene(row)).collect(),
+        (SVector::zeros(), SMatrix::zeros()),
+        move |scene, result| jacobian(&model, scene, result),
+        |(value, slope)| [value.as_slice(), slope.as_slice()].concat(),
+    )
+}
+
+/// A batch, one state at a time.
+fn in_turn<S, const N: usize, const M: usize, const P: usize>(
+    name: &str,
+    rows: &[Vec<f64>],
+    model: S,
+) -> Contestant
+where
+    S: System<f64, N, M, P> + Clone + 'static,
+{
+    Contestant::batch(
+        label(
+            &format!("{name}-batch"),
+            "f64",
+            S::META.operations.derivative,
+        ),
+        N,
+        rows.iter().map(|row| scene(row)).collect(),
+        1,
+        SVector::zeros(),
+        move |scene, result| derivative(&model, scene, result),
+        |result, _| result.as_slice().to_vec(),
+    )
+}
+
+/// A batch in lanes.
+fn in_lanes<L, S, const N: usize, const M: usize, const P: usize>(
+    name: &str,
+    variant: &str,
+    rows: &[Vec<f64>],
+    model: S,
+) -> Contestant
+where
+    L: Lanes + 'static,
+    f64: From<L::Lane>,
+    S: System<L, N, M, P> + Clone + 'static,
+{
+    let scenes: Vec<Scene<f64, N, M>> = rows.iter().map(|row| scene(row)).collect();
+    let lanes = scenes.chunks(L::COUNT).map(|scenes| {
+        let states: Vec<_> = scenes
+            .iter()
+            .map(|(x, _)| x.map(L::Lane::from_f64))
+            .collect();
+        let inputs: Vec<_> = scenes
+            .iter()
+            .map(|(_, u)| u.map(L::Lane::from_f64))
+            .collect();
+        (pack(&states), pack(&inputs))
+    });
+    let contestant = Contestant::batch(
+        label(
+            &format!("{name}-batch"),
+            variant,
+            S::META.operations.derivative,
+        ),
+        N,
+        lanes.collect(),
+        L::COUNT,
+        SVector::<L, N>::from_element(L::from_f64(0.0)),
+        move |scene, result| derivative(&model, scene, result),
+        |result, lane| unpack(result, lane).iter().map(|x| f64::from(*x)).collect(),
+    );
+    // Rounding of the scalar, times what the arm's equations make of it.
+    let tolerance = if L::EPSILON < 1e-10 { 1e-11 } else { 1e-3 };
+    Contestant {
+        tolerance,
+        ..contestant
+    }
+}
+
+macro_rules! lanes {
+    ($contestants:ident, $name:literal, $rows:expr, $model:ident, $parameters:ident: $($lanes:ident),*) => { $(
+        let model = $model::<$lanes>::new($parameters::default())?;
+        $contestants.push(in_lanes::<$lanes, _, _, _, _>($name, stringify!($lanes), $rows, model));
+    )* };
+}
+
+/// All of ours.
+pub(crate) fn contestants(folder: &Path) -> Result<Vec<Contestant>, Box<dyn Error>> {
+    let ins = Ins::new(InsParameters::default())?;
+    let arm = Arm::new(ArmParameters::default())?;
+    let four_bar = FourBar::new(FourBarParameters::default())?;
+    let (navigation, poses) = (rows(folder, "ins")?, rows(folder, "arm")?);
+    let mut found = vec![
+        value("ins", &navigation[..64], ins),
+        value_and_jacobian("ins", &navigation[..64], ins),
+        value(
+            "chain8",
+            &rows(folder, "chain8")?,
+            Chain8::new(Chain8Parameters::default())?,
+        ),
+        value(
+            "chain16",
+            &rows(folder, "chain16")?,
+            Chain16::new(Chain16Parameters::default())?,
+        ),
+        value(
+            "chain64",
+            &rows(folder, "chain64")?,
+            Chain64::new(Chain64Parameters::default())?,
+        ),
+        value("arm", &poses[..64], arm),
+        value_and_jacobian("arm", &poses[..64], arm),
+        value("fourbar", &rows(folder, "fourbar")?, four_bar),
+        in_turn("ins", &navigation, ins),
+        in_turn("arm", &poses, arm),
+    ];
+    lanes!(found, "ins", &navigation, Ins, InsParameters: f64x4, f64x8, f32x8, f32x16);
+    lanes!(found, "arm", &poses, Arm, ArmParameters: f64x4, f64x8, f32x8, f32x16);
+    Ok(found)
+}

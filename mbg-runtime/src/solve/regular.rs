@@ -1,0 +1,64 @@
+//! Symmetric positive definite systems that are far from singular: short code without exchanges.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::largest;
+use crate::Real;
+
+/// In units of the largest diagonal element: a matrix whose pivots are all above it needs no exchanges.
+const REGULAR: f64 = 1e-4;
+
+/// `L D Lᵀ` of a symmetric matrix.
+#[derive(Clone, Debug)]
+pub(super) struct Regular<T, const K: usize> {
+    /// `L` below the diagonal, the reciprocals of `D` on it.
+    lower: [[T; K]; K],
+    /// 1 in the lanes that are regular, else 0. In the others the factors mean nothing.
+    pub(super) regular: T,
+}
+
+impl<T: Real, const K: usize> Regular<T, K> {
+    #[inline]
+    pub(super) fn new(matrix: &SMatrix<T, K, K>) -> Self {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let mut lower = matrix.transpose().data.0;
+        let threshold = T::from_f64(REGULAR) * largest((0..K).map(|i| lower[i][i]));
+        let mut regular = one;
+        for k in 0..K {
+            regular = threshold.select_less(lower[k][k], regular, zero);
+            lower[k][k] = one / lower[k][k];
+            for i in k + 1..K {
+                let factor = lower[i][k] * lower[k][k];
+                for j in k + 1..=i {
+                    // The rows from i on still hold L D in column k, those above already L.
+                    let element = if j < i { lower[j][k] } else { factor };
+                    let other = lower[i][k];
+                    lower[i][j] -= other * element;
+                }
+                lower[i][k] = factor;
+            }
+        }
+        Self { lower, regular }
+    }
+
+    #[inline]
+    pub(super) fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
+        let mut x = right.data.0[0];
+        for i in 0..K {
+            for k in 0..i {
+                let part = self.lower[i][k] * x[k];
+                x[i] -= part;
+            }
+        }
+        for (i, (x, row)) in x.iter_mut().zip(&self.lower).enumerate() {
+            *x = *x * row[i];
+        }
+        for k in (0..K).rev() {
+            for i in 0..k {
+                let part = self.lower[k][i] * x[k];
+                x[i] -= part;
+            }
+        }
+        SVector::from(x)
+    }
+}

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::regular::Regular;
+use super::definite::Definite;
 use super::{Order, dot, everywhere, exchanged, largest};
 use crate::Real;
 
@@ -76,7 +76,7 @@ fn remainder<T: Real, const K: usize>(
 #[derive(Clone, Debug)]
 pub struct Semidefinite<T, const K: usize> {
     matrix: SMatrix<T, K, K>,
-    short: Regular<T, K>,
+    short: Definite<T, K>,
     /// Where a lane is near singular.
     long: Option<Pivoted<T, K>>,
 }
@@ -86,7 +86,7 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn new(matrix: SMatrix<T, K, K>) -> Self {
-        let short = Regular::new(&matrix);
+        let short = Definite::new(&matrix);
         let is_regular = everywhere(short.regular, |lane| lane == 1.0);
         let long = if is_regular {
             None

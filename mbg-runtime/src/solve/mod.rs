@@ -5,6 +5,7 @@
 //! would give alone, as far as they run at all: a loop ends when every lane has ended. Dual numbers decide by their
 //! values.
 
+mod definite;
 mod dense;
 #[cfg(test)]
 pub(crate) mod lanes;
@@ -12,7 +13,6 @@ mod least_norm;
 mod memory;
 mod newton;
 mod project;
-mod regular;
 
 pub use dense::Regular;
 pub use least_norm::{LeastNorm, Semidefinite, least_norm};

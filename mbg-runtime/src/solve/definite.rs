@@ -10,14 +10,14 @@ const REGULAR: f64 = 1e-4;
 
 /// `L D Lᵀ` of a symmetric matrix.
 #[derive(Clone, Debug)]
-pub(super) struct Regular<T, const K: usize> {
+pub(super) struct Definite<T, const K: usize> {
     /// `L` below the diagonal, the reciprocals of `D` on it.
     lower: [[T; K]; K],
     /// 1 in the lanes that are regular, else 0. In the others the factors mean nothing.
     pub(super) regular: T,
 }
 
-impl<T: Real, const K: usize> Regular<T, K> {
+impl<T: Real, const K: usize> Definite<T, K> {
     #[inline]
     pub(super) fn new(matrix: &SMatrix<T, K, K>) -> Self {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));

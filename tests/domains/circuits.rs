@@ -174,7 +174,7 @@ fn a_diode_of_the_library_rectifies() {
     let times = rectifier::REFERENCE.map(|(time, _)| time);
     let mut expected = rectifier::REFERENCE.iter();
     let mut worst = 0.0_f64;
-    Adaptive::new(Dop853, 1e-11, 1e-13)
+    Adaptive::new(Dop853, 1e-12, 1e-14)
         .sample(
             &model,
             &Constant(SVector::zeros()),

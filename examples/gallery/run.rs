@@ -1,6 +1,6 @@
 //! A model from its start to an end, at equal times.
 
-use mbg_runtime::{Adaptive, Dop853, Input, Integrator, Stopped, System};
+use mbg_runtime::{Adaptive, Dop853, Input, Integrator, Stopped, System, Tsit5};
 use nalgebra::SVector;
 
 use crate::draw::Point;
@@ -12,7 +12,7 @@ pub(crate) struct Instant<const N: usize, const P: usize> {
     pub(crate) output: SVector<f64, P>,
 }
 
-/// Runs with an adaptive method of order 8 from a state, at this many times after the start.
+/// Runs with an adaptive method from a state, at this many times after the start.
 ///
 /// # Errors
 /// As the stepper.
@@ -30,21 +30,22 @@ where
         .map(|k| end * f64::from(k) / f64::from(count))
         .collect();
     let (mut instants, mut memory) = (Vec::new(), S::Memory::default());
-    Adaptive::new(Dop853, 1e-12, 1e-15).sample(
-        model,
-        input,
-        0.0,
-        start,
-        &times,
-        |time, state| {
-            let output = model.output(time, state, &input.at(time), &mut memory);
-            instants.push(Instant {
-                time,
-                state: *state,
-                output,
-            });
-        },
-    )?;
+    let observer = |time, state: &SVector<f64, N>| {
+        let output = model.output(time, state, &input.at(time), &mut memory);
+        instants.push(Instant {
+            time,
+            state: *state,
+            output,
+        });
+    };
+    // Order 5 gets through the positions in which a loop is singular, where long steps of order 8 may not.
+    if S::META.closures.is_empty() {
+        let method = Adaptive::new(Dop853, 1e-12, 1e-15);
+        method.sample(model, input, 0.0, start, &times, observer)?;
+    } else {
+        let method = Adaptive::new(Tsit5, 1e-8, 1e-8);
+        method.sample(model, input, 0.0, start, &times, observer)?;
+    }
     Ok(instants)
 }
 

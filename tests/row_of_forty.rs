@@ -44,6 +44,10 @@ fn row() -> (FourBars40, SVector<f64, 162>) {
 
 #[test]
 fn its_jacobian_comes_from_dual_numbers() {
+    on_a_large_stack(compare_jacobians);
+}
+
+fn compare_jacobians() {
     let (system, start) = row();
     let derivative = |x: &SVector<f64, 162>| system.derivative(0.0, x, &SVector::zeros(), &mut ());
     let (value, jacobian) = system.derivative_and_jacobian(0.0, &start, &SVector::zeros(), &mut ());
@@ -56,8 +60,18 @@ fn its_jacobian_comes_from_dual_numbers() {
     assert!(error < 1e-6, "{error:e}");
 }
 
+/// Matrices of 80 by 80 live on the stack, which in a test is otherwise 2 MB.
+fn on_a_large_stack(run: fn()) {
+    let thread = std::thread::Builder::new().stack_size(64 << 20);
+    thread.spawn(run).unwrap().join().unwrap();
+}
+
 #[test]
 fn forty_loops_pass_their_singular_position() {
+    on_a_large_stack(run);
+}
+
+fn run() {
     let (system, start) = row();
     let meta = FourBars40::<f64>::META;
     let task = Task {

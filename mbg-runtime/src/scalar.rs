@@ -48,7 +48,9 @@ macro_rules! ordered {
             crate::sine::sin_cos(self)
         }
 
-        #[inline(always)]
+        // Without wide registers the steps are shorter when the sines stay a call.
+        #[cfg_attr(target_feature = "avx", inline(always))]
+        #[cfg_attr(not(target_feature = "avx"), inline)]
         fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
             if K == 3 && cfg!(target_feature = "avx") {
                 let (sines, cosines) = crate::sine::of_three(array::from_fn(|k| angles[k]));

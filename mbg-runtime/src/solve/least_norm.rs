@@ -8,6 +8,8 @@ use crate::Real;
 
 /// In units of precision, size and largest diagonal element: a pivot below it is rounding.
 const RANK: f64 = 8.0;
+/// Up to this size a regular matrix is factorised without exchanges. Larger ones take their time anyway, and are refined.
+const SHORT: usize = 8;
 
 /// What [`least_norm`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +88,11 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn new(matrix: SMatrix<T, K, K>) -> Self {
-        let short = Definite::new(&matrix);
+        let short = if K <= SHORT {
+            Definite::new(&matrix)
+        } else {
+            Definite::none()
+        };
         let is_regular = everywhere(short.regular, |lane| lane == 1.0);
         let long = if is_regular {
             None

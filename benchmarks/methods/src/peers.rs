@@ -8,13 +8,15 @@ use numeris::{Matrix, Vector};
 use ode_solvers::dop_shared::OutputType;
 
 type Row<const N: usize> = SVector<f64, N>;
+/// The state at the end of a piece, and what it took.
+type Piece<const N: usize> = Result<(Row<N>, Statistics), String>;
 
 /// Runs a solver from jump to jump, and to each time at which the problem is judged.
 fn pieces<S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, S, I, N, M, P>,
     times: &[f64],
     states: &mut Vec<Row<N>>,
-    mut piece: impl FnMut(f64, f64, Row<N>) -> Result<(Row<N>, Statistics), String>,
+    piece: impl Fn([f64; 2], Row<N>) -> Piece<N>,
 ) -> Result<Statistics, String>
 where
     S: System<f64, N, M, P>,
@@ -28,7 +30,7 @@ where
                 Some(jump) if jump < time => jump,
                 _ => time,
             };
-            let (next, statistics) = piece(t, end, x)?;
+            let (next, statistics) = piece([t, end], x)?;
             sum.evaluations += statistics.evaluations;
             sum.steps += statistics.steps;
             sum.rejected += statistics.rejected;
@@ -37,6 +39,27 @@ where
         states.push(x);
     }
     Ok(sum)
+}
+
+/// Adds a solver with each of the tolerances. `piece` goes from a time to another, at which nothing jumps.
+fn add<S, I, const N: usize, const M: usize, const P: usize>(
+    comparison: &mut Comparison<'_, S, I, N, M, P>,
+    name: &str,
+    tolerances: &[f64],
+    piece: impl Fn(&Problem<'_, S, I, N, M, P>, f64, [f64; 2], Row<N>) -> Piece<N>,
+) where
+    S: System<f64, N, M, P>,
+    I: Input<f64, M>,
+{
+    let problem = comparison.problem().clone();
+    for &tolerance in tolerances {
+        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
+            pieces(&problem, times, states, |times, x| {
+                piece(&problem, tolerance, times, x)
+            })
+        };
+        comparison.solver(name, &format!("rtol = {tolerance:e}"), run);
+    }
 }
 
 fn settings(tolerance: f64, absolute: f64) -> AdaptiveSettings<f64> {
@@ -87,27 +110,26 @@ fn explicit<
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
 {
-    let problem = comparison.problem().clone();
-    for &tolerance in tolerances {
-        let set = settings(tolerance, tolerance * small);
-        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
+    add(
+        comparison,
+        name,
+        tolerances,
+        |problem, tolerance, [t, end], x| {
             let mut memory = S::Memory::default();
-            pieces(&problem, times, states, |t, end, x| {
-                let slope = |time: f64, y: &Vector<f64, N>| {
-                    let u = problem.input.value(time, t);
-                    spread(
-                        &problem
-                            .system
-                            .derivative(time, &gathered(y), &u, &mut memory),
-                    )
-                };
-                A::integrate(t, end, &spread(&x), slope, &set)
-                    .map(taken)
-                    .map_err(|error| format!("{error:?}"))
-            })
-        };
-        comparison.solver(name, &format!("rtol = {tolerance:e}"), run);
-    }
+            let slope = |time: f64, y: &Vector<f64, N>| {
+                let u = problem.input.value(time, t);
+                spread(
+                    &problem
+                        .system
+                        .derivative(time, &gathered(y), &u, &mut memory),
+                )
+            };
+            let set = settings(tolerance, tolerance * small);
+            A::integrate(t, end, &spread(&x), slope, &set)
+                .map(taken)
+                .map_err(|error| format!("{error:?}"))
+        },
+    );
 }
 
 /// `numeris`: Verner's pair of orders 9 and 8, and that of Tsitouras.
@@ -132,35 +154,34 @@ pub fn numeris_stiff<S, I, const N: usize, const M: usize, const P: usize>(
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
 {
-    let problem = comparison.problem().clone();
-    for &tolerance in tolerances {
-        let set = settings(tolerance, tolerance * small);
-        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
+    let name = format!("numeris rodas4, atol {small:e} rtol");
+    add(
+        comparison,
+        &name,
+        tolerances,
+        |problem, tolerance, [t, end], x| {
             let (mut first, mut second) = (S::Memory::default(), S::Memory::default());
-            pieces(&problem, times, states, |t, end, x| {
-                let slope = |time: f64, y: &Vector<f64, N>| {
-                    let u = problem.input.value(time, t);
-                    spread(
-                        &problem
-                            .system
-                            .derivative(time, &gathered(y), &u, &mut first),
-                    )
-                };
-                let jacobian = |time: f64, y: &Vector<f64, N>| {
-                    let u = problem.input.value(time, t);
-                    let found = problem
+            let slope = |time: f64, y: &Vector<f64, N>| {
+                let u = problem.input.value(time, t);
+                spread(
+                    &problem
                         .system
-                        .jacobian_state(time, &gathered(y), &u, &mut second);
-                    Matrix::from_fn(|row, column| found[(row, column)])
-                };
-                RODAS4::integrate(t, end, &spread(&x), slope, jacobian, &set)
-                    .map(taken)
-                    .map_err(|error| format!("{error:?}"))
-            })
-        };
-        let name = format!("numeris rodas4, atol {small:e} rtol");
-        comparison.solver(&name, &format!("rtol = {tolerance:e}"), run);
-    }
+                        .derivative(time, &gathered(y), &u, &mut first),
+                )
+            };
+            let jacobian = |time: f64, y: &Vector<f64, N>| {
+                let u = problem.input.value(time, t);
+                let found = problem
+                    .system
+                    .jacobian_state(time, &gathered(y), &u, &mut second);
+                Matrix::from_fn(|row, column| found[(row, column)])
+            };
+            let set = settings(tolerance, tolerance * small);
+            RODAS4::integrate(t, end, &spread(&x), slope, jacobian, &set)
+                .map(taken)
+                .map_err(|error| format!("{error:?}"))
+        },
+    );
 }
 
 /// A right-hand side as `ode_solvers` takes it.
@@ -197,36 +218,26 @@ pub fn ode_solvers_smooth<S, I, const N: usize, const M: usize, const P: usize>(
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
 {
-    let problem = comparison.problem().clone();
-    for &tolerance in tolerances {
-        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
-            pieces(&problem, times, states, |t, end, x| {
-                let slope = Slope {
-                    problem: &problem,
-                    since: t,
-                };
-                let start = Column::from(<[f64; N]>::from(x));
-                let mut stepper = ode_solvers::Dop853::new(
-                    slope,
-                    t,
-                    end,
-                    end - t,
-                    start,
-                    tolerance,
-                    tolerance * small,
-                );
-                stepper.set_output(OutputType::Sparse);
-                let statistics = stepper.integrate().map_err(|error| error.to_string())?;
-                let last = stepper.y_out().last().ok_or("no result")?;
-                let statistics = Statistics {
-                    steps: u64::from(statistics.accepted_steps),
-                    rejected: u64::from(statistics.rejected_steps),
-                    evaluations: u64::from(statistics.num_eval),
-                    ..Statistics::default()
-                };
-                Ok((Row::from(<[f64; N]>::from(*last)), statistics))
-            })
-        };
-        comparison.solver("ode_solvers dop853", &format!("rtol = {tolerance:e}"), run);
-    }
+    add(
+        comparison,
+        "ode_solvers dop853",
+        tolerances,
+        |problem, tolerance, [t, end], x| {
+            let slope = Slope { problem, since: t };
+            let start = Column::from(<[f64; N]>::from(x));
+            let absolute = tolerance * small;
+            let mut stepper =
+                ode_solvers::Dop853::new(slope, t, end, end - t, start, tolerance, absolute);
+            stepper.set_output(OutputType::Sparse);
+            let statistics = stepper.integrate().map_err(|error| error.to_string())?;
+            let last = stepper.y_out().last().ok_or("no result")?;
+            let statistics = Statistics {
+                steps: u64::from(statistics.accepted_steps),
+                rejected: u64::from(statistics.rejected_steps),
+                evaluations: u64::from(statistics.num_eval),
+                ..Statistics::default()
+            };
+            Ok((Row::from(<[f64; N]>::from(*last)), statistics))
+        },
+    );
 }

@@ -52,6 +52,8 @@ macro_rules! functions {
 }
 
 impl<const LIBRARY: bool> Real for Plain<LIBRARY> {
+    type Columns = Self;
+
     const SINGULAR: f64 = <f64 as Real>::SINGULAR;
     const EPSILON: f64 = <f64 as Real>::EPSILON;
 

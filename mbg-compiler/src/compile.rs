@@ -12,12 +12,12 @@ use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Junction};
 use crate::network::Network;
-use crate::program::{self, Program};
+use crate::jacobians;
+use crate::program::{self, Program, Request};
 use crate::sparsity::{self, Pattern};
 use crate::start;
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
-use crate::symbolic::substitute::operations;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
 use crate::syntax::ast;
 use crate::units;
@@ -46,8 +46,6 @@ pub struct Compiled {
     pub dependent: Vec<String>,
     /// Causal strokes by bond: true where the effort enters at `to`.
     pub strokes: Vec<bool>,
-    /// Whether the Jacobians are in the program; those of large models are taken from dual numbers.
-    pub unrolled: bool,
     /// Where the Jacobian by the states can differ from zero.
     pub pattern: Pattern,
     /// Things worth knowing.
@@ -98,12 +96,6 @@ impl Routines {
     pub const CLOSED_FLOWS: usize = 10;
     pub const DERIVATIVE_TIME: usize = 11;
 }
-
-/// Largest product of states and operations of the derivative up to which Jacobians are straight-line code. `rustc` takes
-/// about a minute for what is beyond.
-const UNROLLED: usize = 250_000;
-
-const BY_COLUMNS: &str = "the Jacobians are taken column by column from dual numbers: unrolled, they would be too large to compile";
 
 /// Compiles one model; none if anything was reported.
 #[must_use]
@@ -156,31 +148,30 @@ fn finish(
         .states
         .iter()
         .map(|state| model.states[*state].initial);
-    let unrolled = answers.states.len() * operations(&pool, &answers.rates) <= UNROLLED;
-    let [by_states, by_inputs] = [&by_state, &by_input].map(|by| {
-        let by: &[Symbol] = if unrolled { by } else { &[] };
-        jacobian(&mut pool, &answers.rates, by)
-    });
-    let pattern = if unrolled {
-        sparsity::of_entries(&by_states)
+    let rates = &answers.rates;
+    let groups = jacobians::groups(&model, &answers.states);
+    let by_states = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
+    let by_inputs = jacobians::request(&mut pool, &[], rates, &by_input, &[]);
+    let pattern = if jacobians::is_written_out(&by_states) {
+        sparsity::of_entries(&by_states.results[rates.len()..], by_state.len())
     } else {
-        sparsity::of_dependence(&pool, &answers.rates, &by_state)
+        sparsity::of_dependence(&pool, rates, &by_state)
     };
-    let requests = [
-        answers.rates.clone(),
-        answers.outputs.clone(),
-        [&answers.rates[..], &by_states.entries].concat(),
-        by_inputs.entries,
-        vec![answers.energy],
-        vec![answers.supplied, answers.dissipated],
-        conditioning.clone(),
-        initial.collect(),
-        checked,
-        positions.evaluated(),
-        flows.evaluated(),
-        jacobian(&mut pool, &answers.rates, &[Symbol::Time]).entries,
+    let requests: [Request; 12] = [
+        rates.clone().into(),
+        answers.outputs.clone().into(),
+        by_states,
+        by_inputs,
+        vec![answers.energy].into(),
+        vec![answers.supplied, answers.dissipated].into(),
+        conditioning.clone().into(),
+        initial.collect::<Vec<_>>().into(),
+        checked.into(),
+        positions.evaluated().into(),
+        flows.evaluated().into(),
+        jacobian(&mut pool, rates, &[Symbol::Time]).entries.into(),
     ];
-    share(&mut pool, &requests[Routines::DERIVATIVE]);
+    share(&mut pool, rates);
     let program = build(&pool, scalars, solution, &answers, &requests);
     if !program.is_finite() {
         let message = "numbers of the model multiply to one that is not finite";
@@ -196,9 +187,6 @@ fn finish(
     let mut notes = verdict.notes;
     notes.extend(unused_initial_values(&model, &answers));
     notes.extend(unused_initial_flows(&model));
-    if !unrolled {
-        notes.push(BY_COLUMNS.to_owned());
-    }
     Some(Compiled {
         program,
         conditioning: conditioning.iter().map(written).collect(),
@@ -209,7 +197,6 @@ fn finish(
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,
-        unrolled,
         pattern,
         notes,
         states: answers.states,
@@ -233,7 +220,7 @@ fn build(
     scalars: &Scalars,
     solution: &Solution,
     answers: &Answers,
-    requests: &[Vec<Expression>],
+    requests: &[Request],
 ) -> Program {
     let numbered = answers.states.iter().enumerate();
     let places: BTreeMap<usize, usize> = numbered.map(|(place, state)| (*state, place)).collect();
@@ -291,6 +278,7 @@ pub(crate) fn text(
         Symbol::Input(index) => model.inputs[index].name.clone(),
         Symbol::Time => "t".to_owned(),
         Symbol::Signal(index) => format!("signal {index}"),
+        Symbol::Slope(index) => format!("slope {index}"),
         Symbol::Unknown(index) => match scalars.names.get(index) {
             Some(name) if !name.is_empty() => name.clone(),
             _ => format!("unknown {index}"),

@@ -31,6 +31,7 @@ pub mod equations;
 pub mod explain;
 pub mod graph;
 pub mod inclusion;
+pub mod jacobians;
 pub mod network;
 pub mod program;
 pub mod sparsity;

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Matrix, Pool, Symbol};
+use crate::symbolic::{Expression, Pool, Symbol};
 
 /// The columns of each row that can differ from zero.
 pub type Pattern = Vec<BTreeSet<usize>>;
@@ -23,14 +23,14 @@ pub struct Elimination {
     pub upper: Vec<Vec<usize>>,
 }
 
-/// The entries of a Jacobian that are not zero.
+/// The entries of a Jacobian by rows of a length that are not zero.
 #[must_use]
-pub fn of_entries(jacobian: &Matrix) -> Pattern {
-    let rows = (0..jacobian.rows).map(|row| {
-        let columns = 0..jacobian.columns;
-        columns.filter(move |column| jacobian.at(row, *column) != Expression::ZERO)
-    });
-    rows.map(BTreeSet::from_iter).collect()
+pub fn of_entries(entries: &[Expression], columns: usize) -> Pattern {
+    let filled = |row: &[Expression]| {
+        let places = 0..row.len();
+        places.filter(|place| row[*place] != Expression::ZERO).collect()
+    };
+    entries.chunks(columns.max(1)).map(filled).collect()
 }
 
 /// What rates depend on.

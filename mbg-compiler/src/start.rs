@@ -61,7 +61,7 @@ impl<'a> Start<'a> {
             Symbol::Parameter(index) => self.model.parameters[index].default,
             Symbol::State(index) => *changed.get(&index).unwrap_or(&self.states[index]),
             Symbol::Input(_) | Symbol::Time => 0.0,
-            Symbol::Signal(_) | Symbol::Unknown(_) => f64::NAN,
+            Symbol::Signal(_) | Symbol::Unknown(_) | Symbol::Slope(_) => f64::NAN,
         };
         Evaluation::new(&symbol).value(pool, expression)
     }

@@ -8,7 +8,7 @@ use crate::solve::project;
 use crate::step::magnitude;
 pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
-    Bond, Dual, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
+    Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };
 
 /// What the chosen causality relies on; each condition implies that the value is finite.
@@ -101,20 +101,48 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     })
 }
 
-/// A function and its Jacobian, one column after the other.
-pub fn by_columns<T: Real, const N: usize, const K: usize>(
-    x: &SVector<T, N>,
-    function: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, K>,
-) -> (SVector<T, K>, SMatrix<T, K, N>) {
-    let constant = x.map(Dual::constant);
-    let value = function(&constant).map(|it| it.value);
-    let mut jacobian = SMatrix::<T, K, N>::from_element(T::from_f64(0.0));
-    for (column, mut entries) in jacobian.column_iter_mut().enumerate() {
-        let mut along = constant;
-        along[column].slope = T::from_f64(1.0);
-        entries.copy_from(&function(&along).map(|it| it.slope));
+/// Fills the columns of a Jacobian that belong to some variables, in some of its rows. `slopes` says how these change with
+/// the variables, for several columns at once.
+// It is called as a function of its own: written into the loop, all that does not depend on the column would be made lanes
+// of before, and kept in memory.
+#[inline(never)]
+pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
+    jacobian: &mut SMatrix<T, N, K>,
+    variables: &[usize],
+    rows: &[usize; R],
+    slopes: &dyn Fn(&[T::Columns; K]) -> [T::Columns; R],
+) {
+    for together in variables.chunks(<T::Columns as Columns<T>>::COUNT) {
+        let mut changes = [<T::Columns as Real>::from_f64(0.0); K];
+        for (lane, variable) in together.iter().enumerate() {
+            if let Some(change) = changes.get_mut(*variable) {
+                *change = change.with_column(lane, T::from_f64(1.0));
+            }
+        }
+        let found = slopes(&changes);
+        for (lane, variable) in together.iter().enumerate() {
+            for (row, slope) in rows.iter().zip(&found) {
+                if let Some(entry) = jacobian.get_mut((*row, *variable)) {
+                    *entry = slope.column(lane);
+                }
+            }
+        }
     }
-    (value, jacobian)
+}
+
+/// Solves linear equations for several columns, one after the other.
+pub fn by_lane<T: Real, const K: usize>(
+    right: &[T::Columns; K],
+    solution: impl Fn(&SVector<T, K>) -> SVector<T, K>,
+) -> [T::Columns; K] {
+    let mut solved = *right;
+    for lane in 0..<T::Columns as Columns<T>>::COUNT {
+        let values = solution(&SVector::from_fn(|row, _| right[row].column(lane)));
+        for (solved, value) in solved.iter_mut().zip(values.iter()) {
+            *solved = solved.with_column(lane, *value);
+        }
+    }
+    solved
 }
 
 /// A symmetric matrix from row, column and value of the elements below and on its diagonal that are not zero.

@@ -128,6 +128,8 @@ impl<T: Real> SubAssign for Dual<T> {
 }
 
 impl<T: Real> Real for Dual<T> {
+    type Columns = Self;
+
     const SINGULAR: f64 = T::SINGULAR;
     const EPSILON: f64 = T::EPSILON;
 

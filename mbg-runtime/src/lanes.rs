@@ -22,7 +22,7 @@ use nalgebra::SVector;
 pub use wide::{f32x8, f32x16, f64x4, f64x8};
 
 use crate::sine::{self, Angle};
-use crate::{FUSED, Real};
+use crate::{Columns, FUSED, Real};
 
 /// A scalar of several numbers.
 pub trait Lanes: Real {
@@ -91,7 +91,32 @@ macro_rules! lanes {
             }
         }
 
+        impl Columns<$scalar> for $lanes {
+            const COUNT: usize = $count;
+
+            #[inline]
+            fn whole(value: $scalar) -> Self {
+                Self::splat(value)
+            }
+
+            #[inline]
+            fn column(self, column: usize) -> $scalar {
+                self.lane(column)
+            }
+
+            #[inline]
+            fn with_column(self, column: usize, value: $scalar) -> Self {
+                let mut numbers = self.to_array();
+                if let Some(number) = numbers.get_mut(column) {
+                    *number = value;
+                }
+                Self::new(numbers)
+            }
+        }
+
         impl Real for $lanes {
+            type Columns = Self;
+
             const SINGULAR: f64 = <$scalar as Real>::SINGULAR;
             const EPSILON: f64 = <$scalar as Real>::EPSILON;
 

@@ -15,6 +15,7 @@ extern crate std;
 #[doc(hidden)]
 pub mod __private;
 pub mod attitude;
+mod columns;
 mod dual;
 mod input;
 #[cfg(feature = "lanes")]
@@ -34,6 +35,7 @@ mod sparsity;
 mod step;
 mod system;
 
+pub use columns::Columns;
 pub use dual::Dual;
 pub use input::{Constant, Differentiable, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};

@@ -40,6 +40,9 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
+    /// What several columns of a Jacobian are worked out in at once.
+    type Columns: crate::Columns<Self>;
+
     /// Below this a normalised determinant counts as singular: the square root of the precision.
     const SINGULAR: f64;
     /// Distance from 1 to the next number.

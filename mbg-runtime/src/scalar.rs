@@ -101,6 +101,12 @@ macro_rules! ordered {
 }
 
 impl Real for f64 {
+    #[cfg(all(feature = "lanes", target_feature = "avx512f"))]
+    type Columns = crate::lanes::f64x8;
+    #[cfg(all(feature = "lanes", not(target_feature = "avx512f")))]
+    type Columns = crate::lanes::f64x4;
+    #[cfg(not(feature = "lanes"))]
+    type Columns = Self;
     const SINGULAR: f64 = 1.490_116_119_384_765_6e-8;
 
     ordered!(f64);
@@ -116,6 +122,10 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
+    #[cfg(feature = "lanes")]
+    type Columns = crate::lanes::f32x8;
+    #[cfg(not(feature = "lanes"))]
+    type Columns = Self;
     const SINGULAR: f64 = 3.452_669_830_012_439_4e-4;
 
     ordered!(f32);

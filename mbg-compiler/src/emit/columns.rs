@@ -1,48 +1,62 @@
-//! Jacobians of models that are too large to write them out: one column after the other, from dual numbers.
+//! Jacobians of several columns at once.
 
-use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use std::collections::BTreeSet;
 
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::quote;
+
+use super::routine::{column_lines, used_factors};
 use crate::compile::Compiled;
+use crate::program::{Columns, Operand, Routine, Source};
+use crate::symbolic::Symbol;
 
-/// The bodies of `derivative_and_jacobian` and of `jacobian_input`.
-pub(super) fn jacobians(compiled: &Compiled) -> (TokenStream, TokenStream) {
-    let lifted = lifted(compiled);
-    let dual = quote!(::mbg_runtime::Dual);
-    let by_state = quote! {
-        #lifted
-        let (t, u) = (#dual::constant(t), u.map(#dual::constant));
-        ::mbg_runtime::__private::by_columns(x, |x| {
-            let memory = &mut ::core::default::Default::default();
-            ::mbg_runtime::System::derivative(&lifted, t, x, &u, memory)
-        })
-    };
-    let by_input = quote! {
-        #lifted
-        let (t, x) = (#dual::constant(t), x.map(#dual::constant));
-        ::mbg_runtime::__private::by_columns(u, |u| {
-            let memory = &mut ::core::default::Default::default();
-            ::mbg_runtime::System::derivative(&lifted, t, &x, u, memory)
-        }).1
-    };
-    (by_state, by_input)
+/// The Jacobian that a routine returns besides, with so many columns; the steps of the routine stand before it.
+pub(super) fn jacobian(compiled: &Compiled, routine: &Routine, width: usize) -> TokenStream {
+    let [rows, width] = [compiled.states.len(), width].map(Literal::usize_suffixed);
+    let steps = routine.columns.iter().flat_map(|it| &it.steps);
+    let used: BTreeSet<Ident> = steps.filter_map(used_factors).collect();
+    let groups = routine.columns.iter();
+    let groups = groups.map(|it| group(compiled, routine, it));
+    quote! {{
+        let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
+            T::from_f64(0.0),
+        );
+        #(let #used = &#used;)*
+        #(#groups)*
+        jacobian
+    }}
 }
 
-/// The model itself in dual numbers.
-fn lifted(compiled: &Compiled) -> TokenStream {
-    let model = &compiled.model;
-    let (name, parameters) = (&model.name, format_ident!("{}Parameters", model.name));
-    let fields: Vec<_> = model.parameters.iter().map(|it| &it.name).collect();
-    let phantom = fields
-        .is_empty()
-        .then(|| quote!(scalar: ::core::marker::PhantomData));
+/// Some columns. Rows that hold one constant need no steps.
+fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStream {
+    let constant = columns.results.iter().enumerate();
+    let constant = constant.filter_map(|(row, result)| only_entry(row, *result));
+    let steps: Vec<usize> = (0..columns.results.len())
+        .filter(|row| is_worked_out(columns.results[*row]))
+        .collect();
+    let (lines, slopes) = column_lines(compiled, routine, columns, &steps);
+    let variables = columns.variables.iter().copied().map(Literal::usize_suffixed);
+    let steps = steps.into_iter().map(Literal::usize_suffixed);
     quote! {
-        let lifted = #name {
-            parameters: #parameters {
-                #(#fields: ::mbg_runtime::Dual::constant(self.parameters.#fields),)*
-                #phantom
-            },
-            folded: self.folded.map(::mbg_runtime::Dual::constant),
-        };
+        #(#constant)*
+        ::mbg_runtime::__private::columns(&mut jacobian, &[#(#variables),*], &[#(#steps),*], &move |slopes| {
+            let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
+            #lines
+            [#(#slopes),*]
+        });
     }
+}
+
+fn is_worked_out(result: Operand) -> bool {
+    !matches!(result.source, Source::Constant(_) | Source::Symbol(Symbol::Slope(_)))
+}
+
+/// The entry of a rate that is one of the variables.
+fn only_entry(row: usize, result: Operand) -> Option<TokenStream> {
+    let Source::Symbol(Symbol::Slope(column)) = result.source else {
+        return None;
+    };
+    let one = Literal::f64_suffixed(if result.negative { -1.0 } else { 1.0 });
+    let [row, column] = [row, column].map(Literal::usize_suffixed);
+    Some(quote!(jacobian[(#row, #column)] = T::from_f64(#one);))
 }

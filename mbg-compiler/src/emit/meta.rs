@@ -180,17 +180,7 @@ fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
 
 fn operations(compiled: &Compiled) -> TokenStream {
     let routines = &compiled.program.routines;
-    let count = |routine: usize| {
-        let columns = match routine {
-            _ if compiled.unrolled => None,
-            Routines::DERIVATIVE_AND_JACOBIAN => Some(compiled.states.len()),
-            Routines::JACOBIAN_INPUT => Some(compiled.model.inputs.len()),
-            _ => None,
-        };
-        let derivative = routines[Routines::DERIVATIVE].operations();
-        let unrolled = routines[routine].operations();
-        Literal::usize_suffixed(columns.map_or(unrolled, |columns| (columns + 1) * derivative))
-    };
+    let count = |routine: usize| Literal::usize_suffixed(routines[routine].operations());
     let [
         derivative,
         output,

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::compile::Compiled;
-use crate::program::{Operand, Routine, Solve, Solver, Source, Step};
+use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::{Kind, Symbol};
 
 /// Where a routine finds what it reads.
@@ -30,14 +30,42 @@ pub(super) fn lines(
         compiled,
         names: names(routine),
         setting,
+        columns: None,
     };
-    let body = writer.lines(&routine.steps, 0, &routine.results);
+    let columns = routine.columns.iter().flat_map(|it| &it.steps);
+    let mut behind = Made::read(&routine.read_behind());
+    behind.extend(columns.filter_map(Made::needed_by));
+    let body = writer.lines(&routine.steps, 0, &behind);
     let results = routine
         .results
         .iter()
         .map(|result| writer.operand(*result))
         .collect();
     (body, results)
+}
+
+/// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
+/// for all columns, and `slopes` holds what changes.
+pub(super) fn column_lines(
+    compiled: &Compiled,
+    routine: &Routine,
+    columns: &Columns,
+    rows: &[usize],
+) -> (TokenStream, Vec<TokenStream>) {
+    let solved = columns.steps.iter().filter_map(|step| match step {
+        Step::Solve(solve) => Some(solve.number),
+        _ => None,
+    });
+    let writer = Writer {
+        compiled,
+        names: names(routine),
+        setting: Setting::Method,
+        columns: Some((columns.first, solved.collect())),
+    };
+    let behind = Made::read(&columns.results);
+    let body = writer.lines(&columns.steps, columns.first, &behind);
+    let results = rows.iter().map(|row| writer.operand(columns.results[*row]));
+    (body, results.collect())
 }
 
 /// A local name for each value: its variable's, where it has one that no other value has.
@@ -90,6 +118,12 @@ impl Made {
         }
     }
 
+    /// What operands read.
+    fn read(operands: &[Operand]) -> Vec<Self> {
+        let operands = operands.iter();
+        operands.filter_map(|it| Self::of(it.source)).collect()
+    }
+
     /// The factors that a step uses.
     fn needed_by(step: &Step) -> Option<Self> {
         match step {
@@ -102,20 +136,18 @@ impl Made {
     }
 }
 
-/// The last part that reads what is made; what is returned is read behind all parts.
-fn last_parts(parts: &[&[Step]], results: &[Operand]) -> BTreeMap<Made, usize> {
+/// The last part that reads what is made, some of which is read behind all parts.
+fn last_parts(parts: &[&[Step]], behind: &[Made]) -> BTreeMap<Made, usize> {
     let mut last = BTreeMap::new();
     if parts.len() == 1 {
         return last;
     }
     for (number, part) in parts.iter().enumerate() {
         let factors = part.iter().filter_map(Made::needed_by);
-        let read = part.iter().flat_map(Step::operands);
-        let read = read.filter_map(|operand| Made::of(operand.source));
+        let read = part.iter().flat_map(|step| Made::read(&step.operands()));
         last.extend(read.chain(factors).map(|made| (made, number)));
     }
-    let returned = results.iter().filter_map(|result| Made::of(result.source));
-    last.extend(returned.map(|made| (made, parts.len())));
+    last.extend(behind.iter().map(|made| (*made, parts.len())));
     last
 }
 
@@ -123,13 +155,15 @@ struct Writer<'a> {
     compiled: &'a Compiled,
     names: Vec<Ident>,
     setting: Setting,
+    /// In columns of a Jacobian, the first value that is theirs, and the numbers of their solves.
+    columns: Option<(usize, BTreeSet<usize>)>,
 }
 
 impl Writer<'_> {
-    /// Steps whose values begin with number `value`, of which `results` are read afterwards.
-    fn lines(&self, steps: &[Step], mut value: usize, results: &[Operand]) -> TokenStream {
+    /// Steps whose values begin with number `value`, with what is read behind them.
+    fn lines(&self, steps: &[Step], mut value: usize, behind: &[Made]) -> TokenStream {
         let parts: Vec<&[Step]> = steps.chunks(PART).collect();
-        let last_part = last_parts(&parts, results);
+        let last_part = last_parts(&parts, behind);
         let mut body = TokenStream::new();
         for (number, part) in parts.iter().enumerate() {
             let mut lines = TokenStream::new();
@@ -229,7 +263,7 @@ impl Writer<'_> {
         };
         let [number, first, size] =
             [number, self.compiled.first(number), solve.size].map(Literal::usize_suffixed);
-        let body = self.lines(&solve.steps, value, &solve.results);
+        let body = self.lines(&solve.steps, value, &Made::read(&solve.results));
         let operands = |list: &[Operand]| -> Vec<TokenStream> {
             list.iter().map(|operand| self.operand(*operand)).collect()
         };
@@ -277,6 +311,12 @@ impl Writer<'_> {
     /// The same with earlier factors.
     fn slope(&self, solve: &Solve, of: usize) -> TokenStream {
         let (unknowns, factors) = (unknowns(solve.number), factors(of));
+        if self.columns.is_some() {
+            let right = solve.results.iter().map(|operand| self.operand(*operand));
+            return quote! {
+                let #unknowns = ::mbg_runtime::__private::by_lane(&[#(#right),*], |right| #factors.solution(right));
+            };
+        }
         let right = self.column(&solve.results);
         quote!(let #unknowns = #factors.solution(&#right);)
     }
@@ -290,10 +330,35 @@ impl Writer<'_> {
     fn call(&self, function: &str, arguments: &[Operand]) -> TokenStream {
         let function = format_ident!("{}", function);
         let arguments = arguments.iter().map(|argument| self.operand(*argument));
+        if self.columns.is_some() {
+            return quote!(::mbg_runtime::Real::#function(#(#arguments),*));
+        }
         quote!(T::#function(#(#arguments),*))
     }
 
     fn operand(&self, operand: Operand) -> TokenStream {
+        let scalar = self.scalar(operand);
+        if self.is_whole(operand.source) {
+            quote!(whole(#scalar))
+        } else {
+            scalar
+        }
+    }
+
+    /// Whether a scalar stands where columns side by side are worked out.
+    fn is_whole(&self, source: Source) -> bool {
+        let Some((first, solved)) = &self.columns else {
+            return false;
+        };
+        match source {
+            Source::Value(value) => value < *first,
+            Source::Solved(place) => !solved.contains(&place.number),
+            Source::Symbol(Symbol::Slope(_)) => false,
+            Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => true,
+        }
+    }
+
+    fn scalar(&self, operand: Operand) -> TokenStream {
         let value = match operand.source {
             Source::Constant(value) => {
                 let literal = Literal::f64_suffixed(value);
@@ -309,6 +374,7 @@ impl Writer<'_> {
             }
             Source::Symbol(Symbol::State(index)) => element(&format_ident!("x"), index),
             Source::Symbol(Symbol::Input(index)) => element(&format_ident!("u"), index),
+            Source::Symbol(Symbol::Slope(index)) => element(&format_ident!("slopes"), index),
             Source::Solved(place) => element(&unknowns(place.number), place.row),
             Source::Symbol(Symbol::Time | Symbol::Signal(_) | Symbol::Unknown(_)) => quote!(t),
             Source::Folded(index) => {
@@ -350,6 +416,14 @@ fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
 /// What holds the unknowns of an iteration.
 fn unknowns(number: usize) -> Ident {
     format_ident!("z{}", number, span = Span::mixed_site())
+}
+
+/// The factors that a step uses, if it solves with those of another.
+pub(super) fn used_factors(step: &Step) -> Option<Ident> {
+    match Made::needed_by(step) {
+        Some(Made::Factors(number)) => Some(factors(number)),
+        _ => None,
+    }
 }
 
 /// What holds the factors of the matrix that gives the unknowns.

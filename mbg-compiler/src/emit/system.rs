@@ -8,7 +8,7 @@ use super::routine::{Setting, lines};
 use super::{columns, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
-use crate::program::{Operand, Source};
+use crate::program::Source;
 
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
@@ -107,11 +107,10 @@ fn system(compiled: &Compiled) -> TokenStream {
     let derivative = body(Routines::DERIVATIVE, &vector);
     let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
-    let (derivative_and_jacobian, jacobian_input) = if compiled.unrolled {
-        (derivative_and_jacobian(compiled), jacobian_input(compiled))
-    } else {
-        columns::jacobians(compiled)
-    };
+    let [derivative_and_jacobian, jacobian_input] = [
+        derivative_and_jacobian(compiled),
+        jacobian_input(compiled),
+    ];
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -189,9 +188,8 @@ fn derivative_and_jacobian(compiled: &Compiled) -> TokenStream {
     let size = compiled.states.len();
     let routine = Routines::DERIVATIVE_AND_JACOBIAN;
     body(compiled, routine, &|results| {
-        let entries = &compiled.program.routines[routine].results[size..];
         let derivative = vector(&results[..size]);
-        let jacobian = jacobian(compiled, entries, &results[size..], size);
+        let jacobian = jacobian(compiled, routine, &results[size..], size);
         quote!((#derivative, #jacobian))
     })
 }
@@ -199,8 +197,7 @@ fn derivative_and_jacobian(compiled: &Compiled) -> TokenStream {
 fn jacobian_input(compiled: &Compiled) -> TokenStream {
     let routine = Routines::JACOBIAN_INPUT;
     body(compiled, routine, &|results| {
-        let entries = &compiled.program.routines[routine].results;
-        jacobian(compiled, entries, results, compiled.model.inputs.len())
+        jacobian(compiled, routine, results, compiled.model.inputs.len())
     })
 }
 
@@ -210,13 +207,18 @@ fn vector(results: &[TokenStream]) -> TokenStream {
     quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
 }
 
-/// A Jacobian of the derivative by rows: all entries, or where most are zero those that are not.
+/// A Jacobian of the derivative: column by column, or by rows all entries, or where most are zero those that are not.
 fn jacobian(
     compiled: &Compiled,
-    entries: &[Operand],
+    routine: usize,
     results: &[TokenStream],
     columns: usize,
 ) -> TokenStream {
+    let routine = &compiled.program.routines[routine];
+    if !routine.columns.is_empty() {
+        return columns::jacobian(compiled, routine, columns);
+    }
+    let entries = &routine.results[routine.results.len() - results.len()..];
     let size = [compiled.states.len(), columns].map(Literal::usize_suffixed);
     let [rows, width] = &size;
     let filled: Vec<usize> = (0..entries.len())

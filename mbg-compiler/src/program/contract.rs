@@ -3,7 +3,7 @@
 //! On a target with a fused multiply-add that is one instruction in place of two, and half of their latency. Of a sum of
 //! two products the one that is ready last is taken in, so that the other does not wait for it.
 
-use super::{Operand, Routine, Solve, Source, Step};
+use super::{Columns, Operand, Routine, Solve, Source, Step};
 
 /// Cycles until a result can be used, on the processors of today about the same everywhere.
 mod latency {
@@ -16,7 +16,7 @@ mod latency {
 pub(super) fn contract(routine: &Routine) -> Routine {
     let mut uses = vec![0; routine.names.len()];
     count_uses(&routine.steps, &mut uses);
-    count(&routine.results, &mut uses);
+    count(&routine.read_behind(), &mut uses);
     let mut contraction = Contraction {
         uses,
         products: vec![None; routine.names.len()],
@@ -24,6 +24,9 @@ pub(super) fn contract(routine: &Routine) -> Routine {
         taken: vec![false; routine.names.len()],
     };
     contraction.choose(&routine.steps, 0);
+    for columns in &routine.columns {
+        contraction.choose(&columns.steps, columns.first);
+    }
     let mut places = Vec::with_capacity(routine.names.len());
     let mut names = Vec::new();
     for (taken, name) in contraction.taken.iter().zip(&routine.names) {
@@ -32,6 +35,8 @@ pub(super) fn contract(routine: &Routine) -> Routine {
             names.push(name.clone());
         }
     }
+    // One more for where nothing comes.
+    places.push(names.len());
     let rewrite = Rewrite {
         contraction: &contraction,
         places: &places,
@@ -40,6 +45,7 @@ pub(super) fn contract(routine: &Routine) -> Routine {
         steps: rewrite.steps(&routine.steps, 0),
         names,
         results: rewrite.operands(&routine.results),
+        columns: routine.columns.iter().map(|it| rewrite.columns(it)).collect(),
     }
 }
 
@@ -150,6 +156,15 @@ impl Rewrite<'_> {
             value += step.results();
         }
         kept
+    }
+
+    fn columns(&self, columns: &Columns) -> Columns {
+        Columns {
+            variables: columns.variables.clone(),
+            first: self.places[columns.first],
+            steps: self.steps(&columns.steps, columns.first),
+            results: self.operands(&columns.results),
+        }
     }
 
     fn step(&self, step: &Step, value: usize) -> Step {

@@ -110,6 +110,7 @@ fn operand(operand: Operand) -> String {
         Source::Symbol(Symbol::State(index)) => format!("x{index}"),
         Source::Symbol(Symbol::Input(index)) => format!("u{index}"),
         Source::Symbol(Symbol::Time) => "t".to_owned(),
+        Source::Symbol(Symbol::Slope(index)) => format!("d{index}"),
         Source::Symbol(Symbol::Signal(index) | Symbol::Unknown(index)) => format!("signal{index}"),
         Source::Folded(index) => format!("c{index}"),
         Source::Value(index) => format!("v{index}"),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::iterate::{consistent, iterate, regular};
-use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
+use super::{Columns, Operand, Program, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::{Kind, Symbol};
 
 /// What a program is run with.
@@ -18,7 +18,7 @@ pub struct Arguments<'a> {
     pub input: &'a [f64],
 }
 
-/// Results of the routine with this number.
+/// Results of the routine with this number; a Jacobian that it returns besides follows by rows.
 #[must_use]
 pub fn evaluate(program: &Program, routine: usize, arguments: &Arguments) -> Vec<f64> {
     let folded = run(&program.folded, arguments, &[]);
@@ -30,11 +30,14 @@ fn run(routine: &Routine, arguments: &Arguments, folded: &[f64]) -> Vec<f64> {
         arguments,
         folded,
         values: Vec::new(),
+        direction: None,
         solved: BTreeMap::new(),
         matrices: BTreeMap::new(),
     };
     machine.steps(&routine.steps);
-    machine.results(&routine.results)
+    let mut results = machine.results(&routine.results);
+    results.extend(machine.jacobian(&routine.columns));
+    results
 }
 
 #[derive(Clone)]
@@ -42,6 +45,8 @@ struct Machine<'a> {
     arguments: &'a Arguments<'a>,
     folded: &'a [f64],
     values: Vec<f64>,
+    /// The variable that changes.
+    direction: Option<usize>,
     /// Unknowns by iteration.
     solved: BTreeMap<usize, Vec<f64>>,
     /// Matrices of linear solves.
@@ -49,6 +54,25 @@ struct Machine<'a> {
 }
 
 impl Machine<'_> {
+    /// A Jacobian by rows.
+    fn jacobian(&self, columns: &[Columns]) -> Vec<f64> {
+        let width: usize = columns.iter().map(|it| it.variables.len()).sum();
+        let rows = columns.first().map_or(0, |it| it.results.len());
+        let mut entries = vec![0.0; rows * width];
+        for group in columns {
+            for variable in &group.variables {
+                let mut inner = self.clone();
+                inner.direction = Some(*variable);
+                inner.values.resize(group.first, f64::NAN);
+                inner.steps(&group.steps);
+                for (row, entry) in inner.results(&group.results).into_iter().enumerate() {
+                    entries[row * width + variable] = entry;
+                }
+            }
+        }
+        entries
+    }
+
     fn steps(&mut self, steps: &[Step]) {
         for step in steps {
             let value = match step {
@@ -114,6 +138,7 @@ impl Machine<'_> {
             Source::Symbol(Symbol::State(index)) => self.arguments.state[index],
             Source::Symbol(Symbol::Input(index)) => self.arguments.input[index],
             Source::Symbol(Symbol::Time) => self.arguments.time,
+            Source::Symbol(Symbol::Slope(index)) => f64::from(self.direction == Some(index)),
             Source::Symbol(Symbol::Signal(_) | Symbol::Unknown(_)) => f64::NAN,
             Source::Folded(index) => self.folded[index],
             Source::Value(index) => self.values[index],

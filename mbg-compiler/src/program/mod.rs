@@ -9,7 +9,7 @@ mod interpret;
 mod iterate;
 mod schedule;
 
-use crate::symbolic::{Function, Kind, Place, Symbol};
+use crate::symbolic::{Expression, Function, Kind, Place, Symbol};
 
 pub use dump::dump;
 pub use interpret::{Arguments, evaluate};
@@ -136,6 +136,46 @@ impl Step {
     }
 }
 
+/// What a function is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// Its results.
+    pub results: Vec<Expression>,
+    /// Columns of a Jacobian that is not among the results.
+    pub columns: Vec<Slopes>,
+}
+
+/// How rates change along a direction.
+#[derive(Clone, Debug)]
+pub struct Slopes {
+    /// What changes, by place.
+    pub variables: Vec<usize>,
+    /// Linear in the [`Symbol::Slope`]s of what changes.
+    pub rates: Vec<Expression>,
+}
+
+impl From<Vec<Expression>> for Request {
+    fn from(results: Vec<Expression>) -> Self {
+        Self {
+            results,
+            columns: Vec::new(),
+        }
+    }
+}
+
+/// Columns of a Jacobian: steps that are run for each of them, or for several at once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    /// The variables by which it is differentiated.
+    pub variables: Vec<usize>,
+    /// Number of the first value.
+    pub first: usize,
+    /// Steps. All are linear in the slopes of the variables; all else that they read is worked out before.
+    pub steps: Vec<Step>,
+    /// The rates' slopes.
+    pub results: Vec<Operand>,
+}
+
 /// A function: steps in order of evaluation, and what it returns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Routine {
@@ -145,13 +185,29 @@ pub struct Routine {
     pub names: Vec<String>,
     /// Results.
     pub results: Vec<Operand>,
+    /// Columns of a Jacobian that is returned besides; their values go on from those of the steps.
+    pub columns: Vec<Columns>,
 }
 
 impl Routine {
     /// Operations per call.
     #[must_use]
     pub fn operations(&self) -> usize {
-        self.steps.iter().map(Step::operations).sum()
+        let count = |steps: &[Step]| -> usize { steps.iter().map(Step::operations).sum() };
+        let columns = self.columns.iter();
+        let columns = columns.map(|it| it.variables.len() * count(&it.steps));
+        count(&self.steps) + columns.sum::<usize>()
+    }
+
+    /// All that it reads or returns behind its steps.
+    #[must_use]
+    pub fn read_behind(&self) -> Vec<Operand> {
+        let columns = self.columns.iter();
+        let read = columns.flat_map(|it| {
+            let steps = it.steps.iter().flat_map(Step::operands);
+            steps.chain(it.results.iter().copied())
+        });
+        self.results.iter().copied().chain(read).collect()
     }
 
     /// Whether there is an iteration in it.
@@ -184,7 +240,7 @@ impl Program {
     pub fn is_finite(&self) -> bool {
         let finite = |operand: &Operand| !matches!(operand.source, Source::Constant(value) if !value.is_finite());
         self.routines.iter().chain([&self.folded]).all(|routine| {
-            routine.results.iter().all(finite)
+            routine.read_behind().iter().all(finite)
                 && routine
                     .steps
                     .iter()

@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::contract::contract;
-use super::{Operand, Program, Routine, Solve, Solver, Source, Step};
+use super::{Columns, Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step};
 use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
-/// Builds one function for each list of results. `state` gives the place in `x` of each candidate state; `names` names nodes.
+/// Builds one function for each request. `state` gives the place in `x` of each candidate state; `names` names nodes.
 #[must_use]
 pub fn build(
     pool: &Pool,
-    requests: &[Vec<Expression>],
+    requests: &[Request],
     state: &dyn Fn(usize) -> usize,
     names: &BTreeMap<usize, String>,
 ) -> Program {
@@ -29,19 +29,23 @@ pub fn build(
         state,
         names,
     };
-    let folded = context.routine(&folded_nodes, true);
+    let folded = context.routine(&Request::from(folded_nodes), true);
     let routines = requests
         .iter()
-        .map(|results| context.routine(results, false))
+        .map(|request| context.routine(request, false))
         .collect();
     Program { folded, routines }
 }
 
 /// Expressions of parameters alone that something varying, or a result, is computed from.
-fn folded_nodes(pool: &Pool, requests: &[Vec<Expression>]) -> Vec<Expression> {
+fn folded_nodes(pool: &Pool, requests: &[Request]) -> Vec<Expression> {
     let mut seen = vec![false; pool.len()];
     let mut found = Vec::new();
-    for root in requests.iter().flatten() {
+    let roots = requests.iter().flat_map(|request| {
+        let columns = request.columns.iter();
+        request.results.iter().chain(columns.flat_map(|it| &it.rates))
+    });
+    for root in roots {
         let mut pending = vec![root.magnitude()];
         while let Some(current) = pending.pop() {
             if std::mem::replace(&mut seen[current.node()], true) {
@@ -160,22 +164,124 @@ struct Common {
     divisors: BTreeSet<usize>,
 }
 
+/// What several columns of a Jacobian have in common.
+#[derive(Default)]
+struct Unchanging {
+    /// Expressions.
+    needed: Vec<Expression>,
+    /// Divisors by node.
+    divisors: BTreeMap<usize, Expression>,
+    /// Numbers of linear solves whose factors are used.
+    factorised: BTreeSet<usize>,
+}
+
 impl Context<'_> {
     /// Steps for the roots, each node once, operands before what uses them. While folding, nothing is taken from the
     /// folded values, since these are just being made.
-    fn routine(&self, roots: &[Expression], folding: bool) -> Routine {
+    fn routine(&self, request: &Request, folding: bool) -> Routine {
+        let roots = &request.results;
         let mut draft = Draft {
             routine: Routine::default(),
             values: BTreeMap::new(),
             reciprocals: BTreeMap::new(),
             solved: BTreeSet::new(),
         };
-        self.steps(&mut draft, roots, folding);
+        let unchanging = self.unchanging(&request.columns);
+        self.steps(&mut draft, &[&roots[..], &unchanging.needed].concat(), folding);
+        self.prepare(&mut draft, &unchanging);
+        for slopes in &request.columns {
+            self.columns(&mut draft, slopes, &unchanging);
+        }
         draft.routine.results = roots
             .iter()
             .map(|root| self.operand(&draft, *root, folding))
             .collect();
         contract(&draft.routine)
+    }
+
+    /// Whether each node changes along a direction; operands come before what uses them.
+    fn changing(&self) -> Vec<bool> {
+        let mut changing = Vec::with_capacity(self.pool.len());
+        for node in self.pool.nodes() {
+            changing.push(match self.pool.operation(node) {
+                Operation::Symbol(Symbol::Slope(_)) => true,
+                _ => {
+                    let mut before = self.before(node).into_iter();
+                    before.any(|it| changing.get(it.node()).copied().unwrap_or(false))
+                }
+            });
+        }
+        changing
+    }
+
+    /// What slopes are worked out from and does not change with the direction.
+    fn unchanging(&self, columns: &[Slopes]) -> Unchanging {
+        let mut found = Unchanging::default();
+        if columns.is_empty() {
+            return found;
+        }
+        let changing = self.changing();
+        let mut seen = vec![false; self.pool.len()];
+        let rates = columns.iter().rev().flat_map(|it| it.rates.iter().rev());
+        let mut pending: Vec<Expression> = rates.copied().collect();
+        while let Some(current) = pending.pop() {
+            if std::mem::replace(&mut seen[current.node()], true) {
+                continue;
+            }
+            if !changing[current.node()] {
+                found.needed.push(current.magnitude());
+                continue;
+            }
+            match self.pool.operation(current) {
+                Operation::Divide(_, divisor) => {
+                    found.divisors.insert(divisor.node(), divisor.magnitude());
+                }
+                Operation::Symbol(symbol) => {
+                    let place = self.pool.place(*symbol);
+                    let earlier = place.and_then(|it| self.pool.implicit()[it.number].earlier());
+                    found.factorised.extend(earlier);
+                }
+                _ => {}
+            }
+            pending.extend(self.before(current).into_iter().rev());
+        }
+        found
+    }
+
+    /// Reciprocals and factors that slopes are worked out with; what these are made of is there.
+    fn prepare(&self, draft: &mut Draft, unchanging: &Unchanging) {
+        for (node, divisor) in &unchanging.divisors {
+            let divisor = self.operand(draft, *divisor, false);
+            draft.reciprocal(*node, divisor);
+        }
+        for number in &unchanging.factorised {
+            if !draft.solved.contains(number) {
+                self.solve(draft, *number);
+            }
+        }
+    }
+
+    /// Steps for slopes, all that does not change with the direction being there.
+    fn columns(&self, draft: &mut Draft, slopes: &Slopes, unchanging: &Unchanging) {
+        let common = Common {
+            angles: BTreeMap::new(),
+            early: Vec::new(),
+            divisors: unchanging.divisors.keys().copied().collect(),
+        };
+        let outside = (draft.values.clone(), draft.solved.clone());
+        let first = draft.routine.names.len();
+        let before = std::mem::take(&mut draft.routine.steps);
+        for rate in &slopes.rates {
+            self.visit(draft, rate.magnitude(), false, &common);
+        }
+        let columns = Columns {
+            variables: slopes.variables.clone(),
+            first,
+            results: self.operands(draft, &slopes.rates),
+            steps: std::mem::replace(&mut draft.routine.steps, before),
+        };
+        (draft.values, draft.solved) = outside;
+        draft.routine.columns.push(columns);
     }
 
     /// Appends what the roots still need.

@@ -427,7 +427,7 @@ impl Reducer<'_> {
             let slope = Differentiator::new(symbol).derivative(self.pool, expression);
             match symbol {
                 // Unknowns are given symbols of their own only where a reduced system is solved.
-                Symbol::Parameter(_) | Symbol::Unknown(_) => {}
+                Symbol::Parameter(_) | Symbol::Unknown(_) | Symbol::Slope(_) => {}
                 Symbol::Time => sum.constant = self.pool.add(sum.constant, slope),
                 Symbol::Input(input) => sum.input = Some(input),
                 Symbol::Signal(signal) => {

@@ -10,10 +10,10 @@ use super::pool::{Definition, Pool};
 use super::substitute::symbols;
 use super::walk::Rewritten;
 
-/// Differentiates with respect to one symbol and remembers what it has done.
+/// Differentiates along one direction and remembers what it has done.
 pub struct Differentiator {
     known: Rewritten,
-    /// Derivatives of symbols; those that are not there do not depend on the one in question.
+    /// Derivatives of symbols; those that are not there do not change along the direction.
     slopes: BTreeMap<Symbol, Expression>,
     /// How many of the pool's definitions are known.
     defined: usize,
@@ -23,9 +23,15 @@ impl Differentiator {
     /// With respect to `symbol`.
     #[must_use]
     pub fn new(symbol: Symbol) -> Self {
+        Self::along(BTreeMap::from([(symbol, Expression::ONE)]))
+    }
+
+    /// Along the direction in which symbols have these slopes, and all others none.
+    #[must_use]
+    pub fn along(slopes: BTreeMap<Symbol, Expression>) -> Self {
         Self {
             known: Rewritten::default(),
-            slopes: BTreeMap::from([(symbol, Expression::ONE)]),
+            slopes,
             defined: 0,
         }
     }

@@ -230,6 +230,7 @@ impl Pool {
             Symbol::Time => (4, 0, Rate::Varying),
             Symbol::Signal(index) => (5, index, Rate::Varying),
             Symbol::Unknown(index) => (6, index, Rate::Varying),
+            Symbol::Slope(index) => (7, index, Rate::Varying),
         };
         let image = match symbol {
             Symbol::State(state) => self.located.get(&state).copied(),

@@ -370,6 +370,7 @@ pub(super) fn expression_text(
         Symbol::Input(index) => model.inputs[index].name.clone(),
         Symbol::Time => "t".to_owned(),
         Symbol::Unknown(index) => claims.hidden[index].text.clone(),
+        Symbol::Slope(index) => format!("slope {index}"),
         Symbol::Signal(index) => report::signal_text(model, claims.signals.list()[index]),
     };
     crate::symbolic::print::Printer::new(pool, &name).text(expression)

@@ -101,6 +101,7 @@ fn read(operand: &Operand, point: &Point, folded: &[Dual<f64>], made: Made) -> D
         Source::Symbol(Symbol::Time) => point.time,
         Source::Symbol(Symbol::Parameter(index)) => Dual::constant(point.parameters[index]),
         Source::Symbol(Symbol::Signal(_)) => panic!("no program reads a signal"),
+        Source::Symbol(Symbol::Slope(_)) => panic!("only columns of Jacobians read slopes"),
         Source::Folded(index) => folded[index],
         Source::Value(index) => made.0[index],
         Source::Solved(place) => made.1[&place.number][place.row],

@@ -60,6 +60,8 @@ macro_rules! functions {
 }
 
 impl Real for Pair {
+    type Columns = Self;
+
     const SINGULAR: f64 = <f64 as Real>::SINGULAR;
     const EPSILON: f64 = <f64 as Real>::EPSILON;
 

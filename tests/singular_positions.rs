@@ -4,18 +4,7 @@
 use mbg_runtime::{Adaptive, Integrator, System, Tsit5, mbg};
 use nalgebra::SVector;
 
-mbg! {
-    include "tests/models/mechanisms/row.mbg";
-
-    #[derivative]
-    pub(crate) model FourBars2 {
-        causality componentwise;
-        gravity [0.0, -9.81];
-        1 ground[3];
-        Sf fixed[3] { flow: 0.0 } -> ground;
-        row: Row { loops: 2 } (ground);
-    }
-}
+mbg! { include "tests/models/mechanisms/two_four_bars.mbg"; }
 
 /// Two four-bars over 10 s, from 200 rates of the cranks: every run arrives, and energy stays to the tolerance.
 #[test]

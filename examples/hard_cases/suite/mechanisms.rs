@@ -7,7 +7,7 @@ use mbg_runtime::{
 };
 use nalgebra::SVector;
 
-use super::models::{FourBars, FourBarsParameters};
+use super::models::{FourBars2, FourBars2Parameters};
 use super::problems::{Law, Oscillator, Written};
 use super::{Expected, Found, Line, apart};
 
@@ -87,13 +87,13 @@ pub(crate) fn double_pendulum() -> Vec<Line> {
 
 /// Energy over 10 s, from rates of the cranks at which the loops pass positions where their equations become dependent.
 fn energy(solver: &impl Integrator<10>) -> Result<Found, Stopped> {
-    let Ok(system) = FourBars::new(FourBarsParameters::default()) else {
+    let Ok(system) = FourBars2::new(FourBars2Parameters::default()) else {
         return Ok(Found {
             error: f64::INFINITY,
             steps: 0,
         });
     };
-    let meta = FourBars::<f64>::META;
+    let meta = FourBars2::<f64>::META;
     let balance = meta
         .outputs
         .iter()

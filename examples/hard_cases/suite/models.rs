@@ -3,7 +3,7 @@
 use mbg_runtime::mbg;
 
 mbg! {
-    include "tests/models/mechanisms/row.mbg";
+    include "tests/models/mechanisms/two_four_bars.mbg";
 
     /// A body whose orientation is held in three angles, turned by a torque.
     pub(crate) model PulledAngles {
@@ -40,16 +40,6 @@ mbg! {
             mass: 1.0, inertia: diag(0.55, 0.55, 0.3), centre: [0.0, 0.0, 0.5], gravity_at: foot.gravity_b
         } (frame);
         output quaternion[4] = foot.quaternion;
-    }
-
-    /// Two four-bars in a row.
-    #[derivative]
-    pub(crate) model FourBars {
-        causality componentwise;
-        gravity [0.0, -9.81];
-        1 ground[3];
-        Sf fixed[3] { flow: 0.0 } -> ground;
-        row: Row { loops: 2 } (ground);
     }
 
     /// A block of 1 kg on a belt, held by a spring: with a Stribeck curve it sticks and slips, with Coulomb's it comes to

@@ -165,23 +165,6 @@ fn tops_meet_elliptic_functions_in_every_orientation() {
     }
 }
 
-/// One torque until 2 s, and another one after that.
-struct Switched;
-
-impl Input<f64, 3> for Switched {
-    fn value(&self, _t: f64, since: f64) -> Vector3<f64> {
-        if since < 2.0 {
-            Vector3::new(0.0, PI, 0.0)
-        } else {
-            Vector3::new(0.5, 0.0, -0.4)
-        }
-    }
-
-    fn next_jump(&self, t: f64) -> Option<f64> {
-        (t < 2.0).then_some(2.0)
-    }
-}
-
 #[test]
 fn a_body_is_pulled_through_gimbal_lock() {
     let (quaternion, matrix) = build! {
@@ -191,7 +174,7 @@ fn a_body_is_pulled_through_gimbal_lock() {
     let (x, y) = (quaternion.initial_state(), matrix.initial_state());
     run(
         &quaternion,
-        &Switched,
+        &reference::through_lock(),
         x,
         reference::THROUGH_LOCK,
         |_, _, _| vec![],
@@ -199,7 +182,7 @@ fn a_body_is_pulled_through_gimbal_lock() {
     .assert_within(1e-12, 1e-12, 1e-12);
     run(
         &matrix,
-        &Switched,
+        &reference::through_lock(),
         y,
         reference::THROUGH_LOCK,
         |_, _, _| vec![],

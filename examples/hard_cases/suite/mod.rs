@@ -62,6 +62,12 @@ pub(crate) struct Found {
 }
 
 impl Found {
+    /// Of a run that has not been made: no bound holds for it.
+    pub(crate) const NONE: Self = Self {
+        error: f64::INFINITY,
+        steps: 0,
+    };
+
     pub(crate) fn new(error: f64, statistics: Statistics) -> Self {
         Self {
             error,
@@ -146,15 +152,19 @@ impl fmt::Display for Line {
     }
 }
 
+/// The larger one of two errors; what is no number is larger than any, so that it is within no bound.
+pub(crate) fn larger(error: f64, other: f64) -> f64 {
+    if other > error || other.is_nan() {
+        other
+    } else {
+        error
+    }
+}
+
 /// The largest difference of components.
 pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
     let pairs = found.iter().zip(expected);
     pairs.fold(0.0, |largest, (found, expected)| {
-        let apart = (found - expected).abs();
-        if apart > largest || apart.is_nan() {
-            apart
-        } else {
-            largest
-        }
+        larger(largest, (found - expected).abs())
     })
 }

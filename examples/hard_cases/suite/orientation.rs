@@ -11,7 +11,7 @@ use super::models::{
 };
 use super::problems::{RigidBody, Written};
 use super::rotations::{self, Row};
-use super::{Expected, Found, Line, apart};
+use super::{Expected, Found, Line, apart, larger};
 
 /// Runs over the rows of a reference; the outputs are rates and the parts of a quaternion, of either sign.
 fn turned<S, const N: usize, const M: usize, const P: usize>(
@@ -31,7 +31,8 @@ where
         if let Some((_, _, expected)) = rows.next() {
             let opposite = expected.map(|part| -part);
             let found = &found.as_slice()[3..7];
-            error = error.max(apart(found, expected).min(apart(found, &opposite)));
+            let apart = apart(found, expected).min(apart(found, &opposite));
+            error = larger(error, apart);
         }
     })?;
     Ok(Found::new(error, statistics))
@@ -51,10 +52,7 @@ pub(crate) fn gimbal_lock() -> Vec<Line> {
             ),
             || match PulledAngles::new(PulledAnglesParameters::default()) {
                 Ok(model) => turned(&model, &at_lock, rows),
-                Err(_) => Ok(Found {
-                    error: f64::INFINITY,
-                    steps: 0,
-                }),
+                Err(_) => Ok(Found::NONE),
             },
         ),
         Line::run(
@@ -62,10 +60,7 @@ pub(crate) fn gimbal_lock() -> Vec<Line> {
             Expected::Within(1e-12),
             || match PulledQuaternion::new(PulledQuaternionParameters::default()) {
                 Ok(model) => turned(&model, &rotations::through_lock(), rows),
-                Err(_) => Ok(Found {
-                    error: f64::INFINITY,
-                    steps: 0,
-                }),
+                Err(_) => Ok(Found::NONE),
             },
         ),
     ]
@@ -81,10 +76,7 @@ pub(crate) fn sleeping_top() -> Vec<Line> {
             rate: 13.2,
         }) {
             Ok(model) => turned(&model, &(), rotations::SLEEPING),
-            Err(_) => Ok(Found {
-                error: f64::INFINITY,
-                steps: 0,
-            }),
+            Err(_) => Ok(Found::NONE),
         },
     )]
 }
@@ -137,10 +129,7 @@ pub(crate) fn tumbling() -> Vec<Line> {
     };
     let solver = Fixed::new(Gauss6::default(), 0.05).compensated();
     let (case, method) = (TUMBLING.1, "Gauss 6, h = 0.05 s");
-    let mut away = Ok(Found {
-        error: f64::INFINITY,
-        steps: 0,
-    });
+    let mut away = Ok(Found::NONE);
     // Rounding alone, which adds up like the steps of a drunkard; and the error of the method in the length of a period.
     let [rounding, late] = [1e-14 * PERIODS.sqrt(), 1e-7 * PERIODS].map(Expected::Within);
     let keeps = Line::run((case, method, "energy, momentum, length"), rounding, || {
@@ -152,7 +141,7 @@ pub(crate) fn tumbling() -> Vec<Line> {
         let ways = kept(&last).into_iter().zip(kept(&start));
         let drift = ways
             .map(|(now, then)| (now / then - 1.0).abs())
-            .fold(0.0, f64::max);
+            .fold(0.0, larger);
         ran.map(|statistics| Found::new(drift, statistics))
     });
     vec![

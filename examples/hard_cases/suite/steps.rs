@@ -10,7 +10,7 @@ use super::ins::{Ins, InsParameters};
 use super::ins_reference::PULSE;
 use super::problems::{Pendulum, StiffPin, Written};
 use super::stiffness::angles_of_ins;
-use super::{Expected, Found, Line, apart};
+use super::{Expected, Found, Line, apart, larger};
 
 const PIN: StiffPin = StiffPin {
     stiffness: 1e8,
@@ -36,10 +36,7 @@ impl Input<f32, 3> for Gust {
 
 fn ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
     let Ok(model) = Ins::<f32>::new(InsParameters::default()) else {
-        return Ok(Found {
-            error: f64::INFINITY,
-            steps: 0,
-        });
+        return Ok(Found::NONE);
     };
     let times: Vec<f32> = PULSE.iter().map(|instant| instant.time as f32).collect();
     let (mut error, mut rows) = (0.0_f64, PULSE.iter());
@@ -52,7 +49,7 @@ fn ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
         |_t, x| {
             if let Some(row) = rows.next() {
                 let found = [x[6], x[7], x[8]].map(f64::from);
-                error = error.max(apart(&found, &row.alpha));
+                error = larger(error, apart(&found, &row.alpha));
             }
         },
     )?;

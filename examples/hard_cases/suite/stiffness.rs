@@ -8,7 +8,7 @@ use nalgebra::SVector;
 use super::ins::{Ins, InsParameters, gust};
 use super::ins_reference::PULSE;
 use super::problems::{StiffPin, Written};
-use super::{Expected, Found, Line, apart};
+use super::{Expected, Found, Line, apart, larger};
 
 const PINS: [&str; 2] = ["pin of 1e6 N/m", "pin of 1e12 N/m"];
 
@@ -83,7 +83,7 @@ pub(crate) fn angles_of_ins(solver: &impl Integrator<9>) -> Result<Found, Stoppe
     let start = model.initial_state();
     let statistics = solver.sample(&model, &gust(0.1), 0.0, start, &times, |_t, x| {
         if let Some(row) = rows.next() {
-            error = error.max(apart(&x.as_slice()[6..9], &row.alpha));
+            error = larger(error, apart(&x.as_slice()[6..9], &row.alpha));
         }
     })?;
     Ok(Found::new(error, statistics))

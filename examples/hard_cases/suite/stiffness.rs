@@ -3,7 +3,6 @@
 use mbg_runtime::{
     Adaptive, Auto, Dop853, Fixed, Integrator, Method, Radau5, Rk4, Rodas5P, Ros2, Stopped, System,
 };
-use nalgebra::SVector;
 
 use super::ins::{Ins, InsParameters, gust};
 use super::ins_reference::PULSE;

@@ -10,6 +10,8 @@ mod ins;
 #[path = "../benches/elimination/models.rs"]
 #[allow(unreachable_pub)]
 mod models;
+#[path = "references/noise.rs"]
+mod noise;
 
 use arm::{Arm, ArmParameters};
 use ins::{Ins, InsParameters};
@@ -20,17 +22,7 @@ use models::{
     ring_error, ring_nominal,
 };
 use nalgebra::{SMatrix, SVector};
-
-/// Numbers in (−1, 1), the same in every run: a linear congruence (Knuth, MMIX).
-fn random() -> impl FnMut() -> f64 {
-    let mut state: u64 = 1;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
+use noise::noise;
 
 /// Largest component of `A x − b` beside those of the terms in its row.
 fn residual<const N: usize>(
@@ -56,7 +48,7 @@ fn compare<S, const N: usize, const M: usize, const P: usize>(
 where
     S: System<f64, N, M, P>,
 {
-    let mut random = random();
+    let mut random = noise(1);
     let sparsity = S::SPARSITY.unwrap();
     let mut planned = 0;
     for _ in 0..100 {

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 
 use super::energy::imbalance;
 use crate::arm::{Arm, ArmParameters};
+use crate::references::noise::noise;
 use crate::references::robots::{crane, panda};
 use crate::references::tree::{self, Link};
 
@@ -43,24 +44,13 @@ mbg! {
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// Numbers between -1 and 1, the same in every run.
-fn numbers() -> impl FnMut() -> f64 {
-    let mut state = 1_u64;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
 /// The largest error of the accelerations at 1,000 random states, relative to the largest of them at that state; and
 /// that of the kinetic energy. The states are the coordinates and then their rates, in order of the joints.
 fn compared<const N: usize, const M: usize, const P: usize>(
     model: &impl System<f64, N, M, P>,
     links: &[Link],
 ) -> [f64; 2] {
-    let mut next = numbers();
+    let mut next = noise(1);
     let mut worst = [0.0_f64; 2];
     for _ in 0..1000 {
         let x = SVector::<f64, N>::from_fn(|_, _| next());
@@ -114,7 +104,7 @@ fn hand_is_where_the_links_lead() {
         Arm::new(ArmParameters::default()).unwrap(),
         Serial::new(SerialParameters::default()).unwrap(),
     );
-    let mut next = numbers();
+    let mut next = noise(1);
     let idle = SVector::zeros();
     for _ in 0..100 {
         let x = SVector::<f64, 14>::from_fn(|_, _| 3.0 * next());

@@ -373,7 +373,7 @@ fn friction_that_falls_with_speed_equals_bisection() {
 
 #[test]
 fn jacobians_and_power_are_exact() {
-    let mut random = super::navigation::noise(3);
+    let mut random = crate::references::noise::noise(3);
     for _ in 0..200 {
         let mut next = |scale: f64| SVector::from([scale * random()]);
         let (store, voltage) = (next(5e-4)[0], next(8.0));

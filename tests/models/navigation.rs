@@ -9,6 +9,7 @@ use crate::ins::{
     InsObserved, InsObservedParameters, InsParameters, gust,
 };
 use crate::reference;
+use crate::references::noise::noise;
 use crate::run::{Method, errors, run};
 
 fn proposed() -> Ins {
@@ -17,17 +18,6 @@ fn proposed() -> Ins {
 
 fn classic() -> InsClassic {
     InsClassic::new(InsClassicParameters::default()).unwrap()
-}
-
-/// A pseudo-random sequence in [-1, 1), the same every time.
-pub(super) fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }
 
 fn random_state(next: &mut impl FnMut() -> f64) -> SVector<f64, 9> {

@@ -14,6 +14,7 @@ pub(crate) mod flywheels;
 pub(crate) mod four_bar;
 pub(crate) mod governor;
 pub(crate) mod integrate;
+pub(crate) mod noise;
 pub(crate) mod planar;
 pub(crate) mod rectifier;
 pub(crate) mod robots;

@@ -3,7 +3,7 @@
 use mbg_runtime::{Dual, System};
 use nalgebra::SVector;
 
-use super::super::audit::{Probe, noise};
+use super::super::audit::Probe;
 use super::andrews::{Andrews, AndrewsParameters};
 use super::bricard::{Bricard, BricardParameters};
 use super::four_bars::{FourBar, FourBarParameters, FourBars2, FourBars2Parameters};
@@ -13,6 +13,7 @@ use super::slider_crank::{
     SpatialSliderCrankParameters,
 };
 use super::{Figures, andrews, bricard, four_bars, governor, slider_crank, states};
+use crate::references::noise::noise;
 
 /// Loops stay closed, energy is kept, and the point is within its own tolerance.
 #[track_caller]

@@ -4,6 +4,9 @@
 #[path = "../examples/arm/model.rs"]
 #[allow(unreachable_pub)]
 mod arm;
+#[path = "references/errors.rs"]
+#[allow(dead_code)]
+mod errors;
 #[path = "../examples/ins/models.rs"]
 #[allow(unreachable_pub, dead_code)]
 mod ins;
@@ -14,6 +17,7 @@ mod models;
 mod noise;
 
 use arm::{Arm, ArmParameters};
+use errors::larger;
 use ins::{Ins, InsParameters};
 use mbg_runtime::__private::{Complex, Shifted};
 use mbg_runtime::{Adaptive, Fixed, Integrator, Method, Radau5, Rodas5P, System};
@@ -35,7 +39,10 @@ fn residual<const N: usize>(
             .map(|column| matrix[(row, column)] * x[column])
             .collect();
         let size: f64 = terms.iter().map(|term| term.abs()).sum::<f64>() + right[row].abs();
-        largest.max((terms.iter().sum::<f64>() - right[row]).abs() / size)
+        larger(
+            largest,
+            (terms.iter().sum::<f64>() - right[row]).abs() / size,
+        )
     })
 }
 

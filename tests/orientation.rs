@@ -1,6 +1,8 @@
 //! Bodies that turn, with angles, quaternions and rotation matrices as states, against references.
 #![allow(clippy::unwrap_used)]
 
+#[path = "references/errors.rs"]
+mod errors;
 #[path = "orientation/models.rs"]
 mod models;
 #[path = "orientation/reference.rs"]
@@ -13,6 +15,7 @@ use mbg_runtime::{
 };
 use nalgebra::{SVector, Vector3};
 
+use errors::{apart, larger};
 use models::*;
 use reference::Row;
 
@@ -50,7 +53,7 @@ fn turned_by(found: &[f64], quaternion: &[f64; 4]) -> f64 {
     let product: f64 = found.iter().zip(quaternion).map(|(a, b)| a * b).sum();
     let parts = found.iter().zip(quaternion);
     parts.fold(0.0, |worst, (a, b)| {
-        f64::max(worst, (a - product.signum() * b).abs())
+        larger(worst, (a - product.signum() * b).abs())
     })
 }
 
@@ -72,13 +75,11 @@ where
     FINE.sample(model, input, 0.0, x0, &times, |t, x| {
         let output = model.output(t, x, &input.at(t), &mut ());
         let (_, rates, quaternion) = rows.next().unwrap();
-        for axis in 0..3 {
-            found.rates = found.rates.max((output[axis] - rates[axis]).abs());
-        }
+        found.rates = larger(found.rates, apart(&output.as_slice()[..3], rates));
         let turned = turned_by(&output.as_slice()[3..7], quaternion);
-        found.quaternion = found.quaternion.max(turned);
+        found.quaternion = larger(found.quaternion, turned);
         for (now, then) in kept(t, x, &output).iter().zip(&at_start) {
-            found.kept = found.kept.max((now - then).abs());
+            found.kept = larger(found.kept, (now - then).abs());
         }
     })
     .unwrap();
@@ -241,8 +242,11 @@ fn navigation_in_all_orientations_is_one_system_away_from_gimbal_lock() {
         outputs(&quaternion, &gust, &times),
         outputs(&matrix, &gust, &times),
     ] {
-        let differences = found.iter().zip(&expected).map(|(a, b)| (a - b).amax());
-        let worst = differences.fold(0.0, f64::max);
+        let differences = found
+            .iter()
+            .zip(&expected)
+            .map(|(a, b)| apart(a.as_slice(), b.as_slice()));
+        let worst = differences.fold(0.0, larger);
         assert!(worst < 1e-11, "{worst:e}");
     }
 }
@@ -301,7 +305,7 @@ fn navigation_with_quaternions_goes_where_gimbals_lock() {
         &times,
         |t, x| {
             let output = quaternion.output(t, x, &gust.at(t), &mut ());
-            worst[0] = worst[0].max(turned_by(&output.as_slice()[3..], &expected(t)));
+            worst[0] = larger(worst[0], turned_by(&output.as_slice()[3..], &expected(t)));
         },
     )
     .unwrap();
@@ -313,7 +317,7 @@ fn navigation_with_quaternions_goes_where_gimbals_lock() {
         &times,
         |t, x| {
             let output = matrix.output(t, x, &gust.at(t), &mut ());
-            worst[1] = worst[1].max(turned_by(&output.as_slice()[3..], &expected(t)));
+            worst[1] = larger(worst[1], turned_by(&output.as_slice()[3..], &expected(t)));
         },
     )
     .unwrap();
@@ -403,15 +407,15 @@ where
             let (t, x) = (step.end(), step.state());
             let output = model.output(t, x, &u, &mut S::Memory::default());
             let energy = model.energy(t, x) + output[4];
-            worst[0] = worst[0].max(output.fixed_rows::<3>(0).amax());
-            worst[1] = worst[1].max((energy - *start.get_or_insert(energy)).abs());
+            worst[0] = larger(worst[0], apart(&output.as_slice()[..3], &[0.0; 3]));
+            worst[1] = larger(worst[1], (energy - *start.get_or_insert(energy)).abs());
         })
         .unwrap();
     solver
         .sample(model, &(), 0.0, x0, &times, |t, x| {
             let angle = model.output(t, x, &u, &mut S::Memory::default())[3];
             let turns = (angle - angles.next().unwrap()) / (2.0 * PI);
-            worst[2] = worst[2].max((turns - turns.round()).abs());
+            worst[2] = larger(worst[2], (turns - turns.round()).abs());
         })
         .unwrap();
     worst

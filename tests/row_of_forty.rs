@@ -13,8 +13,9 @@ mod task;
 
 use mbg_runtime::{System, mbg};
 use nalgebra::SVector;
+use references::errors::apart;
 use references::four_bar::{DURATION, RATE, tip};
-use task::{Method, Task, apart, states};
+use task::{Method, Task, states};
 
 const LOOPS: usize = 40;
 

@@ -5,6 +5,7 @@ use nalgebra::SVector;
 
 use super::energy::imbalance;
 use crate::arm::{Arm, ArmParameters};
+use crate::references::errors::larger;
 use crate::references::noise::noise;
 use crate::references::robots::{crane, panda};
 use crate::references::tree::{self, Link};
@@ -61,11 +62,11 @@ fn compared<const N: usize, const M: usize, const P: usize>(
         assert_eq!(&found.as_slice()[..M], v);
         let size = expected.iter().fold(0.0_f64, |size, it| size.max(it.abs()));
         for (found, expected) in found.as_slice()[M..].iter().zip(&expected) {
-            worst[0] = worst[0].max((found - expected).abs() / size);
+            worst[0] = larger(worst[0], (found - expected).abs() / size);
         }
         let row = |row: &Vec<f64>| row.iter().zip(v).map(|(m, v)| m * v).sum::<f64>();
         let kinetic: f64 = 0.5 * matrix.iter().zip(v).map(|(it, v)| row(it) * v).sum::<f64>();
-        worst[1] = worst[1].max((model.energy(0.0, &x) - kinetic).abs() / kinetic);
+        worst[1] = larger(worst[1], (model.energy(0.0, &x) - kinetic).abs() / kinetic);
     }
     worst
 }

@@ -10,6 +10,7 @@ pub(crate) mod chain;
 pub(crate) mod crane;
 pub(crate) mod dense;
 pub(crate) mod double_pendulum;
+pub(crate) mod errors;
 pub(crate) mod flywheels;
 pub(crate) mod four_bar;
 pub(crate) mod governor;

@@ -1,5 +1,7 @@
 //! The cases, and what is expected of each.
 
+#[path = "../../../tests/references/errors.rs"]
+mod errors;
 mod friction;
 mod inputs;
 #[path = "../../ins/models.rs"]
@@ -23,6 +25,7 @@ mod stiffness;
 use std::fmt;
 use std::time::Instant;
 
+use errors::{apart, larger};
 use mbg_runtime::{Statistics, Stopped};
 
 /// A case by its name: some methods on one problem.
@@ -150,21 +153,4 @@ impl fmt::Display for Line {
             "  NOT AS EXPECTED"
         })
     }
-}
-
-/// The larger one of two errors; what is no number is larger than any, so that it is within no bound.
-pub(crate) fn larger(error: f64, other: f64) -> f64 {
-    if other > error || other.is_nan() {
-        other
-    } else {
-        error
-    }
-}
-
-/// The largest difference of components.
-pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
-    let pairs = found.iter().zip(expected);
-    pairs.fold(0.0, |largest, (found, expected)| {
-        larger(largest, (found - expected).abs())
-    })
 }

@@ -94,5 +94,5 @@ fn run() {
         found.energy,
         found.seconds
     );
-    assert!(found.energy < 1e-6 && found.gap < 1e-12 && found.point < 1e-5);
+    assert!(found.energy < 1e-8 && found.gap < 1e-12 && found.point < 1e-5);
 }

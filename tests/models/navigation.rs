@@ -51,12 +51,12 @@ fn meet_the_reference(method: Method, step: f64, bound: f64) {
 
 #[test]
 fn rk4_meets_the_reference() {
-    meet_the_reference(Method::Rk4, 1e-3, 1e-10);
+    meet_the_reference(Method::Rk4, 1e-3, 1e-12);
 }
 
 #[test]
 fn the_adaptive_pair_meets_the_reference() {
-    meet_the_reference(Method::Dop853(1e-10), 1e-2, 1e-8);
+    meet_the_reference(Method::Dop853(1e-10), 1e-2, 1e-10);
 }
 
 /// The equations by hand, in matrices: Newton and Euler, `α̇ = J⁻¹(C ω_p − ω_f)`, `τ = −J⁻ᵀ e`.

@@ -111,7 +111,7 @@ fn ring_charge(node: usize) -> Option<usize> {
 
 /// The usual sizes of the ring modulator's states: charges at 1 V, momenta at 1 µA in the large coils and 1 mA in the
 /// small ones.
-pub fn ring_nominal() -> [f64; 15] {
+pub(crate) fn ring_nominal() -> [f64; 15] {
     let states = RingModulator::<f64>::META.states;
     let mut nominal = std::array::from_fn(|state| match states[state].name {
         "l1.p" | "l2.p" => 4.45e-6,
@@ -126,7 +126,7 @@ pub fn ring_nominal() -> [f64; 15] {
 }
 
 /// Largest error in V of the ring modulator's voltages at 1 ms; infinite if one is not found.
-pub fn ring_error(end: &SVector<f64, 15>) -> f64 {
+pub(crate) fn ring_error(end: &SVector<f64, 15>) -> f64 {
     let nodes = RING_END.into_iter().zip(RING_CAPACITANCES).enumerate();
     nodes.fold(0.0, |largest: f64, (node, (expected, capacitance))| {
         let voltage = ring_charge(node).map(|state| end[state] / capacitance);

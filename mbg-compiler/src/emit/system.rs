@@ -145,7 +145,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
             #[inline]
             fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
-                self.derivative_and_jacobian(t, x, u, memory).1
+                ::mbg_runtime::System::derivative_and_jacobian(self, t, x, u, memory).1
             }
             #[inline]
             fn derivative_and_jacobian(

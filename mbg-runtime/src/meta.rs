@@ -141,7 +141,7 @@ pub struct Operations {
     pub output: usize,
     /// Of `derivative_and_jacobian`; where it goes by columns, those of a dual number count as one.
     pub derivative_and_jacobian: usize,
-    /// Of `jacobian_input`.
+    /// Of `jacobian_input`, counted alike.
     pub jacobian_input: usize,
     /// Of `energy`.
     pub energy: usize,

@@ -180,16 +180,16 @@ fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
 
 fn operations(compiled: &Compiled) -> TokenStream {
     let routines = &compiled.program.routines;
+    let operations = |routine: usize| routines[routine].operations();
+    let derivative = operations(Routines::DERIVATIVE);
     let count = |routine: usize| {
-        let columns = match routine {
-            _ if compiled.unrolled => None,
-            Routines::DERIVATIVE_AND_JACOBIAN => Some(compiled.states.len()),
-            Routines::JACOBIAN_INPUT => Some(compiled.model.inputs.len()),
-            _ => None,
+        let count = match routine {
+            _ if compiled.unrolled => operations(routine),
+            Routines::DERIVATIVE_AND_JACOBIAN => (1 + compiled.states.len()) * derivative,
+            Routines::JACOBIAN_INPUT => compiled.model.inputs.len() * derivative,
+            _ => operations(routine),
         };
-        let derivative = routines[Routines::DERIVATIVE].operations();
-        let unrolled = routines[routine].operations();
-        Literal::usize_suffixed(columns.map_or(unrolled, |columns| (columns + 1) * derivative))
+        Literal::usize_suffixed(count)
     };
     let [
         derivative,

@@ -54,7 +54,7 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
         let through = found.through.join("`, `");
         let size = found.variables;
         let solver = match found.iterated {
-            0 => "linear, unrolled".to_owned(),
+            0 => "linear".to_owned(),
             1 => "Newton iteration on one of them".to_owned(),
             count => format!("Newton iteration on {count} of them"),
         };

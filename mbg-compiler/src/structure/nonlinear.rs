@@ -31,15 +31,11 @@ impl Solver<'_> {
         let Tearing { system, held, .. } = tearing;
         let (columns, matrix, right) = system.rest();
         let iterated = held.iter().any(|held| !held.is_empty());
-        let values = if columns.is_empty() {
-            Vec::new()
-        } else if iterated {
-            let left: Vec<usize> = columns.iter().map(|column| unknowns[*column]).collect();
+        let left: Vec<usize> = columns.iter().map(|column| unknowns[*column]).collect();
+        let values = if iterated && !left.is_empty() {
             self.define(left, &matrix, &right, unknowns)?
         } else {
-            let mut divisor = Expression::ONE;
-            let values =
-                dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
+            let (values, divisor) = self.linear(System::of(&matrix, right), &left)?;
             self.note(divisor, &[]);
             values
         };

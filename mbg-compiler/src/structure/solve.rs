@@ -117,24 +117,15 @@ impl Solver<'_> {
             return self.by_levels(equations, unknowns);
         }
         let place = places(unknowns);
-        let mut matrix = Vec::new();
-        let mut right = Vec::new();
+        let (mut matrix, mut right) = (Vec::new(), Vec::new());
         let mut norms = Vec::new();
         for row in &rows {
             let (coefficients, rest) = self.sparse_row(row, &place)?;
             norms.push(self.norm(row)?);
-            let entry = |column| {
-                coefficients
-                    .get(&column)
-                    .copied()
-                    .unwrap_or(Expression::ZERO)
-            };
-            matrix.extend((0..unknowns.len()).map(entry));
+            matrix.push(coefficients);
             right.push(rest.negated());
         }
-        let matrix = Matrix::new(unknowns.len(), unknowns.len(), matrix);
-        let mut divisor = Expression::ONE;
-        let values = dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
+        let (values, divisor) = self.linear(System::new(matrix, right), unknowns)?;
         self.note(divisor, &norms);
         let by_law = rows
             .iter()
@@ -256,14 +247,59 @@ impl Solver<'_> {
     ) -> Result<(Rest, Vec<Expression>), Failure> {
         let rows = system.open().clone();
         let columns = (0..system.size()).collect();
-        system.eliminate_constants(self.pool, &rows, &columns, &|row, column| {
-            tree.allows(row, column)
-        })?;
-        let (columns, matrix, right) = system.rest();
-        let rows: Vec<usize> = system.open().iter().copied().collect();
+        let allowed = |row, column| tree.allows(row, column);
+        system.eliminate_constants(self.pool, &rows, &columns, &allowed)?;
         let mut divisor = Expression::ONE;
-        if columns.len() > ADJUGATE {
-            self.note_determinant(&matrix, &right)?;
+        let solved = self.whole(system, unknowns, &allowed, &mut divisor)?;
+        self.note(divisor, &[]);
+        Ok(solved)
+    }
+
+    /// Solves linear equations: the values, and what was divided by.
+    pub(super) fn linear(
+        &mut self,
+        mut system: System,
+        unknowns: &[usize],
+    ) -> Result<(Vec<Expression>, Expression), Failure> {
+        let (matrix, right) = system.equations();
+        let mut divisor = Expression::ONE;
+        let (rest, values) = self.whole(&mut system, unknowns, &|_, _| true, &mut divisor)?;
+        let values = system.back_substitute(self.pool, &rest.columns, &values)?;
+        if matches!(rest.solver, RestSolver::Numbers(_)) {
+            self.pool.solved(Linear {
+                matrix,
+                right,
+                eliminations: system.into_eliminations(),
+                rest,
+                values: values.clone(),
+            });
+        }
+        Ok((values, divisor))
+    }
+
+    /// What is left of a system, and its values. Where it is large, pivots that do not vary make it smaller. What is
+    /// large all the same is solved with numbers: no pivot that varies is known not to vanish at some state at which the
+    /// block is regular.
+    fn whole(
+        &mut self,
+        system: &mut System,
+        unknowns: &[usize],
+        allowed: &dyn Fn(usize, usize) -> bool,
+        divisor: &mut Expression,
+    ) -> Result<(Rest, Vec<Expression>), Failure> {
+        let all = system.open().clone();
+        let steady = |rate, row, column| rate < Rate::Varying && allowed(row, column);
+        while system.open().len() > ADJUGATE
+            && let Some((row, column)) = system.pivot(self.pool, &all, &steady)
+        {
+            *divisor = self.pool.multiply(*divisor, system.entry(row, column));
+            system.eliminate(self.pool, row, column)?;
+        }
+        let rows: Vec<usize> = system.open().iter().copied().collect();
+        let (columns, matrix, right) = system.rest();
+        if rows.len() > ADJUGATE {
+            let determinant = self.determinant(&matrix, &right)?;
+            *divisor = self.pool.multiply(*divisor, determinant);
             let numbers = columns.iter().map(|column| unknowns[*column]).collect();
             let method = Method::Linear {
                 matrix: matrix.negated(),
@@ -272,12 +308,11 @@ impl Solver<'_> {
             };
             return Ok(self.by_numbers(rows, columns, numbers, method));
         }
-        let values = if columns.is_empty() {
+        let values = if rows.is_empty() {
             Vec::new()
         } else {
-            dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?
+            dense(self.pool, &matrix, &right, divisor).ok_or(Failure::Singular)?
         };
-        self.note(divisor, &[]);
         let solver = RestSolver::Dense(matrix);
         let rest = Rest {
             rows,
@@ -287,9 +322,12 @@ impl Solver<'_> {
         Ok((rest, values))
     }
 
-    /// Remembers the determinant of a block that is solved with numbers. No pivot of such a block is known not to vanish
-    /// at some state at which the block is regular, so its own solution takes none beforehand.
-    fn note_determinant(&mut self, matrix: &Matrix, right: &[Expression]) -> Result<(), Failure> {
+    /// The determinant of a block that is solved with numbers.
+    fn determinant(
+        &mut self,
+        matrix: &Matrix,
+        right: &[Expression],
+    ) -> Result<Expression, Failure> {
         let mut determinant = Expression::ONE;
         if matrix.rows <= LAPLACE {
             determinant = matrix.determinant(self.pool);
@@ -299,8 +337,7 @@ impl Solver<'_> {
         if determinant == Expression::ZERO {
             return Err(Failure::Singular);
         }
-        self.note(determinant, &[]);
-        Ok(())
+        Ok(determinant)
     }
 
     /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
@@ -326,7 +363,9 @@ impl Solver<'_> {
             .collect();
         let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
         let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
-        while let Some((row, column)) = system.pivot_outside(self.pool, &rows, &columns) {
+        let others: BTreeSet<usize> = system.open().difference(&rows).copied().collect();
+        let outside = |_, _, column| !columns.contains(&column);
+        while let Some((row, column)) = system.pivot(self.pool, &others, &outside) {
             self.note(system.entry(row, column), &[]);
             system.eliminate(self.pool, row, column)?;
         }

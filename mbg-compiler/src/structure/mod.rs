@@ -17,6 +17,7 @@ mod mesh;
 mod nonlinear;
 mod reduction;
 mod resolve;
+mod rest;
 mod selection;
 mod shift;
 mod solve;

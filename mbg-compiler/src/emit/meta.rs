@@ -18,7 +18,7 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
         .collect();
     let inputs: Vec<&Variable> = model.inputs.iter().collect();
     let outputs: Vec<&Variable> = model.outputs.iter().map(|it| &it.variable).collect();
-    let operations = compiled.program.routines[Routines::DERIVATIVE].operations();
+    let operations = compiled.operations(Routines::DERIVATIVE);
     let mut lines = vec![
         String::new(),
         format!("{operations} operations per derivative."),
@@ -179,18 +179,7 @@ fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
 }
 
 fn operations(compiled: &Compiled) -> TokenStream {
-    let routines = &compiled.program.routines;
-    let operations = |routine: usize| routines[routine].operations();
-    let derivative = operations(Routines::DERIVATIVE);
-    let count = |routine: usize| {
-        let count = match routine {
-            _ if compiled.unrolled => operations(routine),
-            Routines::DERIVATIVE_AND_JACOBIAN => (1 + compiled.states.len()) * derivative,
-            Routines::JACOBIAN_INPUT => compiled.model.inputs.len() * derivative,
-            _ => operations(routine),
-        };
-        Literal::usize_suffixed(count)
-    };
+    let count = |routine: usize| Literal::usize_suffixed(compiled.operations(routine));
     let [
         derivative,
         output,
@@ -207,7 +196,7 @@ fn operations(compiled: &Compiled) -> TokenStream {
         Routines::POWER,
     ]
     .map(count);
-    let angles = Literal::usize_suffixed(routines[Routines::DERIVATIVE].angles());
+    let angles = Literal::usize_suffixed(compiled.program.routines[Routines::DERIVATIVE].angles());
     quote! {
         ::mbg_runtime::Operations {
             derivative: #derivative, output: #output, derivative_and_jacobian: #derivative_and_jacobian,

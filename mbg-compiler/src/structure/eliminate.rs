@@ -97,16 +97,6 @@ impl System {
         &self.open_rows
     }
 
-    /// Rows that are left and hold a column.
-    pub(super) fn holders(&self, column: usize) -> impl Iterator<Item = usize> {
-        self.columns[column].iter().copied()
-    }
-
-    /// Columns of a row with their coefficients.
-    pub(super) fn entries(&self, row: usize) -> impl Iterator<Item = (&usize, &Expression)> {
-        self.rows[row].iter()
-    }
-
     /// The right side of a row.
     pub(super) fn right(&self, row: usize) -> Expression {
         self.right[row]

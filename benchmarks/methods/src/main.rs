@@ -13,10 +13,11 @@ mod problems;
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
 
-use mbg_compare::{Comparison, Problem, TOLERANCES, compare};
+use mbg_compare::{Comparison, Problem, compare};
 use mbg_runtime::{Input, System};
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
+use peers::Peers;
 use problems::{RigidBody, Robertson, StiffPin, VanDerPol, Written};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -39,11 +40,12 @@ where
         .map(|it| (*it).to_owned())
         .collect();
     if comparison.reference().stiff {
-        peers::numeris_stiff(&mut comparison, &TOLERANCES, 1.0);
-        peers::numeris_stiff(&mut comparison, &TOLERANCES, small);
+        Peers::new(&mut comparison, 1.0).numeris_stiff();
+        Peers::new(&mut comparison, small).numeris_stiff();
     } else {
-        peers::numeris_smooth(&mut comparison, &TOLERANCES, small);
-        peers::ode_solvers_smooth(&mut comparison, &TOLERANCES, small);
+        let mut peers = Peers::new(&mut comparison, small);
+        peers.numeris_smooth();
+        peers.ode_solvers_smooth();
     }
     println!("{comparison}");
     std::fs::create_dir_all("out")?;

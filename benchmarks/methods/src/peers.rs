@@ -1,6 +1,6 @@
 //! Solvers of other crates, given the same right-hand side, the same exact Jacobian, and a new start behind each jump.
 
-use mbg_compare::{Comparison, Problem};
+use mbg_compare::{Comparison, Problem, TOLERANCES};
 use mbg_runtime::{Input, Statistics, System};
 use nalgebra::SVector;
 use numeris::ode::{AdaptiveSettings, RKAdaptive, RKTS54, RKV98NoInterp, RODAS4, Rosenbrock};
@@ -8,13 +8,15 @@ use numeris::{Matrix, Vector};
 use ode_solvers::dop_shared::OutputType;
 
 type Row<const N: usize> = SVector<f64, N>;
+/// The state at the end of a piece, and what it took.
+type Piece<const N: usize> = Result<(Row<N>, Statistics), String>;
 
 /// Runs a solver from jump to jump, and to each time at which the problem is judged.
 fn pieces<S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, S, I, N, M, P>,
     times: &[f64],
     states: &mut Vec<Row<N>>,
-    mut piece: impl FnMut(f64, f64, Row<N>) -> Result<(Row<N>, Statistics), String>,
+    piece: impl Fn([f64; 2], Row<N>) -> Piece<N>,
 ) -> Result<Statistics, String>
 where
     S: System<f64, N, M, P>,
@@ -28,7 +30,7 @@ where
                 Some(jump) if jump < time => jump,
                 _ => time,
             };
-            let (next, statistics) = piece(t, end, x)?;
+            let (next, statistics) = piece([t, end], x)?;
             sum.evaluations += statistics.evaluations;
             sum.steps += statistics.steps;
             sum.rejected += statistics.rejected;
@@ -39,9 +41,9 @@ where
     Ok(sum)
 }
 
-fn settings(tolerance: f64, absolute: f64) -> AdaptiveSettings<f64> {
+fn settings([relative, absolute]: [f64; 2]) -> AdaptiveSettings<f64> {
     AdaptiveSettings {
-        rel_tol: tolerance,
+        rel_tol: relative,
         abs_tol: absolute,
         min_step: 1e-30,
         max_steps: 10_000_000,
@@ -65,102 +67,6 @@ fn taken<const N: usize>(solution: numeris::ode::Solution<f64, N, 1>) -> (Row<N>
         ..Statistics::default()
     };
     (gathered(&solution.y), statistics)
-}
-
-/// An explicit method of `numeris`.
-fn explicit<
-    A,
-    S,
-    I,
-    const G: usize,
-    const D: usize,
-    const N: usize,
-    const M: usize,
-    const P: usize,
->(
-    name: &str,
-    comparison: &mut Comparison<'_, S, I, N, M, P>,
-    tolerances: &[f64],
-    small: f64,
-) where
-    A: RKAdaptive<G, D>,
-    S: System<f64, N, M, P>,
-    I: Input<f64, M>,
-{
-    let problem = comparison.problem().clone();
-    for &tolerance in tolerances {
-        let set = settings(tolerance, tolerance * small);
-        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
-            let mut memory = S::Memory::default();
-            pieces(&problem, times, states, |t, end, x| {
-                let slope = |time: f64, y: &Vector<f64, N>| {
-                    let u = problem.input.value(time, t);
-                    spread(
-                        &problem
-                            .system
-                            .derivative(time, &gathered(y), &u, &mut memory),
-                    )
-                };
-                A::integrate(t, end, &spread(&x), slope, &set)
-                    .map(taken)
-                    .map_err(|error| format!("{error:?}"))
-            })
-        };
-        comparison.solver(name, &format!("rtol = {tolerance:e}"), run);
-    }
-}
-
-/// `numeris`: Verner's pair of orders 9 and 8, and that of Tsitouras.
-pub fn numeris_smooth<S, I, const N: usize, const M: usize, const P: usize>(
-    comparison: &mut Comparison<'_, S, I, N, M, P>,
-    tolerances: &[f64],
-    small: f64,
-) where
-    S: System<f64, N, M, P>,
-    I: Input<f64, M>,
-{
-    explicit::<RKV98NoInterp, _, _, _, _, N, M, P>("numeris rkv98", comparison, tolerances, small);
-    explicit::<RKTS54, _, _, _, _, N, M, P>("numeris rkts54", comparison, tolerances, small);
-}
-
-/// `numeris`: Rodas4.
-pub fn numeris_stiff<S, I, const N: usize, const M: usize, const P: usize>(
-    comparison: &mut Comparison<'_, S, I, N, M, P>,
-    tolerances: &[f64],
-    small: f64,
-) where
-    S: System<f64, N, M, P>,
-    I: Input<f64, M>,
-{
-    let problem = comparison.problem().clone();
-    for &tolerance in tolerances {
-        let set = settings(tolerance, tolerance * small);
-        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
-            let (mut first, mut second) = (S::Memory::default(), S::Memory::default());
-            pieces(&problem, times, states, |t, end, x| {
-                let slope = |time: f64, y: &Vector<f64, N>| {
-                    let u = problem.input.value(time, t);
-                    spread(
-                        &problem
-                            .system
-                            .derivative(time, &gathered(y), &u, &mut first),
-                    )
-                };
-                let jacobian = |time: f64, y: &Vector<f64, N>| {
-                    let u = problem.input.value(time, t);
-                    let found = problem
-                        .system
-                        .jacobian_state(time, &gathered(y), &u, &mut second);
-                    Matrix::from_fn(|row, column| found[(row, column)])
-                };
-                RODAS4::integrate(t, end, &spread(&x), slope, jacobian, &set)
-                    .map(taken)
-                    .map_err(|error| format!("{error:?}"))
-            })
-        };
-        let name = format!("numeris rodas4, atol {small:e} rtol");
-        comparison.solver(&name, &format!("rtol = {tolerance:e}"), run);
-    }
 }
 
 /// A right-hand side as `ode_solvers` takes it.
@@ -188,33 +94,101 @@ where
     }
 }
 
-/// `ode_solvers`: the method of Dormand and Prince of order 8.
-pub fn ode_solvers_smooth<S, I, const N: usize, const M: usize, const P: usize>(
-    comparison: &mut Comparison<'_, S, I, N, M, P>,
-    tolerances: &[f64],
+/// Puts solvers of other crates into a comparison, at all its tolerances.
+pub struct Peers<'c, 'p, S, I, const N: usize, const M: usize, const P: usize> {
+    comparison: &'c mut Comparison<'p, S, I, N, M, P>,
+    /// Absolute tolerances as a part of relative ones.
     small: f64,
-) where
+}
+
+impl<'c, 'p, S, I, const N: usize, const M: usize, const P: usize> Peers<'c, 'p, S, I, N, M, P>
+where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
 {
-    let problem = comparison.problem().clone();
-    for &tolerance in tolerances {
-        let run = |times: &[f64], states: &mut Vec<Row<N>>| {
-            pieces(&problem, times, states, |t, end, x| {
-                let slope = Slope {
-                    problem: &problem,
-                    since: t,
-                };
+    pub fn new(comparison: &'c mut Comparison<'p, S, I, N, M, P>, small: f64) -> Self {
+        Self { comparison, small }
+    }
+
+    /// Adds a solver. `piece` goes from one time to another, between which nothing jumps, at a relative and an absolute
+    /// tolerance.
+    fn add(
+        &mut self,
+        name: &str,
+        piece: impl Fn(&Problem<'p, S, I, N, M, P>, [f64; 2], [f64; 2], Row<N>) -> Piece<N>,
+    ) {
+        let problem = self.comparison.problem().clone();
+        for tolerance in TOLERANCES {
+            let tolerances = [tolerance, tolerance * self.small];
+            let run = |times: &[f64], states: &mut Vec<Row<N>>| {
+                pieces(&problem, times, states, |times, x| {
+                    piece(&problem, tolerances, times, x)
+                })
+            };
+            let setting = format!("rtol = {tolerance:e}");
+            self.comparison.solver(name, &setting, run);
+        }
+    }
+
+    /// An explicit method of `numeris`.
+    fn explicit<A: RKAdaptive<G, D>, const G: usize, const D: usize>(&mut self, name: &str) {
+        self.add(name, |problem, tolerances, [t, end], x| {
+            let mut memory = S::Memory::default();
+            let slope = |time: f64, y: &Vector<f64, N>| {
+                let u = problem.input.value(time, t);
+                spread(
+                    &problem
+                        .system
+                        .derivative(time, &gathered(y), &u, &mut memory),
+                )
+            };
+            A::integrate(t, end, &spread(&x), slope, &settings(tolerances))
+                .map(taken)
+                .map_err(|error| format!("{error:?}"))
+        });
+    }
+
+    /// `numeris`: Verner's pair of orders 9 and 8, and that of Tsitouras.
+    pub fn numeris_smooth(&mut self) {
+        self.explicit::<RKV98NoInterp, _, _>("numeris rkv98");
+        self.explicit::<RKTS54, _, _>("numeris rkts54");
+    }
+
+    /// `numeris`: Rodas4.
+    pub fn numeris_stiff(&mut self) {
+        let name = format!("numeris rodas4, atol {:e} rtol", self.small);
+        self.add(&name, |problem, tolerances, [t, end], x| {
+            let (mut first, mut second) = (S::Memory::default(), S::Memory::default());
+            let slope = |time: f64, y: &Vector<f64, N>| {
+                let u = problem.input.value(time, t);
+                spread(
+                    &problem
+                        .system
+                        .derivative(time, &gathered(y), &u, &mut first),
+                )
+            };
+            let jacobian = |time: f64, y: &Vector<f64, N>| {
+                let u = problem.input.value(time, t);
+                let found = problem
+                    .system
+                    .jacobian_state(time, &gathered(y), &u, &mut second);
+                Matrix::from_fn(|row, column| found[(row, column)])
+            };
+            RODAS4::integrate(t, end, &spread(&x), slope, jacobian, &settings(tolerances))
+                .map(taken)
+                .map_err(|error| format!("{error:?}"))
+        });
+    }
+
+    /// `ode_solvers`: the method of Dormand and Prince of order 8.
+    pub fn ode_solvers_smooth(&mut self) {
+        self.add(
+            "ode_solvers dop853",
+            |problem, [relative, absolute], [t, end], x| {
+                let slope = Slope { problem, since: t };
                 let start = Column::from(<[f64; N]>::from(x));
-                let mut stepper = ode_solvers::Dop853::new(
-                    slope,
-                    t,
-                    end,
-                    end - t,
-                    start,
-                    tolerance,
-                    tolerance * small,
-                );
+                let mut stepper =
+                    ode_solvers::Dop853::new(slope, t, end, end - t, start, relative, absolute);
                 stepper.set_output(OutputType::Sparse);
                 let statistics = stepper.integrate().map_err(|error| error.to_string())?;
                 let last = stepper.y_out().last().ok_or("no result")?;
@@ -225,8 +199,7 @@ pub fn ode_solvers_smooth<S, I, const N: usize, const M: usize, const P: usize>(
                     ..Statistics::default()
                 };
                 Ok((Row::from(<[f64; N]>::from(*last)), statistics))
-            })
-        };
-        comparison.solver("ode_solvers dop853", &format!("rtol = {tolerance:e}"), run);
+            },
+        );
     }
 }

@@ -59,6 +59,12 @@ impl Compiled {
         sizes.filter(|size| *size > 0)
     }
 
+    /// Operations of a routine per call.
+    #[must_use]
+    pub fn operations(&self, routine: usize) -> usize {
+        self.program.routines[routine].operations()
+    }
+
     /// Where the unknowns of an iteration begin among those of all.
     #[must_use]
     pub fn first(&self, number: usize) -> usize {
@@ -273,18 +279,18 @@ pub(crate) fn text(
     expression: Expression,
 ) -> String {
     let name = |symbol: Symbol| match symbol {
-        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
-        Symbol::State(index) => model.states[index].variable.name.clone(),
-        Symbol::Input(index) => model.inputs[index].name.clone(),
-        Symbol::Time => "t".to_owned(),
-        Symbol::Signal(index) => format!("signal {index}"),
-        Symbol::Slope(index) => format!("slope {index}"),
-        Symbol::Unknown(index) => match scalars.names.get(index) {
-            Some(name) if !name.is_empty() => name.clone(),
-            _ => format!("unknown {index}"),
-        },
+        Symbol::Unknown(index) => unknown_text(scalars, index),
+        other => model.symbol_text(other),
     };
     Printer::new(pool, &name).text(expression)
+}
+
+/// The name of an unknown, or its number.
+pub(crate) fn unknown_text(scalars: &Scalars, unknown: usize) -> String {
+    match scalars.names.get(unknown) {
+        Some(name) if !name.is_empty() => name.clone(),
+        _ => format!("unknown {unknown}"),
+    }
 }
 
 /// The loops, by the names of what closes them.

@@ -114,16 +114,20 @@ pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
 ) {
     for together in variables.chunks(<T::Columns as Columns<T>>::COUNT) {
         let mut changes = [<T::Columns as Real>::from_f64(0.0); K];
-        for (lane, variable) in together.iter().enumerate() {
+        for (column, variable) in together.iter().enumerate() {
             if let Some(change) = changes.get_mut(*variable) {
-                *change = change.with_column(lane, T::from_f64(1.0));
+                *change = Columns::<T>::from_columns(|other| {
+                    T::from_f64(if other == column { 1.0 } else { 0.0 })
+                });
             }
         }
         let found = slopes(&changes);
-        for (lane, variable) in together.iter().enumerate() {
+        for (column, variable) in together.iter().enumerate() {
+            let entries = jacobian.as_mut_slice().chunks_exact_mut(N).nth(*variable);
+            let entries = entries.unwrap_or_default();
             for (row, slope) in rows.iter().zip(&found) {
-                if let Some(entry) = jacobian.get_mut((*row, *variable)) {
-                    *entry = slope.column(lane);
+                if let Some(entry) = entries.get_mut(*row) {
+                    *entry = slope.column(column);
                 }
             }
         }
@@ -139,7 +143,14 @@ pub fn by_lane<T: Real, const K: usize>(
     for lane in 0..<T::Columns as Columns<T>>::COUNT {
         let values = solution(&SVector::from_fn(|row, _| right[row].column(lane)));
         for (solved, value) in solved.iter_mut().zip(values.iter()) {
-            *solved = solved.with_column(lane, *value);
+            let before = *solved;
+            *solved = Columns::<T>::from_columns(|other| {
+                if other == lane {
+                    *value
+                } else {
+                    before.column(other)
+                }
+            });
         }
     }
     solved

@@ -13,9 +13,8 @@ pub trait Columns<T: Real>: Real {
     fn whole(value: T) -> Self;
     /// The number in a column; NaN where there is no such column.
     fn column(self, column: usize) -> T;
-    /// With another number in a column.
-    #[must_use]
-    fn with_column(self, column: usize, value: T) -> Self;
+    /// Numbers by column.
+    fn from_columns(number: impl FnMut(usize) -> T) -> Self;
 }
 
 impl<T: Real> Columns<T> for T {
@@ -32,7 +31,7 @@ impl<T: Real> Columns<T> for T {
     }
 
     #[inline]
-    fn with_column(self, _: usize, value: T) -> Self {
-        value
+    fn from_columns(mut number: impl FnMut(usize) -> T) -> Self {
+        number(0)
     }
 }

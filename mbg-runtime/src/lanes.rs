@@ -105,12 +105,8 @@ macro_rules! lanes {
             }
 
             #[inline]
-            fn with_column(self, column: usize, value: $scalar) -> Self {
-                let mut numbers = self.to_array();
-                if let Some(number) = numbers.get_mut(column) {
-                    *number = value;
-                }
-                Self::new(numbers)
+            fn from_columns(number: impl FnMut(usize) -> $scalar) -> Self {
+                Self::from_lanes(number)
             }
         }
 

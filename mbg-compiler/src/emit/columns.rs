@@ -1,11 +1,9 @@
 //! Jacobians of several columns at once.
 
-use std::collections::BTreeSet;
-
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::routine::{column_lines, used_factors};
+use super::routine::column_lines;
 use crate::compile::Compiled;
 use crate::program::{Columns, Operand, Routine, Source};
 use crate::symbolic::Symbol;
@@ -13,15 +11,12 @@ use crate::symbolic::Symbol;
 /// The Jacobian that a routine returns besides, with so many columns; the steps of the routine stand before it.
 pub(super) fn jacobian(compiled: &Compiled, routine: &Routine, width: usize) -> TokenStream {
     let [rows, width] = [compiled.states.len(), width].map(Literal::usize_suffixed);
-    let steps = routine.columns.iter().flat_map(|it| &it.steps);
-    let used: BTreeSet<Ident> = steps.filter_map(used_factors).collect();
     let groups = routine.columns.iter();
     let groups = groups.map(|it| group(compiled, routine, it));
     quote! {{
         let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
             T::from_f64(0.0),
         );
-        #(let #used = &#used;)*
         #(#groups)*
         jacobian
     }}
@@ -39,7 +34,7 @@ fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStre
     let steps = steps.into_iter().map(Literal::usize_suffixed);
     quote! {
         #(#constant)*
-        ::mbg_runtime::__private::columns(&mut jacobian, &[#(#variables),*], &[#(#steps),*], &move |slopes| {
+        ::mbg_runtime::__private::columns(&mut jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| {
             let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
             #lines
             [#(#slopes),*]

@@ -1,6 +1,7 @@
 //! Steps as `let` bindings.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -30,12 +31,20 @@ pub(super) fn lines(
         compiled,
         names: names(routine),
         setting,
+        kept: kept(routine),
         columns: None,
     };
     let columns = routine.columns.iter().flat_map(|it| &it.steps);
-    let mut behind = Made::read(&routine.read_behind());
+    let mut behind = Made::read(&routine.results);
     behind.extend(columns.filter_map(Made::needed_by));
     let body = writer.lines(&routine.steps, 0, &behind);
+    let body = match writer.kept.len() {
+        0 => body,
+        kept => {
+            let kept = Literal::usize_suffixed(kept);
+            quote!(let mut kept = [T::from_f64(0.0); #kept]; #body)
+        }
+    };
     let results = routine
         .results
         .iter()
@@ -60,12 +69,20 @@ pub(super) fn column_lines(
         compiled,
         names: names(routine),
         setting: Setting::Method,
+        kept: kept(routine),
         columns: Some((columns.first, solved.collect())),
     };
     let behind = Made::read(&columns.results);
     let body = writer.lines(&columns.steps, columns.first, &behind);
     let results = rows.iter().map(|row| writer.operand(columns.results[*row]));
     (body, results.collect())
+}
+
+/// The place of each value that columns of a Jacobian read. These values are put into one array as soon as they are there,
+/// so that nothing is copied for the columns.
+fn kept(routine: &Routine) -> BTreeMap<usize, usize> {
+    let numbered = routine.kept().into_iter().enumerate();
+    numbered.map(|(place, value)| (value, place)).collect()
 }
 
 /// A local name for each value: its variable's, where it has one that no other value has.
@@ -155,6 +172,8 @@ struct Writer<'a> {
     compiled: &'a Compiled,
     names: Vec<Ident>,
     setting: Setting,
+    /// The place of each value that is kept for columns of a Jacobian.
+    kept: BTreeMap<usize, usize>,
     /// In columns of a Jacobian, the first value that is theirs, and the numbers of their solves.
     columns: Option<(usize, BTreeSet<usize>)>,
 }
@@ -179,6 +198,7 @@ impl Writer<'_> {
                 let (now, after) = rest.split_at(taken);
                 for step in now {
                     self.make(step, value, &mut made);
+                    lines.extend(self.keep(value..value + step.results()));
                     value += step.results();
                 }
                 rest = after;
@@ -194,6 +214,16 @@ impl Writer<'_> {
             body.extend(quote!(let (#(#live,)*) = { #lines (#(#live,)*) };));
         }
         body
+    }
+
+    /// Puts values where columns of a Jacobian find them.
+    fn keep(&self, values: Range<usize>) -> TokenStream {
+        let kept = self.kept.range(values);
+        let lines = kept.map(|(value, place)| {
+            let (value, place) = (&self.names[*value], Literal::usize_suffixed(*place));
+            quote!(kept[#place] = #value;)
+        });
+        lines.collect()
     }
 
     /// The names that a step gives to what it makes.
@@ -385,10 +415,13 @@ impl Writer<'_> {
                     quote!(folded[#index])
                 }
             }
-            Source::Value(index) => {
-                let name = &self.names[index];
-                quote!(#name)
-            }
+            Source::Value(index) => match (&self.columns, self.kept.get(&index)) {
+                (Some(_), Some(place)) => element(&format_ident!("kept"), *place),
+                _ => {
+                    let name = &self.names[index];
+                    quote!(#name)
+                }
+            },
         };
         if operand.negative {
             quote!((-#value))
@@ -416,14 +449,6 @@ fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
 /// What holds the unknowns of an iteration.
 fn unknowns(number: usize) -> Ident {
     format_ident!("z{}", number, span = Span::mixed_site())
-}
-
-/// The factors that a step uses, if it solves with those of another.
-pub(super) fn used_factors(step: &Step) -> Option<Ident> {
-    match Made::needed_by(step) {
-        Some(Made::Factors(number)) => Some(factors(number)),
-        _ => None,
-    }
 }
 
 /// What holds the factors of the matrix that gives the unknowns.

@@ -9,6 +9,8 @@ mod interpret;
 mod iterate;
 mod schedule;
 
+use std::collections::BTreeSet;
+
 use crate::symbolic::{Expression, Function, Kind, Place, Symbol};
 
 pub use dump::dump;
@@ -176,6 +178,14 @@ pub struct Columns {
     pub results: Vec<Operand>,
 }
 
+impl Columns {
+    /// What they read or return.
+    fn operands(&self) -> impl Iterator<Item = Operand> {
+        let steps = self.steps.iter().flat_map(Step::operands);
+        steps.chain(self.results.iter().copied())
+    }
+}
+
 /// A function: steps in order of evaluation, and what it returns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Routine {
@@ -199,14 +209,23 @@ impl Routine {
         count(&self.steps) + columns.sum::<usize>()
     }
 
+    /// The values that columns of a Jacobian read, ascending.
+    #[must_use]
+    pub fn kept(&self) -> Vec<usize> {
+        let first = self.columns.first().map_or(0, |it| it.first);
+        let value = |operand: Operand| match operand.source {
+            Source::Value(value) if value < first => Some(value),
+            _ => None,
+        };
+        let read = self.columns.iter().flat_map(Columns::operands);
+        let kept: BTreeSet<usize> = read.filter_map(value).collect();
+        kept.into_iter().collect()
+    }
+
     /// All that it reads or returns behind its steps.
     #[must_use]
     pub fn read_behind(&self) -> Vec<Operand> {
-        let columns = self.columns.iter();
-        let read = columns.flat_map(|it| {
-            let steps = it.steps.iter().flat_map(Step::operands);
-            steps.chain(it.results.iter().copied())
-        });
+        let read = self.columns.iter().flat_map(Columns::operands);
         self.results.iter().copied().chain(read).collect()
     }
 

@@ -12,7 +12,7 @@ pub trait Columns<T: Real>: Real {
     /// The same number in all columns.
     fn whole(value: T) -> Self;
     /// The number in a column; NaN where there is no such column.
-    fn column(self, column: usize) -> T;
+    fn column(&self, column: usize) -> T;
     /// Numbers by column.
     fn from_columns(number: impl FnMut(usize) -> T) -> Self;
 }
@@ -26,8 +26,8 @@ impl<T: Real> Columns<T> for T {
     }
 
     #[inline]
-    fn column(self, _: usize) -> T {
-        self
+    fn column(&self, _: usize) -> T {
+        *self
     }
 
     #[inline]

@@ -72,6 +72,20 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         (derivative, self.jacobian_state(t, x, u, memory))
     }
 
+    /// The same written to where it is wanted, every entry of it: nothing is copied, and a generated model writes each
+    /// entry as soon as it is known.
+    fn derivative_and_jacobian_into(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+        derivative: &mut SVector<T, N>,
+        jacobian: &mut SMatrix<T, N, N>,
+    ) {
+        (*derivative, *jacobian) = self.derivative_and_jacobian(t, x, u, memory);
+    }
+
     /// `∂f/∂u`, exact.
     fn jacobian_input(
         &self,

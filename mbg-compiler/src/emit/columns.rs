@@ -8,18 +8,11 @@ use crate::compile::Compiled;
 use crate::program::{Columns, Operand, Routine, Source};
 use crate::symbolic::Symbol;
 
-/// The Jacobian that a routine returns besides, with so many columns; the steps of the routine stand before it.
-pub(super) fn jacobian(compiled: &Compiled, routine: &Routine, width: usize) -> TokenStream {
-    let [rows, width] = [compiled.states.len(), width].map(Literal::usize_suffixed);
+/// Writes `jacobian`, column by column; the steps of the routine stand before it.
+pub(super) fn write(compiled: &Compiled, routine: &Routine) -> TokenStream {
     let groups = routine.columns.iter();
     let groups = groups.map(|it| group(compiled, routine, it));
-    quote! {{
-        let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
-            T::from_f64(0.0),
-        );
-        #(#groups)*
-        jacobian
-    }}
+    quote!(jacobian.as_mut_slice().fill(T::from_f64(0.0)); #(#groups)*)
 }
 
 /// Some columns. Rows that hold one constant need no steps.
@@ -34,7 +27,7 @@ fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStre
     let steps = steps.into_iter().map(Literal::usize_suffixed);
     quote! {
         #(#constant)*
-        ::mbg_runtime::__private::columns(&mut jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| {
+        ::mbg_runtime::__private::columns(jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| {
             let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
             #lines
             [#(#slopes),*]

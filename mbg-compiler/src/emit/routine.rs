@@ -28,29 +28,42 @@ pub(super) fn lines(
     setting: Setting,
 ) -> (TokenStream, Vec<TokenStream>) {
     let writer = Writer {
-        compiled,
-        names: names(routine),
         setting,
-        kept: kept(routine),
-        columns: None,
+        ..Writer::of(compiled, routine)
     };
-    let columns = routine.columns.iter().flat_map(|it| &it.steps);
-    let mut behind = Made::read(&routine.results);
-    behind.extend(columns.filter_map(Made::needed_by));
-    let body = writer.lines(&routine.steps, 0, &behind);
-    let body = match writer.kept.len() {
-        0 => body,
-        kept => {
-            let kept = Literal::usize_suffixed(kept);
-            quote!(let mut kept = [T::from_f64(0.0); #kept]; #body)
-        }
-    };
+    let body = writer.lines(&routine.steps, 0, &Made::read(&routine.results));
     let results = routine
         .results
         .iter()
         .map(|result| writer.operand(*result))
         .collect();
     (body, results)
+}
+
+/// The bindings of a method, with each result written to its place, the left side of an assignment, as soon as it is known.
+pub(super) fn written_lines(
+    compiled: &Compiled,
+    routine: &Routine,
+    places: &[TokenStream],
+) -> TokenStream {
+    let mut writer = Writer::of(compiled, routine);
+    let mut known = TokenStream::new();
+    for (result, place) in routine.results.iter().zip(places) {
+        let value = writer.operand(*result);
+        let line = quote!(#place = #value;);
+        match result.source {
+            Source::Value(value) => writer.written.entry(value).or_default().extend(line),
+            _ => known.extend(line),
+        }
+    }
+    let columns = routine.columns.iter().flat_map(|it| &it.steps);
+    let behind: Vec<Made> = columns.filter_map(Made::needed_by).collect();
+    let solved = Made::read(&routine.results).into_iter();
+    let solved = solved.filter(|made| matches!(made, Made::Solved(_)));
+    let lines = writer.lines(&routine.steps, 0, &behind.into_iter().chain(solved).collect::<Vec<_>>());
+    let kept = Literal::usize_suffixed(writer.kept.len());
+    let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));
+    quote!(#kept #lines #known)
 }
 
 /// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
@@ -66,11 +79,8 @@ pub(super) fn column_lines(
         _ => None,
     });
     let writer = Writer {
-        compiled,
-        names: names(routine),
-        setting: Setting::Method,
-        kept: kept(routine),
         columns: Some((columns.first, solved.collect())),
+        ..Writer::of(compiled, routine)
     };
     let behind = Made::read(&columns.results);
     let body = writer.lines(&columns.steps, columns.first, &behind);
@@ -174,11 +184,25 @@ struct Writer<'a> {
     setting: Setting,
     /// The place of each value that is kept for columns of a Jacobian.
     kept: BTreeMap<usize, usize>,
+    /// What is written as soon as a value is there.
+    written: BTreeMap<usize, TokenStream>,
     /// In columns of a Jacobian, the first value that is theirs, and the numbers of their solves.
     columns: Option<(usize, BTreeSet<usize>)>,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
+    /// For a method.
+    fn of(compiled: &'a Compiled, routine: &Routine) -> Self {
+        Self {
+            compiled,
+            names: names(routine),
+            setting: Setting::Method,
+            kept: kept(routine),
+            written: BTreeMap::new(),
+            columns: None,
+        }
+    }
+
     /// Steps whose values begin with number `value`, with what is read behind them.
     fn lines(&self, steps: &[Step], mut value: usize, behind: &[Made]) -> TokenStream {
         let parts: Vec<&[Step]> = steps.chunks(PART).collect();
@@ -198,7 +222,7 @@ impl Writer<'_> {
                 let (now, after) = rest.split_at(taken);
                 for step in now {
                     self.make(step, value, &mut made);
-                    lines.extend(self.keep(value..value + step.results()));
+                    lines.extend(self.store(value..value + step.results()));
                     value += step.results();
                 }
                 rest = after;
@@ -216,14 +240,16 @@ impl Writer<'_> {
         body
     }
 
-    /// Puts values where columns of a Jacobian find them.
-    fn keep(&self, values: Range<usize>) -> TokenStream {
-        let kept = self.kept.range(values);
-        let lines = kept.map(|(value, place)| {
+    /// Puts values where they are wanted.
+    fn store(&self, values: Range<usize>) -> TokenStream {
+        let kept = self.kept.range(values.clone());
+        let kept = kept.filter(|_| self.columns.is_none());
+        let kept = kept.map(|(value, place)| {
             let (value, place) = (&self.names[*value], Literal::usize_suffixed(*place));
             quote!(kept[#place] = #value;)
         });
-        lines.collect()
+        let written = self.written.range(values);
+        kept.chain(written.map(|(_, lines)| lines.clone())).collect()
     }
 
     /// The names that a step gives to what it makes.

@@ -4,11 +4,10 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::close;
-use super::routine::{Setting, lines};
+use super::routine::{Setting, lines, written_lines};
 use super::{columns, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
-use crate::program::Source;
 
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
@@ -107,9 +106,10 @@ fn system(compiled: &Compiled) -> TokenStream {
     let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
     let [derivative_and_jacobian, jacobian_input] = [
-        derivative_and_jacobian(compiled),
-        jacobian_input(compiled),
-    ];
+        (Routines::DERIVATIVE_AND_JACOBIAN, compiled.states.len()),
+        (Routines::JACOBIAN_INPUT, compiled.model.inputs.len()),
+    ]
+    .map(|(routine, columns)| written(compiled, routine, columns));
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -148,11 +148,27 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn derivative_and_jacobian(
                 &self, #arguments, memory: &mut #memory,
             ) -> (::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::__private::SMatrix<T, #n, #n>) {
+                let mut both = (
+                    ::mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0)),
+                    ::mbg_runtime::__private::SMatrix::<T, #n, #n>::from_element(T::from_f64(0.0)),
+                );
+                ::mbg_runtime::System::derivative_and_jacobian_into(self, t, x, u, memory, &mut both.0, &mut both.1);
+                both
+            }
+            #[inline]
+            fn derivative_and_jacobian_into(
+                &self, #arguments, memory: &mut #memory,
+                derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
+                jacobian: &mut ::mbg_runtime::__private::SMatrix<T, #n, #n>,
+            ) {
                 #derivative_and_jacobian
             }
             #[inline]
             fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
+                let mut input = ::mbg_runtime::__private::SMatrix::<T, #n, #m>::from_element(T::from_f64(0.0));
+                let jacobian = &mut input;
                 #jacobian_input
+                input
             }
             #[inline]
             fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> ::mbg_runtime::__private::SVector<T, #n> {
@@ -181,64 +197,30 @@ fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
     quote!(#steps #result)
 }
 
-/// Both at once: the first results are the derivative, the others the Jacobian by rows.
-fn derivative_and_jacobian(compiled: &Compiled) -> TokenStream {
-    let size = compiled.states.len();
-    let routine = Routines::DERIVATIVE_AND_JACOBIAN;
-    body(compiled, routine, &|results| {
-        let derivative = vector(&results[..size]);
-        let jacobian = jacobian(compiled, routine, &results[size..], size);
-        quote!((#derivative, #jacobian))
-    })
-}
-
-fn jacobian_input(compiled: &Compiled) -> TokenStream {
-    let routine = Routines::JACOBIAN_INPUT;
-    body(compiled, routine, &|results| {
-        jacobian(compiled, routine, results, compiled.model.inputs.len())
-    })
+/// Writes the results of a routine: the derivative, if it is one of both, and a Jacobian with so many columns.
+fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
+    let routine = &compiled.program.routines[routine];
+    let entries = columns * compiled.states.len();
+    let rates = match routine.columns.is_empty() {
+        true => routine.results.len() - entries,
+        false => routine.results.len(),
+    };
+    let rates = (0..rates).map(Literal::usize_suffixed);
+    let rates = rates.map(|row| quote!(derivative[#row]));
+    let entries = (0..entries).map(|entry| {
+        let [row, column] = [entry / columns, entry % columns].map(Literal::usize_suffixed);
+        quote!(jacobian[(#row, #column)])
+    });
+    let places: Vec<TokenStream> = rates.chain(entries).collect();
+    let lines = written_lines(compiled, routine, &places);
+    let by_columns = (!routine.columns.is_empty()).then(|| columns::write(compiled, routine));
+    quote!(#lines #by_columns)
 }
 
 /// A vector of results.
 fn vector(results: &[TokenStream]) -> TokenStream {
     let size = Literal::usize_suffixed(results.len());
     quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
-}
-
-/// A Jacobian of the derivative: column by column, or by rows all entries, or where most are zero those that are not.
-fn jacobian(
-    compiled: &Compiled,
-    routine: usize,
-    results: &[TokenStream],
-    columns: usize,
-) -> TokenStream {
-    let routine = &compiled.program.routines[routine];
-    if !routine.columns.is_empty() {
-        return columns::jacobian(compiled, routine, columns);
-    }
-    let entries = &routine.results[routine.results.len() - results.len()..];
-    let size = [compiled.states.len(), columns].map(Literal::usize_suffixed);
-    let [rows, width] = &size;
-    let filled: Vec<usize> = (0..entries.len())
-        .filter(|entry| entries[*entry].source != Source::Constant(0.0))
-        .collect();
-    if 4 * filled.len() >= entries.len() {
-        return quote! {
-            ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_row_slice(&[#(#results),*])
-        };
-    }
-    let entries = filled.into_iter().map(|entry| {
-        let place = [entry / columns, entry % columns].map(Literal::usize_suffixed);
-        let ([row, column], value) = (&place, &results[entry]);
-        quote!(jacobian[(#row, #column)] = #value;)
-    });
-    quote! {{
-        let mut jacobian = ::mbg_runtime::__private::SMatrix::<T, #rows, #width>::from_element(
-            T::from_f64(0.0),
-        );
-        #(#entries)*
-        jacobian
-    }}
 }
 
 /// The type of what is remembered: nothing, or the unknowns of all iterations.

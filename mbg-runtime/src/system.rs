@@ -72,8 +72,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         (derivative, self.jacobian_state(t, x, u, memory))
     }
 
-    /// The same written to where it is wanted, every entry of it: nothing is copied, and a generated model writes each
-    /// entry as soon as it is known.
+    /// The same written to where it is wanted: nothing is copied, and a generated model writes each entry as soon as it is
+    /// known. Entries of the Jacobian that are zero in every state, those outside of [`SPARSITY`](Self::SPARSITY), may be
+    /// left as they are: begin with a matrix of zeros.
     fn derivative_and_jacobian_into(
         &self,
         t: T,

@@ -12,7 +12,7 @@ use crate::symbolic::Symbol;
 pub(super) fn write(compiled: &Compiled, routine: &Routine) -> TokenStream {
     let groups = routine.columns.iter();
     let groups = groups.map(|it| group(compiled, routine, it));
-    quote!(jacobian.as_mut_slice().fill(T::from_f64(0.0)); #(#groups)*)
+    quote!(#(#groups)*)
 }
 
 /// Some columns. Rows that hold one constant need no steps.

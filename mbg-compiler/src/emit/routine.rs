@@ -40,15 +40,17 @@ pub(super) fn lines(
     (body, results)
 }
 
-/// The bindings of a method, with each result written to its place, the left side of an assignment, as soon as it is known.
+/// The bindings of a method, with each result written to its place, the left side of an assignment, as soon as it is known;
+/// what has no place is not written.
 pub(super) fn written_lines(
     compiled: &Compiled,
     routine: &Routine,
-    places: &[TokenStream],
+    places: &[Option<TokenStream>],
 ) -> TokenStream {
     let mut writer = Writer::of(compiled, routine);
     let mut known = TokenStream::new();
     for (result, place) in routine.results.iter().zip(places) {
+        let Some(place) = place else { continue };
         let value = writer.operand(*result);
         let line = quote!(#place = #value;);
         match result.source {

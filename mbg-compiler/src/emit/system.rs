@@ -4,6 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::close;
+use crate::program::Source;
 use super::routine::{Setting, lines, written_lines};
 use super::{columns, meta, sparsity};
 use crate::compile::{Compiled, Routines};
@@ -206,12 +207,13 @@ fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
         false => routine.results.len(),
     };
     let rates = (0..rates).map(Literal::usize_suffixed);
-    let rates = rates.map(|row| quote!(derivative[#row]));
-    let entries = (0..entries).map(|entry| {
+    let rates = rates.map(|row| Some(quote!(derivative[#row])));
+    let entries = routine.results[rates.len()..].iter().enumerate();
+    let entries = entries.map(|(entry, result)| {
         let [row, column] = [entry / columns, entry % columns].map(Literal::usize_suffixed);
-        quote!(jacobian[(#row, #column)])
+        (result.source != Source::Constant(0.0)).then(|| quote!(jacobian[(#row, #column)]))
     });
-    let places: Vec<TokenStream> = rates.chain(entries).collect();
+    let places: Vec<_> = rates.chain(entries).collect();
     let lines = written_lines(compiled, routine, &places);
     let by_columns = (!routine.columns.is_empty()).then(|| columns::write(compiled, routine));
     quote!(#lines #by_columns)

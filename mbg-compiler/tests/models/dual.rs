@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mbg_compiler::program::{Operand, Program, Routine, Solver, Source, Step};
+use mbg_compiler::program::{Columns, Operand, Program, Routine, Solver, Source, Step};
 use mbg_compiler::symbolic::{Function, Kind, Symbol};
 use mbg_runtime::{Dual, Real};
 
@@ -22,43 +22,112 @@ pub(crate) fn evaluate(program: &Program, routine: usize, point: &Point) -> Vec<
 }
 
 fn run(routine: &Routine, point: &Point, folded: &[Dual<f64>]) -> Vec<Dual<f64>> {
-    let mut values = Vec::new();
-    let (mut solved, mut matrices) = (BTreeMap::new(), BTreeMap::new());
-    for step in &routine.steps {
-        let read = |operand: &Operand| read(operand, point, folded, (&values, &solved));
-        let value = match step {
-            Step::Add(a, b) => read(a) + read(b),
-            Step::Multiply(a, b) => read(a) * read(b),
-            Step::MultiplyAdd(a, b, c) => read(a) * read(b) + read(c),
-            Step::Divide(a, b) => read(a) / read(b),
-            Step::Sine(a) => read(a).sin(),
-            Step::Cosine(a) => read(a).cos(),
-            Step::SineCosine(a) => {
-                let (sine, cosine) = read(a).sin_cos();
-                values.push(sine);
-                cosine
+    let mut machine = Machine {
+        point,
+        folded,
+        values: Vec::new(),
+        direction: None,
+        solved: BTreeMap::new(),
+        matrices: BTreeMap::new(),
+    };
+    machine.steps(&routine.steps);
+    let mut results = machine.results(&routine.results);
+    results.extend(machine.jacobian(&routine.columns));
+    results
+}
+
+#[derive(Clone)]
+struct Machine<'a> {
+    point: &'a Point<'a>,
+    folded: &'a [Dual<f64>],
+    values: Vec<Dual<f64>>,
+    /// The variable that changes.
+    direction: Option<usize>,
+    /// Unknowns of solves.
+    solved: BTreeMap<usize, Vec<Dual<f64>>>,
+    /// Their matrices.
+    matrices: BTreeMap<usize, Vec<Dual<f64>>>,
+}
+
+impl Machine<'_> {
+    /// A Jacobian by rows.
+    fn jacobian(&self, columns: &[Columns]) -> Vec<Dual<f64>> {
+        let width: usize = columns.iter().map(|it| it.variables.len()).sum();
+        let rows = columns.first().map_or(0, |it| it.results.len());
+        let mut entries = vec![Dual::constant(0.0); rows * width];
+        for group in columns {
+            for variable in &group.variables {
+                let mut inner = self.clone();
+                inner.direction = Some(*variable);
+                inner.values.resize(group.first, Dual::constant(f64::NAN));
+                inner.steps(&group.steps);
+                for (row, entry) in inner.results(&group.results).into_iter().enumerate() {
+                    entries[row * width + variable] = entry;
+                }
             }
-            Step::Call(Function::Sqrt, operands) => read(&operands[0]).sqrt(),
-            Step::Call(Function::Exp, operands) => read(&operands[0]).exp(),
-            Step::Call(Function::Tanh, operands) => read(&operands[0]).tanh(),
-            Step::Call(function, _) => panic!("no model here calls {function:?}"),
-            Step::Solve(solve) => {
-                let results: Vec<Dual<f64>> = solve.results.iter().map(read).collect();
-                let (right, matrix) = results.split_at(solve.size);
-                let matrix = match solve.solver {
-                    Solver::Linear(Kind::Regular) => matrix.to_vec(),
-                    Solver::Slope(of) => Vec::clone(&matrices[&of]),
-                    _ => panic!("a loop is iterated"),
-                };
-                solved.insert(solve.number, regular(right, &matrix));
-                matrices.insert(solve.number, matrix);
-                continue;
-            }
-        };
-        values.push(value);
+        }
+        entries
     }
-    let read = |operand| read(operand, point, folded, (&values, &solved));
-    routine.results.iter().map(read).collect()
+
+    fn steps(&mut self, steps: &[Step]) {
+        for step in steps {
+            let value = match step {
+                Step::Add(a, b) => self.read(a) + self.read(b),
+                Step::Multiply(a, b) => self.read(a) * self.read(b),
+                Step::MultiplyAdd(a, b, c) => self.read(a) * self.read(b) + self.read(c),
+                Step::Divide(a, b) => self.read(a) / self.read(b),
+                Step::Sine(a) => self.read(a).sin(),
+                Step::Cosine(a) => self.read(a).cos(),
+                Step::SineCosine(a) => {
+                    let (sine, cosine) = self.read(a).sin_cos();
+                    self.values.push(sine);
+                    cosine
+                }
+                Step::Call(Function::Sqrt, operands) => self.read(&operands[0]).sqrt(),
+                Step::Call(Function::Exp, operands) => self.read(&operands[0]).exp(),
+                Step::Call(Function::Tanh, operands) => self.read(&operands[0]).tanh(),
+                Step::Call(function, _) => panic!("no model here calls {function:?}"),
+                Step::Solve(solve) => {
+                    let results = self.results(&solve.results);
+                    let (right, matrix) = results.split_at(solve.size);
+                    let matrix = match solve.solver {
+                        Solver::Linear(Kind::Regular) => matrix.to_vec(),
+                        Solver::Slope(of) => Vec::clone(&self.matrices[&of]),
+                        _ => panic!("a loop is iterated"),
+                    };
+                    self.solved.insert(solve.number, regular(right, &matrix));
+                    self.matrices.insert(solve.number, matrix);
+                    continue;
+                }
+            };
+            self.values.push(value);
+        }
+    }
+
+    fn results(&self, operands: &[Operand]) -> Vec<Dual<f64>> {
+        operands.iter().map(|operand| self.read(operand)).collect()
+    }
+
+    fn read(&self, operand: &Operand) -> Dual<f64> {
+        let value = match operand.source {
+            Source::Constant(value) => Dual::constant(value),
+            Source::Symbol(Symbol::State(index)) => self.point.state[index],
+            Source::Symbol(Symbol::Input(index)) => self.point.input[index],
+            Source::Symbol(Symbol::Time) => self.point.time,
+            Source::Symbol(Symbol::Parameter(index)) => {
+                Dual::constant(self.point.parameters[index])
+            }
+            Source::Symbol(Symbol::Slope(index)) => {
+                Dual::constant(f64::from(self.direction == Some(index)))
+            }
+            Source::Symbol(Symbol::Signal(_)) => panic!("no program reads a signal"),
+            Source::Symbol(Symbol::Unknown(_)) => panic!("no program reads an unknown"),
+            Source::Folded(index) => self.folded[index],
+            Source::Value(index) => self.values[index],
+            Source::Solved(place) => self.solved[&place.number][place.row],
+        };
+        if operand.negative { -value } else { value }
+    }
 }
 
 /// Gaussian elimination with row pivots, chosen by their values relative to their rows.
@@ -88,26 +157,6 @@ fn regular(right: &[Dual<f64>], matrix: &[Dual<f64>]) -> Vec<Dual<f64>> {
         }
     }
     (0..size).map(|k| rows[k][size] / rows[k][k]).collect()
-}
-
-/// Values by number, and unknowns of solves.
-type Made<'a> = (&'a [Dual<f64>], &'a BTreeMap<usize, Vec<Dual<f64>>>);
-
-fn read(operand: &Operand, point: &Point, folded: &[Dual<f64>], made: Made) -> Dual<f64> {
-    let value = match operand.source {
-        Source::Constant(value) => Dual::constant(value),
-        Source::Symbol(Symbol::State(index)) => point.state[index],
-        Source::Symbol(Symbol::Input(index)) => point.input[index],
-        Source::Symbol(Symbol::Time) => point.time,
-        Source::Symbol(Symbol::Parameter(index)) => Dual::constant(point.parameters[index]),
-        Source::Symbol(Symbol::Signal(_)) => panic!("no program reads a signal"),
-        Source::Symbol(Symbol::Slope(_)) => panic!("only columns of Jacobians read slopes"),
-        Source::Folded(index) => folded[index],
-        Source::Value(index) => made.0[index],
-        Source::Solved(place) => made.1[&place.number][place.row],
-        Source::Symbol(Symbol::Unknown(_)) => panic!("no program reads an unknown"),
-    };
-    if operand.negative { -value } else { value }
 }
 
 /// Whether a program iterates, which dual numbers here do not.

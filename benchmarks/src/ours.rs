@@ -51,7 +51,8 @@ fn jacobian<S: System<f64, N, M, P>, const N: usize, const M: usize, const P: us
     (x, u): &Scene<f64, N, M>,
     result: &mut Linear<N>,
 ) {
-    *result = model.derivative_and_jacobian(0.0, x, u, &mut S::Memory::default());
+    let (value, slope) = result;
+    model.derivative_and_jacobian_into(0.0, x, u, &mut S::Memory::default(), value, slope);
 }
 
 /// What a model in `f64` takes part in, at rows of states of the scene of a name.

@@ -11,8 +11,8 @@ use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, Junction};
-use crate::network::Network;
 use crate::jacobians;
+use crate::network::Network;
 use crate::program::{self, Program, Request};
 use crate::sparsity::{self, Pattern};
 use crate::start;
@@ -158,7 +158,7 @@ fn finish(
     let groups = jacobians::groups(&model, &answers.states);
     let by_states = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let by_inputs = jacobians::request(&mut pool, &[], rates, &by_input, &[]);
-    let pattern = if jacobians::is_written_out(&by_states) {
+    let pattern = if by_states.columns.is_empty() {
         sparsity::of_entries(&by_states.results[rates.len()..], by_state.len())
     } else {
         sparsity::of_dependence(&pool, rates, &by_state)

@@ -89,9 +89,3 @@ pub fn groups(model: &Elaborated, states: &[usize]) -> Vec<Vec<usize>> {
     }
     vec![displacements, others]
 }
-
-/// Whether a request is written out.
-#[must_use]
-pub fn is_written_out(request: &Request) -> bool {
-    request.columns.is_empty()
-}

@@ -28,7 +28,9 @@ pub struct Elimination {
 pub fn of_entries(entries: &[Expression], columns: usize) -> Pattern {
     let filled = |row: &[Expression]| {
         let places = 0..row.len();
-        places.filter(|place| row[*place] != Expression::ZERO).collect()
+        places
+            .filter(|place| row[*place] != Expression::ZERO)
+            .collect()
     };
     entries.chunks(columns.max(1)).map(filled).collect()
 }

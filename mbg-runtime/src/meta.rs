@@ -139,7 +139,7 @@ pub struct Operations {
     pub derivative: usize,
     /// Of `output`.
     pub output: usize,
-    /// Of `derivative_and_jacobian`; where it goes by columns, those of a dual number count as one.
+    /// Of `derivative_and_jacobian`; where several columns are worked out at once, each counts.
     pub derivative_and_jacobian: usize,
     /// Of `jacobian_input`, counted alike.
     pub jacobian_input: usize,

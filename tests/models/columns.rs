@@ -92,9 +92,8 @@ fn jacobians_by_columns_are_in_trouble_where_their_loop_has_no_solution() {
 }
 
 #[test]
-fn operations_of_jacobians_by_columns() {
+fn a_column_costs_no_more_than_a_derivative() {
     let operations = Mesh::<f64>::META.operations;
-    let columns = (1 + CELLS) * operations.derivative;
-    assert_eq!(operations.derivative_and_jacobian, columns);
-    assert_eq!(operations.jacobian_input, operations.derivative);
+    let columns = operations.derivative_and_jacobian - operations.derivative;
+    assert!(columns <= CELLS * operations.derivative, "{columns}");
 }

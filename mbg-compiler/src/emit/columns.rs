@@ -23,7 +23,11 @@ fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStre
         .filter(|row| is_worked_out(columns.results[*row]))
         .collect();
     let (lines, slopes) = column_lines(compiled, routine, columns, &steps);
-    let variables = columns.variables.iter().copied().map(Literal::usize_suffixed);
+    let variables = columns
+        .variables
+        .iter()
+        .copied()
+        .map(Literal::usize_suffixed);
     let steps = steps.into_iter().map(Literal::usize_suffixed);
     quote! {
         #(#constant)*
@@ -36,7 +40,10 @@ fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStre
 }
 
 fn is_worked_out(result: Operand) -> bool {
-    !matches!(result.source, Source::Constant(_) | Source::Symbol(Symbol::Slope(_)))
+    !matches!(
+        result.source,
+        Source::Constant(_) | Source::Symbol(Symbol::Slope(_))
+    )
 }
 
 /// The entry of a rate that is one of the variables.

@@ -5,6 +5,7 @@
 
 mod close;
 mod columns;
+mod jacobians;
 mod meta;
 mod parameters;
 mod routine;

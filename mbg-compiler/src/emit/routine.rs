@@ -62,7 +62,11 @@ pub(super) fn written_lines(
     let behind: Vec<Made> = columns.filter_map(Made::needed_by).collect();
     let solved = Made::read(&routine.results).into_iter();
     let solved = solved.filter(|made| matches!(made, Made::Solved(_)));
-    let lines = writer.lines(&routine.steps, 0, &behind.into_iter().chain(solved).collect::<Vec<_>>());
+    let lines = writer.lines(
+        &routine.steps,
+        0,
+        &behind.into_iter().chain(solved).collect::<Vec<_>>(),
+    );
     let kept = Literal::usize_suffixed(writer.kept.len());
     let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));
     quote!(#kept #lines #known)
@@ -251,7 +255,8 @@ impl<'a> Writer<'a> {
             quote!(kept[#place] = #value;)
         });
         let written = self.written.range(values);
-        kept.chain(written.map(|(_, lines)| lines.clone())).collect()
+        kept.chain(written.map(|(_, lines)| lines.clone()))
+            .collect()
     }
 
     /// The names that a step gives to what it makes.

@@ -4,9 +4,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::close;
-use crate::program::Source;
-use super::routine::{Setting, lines, written_lines};
-use super::{columns, meta, sparsity};
+use super::routine::{Setting, lines};
+use super::{jacobians, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
 
@@ -106,11 +105,6 @@ fn system(compiled: &Compiled) -> TokenStream {
     let derivative = body(Routines::DERIVATIVE, &vector);
     let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
-    let [derivative_and_jacobian, jacobian_input] = [
-        (Routines::DERIVATIVE_AND_JACOBIAN, compiled.states.len()),
-        (Routines::JACOBIAN_INPUT, compiled.model.inputs.len()),
-    ]
-    .map(|(routine, columns)| written(compiled, routine, columns));
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -125,6 +119,7 @@ fn system(compiled: &Compiled) -> TokenStream {
         x: &::mbg_runtime::__private::SVector<T, #n>,
         u: &::mbg_runtime::__private::SVector<T, #m>
     };
+    let jacobians = jacobians::methods(compiled, &arguments, &memory);
     quote! {
         #[automatically_derived]
         #[allow(clippy::all, unused_variables, unused_parens)]
@@ -141,36 +136,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             }
             #[inline]
             fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
-            #[inline]
-            fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
-                ::mbg_runtime::System::derivative_and_jacobian(self, t, x, u, memory).1
-            }
-            #[inline]
-            fn derivative_and_jacobian(
-                &self, #arguments, memory: &mut #memory,
-            ) -> (::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::__private::SMatrix<T, #n, #n>) {
-                let mut both = (
-                    ::mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0)),
-                    ::mbg_runtime::__private::SMatrix::<T, #n, #n>::from_element(T::from_f64(0.0)),
-                );
-                ::mbg_runtime::System::derivative_and_jacobian_into(self, t, x, u, memory, &mut both.0, &mut both.1);
-                both
-            }
-            #[inline]
-            fn derivative_and_jacobian_into(
-                &self, #arguments, memory: &mut #memory,
-                derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
-                jacobian: &mut ::mbg_runtime::__private::SMatrix<T, #n, #n>,
-            ) {
-                #derivative_and_jacobian
-            }
-            #[inline]
-            fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
-                let mut input = ::mbg_runtime::__private::SMatrix::<T, #n, #m>::from_element(T::from_f64(0.0));
-                let jacobian = &mut input;
-                #jacobian_input
-                input
-            }
+            #jacobians
             #[inline]
             fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> ::mbg_runtime::__private::SVector<T, #n> {
                 #derivative_time
@@ -196,27 +162,6 @@ fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
     let (steps, results) = lines(compiled, routine, Setting::Method);
     let result = build(&results);
     quote!(#steps #result)
-}
-
-/// Writes the results of a routine: the derivative, if it is one of both, and a Jacobian with so many columns.
-fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
-    let routine = &compiled.program.routines[routine];
-    let entries = columns * compiled.states.len();
-    let rates = match routine.columns.is_empty() {
-        true => routine.results.len() - entries,
-        false => routine.results.len(),
-    };
-    let rates = (0..rates).map(Literal::usize_suffixed);
-    let rates = rates.map(|row| Some(quote!(derivative[#row])));
-    let entries = routine.results[rates.len()..].iter().enumerate();
-    let entries = entries.map(|(entry, result)| {
-        let [row, column] = [entry / columns, entry % columns].map(Literal::usize_suffixed);
-        (result.source != Source::Constant(0.0)).then(|| quote!(jacobian[(#row, #column)]))
-    });
-    let places: Vec<_> = rates.chain(entries).collect();
-    let lines = written_lines(compiled, routine, &places);
-    let by_columns = (!routine.columns.is_empty()).then(|| columns::write(compiled, routine));
-    quote!(#lines #by_columns)
 }
 
 /// A vector of results.

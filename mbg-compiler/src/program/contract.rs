@@ -45,7 +45,11 @@ pub(super) fn contract(routine: &Routine) -> Routine {
         steps: rewrite.steps(&routine.steps, 0),
         names,
         results: rewrite.operands(&routine.results),
-        columns: routine.columns.iter().map(|it| rewrite.columns(it)).collect(),
+        columns: routine
+            .columns
+            .iter()
+            .map(|it| rewrite.columns(it))
+            .collect(),
     }
 }
 

@@ -43,7 +43,10 @@ fn folded_nodes(pool: &Pool, requests: &[Request]) -> Vec<Expression> {
     let mut found = Vec::new();
     let roots = requests.iter().flat_map(|request| {
         let columns = request.columns.iter();
-        request.results.iter().chain(columns.flat_map(|it| &it.rates))
+        request
+            .results
+            .iter()
+            .chain(columns.flat_map(|it| &it.rates))
     });
     for root in roots {
         let mut pending = vec![root.magnitude()];
@@ -187,7 +190,11 @@ impl Context<'_> {
             solved: BTreeSet::new(),
         };
         let unchanging = self.unchanging(&request.columns);
-        self.steps(&mut draft, &[&roots[..], &unchanging.needed].concat(), folding);
+        self.steps(
+            &mut draft,
+            &[&roots[..], &unchanging.needed].concat(),
+            folding,
+        );
         self.prepare(&mut draft, &unchanging);
         for slopes in &request.columns {
             self.columns(&mut draft, slopes, &unchanging);

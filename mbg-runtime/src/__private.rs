@@ -101,6 +101,10 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     })
 }
 
+/// How `R` rates change with `K` variables, for several columns of a Jacobian at once.
+pub type Slopes<'a, T, const K: usize, const R: usize> =
+    dyn Fn(&[<T as Real>::Columns; K]) -> [<T as Real>::Columns; R] + 'a;
+
 /// Fills the columns of a Jacobian that belong to some variables, in some of its rows. `slopes` says how these change with
 /// the variables, for several columns at once.
 // It is called as a function of its own: written into the loop, all that does not depend on the column would be made lanes
@@ -110,7 +114,7 @@ pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
     jacobian: &mut SMatrix<T, N, K>,
     variables: &[usize],
     rows: &[usize; R],
-    slopes: &dyn Fn(&[T::Columns; K]) -> [T::Columns; R],
+    slopes: &Slopes<T, K, R>,
 ) {
     for together in variables.chunks(<T::Columns as Columns<T>>::COUNT) {
         let mut changes = [<T::Columns as Real>::from_f64(0.0); K];

@@ -5,7 +5,6 @@ use core::ops::{Add, Mul, Sub};
 #[cfg(test)]
 use nalgebra::{SMatrix, SVector};
 
-use super::magnitude;
 use crate::Real;
 
 /// A number that elimination works on.
@@ -44,7 +43,7 @@ impl<T: Real> Element for T {
     }
 
     fn size(self) -> f64 {
-        magnitude(self)
+        self.magnitude()
     }
 }
 
@@ -101,7 +100,7 @@ impl<T: Real> Element for Complex<T> {
     /// Divides by the larger part first, so that no square overflows.
     fn reciprocal(self) -> Self {
         let one = T::from_f64(1.0);
-        if magnitude(self.real) >= magnitude(self.imaginary) {
+        if self.real.magnitude() >= self.imaginary.magnitude() {
             let ratio = self.imaginary / self.real;
             let scale = one / (self.real + self.imaginary * ratio);
             Self {
@@ -119,13 +118,17 @@ impl<T: Real> Element for Complex<T> {
     }
 
     fn size(self) -> f64 {
-        magnitude(self.real) + magnitude(self.imaginary)
+        self.real.magnitude() + self.imaginary.magnitude()
     }
 }
 
+/// So many equations are solved by the inverse.
+const INVERTED: usize = 3;
+
 /// `P A = L U` with partial pivoting; the pivots' reciprocals are kept in their place.
 ///
-/// Of a singular matrix the solutions are not finite. Lanes share their pivots.
+/// Of a singular matrix the solutions are not finite. Lanes share their pivots. Of up to three equations the inverse is
+/// kept instead: its products need not wait for each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<E, const N: usize> {
     rows: [[E; N]; N],
@@ -157,11 +160,32 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 }
             }
         }
+        let factors = Self { rows, order };
+        if N > INVERTED {
+            return factors;
+        }
+        let columns: [[E; N]; N] = core::array::from_fn(|column| {
+            factors.substituted(core::array::from_fn(|row| {
+                E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
+            }))
+        });
+        let rows = core::array::from_fn(|row| core::array::from_fn(|column| columns[column][row]));
         Self { rows, order }
     }
 
     /// The `x` of `A x = right`.
+    #[inline]
     pub(super) fn solve(&self, right: [E; N]) -> [E; N] {
+        if N > INVERTED {
+            return self.substituted(right);
+        }
+        core::array::from_fn(|row| {
+            let products = self.rows[row].iter().zip(right);
+            products.fold(E::zero(), |sum, (factor, right)| sum + *factor * right)
+        })
+    }
+
+    fn substituted(&self, right: [E; N]) -> [E; N] {
         let mut x = self.order.map(|row| right[row]);
         for i in 1..N {
             for j in 0..i {

@@ -5,7 +5,9 @@ use nalgebra::{SMatrix, SVector};
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::linear::Complex;
-use super::method::{Estimating, Family, Method, Progress, Settling, Start, Trial, relative};
+use super::method::{
+    Estimating, Family, Method, Progress, Settling, Start, Stepper, Trial, relative,
+};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use crate::scalar::power;
@@ -76,7 +78,7 @@ const MOST: i32 = 20;
 const FAST: f64 = 1e-3;
 
 /// What a step leaves for the next.
-pub struct Work<T, const N: usize> {
+pub struct Stages<T, const N: usize> {
     jacobian: SMatrix<T, N, N>,
     /// Whether the Jacobian may serve for another step.
     keeps: bool,
@@ -91,10 +93,11 @@ pub struct Work<T, const N: usize> {
     rejected: bool,
 }
 
-type Stages<T, const N: usize> = [SVector<T, N>; 3];
+type Three<T, const N: usize> = [SVector<T, N>; 3];
 
-impl<T: Real, const N: usize> Work<T, N> {
-    fn new() -> Self {
+#[allow(private_interfaces, reason = "no method is written outside")]
+impl<T: Real, const N: usize> Stepper<Radau5, T, N> for Stages<T, N> {
+    fn new(_method: &Radau5) -> Self {
         let zero = T::from_f64(0.0);
         Self {
             jacobian: SMatrix::from_element(zero),
@@ -155,6 +158,24 @@ impl<T: Real, const N: usize> Work<T, N> {
         }
     }
 
+    fn polynomial<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        _problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut polynomial = Polynomial::line(&start.x, end);
+        let [_, bend, twist, ..] = &mut polynomial.coefficients;
+        [*bend, *twist] = [self.tried.1[1], self.tried.1[2]];
+        polynomial
+    }
+}
+
+impl<T: Real, const N: usize> Stages<T, N> {
     /// A Jacobian and factors that serve for this step.
     fn factorise<Y, I, const M: usize, const P: usize>(
         &mut self,
@@ -187,7 +208,7 @@ impl<T: Real, const N: usize> Work<T, N> {
     }
 
     /// The stages as the last step continues.
-    fn predict(&self, length: T) -> Stages<T, N> {
+    fn predict(&self, length: T) -> Three<T, N> {
         let Some((before, [change, bend, twist])) = &self.last else {
             return [SVector::from_element(T::from_f64(0.0)); 3];
         };
@@ -204,7 +225,7 @@ impl<T: Real, const N: usize> Work<T, N> {
 }
 
 /// A step that did not come off.
-fn failed<T: Real, const N: usize>(stages: &Stages<T, N>) -> Trial<T, N> {
+fn failed<T: Real, const N: usize>(stages: &Three<T, N>) -> Trial<T, N> {
     Trial {
         change: stages[2],
         slope: None,
@@ -213,7 +234,7 @@ fn failed<T: Real, const N: usize>(stages: &Stages<T, N>) -> Trial<T, N> {
 }
 
 /// Coefficients of the polynomial through the stages.
-fn coefficients<T: Real, const N: usize>([first, second, third]: &Stages<T, N>) -> Stages<T, N> {
+fn coefficients<T: Real, const N: usize>([first, second, third]: &Three<T, N>) -> Three<T, N> {
     let [c1, c2] = NODES;
     let slope = |stage: &SVector<T, N>, c: f64| {
         let (by, rest) = (T::from_f64(1.0 / c), T::from_f64(1.0 / (1.0 - c)));
@@ -229,8 +250,8 @@ fn coefficients<T: Real, const N: usize>([first, second, third]: &Stages<T, N>) 
 /// A matrix of numbers times three vectors.
 fn transformed<T: Real, const N: usize>(
     matrix: &[[f64; 3]; 3],
-    [a, b, c]: &Stages<T, N>,
-) -> Stages<T, N> {
+    [a, b, c]: &Three<T, N>,
+) -> Three<T, N> {
     matrix.map(|row| {
         let [p, q, r] = row.map(T::from_f64);
         a.zip_zip_map(b, c, |a, b, c| p * a + q * b + r * c)
@@ -256,7 +277,7 @@ where
     I: Input<T, M>,
 {
     /// One sweep; gives what it changed in the transformed stages.
-    fn sweep(&mut self, stages: &mut Stages<T, N>, inner: &mut Stages<T, N>) -> Stages<T, N> {
+    fn sweep(&mut self, stages: &mut Three<T, N>, inner: &mut Three<T, N>) -> Three<T, N> {
         let Start { span, x, .. } = self.start;
         let nodes = [NODES[0], NODES[1], 1.0];
         let mut slopes = *stages;
@@ -293,18 +314,19 @@ where
     /// the bound on sweeps is not going to suffice.
     fn controlled(
         &mut self,
-        stages: &mut Stages<T, N>,
+        stages: &mut Three<T, N>,
         tolerance: &Tolerance<N>,
         rate: &mut f64,
     ) -> Option<f64> {
         let relative = tolerance.relative.max(1e-300);
         let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(0.03));
+        let measure = tolerance.around(&self.start.x);
         let mut inner = transformed(&INVERSE, stages);
         let (mut before, mut quotient, mut theta) = (0.0, 0.0, FAST);
         *rate = power(rate.max(T::EPSILON), 0.8);
         for sweep in 1..=SWEEPS {
             let changes = self.sweep(stages, &mut inner);
-            let norms = changes.map(|change| tolerance.norm(&change, &self.start.x));
+            let norms = changes.map(|change| measure.norm(&change));
             let size = Real::sqrt(norms.iter().fold(0.0, |sum, it| sum + it * it) / 3.0);
             if !size.is_finite() {
                 return None;
@@ -335,7 +357,7 @@ where
     }
 
     /// Sweeps to rounding; whether it came to that.
-    fn settled(&mut self, stages: &mut Stages<T, N>) -> bool {
+    fn settled(&mut self, stages: &mut Three<T, N>) -> bool {
         let mut inner = transformed(&INVERSE, stages);
         let mut settling = Settling::new();
         for _ in 0..MOST {
@@ -362,18 +384,19 @@ where
     }
 
     /// The filtered estimate; a second filter takes care of large ones where `doubtful`.
-    fn error(&mut self, stages: &Stages<T, N>, tolerance: &Tolerance<N>, doubtful: bool) -> f64 {
+    fn error(&mut self, stages: &Three<T, N>, tolerance: &Tolerance<N>, doubtful: bool) -> f64 {
         let Start { span, x, slope, .. } = self.start;
         let [a, b, c] = ERROR.map(|weight| T::from_f64(weight) / span.length);
         let [first, second, third] = stages;
         let sum = first.zip_zip_map(second, third, |x, y, z| a * x + b * y + c * z);
         let estimate = self.real.solved::<Y, M, P>(&(sum + slope));
-        let size = tolerance.norm_between(&estimate, x, third);
+        let measure = tolerance.between(x, third);
+        let size = measure.norm(&estimate);
         if size <= 1.0 || !doubtful || size.is_nan() {
             return size;
         }
         let slope = self.problem.slope(span.start, &(x + estimate));
-        tolerance.norm_between(&self.real.solved::<Y, M, P>(&(sum + slope)), x, third)
+        measure.norm(&self.real.solved::<Y, M, P>(&(sum + slope)))
     }
 }
 
@@ -387,47 +410,10 @@ impl Estimating for Radau5 {
     const ESTIMATE_ORDER: u32 = 4;
 }
 
-#[allow(private_interfaces, reason = "no method is written outside")]
 impl Family for Radau5 {
-    type Work<T: Real, const N: usize> = Work<T, N>;
+    type Work<T: Real, const N: usize> = Stages<T, N>;
 
     const STEADY: bool = true;
-
-    fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
-        Work::new()
-    }
-
-    fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
-        &self,
-        work: &mut Self::Work<T, N>,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        start: &Start<T, N>,
-        tolerance: Option<&Tolerance<N>>,
-    ) -> Trial<T, N>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        work.attempt(problem, start, tolerance)
-    }
-
-    fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
-        work: &mut Self::Work<T, N>,
-        _problem: &mut Problem<'_, T, S, I, N, M, P>,
-        start: &Start<T, N>,
-        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
-    ) -> Polynomial<T, N>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        let mut polynomial = Polynomial::line(&start.x, end);
-        let [_, bend, twist, ..] = &mut polynomial.coefficients;
-        [*bend, *twist] = [work.tried.1[1], work.tried.1[2]];
-        polynomial
-    }
 }
 
 #[cfg(test)]

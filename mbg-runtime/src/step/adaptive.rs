@@ -18,10 +18,12 @@ use crate::{Input, Real, System};
 /// A method at steps whose length follows its estimate of the error.
 ///
 /// An error counts as small enough when the root of the mean square of
-/// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the error
-/// of the step and of the one before (PI control) and starts from the first two derivatives, both as in `dopri5` of
-/// Hairer, Nørsett and Wanner. Steps end exactly on the jumps of the input, and the starting step is chosen anew behind
-/// each. With [`Dual`](crate::Dual) numbers the values alone control the step.
+/// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
+/// and lengths of the step and of the one before: for [`Radau5`](crate::Radau5) by proportion and integral, else as the
+/// error goes on growing or falling (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
+/// 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
+/// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
+/// numbers the values alone control the step.
 ///
 /// Jumps that the input does not declare cost rejected steps. So that none is stepped over while the system is at rest,
 /// the input is looked at between the ends of each step; what is shorter than a sixty-fourth of the longest step may
@@ -200,25 +202,23 @@ impl<M: Estimating> Adaptive<'_, M> {
         let longest = seen(end - start).min(self.longest);
         let measure = tolerance.around(x);
         let (state, first) = (measure.norm(x), measure.norm(slope));
-        let trial = if state <= 1e-5 || first <= 1e-5 {
-            1e-6
+        // Where the state or its slope is zero, nothing is known of what it will come to.
+        let known = state > 1e-5 && first * longest > 1e-5;
+        let (trial, most) = if known {
+            (0.01 * state / first, state / first)
         } else {
-            0.01 * state / first
-        }
-        .min(longest);
+            (1e-6 * longest, longest)
+        };
+        let trial = trial.min(longest);
         let h = T::from_f64(trial);
         let memory = problem.memory;
         let ahead = problem.slope(start + h, &along(x, h, slope));
         problem.memory = memory;
         let second = measure.norm(&(ahead - slope)) / trial;
         let largest = first.max(second);
-        let accurate = if largest <= 1e-15 {
-            (trial * 1e-3).max(1e-6)
-        } else {
-            power(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER))
-        };
+        let accurate = power(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER));
         // An infinite slope ahead gives zero or NaN; the first trial is safer then.
-        let step = (100.0 * trial).min(accurate).min(longest);
+        let step = most.min(accurate).min(longest);
         if step > 0.0 && second.is_finite() {
             step
         } else {

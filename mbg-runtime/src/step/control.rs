@@ -3,14 +3,18 @@
 use crate::Real;
 use crate::scalar::power;
 
-/// Control of the length of the next step by the errors of this one and of the one before.
+/// Control of the length of the next step by the errors of this one and of the one before: steadily by proportion and
+/// integral, or as the error per length goes on.
 pub(super) struct Control {
     pub(super) length: f64,
+    order: f64,
     exponent: f64,
     /// Weight of the step before.
     memory: f64,
     /// Logarithm of the error of the step before.
     before: f64,
+    /// The length of the step before; none at the start.
+    last: Option<f64>,
     after_rejection: bool,
 }
 
@@ -20,9 +24,11 @@ impl Control {
         let memory = 0.2 / order;
         Self {
             length,
+            order,
             exponent: 1.0 / order - 0.75 * memory,
             memory,
             before: LEAST,
+            last: None,
             after_rejection: false,
         }
     }
@@ -30,9 +36,17 @@ impl Control {
     pub(super) fn accept(&mut self, length: f64, error: f64, steady: bool) {
         // Single precision is enough for a length, and takes half the time.
         let error = f64::from(Real::ln(error as f32));
-        let exponent = self.exponent * error - self.memory * self.before;
-        let needed = f64::from(Real::exp(exponent as f32)) / SAFETY;
-        let proposal = length / needed.clamp(0.1, 5.0);
+        let exp = |exponent: f64| f64::from(Real::exp(exponent as f32));
+        let needed = match self.last {
+            _ if steady => exp(self.exponent * error - self.memory * self.before),
+            Some(last) => {
+                let root = exp(error / self.order);
+                let trend = exp((error - self.before) / self.order) * last / length;
+                root * if trend > 1.0 { trend } else { 1.0 }
+            }
+            None => exp(error / self.order),
+        };
+        let proposal = length / (needed / SAFETY).clamp(0.1, 5.0);
         self.length = if self.after_rejection {
             proposal.min(length)
         } else if steady && (1.0..=1.2).contains(&(proposal / length)) {
@@ -41,6 +55,7 @@ impl Control {
             proposal
         };
         self.before = error.max(LEAST);
+        self.last = Some(length);
         self.after_rejection = false;
     }
 
@@ -52,7 +67,7 @@ impl Control {
 
     pub(super) fn reject(&mut self, length: f64, error: f64) {
         let shorter = if error.is_finite() {
-            (power(error, self.exponent) / SAFETY).min(5.0)
+            (power(error, 1.0 / self.order) / SAFETY).min(5.0)
         } else {
             5.0
         };

@@ -3,14 +3,34 @@
 use mbg_compare::{Comparison, Problem};
 use mbg_runtime::{Input, Statistics, System};
 use nalgebra::SVector;
-use numeris::ode::{AdaptiveSettings, RKAdaptive, RKTS54, RKV98NoInterp, RODAS4, Rosenbrock};
+use numeris::ode::{
+    AdaptiveSettings, RKAdaptive, RKTS54, RKV87, RKV98NoInterp, RODAS4, Rosenbrock,
+};
 use numeris::{Matrix, Vector};
 use ode_solvers::dop_shared::OutputType;
 
-type Row<const N: usize> = SVector<f64, N>;
+pub(crate) type Row<const N: usize> = SVector<f64, N>;
+
+/// The right-hand side that is given to others.
+pub(crate) trait Law<const N: usize, const M: usize> {
+    fn slope(&self, t: f64, x: &Row<N>, u: &SVector<f64, M>) -> Row<N>;
+}
+
+/// That of our model.
+pub(crate) struct Ours<'a, S, const P: usize>(pub &'a S);
+
+impl<S, const N: usize, const M: usize, const P: usize> Law<N, M> for Ours<'_, S, P>
+where
+    S: System<f64, N, M, P>,
+{
+    #[inline]
+    fn slope(&self, t: f64, x: &Row<N>, u: &SVector<f64, M>) -> Row<N> {
+        self.0.derivative(t, x, u, &mut S::Memory::default())
+    }
+}
 
 /// Runs a solver from jump to jump, and to each time at which the problem is judged.
-fn pieces<S, I, const N: usize, const M: usize, const P: usize>(
+pub(crate) fn pieces<S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, S, I, N, M, P>,
     times: &[f64],
     states: &mut Vec<Row<N>>,
@@ -32,6 +52,7 @@ where
             sum.evaluations += statistics.evaluations;
             sum.steps += statistics.steps;
             sum.rejected += statistics.rejected;
+            sum.factorisations += statistics.factorisations;
             (t, x) = (end, next);
         }
         states.push(x);
@@ -72,6 +93,7 @@ fn explicit<
     A,
     S,
     I,
+    L,
     const G: usize,
     const D: usize,
     const N: usize,
@@ -80,26 +102,23 @@ fn explicit<
 >(
     name: &str,
     comparison: &mut Comparison<'_, S, I, N, M, P>,
+    law: &L,
     tolerances: &[f64],
     small: f64,
 ) where
     A: RKAdaptive<G, D>,
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
+    L: Law<N, M>,
 {
     let problem = comparison.problem().clone();
     for &tolerance in tolerances {
         let set = settings(tolerance, tolerance * small);
         let run = |times: &[f64], states: &mut Vec<Row<N>>| {
-            let mut memory = S::Memory::default();
             pieces(&problem, times, states, |t, end, x| {
                 let slope = |time: f64, y: &Vector<f64, N>| {
                     let u = problem.input.value(time, t);
-                    spread(
-                        &problem
-                            .system
-                            .derivative(time, &gathered(y), &u, &mut memory),
-                    )
+                    spread(&law.slope(time, &gathered(y), &u))
                 };
                 A::integrate(t, end, &spread(&x), slope, &set)
                     .map(taken)
@@ -110,17 +129,32 @@ fn explicit<
     }
 }
 
-/// `numeris`: Verner's pair of orders 9 and 8, and that of Tsitouras.
-pub fn numeris_smooth<S, I, const N: usize, const M: usize, const P: usize>(
+/// `numeris`: Verner's pairs of orders 9 and 8 and of 8 and 7, and that of Tsitouras.
+pub fn numeris_smooth<S, I, L, const N: usize, const M: usize, const P: usize>(
     comparison: &mut Comparison<'_, S, I, N, M, P>,
+    law: &L,
     tolerances: &[f64],
     small: f64,
 ) where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
+    L: Law<N, M>,
 {
-    explicit::<RKV98NoInterp, _, _, _, _, N, M, P>("numeris rkv98", comparison, tolerances, small);
-    explicit::<RKTS54, _, _, _, _, N, M, P>("numeris rkts54", comparison, tolerances, small);
+    explicit::<RKV98NoInterp, _, _, _, _, _, N, M, P>(
+        "numeris rkv98",
+        comparison,
+        law,
+        tolerances,
+        small,
+    );
+    explicit::<RKV87, _, _, _, _, _, N, M, P>("numeris rkv87", comparison, law, tolerances, small);
+    explicit::<RKTS54, _, _, _, _, _, N, M, P>(
+        "numeris rkts54",
+        comparison,
+        law,
+        tolerances,
+        small,
+    );
 }
 
 /// `numeris`: Rodas4.
@@ -164,45 +198,46 @@ pub fn numeris_stiff<S, I, const N: usize, const M: usize, const P: usize>(
 }
 
 /// A right-hand side as `ode_solvers` takes it.
-struct Slope<'a, 'b, S, I, const N: usize, const M: usize, const P: usize> {
-    problem: &'b Problem<'a, S, I, N, M, P>,
+struct Slope<'b, I, L, const M: usize> {
+    input: &'b I,
+    law: &'b L,
     since: f64,
 }
 
 type Column<const N: usize> = ode_solvers::SVector<f64, N>;
 
-impl<S, I, const N: usize, const M: usize, const P: usize> ode_solvers::System<f64, Column<N>>
-    for Slope<'_, '_, S, I, N, M, P>
+impl<I, L, const N: usize, const M: usize> ode_solvers::System<f64, Column<N>>
+    for Slope<'_, I, L, M>
 where
-    S: System<f64, N, M, P>,
     I: Input<f64, M>,
+    L: Law<N, M>,
 {
     fn system(&self, t: f64, y: &Column<N>, dy: &mut Column<N>) {
-        let u = self.problem.input.value(t, self.since);
+        let u = self.input.value(t, self.since);
         let x = Row::from(<[f64; N]>::from(*y));
-        let slope = self
-            .problem
-            .system
-            .derivative(t, &x, &u, &mut S::Memory::default());
+        let slope = self.law.slope(t, &x, &u);
         *dy = Column::from(<[f64; N]>::from(slope));
     }
 }
 
 /// `ode_solvers`: the method of Dormand and Prince of order 8.
-pub fn ode_solvers_smooth<S, I, const N: usize, const M: usize, const P: usize>(
+pub fn ode_solvers_smooth<S, I, L, const N: usize, const M: usize, const P: usize>(
     comparison: &mut Comparison<'_, S, I, N, M, P>,
+    law: &L,
     tolerances: &[f64],
     small: f64,
 ) where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
+    L: Law<N, M>,
 {
     let problem = comparison.problem().clone();
     for &tolerance in tolerances {
         let run = |times: &[f64], states: &mut Vec<Row<N>>| {
             pieces(&problem, times, states, |t, end, x| {
                 let slope = Slope {
-                    problem: &problem,
+                    input: problem.input,
+                    law,
                     since: t,
                 };
                 let start = Column::from(<[f64; N]>::from(x));

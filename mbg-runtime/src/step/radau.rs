@@ -4,9 +4,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
 use super::elimination::Shifted;
-use super::linear::Complex;
+use super::linear::{Complex, Element};
 use super::method::{
-    Estimating, Family, Method, Progress, Settling, Start, Stepper, Trial, relative,
+    Estimating, Family, Method, Progress, Settling, Start, Stepper, Trial, combination, relative,
 };
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -248,14 +248,16 @@ fn coefficients<T: Real, const N: usize>([first, second, third]: &Three<T, N>) -
 }
 
 /// A matrix of numbers times three vectors.
+#[inline(always)]
 fn transformed<T: Real, const N: usize>(
-    matrix: &[[f64; 3]; 3],
-    [a, b, c]: &Three<T, N>,
+    [first, second, third]: &[[f64; 3]; 3],
+    vectors: &Three<T, N>,
 ) -> Three<T, N> {
-    matrix.map(|row| {
-        let [p, q, r] = row.map(T::from_f64);
-        a.zip_zip_map(b, c, |a, b, c| p * a + q * b + r * c)
-    })
+    [
+        combination(first, vectors),
+        combination(second, vectors),
+        combination(third, vectors),
+    ]
 }
 
 /// The search for the stages of one step.
@@ -288,21 +290,21 @@ where
         }
         let [first, second, third] = transformed(&INVERSE, &slopes);
         let by = |number: f64| T::from_f64(number) / span.length;
-        let (real, [alpha, beta]) = (by(REAL), PAIR.map(by));
+        let (real, alpha, beta) = (by(REAL), by(PAIR[0]), by(PAIR[1]));
         let [a, b, c] = &*inner;
         let one = self
             .real
             .solved::<Y, M, P>(&first.zip_map(a, |slope, a| slope - real * a));
-        let rights = core::array::from_fn(|row| Complex {
-            real: second[row] - (alpha * b[row] - beta * c[row]),
-            imaginary: third[row] - (alpha * c[row] + beta * b[row]),
-        });
+        let mut rights = [Complex::zero(); N];
+        for (row, right) in rights.iter_mut().enumerate() {
+            right.real = second[row] - (alpha * b[row] - beta * c[row]);
+            right.imaginary = third[row] - (alpha * c[row] + beta * b[row]);
+        }
+        let mut changes = [one; 3];
         let both = self.pair.solve::<Y, M, P>(rights);
-        let changes = [
-            one,
-            SVector::from(both.map(|it| it.real)),
-            SVector::from(both.map(|it| it.imaginary)),
-        ];
+        for (row, both) in both.iter().enumerate() {
+            (changes[1][row], changes[2][row]) = (both.real, both.imaginary);
+        }
         for (inner, change) in inner.iter_mut().zip(&changes) {
             *inner += change;
         }
@@ -326,8 +328,8 @@ where
         *rate = power(rate.max(T::EPSILON), 0.8);
         for sweep in 1..=SWEEPS {
             let changes = self.sweep(stages, &mut inner);
-            let norms = changes.map(|change| measure.norm(&change));
-            let size = Real::sqrt(norms.iter().fold(0.0, |sum, it| sum + it * it) / 3.0);
+            let squares = changes.iter().map(|change| measure.square(change));
+            let size = Real::sqrt(squares.sum::<f64>() / 3.0);
             if !size.is_finite() {
                 return None;
             }

@@ -56,11 +56,17 @@ impl<const N: usize> Measure<N> {
     /// Root of the mean square of an error in units of the tolerances.
     #[inline]
     pub(super) fn norm<T: Real>(&self, error: &SVector<T, N>) -> f64 {
+        Real::sqrt(self.square(error))
+    }
+
+    /// The mean square of an error in units of the tolerances.
+    #[inline]
+    pub(super) fn square<T: Real>(&self, error: &SVector<T, N>) -> f64 {
         let components = error.iter().zip(&self.factors);
         let sum = components.fold(0.0, |sum, (component, factor)| {
             let quotient = component.magnitude() * factor;
             sum + quotient * quotient
         });
-        Real::sqrt(sum / N.max(1) as f64)
+        sum / N.max(1) as f64
     }
 }

@@ -24,7 +24,9 @@ use std::time::Instant;
 use cvode::Sundials;
 use elimination::{Dense, RingModulator, RingModulatorParameters};
 use mbg_compare::{Comparison, Measured, Problem, TOLERANCES, compare};
-use mbg_runtime::{Adaptive, Input, Integrator, Rodas5P, Statistics, System, mbg};
+use mbg_runtime::{
+    Adaptive, Estimating, Input, Integrator, Radau5, Rodas4, Rodas5P, Statistics, System, mbg,
+};
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
 use peers::{Law, Ours};
@@ -63,6 +65,14 @@ impl Run {
         let title = problem.title.clone();
         let mut comparison: Comparison<'_, S, I, N, M, P> = compare(problem)?;
         let stiff = comparison.reference().stiff;
+        if stiff {
+            // The absolute tolerances that others are given, besides those in units of the states' sizes.
+            for small in [1.0, small] {
+                absolute(&mut comparison, Rodas4, small);
+                absolute(&mut comparison, Rodas5P, small);
+                absolute(&mut comparison, Radau5, small);
+            }
+        }
         let ours = comparison.points().len();
         if stiff {
             peers::numeris_stiff(&mut comparison, &TOLERANCES, 1.0);
@@ -91,6 +101,23 @@ impl Run {
             }
         }
         Ok(())
+    }
+}
+
+/// Runs a method with this absolute tolerance in units of the relative one, whatever the sizes of the states.
+fn absolute<S, I, A, const N: usize, const M: usize, const P: usize>(
+    comparison: &mut Comparison<'_, S, I, N, M, P>,
+    method: A,
+    small: f64,
+) where
+    S: System<f64, N, M, P>,
+    I: Input<f64, M>,
+    A: Estimating,
+{
+    let name = format!("{}, atol {small:e} rtol", A::NAME);
+    for tolerance in TOLERANCES {
+        let solver = Adaptive::new(method, tolerance, tolerance * small);
+        comparison.integrator(&name, &format!("rtol = {tolerance:e}"), &solver);
     }
 }
 

@@ -17,20 +17,21 @@ use crate::models::{
 type Scene<T, const N: usize, const M: usize> = (SVector<T, N>, SVector<T, M>);
 type Linear<const N: usize> = (SVector<f64, N>, SMatrix<f64, N, N>);
 
-fn label(scene: &str, variant: &str, operations: usize) -> Label {
+fn label(name: &str, kind: &str, variant: &str, operations: usize) -> Label {
     Label {
-        scene: scene.into(),
+        scene: format!("{name}-{kind}"),
         peer: OURS.into(),
         variant: variant.into(),
         operations: Some(operations),
     }
 }
 
-fn scene<const N: usize, const M: usize>(row: &[f64]) -> Scene<f64, N, M> {
-    (
-        SVector::from_column_slice(&row[..N]),
-        SVector::from_column_slice(&row[N..]),
-    )
+fn scenes<const N: usize, const M: usize>(rows: &[Vec<f64>]) -> Vec<Scene<f64, N, M>> {
+    let part = |row: &Vec<f64>| {
+        let (x, u) = row.split_at(N);
+        (SVector::from_column_slice(x), SVector::from_column_slice(u))
+    };
+    rows.iter().map(part).collect()
 }
 
 // The code of peers cannot be inlined where it is called, so ours is not.
@@ -53,70 +54,50 @@ fn jacobian<S: System<f64, N, M, P>, const N: usize, const M: usize, const P: us
     *result = model.derivative_and_jacobian(0.0, x, u, &mut S::Memory::default());
 }
 
-/// The value in `f64`.
-fn value<S, const N: usize, const M: usize, const P: usize>(
-    name: &str,
-    rows: &[Vec<f64>],
-    model: S,
-) -> Contestant
-where
-    S: System<f64, N, M, P> + Clone + 'static,
+/// What a model in `f64` takes part in, at rows of states of the scene of a name.
+trait Contests<const N: usize, const M: usize, const P: usize>:
+    System<f64, N, M, P> + Clone + 'static
 {
-    Contestant::single(
-        label(
-            &format!("{name}-value"),
-            "f64",
-            S::META.operations.derivative,
-        ),
-        N,
-        rows.iter().map(|row| scene(row)).collect(),
-        SVector::zeros(),
-        move |scene, result| derivative(&model, scene, result),
-        |result| result.as_slice().to_vec(),
-    )
+    fn value(self, name: &str, rows: &[Vec<f64>]) -> Contestant {
+        Contestant::single(
+            label(name, "value", "f64", Self::META.operations.derivative),
+            N,
+            scenes(rows),
+            SVector::zeros(),
+            move |scene, result| derivative(&self, scene, result),
+            |result| result.as_slice().to_vec(),
+        )
+    }
+
+    fn value_and_jacobian(self, name: &str, rows: &[Vec<f64>]) -> Contestant {
+        let operations = Self::META.operations.derivative_and_jacobian;
+        Contestant::single(
+            label(name, "jacobian", "f64", operations),
+            N,
+            scenes(rows),
+            (SVector::zeros(), SMatrix::zeros()),
+            move |scene, result| jacobian(&self, scene, result),
+            |(value, slope)| [value.as_slice(), slope.as_slice()].concat(),
+        )
+    }
+
+    /// A batch, one state at a time.
+    fn in_turn(self, name: &str, rows: &[Vec<f64>]) -> Contestant {
+        Contestant::batch(
+            label(name, "batch", "f64", Self::META.operations.derivative),
+            N,
+            scenes(rows),
+            1,
+            SVector::zeros(),
+            move |scene, result| derivative(&self, scene, result),
+            |result, _| result.as_slice().to_vec(),
+        )
+    }
 }
 
-fn value_and_jacobian<S, const N: usize, const M: usize, const P: usize>(
-    name: &str,
-    rows: &[Vec<f64>],
-    model: S,
-) -> Contestant
-where
-    S: System<f64, N, M, P> + Clone + 'static,
+impl<S, const N: usize, const M: usize, const P: usize> Contests<N, M, P> for S where
+    S: System<f64, N, M, P> + Clone + 'static
 {
-    let operations = S::META.operations.derivative_and_jacobian;
-    Contestant::single(
-        label(&format!("{name}-jacobian"), "f64", operations),
-        N,
-        rows.iter().map(|row| scene(row)).collect(),
-        (SVector::zeros(), SMatrix::zeros()),
-        move |scene, result| jacobian(&model, scene, result),
-        |(value, slope)| [value.as_slice(), slope.as_slice()].concat(),
-    )
-}
-
-/// A batch, one state at a time.
-fn in_turn<S, const N: usize, const M: usize, const P: usize>(
-    name: &str,
-    rows: &[Vec<f64>],
-    model: S,
-) -> Contestant
-where
-    S: System<f64, N, M, P> + Clone + 'static,
-{
-    Contestant::batch(
-        label(
-            &format!("{name}-batch"),
-            "f64",
-            S::META.operations.derivative,
-        ),
-        N,
-        rows.iter().map(|row| scene(row)).collect(),
-        1,
-        SVector::zeros(),
-        move |scene, result| derivative(&model, scene, result),
-        |result, _| result.as_slice().to_vec(),
-    )
 }
 
 /// A batch in lanes.
@@ -131,7 +112,7 @@ where
     f64: From<L::Lane>,
     S: System<L, N, M, P> + Clone + 'static,
 {
-    let scenes: Vec<Scene<f64, N, M>> = rows.iter().map(|row| scene(row)).collect();
+    let scenes = scenes::<N, M>(rows);
     let lanes = scenes.chunks(L::COUNT).map(|scenes| {
         let states: Vec<_> = scenes
             .iter()
@@ -144,11 +125,7 @@ where
         (pack(&states), pack(&inputs))
     });
     let contestant = Contestant::batch(
-        label(
-            &format!("{name}-batch"),
-            variant,
-            S::META.operations.derivative,
-        ),
+        label(name, "batch", variant, S::META.operations.derivative),
         N,
         lanes.collect(),
         L::COUNT,
@@ -176,30 +153,21 @@ pub(crate) fn contestants(folder: &Path) -> Result<Vec<Contestant>, Box<dyn Erro
     let ins = Ins::new(InsParameters::default())?;
     let arm = Arm::new(ArmParameters::default())?;
     let four_bar = FourBar::new(FourBarParameters::default())?;
+    let chain8 = Chain8::new(Chain8Parameters::default())?;
+    let chain16 = Chain16::new(Chain16Parameters::default())?;
+    let chain64 = Chain64::new(Chain64Parameters::default())?;
     let (navigation, poses) = (rows(folder, "ins")?, rows(folder, "arm")?);
     let mut found = vec![
-        value("ins", &navigation[..64], ins),
-        value_and_jacobian("ins", &navigation[..64], ins),
-        value(
-            "chain8",
-            &rows(folder, "chain8")?,
-            Chain8::new(Chain8Parameters::default())?,
-        ),
-        value(
-            "chain16",
-            &rows(folder, "chain16")?,
-            Chain16::new(Chain16Parameters::default())?,
-        ),
-        value(
-            "chain64",
-            &rows(folder, "chain64")?,
-            Chain64::new(Chain64Parameters::default())?,
-        ),
-        value("arm", &poses[..64], arm),
-        value_and_jacobian("arm", &poses[..64], arm),
-        value("fourbar", &rows(folder, "fourbar")?, four_bar),
-        in_turn("ins", &navigation, ins),
-        in_turn("arm", &poses, arm),
+        ins.value("ins", &navigation[..64]),
+        ins.value_and_jacobian("ins", &navigation[..64]),
+        chain8.value("chain8", &rows(folder, "chain8")?),
+        chain16.value("chain16", &rows(folder, "chain16")?),
+        chain64.value("chain64", &rows(folder, "chain64")?),
+        arm.value("arm", &poses[..64]),
+        arm.value_and_jacobian("arm", &poses[..64]),
+        four_bar.value("fourbar", &rows(folder, "fourbar")?),
+        ins.in_turn("ins", &navigation),
+        arm.in_turn("arm", &poses),
     ];
     lanes!(found, "ins", &navigation, Ins, InsParameters: f64x4, f64x8, f32x8, f32x16);
     lanes!(found, "arm", &poses, Arm, ArmParameters: f64x4, f64x8, f32x8, f32x16);

@@ -9,10 +9,10 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use crate::contestant::OURS;
 use crate::report::{Report, Row, SCENES};
 
-const WIDTH: i32 = 900;
+const WIDTH: i32 = 930;
 /// Where the bars begin and end.
-const LEFT: i32 = 270;
-const RIGHT: i32 = 840;
+const LEFT: i32 = 300;
+const RIGHT: i32 = 870;
 const TOP: i32 = 56;
 const BAR: i32 = 15;
 const GAP: i32 = 14;

@@ -105,7 +105,13 @@ impl Report {
     /// Writes everything.
     pub(crate) fn write(&self, output: &Path, times: &Times) -> Result<(), Box<dyn Error>> {
         fs::create_dir_all(output)?;
-        let text = format!("{}\n{}\n{}", self.summary(), self.everything(), kept(times));
+        let text = [
+            self.summary(),
+            self.growth(),
+            self.everything(),
+            kept(times),
+        ]
+        .join("\n");
         print!("{text}");
         fs::write(output.join("table.txt"), text)?;
         fs::write(output.join("results.csv"), self.csv())?;
@@ -178,6 +184,21 @@ impl Report {
             );
         }
         text
+    }
+
+    /// How much longer a link of the long chain takes than one of the short chain.
+    fn growth(&self) -> String {
+        let mut text = "time per link, chain of 64 links to chain of 8:".to_owned();
+        let mut seen: Vec<&str> = Vec::new();
+        for long in self.of("chain64-value") {
+            let short = self.of("chain8-value");
+            let short = short.iter().find(|row| row.peer == long.peer);
+            if let (Some(short), false) = (short, seen.contains(&long.peer.as_str())) {
+                seen.push(&long.peer);
+                let _ = write!(text, " {} {:.2}", long.peer, long.time / short.time / 8.0);
+            }
+        }
+        text + "\n"
     }
 
     fn everything(&self) -> String {

@@ -26,7 +26,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         );
     let speed = Panel::new("Shaft", "time in s", "speed in rad/s")
         .line(
-            "motor, over 20",
+            "motor, behind the gear of 20",
             ORANGE,
             over(&found, |it| it.output[1] / 20.0),
         )

@@ -44,11 +44,11 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .flat_map(|(t, _, quaternion)| quaternion.map(|part| (*t, part)));
     let parts = parts.dots("reference", GREY, known.collect());
     let gimbals = Panel::new(
-        "Gimbals would divide by",
+        "What gimbals would divide by",
         "time in s",
         "|cos(middle angle)|",
     )
-    .line("zero is their lock", ORANGE, over(&found, cosine));
+    .line("zero where they lock", ORANGE, over(&found, cosine));
     picture(
         path,
         "A body is pulled through gimbal lock",

@@ -25,67 +25,49 @@ pub(crate) struct State<T, const N: usize> {
     lost: SVector<T, N>,
 }
 
-/// One step as a controller's loop makes it, of model, time, torque of the wind and state. It tells whether the state
-/// can be trusted.
+/// One step of the state of a model, at a time and with a torque of the wind. It tells whether the state can be trusted.
 pub(crate) type Step<S, T, const N: usize> = fn(&S, T, &SVector<T, 3>, &mut State<T, N>) -> bool;
 
 fn length<T: Real>() -> T {
     T::from_f64(1.0 / f64::from(RATE))
 }
 
-/// The step alone.
-#[inline(never)]
-pub(crate) fn plain<T, S, const N: usize, const P: usize>(
-    model: &S,
-    t: T,
-    wind: &SVector<T, 3>,
-    state: &mut State<T, N>,
-) -> bool
-where
-    T: Real,
-    S: System<T, N, 3, P, Memory = ()>,
+/// The steps that a controller's loop may make.
+pub(crate) trait Steps<T: Real, const N: usize, const P: usize>:
+    System<T, N, 3, P, Memory = ()> + Sized
 {
-    state.x = Rk4::step(model, t, &state.x, wind, length(), &mut ());
-    true
-}
-
-/// With compensated sums.
-#[inline(never)]
-pub(crate) fn compensated<T, S, const N: usize, const P: usize>(
-    model: &S,
-    t: T,
-    wind: &SVector<T, 3>,
-    state: &mut State<T, N>,
-) -> bool
-where
-    T: Real,
-    S: System<T, N, 3, P, Memory = ()>,
-{
-    let State { x, lost } = state;
-    *x = Rk4::compensated_step(model, t, x, wind, length(), lost, &mut ());
-    true
-}
-
-/// With compensated sums, attitudes made rotations again, and the singular set watched.
-#[inline(never)]
-pub(crate) fn guarded<T, S, const N: usize, const P: usize>(
-    model: &S,
-    t: T,
-    wind: &SVector<T, 3>,
-    state: &mut State<T, N>,
-) -> bool
-where
-    T: Real,
-    S: System<T, N, 3, P, Memory = ()>,
-{
-    let State { x, lost } = state;
-    let next = Rk4::compensated_step(model, t, x, wind, length(), lost, &mut ());
-    let t = t + length();
-    match model.close(t, next, wind, &[]) {
-        Ok(closed) => *x = closed,
-        Err(_) => return false,
+    /// The step alone.
+    #[inline(never)]
+    fn plain(&self, t: T, wind: &SVector<T, 3>, state: &mut State<T, N>) -> bool {
+        state.x = Rk4::step(self, t, &state.x, wind, length(), &mut ());
+        true
     }
-    model.trouble(t, x, wind, &()).is_none()
+
+    /// With compensated sums.
+    #[inline(never)]
+    fn compensated(&self, t: T, wind: &SVector<T, 3>, state: &mut State<T, N>) -> bool {
+        let State { x, lost } = state;
+        *x = Rk4::compensated_step(self, t, x, wind, length(), lost, &mut ());
+        true
+    }
+
+    /// With compensated sums, attitudes made rotations again, and the singular set watched.
+    #[inline(never)]
+    fn guarded(&self, t: T, wind: &SVector<T, 3>, state: &mut State<T, N>) -> bool {
+        let State { x, lost } = state;
+        let next = Rk4::compensated_step(self, t, x, wind, length(), lost, &mut ());
+        let t = t + length();
+        match self.close(t, next, wind, &[]) {
+            Ok(closed) => *x = closed,
+            Err(_) => return false,
+        }
+        self.trouble(t, x, wind, &()).is_none()
+    }
+}
+
+impl<S, T: Real, const N: usize, const P: usize> Steps<T, N, P> for S where
+    S: System<T, N, 3, P, Memory = ()>
+{
 }
 
 /// Flies, and prints trajectory, error, all bits in one number, and cost. Whether every state could be trusted, and no

@@ -12,7 +12,7 @@ mod print;
 #[allow(dead_code)]
 mod reference;
 
-use flight::{compensated, fly, guarded, plain};
+use flight::{Steps, fly};
 use mbg_runtime::Real;
 use models::{Ins, InsObserved, InsObservedParameters, InsParameters};
 
@@ -30,19 +30,24 @@ fn flights() -> bool {
     };
     #[cfg(feature = "planted")]
     print::text(["an index that may be out of bounds"][core::hint::black_box(0)]);
-    fly("Ins, f32, plain", &bare, plain, 1e-5)
-        & fly("Ins, f32, compensated", &bare, compensated, 1e-6)
-        & fly("Ins, f32, guarded", &bare, guarded, 1e-6)
-        & fly("InsObserved, f32, plain", &observed, plain, 1e-5)
+    fly("Ins, f32, plain", &bare, Steps::plain, 1e-6)
+        & fly("Ins, f32, compensated", &bare, Steps::compensated, 1e-7)
+        & fly("Ins, f32, guarded", &bare, Steps::guarded, 1e-7)
+        & fly("InsObserved, f32, plain", &observed, Steps::plain, 1e-6)
         & fly(
             "InsObserved, f32, compensated",
             &observed,
-            compensated,
-            1e-6,
+            Steps::compensated,
+            1e-7,
         )
-        & fly("InsObserved, f32, guarded", &observed, guarded, 1e-6)
-        & fly("Ins, f64, plain", &bare64, plain, 1e-10)
-        & fly("InsObserved, f64, guarded", &observed64, guarded, 1e-10)
+        & fly("InsObserved, f32, guarded", &observed, Steps::guarded, 1e-7)
+        & fly("Ins, f64, plain", &bare64, Steps::plain, 1e-10)
+        & fly(
+            "InsObserved, f64, guarded",
+            &observed64,
+            Steps::guarded,
+            1e-10,
+        )
 }
 
 #[cfg(not(target_os = "none"))]

@@ -21,13 +21,15 @@ impl<S, I, const N: usize, const M: usize, const P: usize> fmt::Display
             "reference: {first} at {:e}, with which {second} agrees within {:.0e}; smaller errors are not certain",
             reference.tolerance, reference.agreement
         )?;
+        let names = self.points().iter().map(|it| it.method.chars().count());
+        let wide = names.fold(18, usize::max) + 2;
         writeln!(
             formatter,
-            "\n{:<20}{:<16}{:>10}{:>12}{:>14}{:>10}",
+            "\n{:<wide$}{:<16}{:>10}{:>12}{:>14}{:>10}",
             "method", "setting", "error", "time / µs", "evaluations", "steps"
         )?;
         for point in self.points() {
-            write!(formatter, "{:<20}{:<16}", point.method, point.setting)?;
+            write!(formatter, "{:<wide$}{:<16}", point.method, point.setting)?;
             match &point.outcome {
                 Ok(it) => writeln!(
                     formatter,

@@ -2,10 +2,10 @@
 //!
 //! | to | look at |
 //! |---|---|
-//! | write a model | the [`language`] |
-//! | see what models do | `docs/gallery.md` of the repository, a picture for each scene of its example `gallery` |
+//! | write a model | the [`language`], the [`joints`] of the library |
+//! | see what models do | `docs/gallery.md` of the repository, a picture of each |
 //! | ask a model | [`System`], [`Meta`] |
-//! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; [`Input`] |
+//! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; or [`Auto`], which picks them; [`Input`] |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 #![no_std]

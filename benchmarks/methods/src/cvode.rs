@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::ptr::null_mut;
 
 use libloading::Library;
-use mbg_compare::{Comparison, Problem};
+use mbg_compare::{Comparison, Problem, TOLERANCES};
 use mbg_runtime::{Input, Statistics, System};
 
 use crate::peers::{Law, Row, pieces};
@@ -199,7 +199,6 @@ pub fn cvode<S, I, L, const N: usize, const M: usize, const P: usize>(
     sundials: &Sundials,
     comparison: &mut Comparison<'_, S, I, N, M, P>,
     law: &L,
-    tolerances: &[f64],
     stiff: bool,
 ) where
     S: System<f64, N, M, P>,
@@ -209,7 +208,7 @@ pub fn cvode<S, I, L, const N: usize, const M: usize, const P: usize>(
     let problem = comparison.problem().clone();
     let sizes = comparison.reference().sizes;
     let name = if stiff { "CVODE BDF" } else { "CVODE Adams" };
-    for &tolerance in tolerances {
+    for tolerance in TOLERANCES {
         let run = |times: &[f64], states: &mut Vec<Row<N>>| {
             let s = sundials;
             let mut user = User {
@@ -241,7 +240,7 @@ pub fn cvode<S, I, L, const N: usize, const M: usize, const P: usize>(
             };
             let since = &raw mut user.since;
             let mut begun = problem.start;
-            let found = pieces(&problem, times, states, |t, end, x| {
+            let found = pieces(&problem, times, states, |[t, end], x| {
                 let at = (s.numbers)(y);
                 // SAFETY: the vector has N numbers; nobody else refers to the field.
                 unsafe {

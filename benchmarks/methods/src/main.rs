@@ -29,7 +29,7 @@ use mbg_runtime::{
 };
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
-use peers::{Law, Ours};
+use peers::{Law, Ours, Peers};
 use problems::{RigidBody, Robertson, VanDerPol, Written};
 use written::{DoublePendulum, Navigation};
 
@@ -75,18 +75,19 @@ impl Run {
         }
         let ours = comparison.points().len();
         if stiff {
-            peers::numeris_stiff(&mut comparison, &TOLERANCES, 1.0);
-            peers::numeris_stiff(&mut comparison, &TOLERANCES, small);
+            Peers::new(&mut comparison, law, 1.0).numeris_stiff();
+            Peers::new(&mut comparison, law, small).numeris_stiff();
         } else {
-            peers::numeris_smooth(&mut comparison, law, &TOLERANCES, small);
-            peers::ode_solvers_smooth(&mut comparison, law, &TOLERANCES, small);
+            let mut peers = Peers::new(&mut comparison, law, small);
+            peers.numeris_smooth();
+            peers.ode_solvers_smooth();
         }
         let crates = comparison.points().len();
         if let Some(sundials) = &self.sundials {
             if !stiff {
-                cvode::cvode(sundials, &mut comparison, law, &TOLERANCES, false);
+                cvode::cvode(sundials, &mut comparison, law, false);
             }
-            cvode::cvode(sundials, &mut comparison, law, &TOLERANCES, true);
+            cvode::cvode(sundials, &mut comparison, law, true);
         }
         println!("{comparison}");
         std::fs::create_dir_all("out")?;

@@ -7,46 +7,45 @@ use crate::scalar::power;
 /// integral, or as the error per length goes on.
 pub(super) struct Control {
     pub(super) length: f64,
-    order: f64,
+    /// The error to this power is what the length is to be divided by.
     exponent: f64,
-    /// Weight of the step before.
-    memory: f64,
     /// Logarithm of the error of the step before.
     before: f64,
-    /// The length of the step before; none at the start.
-    last: Option<f64>,
+    /// The smallest error that is remembered, to that power.
+    least: f64,
+    /// What the length of the step before was to be divided by, and that length; none at the start.
+    last: Option<(f64, f64)>,
     after_rejection: bool,
 }
 
 impl Control {
     pub(super) fn new(order: u32, length: f64) -> Self {
-        let order = f64::from(order);
-        let memory = 0.2 / order;
+        let exponent = 1.0 / f64::from(order);
         Self {
             length,
-            order,
-            exponent: 1.0 / order - 0.75 * memory,
-            memory,
+            exponent,
+            least: Real::exp(exponent * LEAST),
             before: LEAST,
             last: None,
             after_rejection: false,
         }
     }
 
+    #[inline]
     pub(super) fn accept(&mut self, length: f64, error: f64, steady: bool) {
         // Single precision is enough for a length, and takes half the time.
         let error = f64::from(Real::ln(error as f32));
-        let exp = |exponent: f64| f64::from(Real::exp(exponent as f32));
-        let needed = match self.last {
-            _ if steady => exp(self.exponent * error - self.memory * self.before),
-            Some(last) => {
-                let root = exp(error / self.order);
-                let trend = exp((error - self.before) / self.order) * last / length;
-                root * if trend > 1.0 { trend } else { 1.0 }
-            }
-            None => exp(error / self.order),
+        let power = |error: f64| f64::from(Real::exp((self.exponent * error) as f32));
+        let needed = if steady {
+            power(PROPORTION * error - MEMORY * self.before)
+        } else {
+            let needed = power(error);
+            let (before, last) = self.last.unwrap_or((needed, length));
+            let trend = needed * last / (before * length);
+            self.last = Some((needed.max(self.least), length));
+            needed * if trend > 1.0 { trend } else { 1.0 }
         };
-        let proposal = length / (needed / SAFETY).clamp(0.1, 5.0);
+        let proposal = length * (SAFETY / needed).clamp(0.2, 10.0);
         self.length = if self.after_rejection {
             proposal.min(length)
         } else if steady && (1.0..=1.2).contains(&(proposal / length)) {
@@ -55,7 +54,6 @@ impl Control {
             proposal
         };
         self.before = error.max(LEAST);
-        self.last = Some(length);
         self.after_rejection = false;
     }
 
@@ -67,7 +65,7 @@ impl Control {
 
     pub(super) fn reject(&mut self, length: f64, error: f64) {
         let shorter = if error.is_finite() {
-            (power(error, 1.0 / self.order) / SAFETY).min(5.0)
+            (power(error, self.exponent) / SAFETY).min(5.0)
         } else {
             5.0
         };
@@ -78,5 +76,8 @@ impl Control {
 
 /// The next step is shorter than the error allows by this factor.
 const SAFETY: f64 = 0.9;
+/// Parts of the error of this step and of the one before in steady control.
+const PROPORTION: f64 = 0.85;
+const MEMORY: f64 = 0.2;
 /// Logarithm of 1e-4, the smallest error that is remembered.
 const LEAST: f64 = -9.210_340_371_976_182;

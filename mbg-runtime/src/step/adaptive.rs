@@ -204,12 +204,18 @@ impl<M: Estimating> Adaptive<'_, M> {
         let (state, first) = (measure.norm(x), measure.norm(slope));
         // Where the state or its slope is zero, nothing is known of what it will come to.
         let known = state > 1e-5 && first * longest > 1e-5;
-        let (trial, most) = if known {
-            (0.01 * state / first, state / first)
+        let trial = if known {
+            0.01 * state / first
         } else {
-            (1e-6 * longest, longest)
+            1e-6 * longest
         };
         let trial = trial.min(longest);
+        // Over rest a step may be as long as the piece, unless the input may do something in between.
+        let most = if known || !problem.input.is_constant_between_jumps() {
+            100.0 * trial
+        } else {
+            longest
+        };
         let h = T::from_f64(trial);
         let memory = problem.memory;
         let ahead = problem.slope(start + h, &along(x, h, slope));

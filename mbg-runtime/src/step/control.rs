@@ -45,7 +45,7 @@ impl Control {
             self.last = Some((needed.max(self.least), length));
             needed * if trend > 1.0 { trend } else { 1.0 }
         };
-        let proposal = length * (SAFETY / needed).clamp(0.2, 10.0);
+        let proposal = length * (SAFETY / needed).clamp(0.2, 5.0);
         self.length = if self.after_rejection {
             proposal.min(length)
         } else if steady && (1.0..=1.2).contains(&(proposal / length)) {
@@ -75,7 +75,7 @@ impl Control {
 }
 
 /// The next step is shorter than the error allows by this factor.
-const SAFETY: f64 = 0.9;
+const SAFETY: f64 = 0.85;
 /// Parts of the error of this step and of the one before in steady control.
 const PROPORTION: f64 = 0.85;
 const MEMORY: f64 = 0.2;

@@ -19,8 +19,8 @@ use crate::{Input, Real, System};
 ///
 /// An error counts as small enough when the root of the mean square of
 /// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
-/// and lengths of the step and of the one before: for [`Radau5`](crate::Radau5) by proportion and integral, else as the
-/// error goes on growing or falling (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
+/// and lengths of the step and of the one before: for methods of Rosenbrock as the error goes on growing or falling, else
+/// by proportion and integral (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
 /// 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
 /// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
 /// numbers the values alone control the step.
@@ -168,7 +168,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 if last {
                     return Ok(ControlFlow::Continue(next));
                 }
-                control.accept(seen(span.length), trial.error, Scheme::STEADY);
+                control.accept(seen(span.length), trial.error, Scheme::RULE);
                 (t, x, slope, again) = (span.end, next, ahead, false);
             } else {
                 problem.statistics.rejected += 1;
@@ -202,20 +202,15 @@ impl<M: Estimating> Adaptive<'_, M> {
         let longest = seen(end - start).min(self.longest);
         let measure = tolerance.around(x);
         let (state, first) = (measure.norm(x), measure.norm(slope));
-        // Where the state or its slope is zero, nothing is known of what it will come to.
-        let known = state > 1e-5 && first * longest > 1e-5;
-        let trial = if known {
+        let trial = if state <= 1e-5 || first <= 1e-5 {
+            1e-6
+        } else {
             0.01 * state / first
-        } else {
-            1e-6 * longest
-        };
-        let trial = trial.min(longest);
+        }
+        .min(longest);
         // Over rest a step may be as long as the piece, unless the input may do something in between.
-        let most = if known || !problem.input.is_constant_between_jumps() {
-            100.0 * trial
-        } else {
-            longest
-        };
+        let rests = first * longest <= 1e-5 && problem.input.is_constant_between_jumps();
+        let most = if rests { longest } else { 100.0 * trial };
         let h = T::from_f64(trial);
         let memory = problem.memory;
         let ahead = problem.slope(start + h, &along(x, h, slope));

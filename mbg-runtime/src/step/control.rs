@@ -3,8 +3,18 @@
 use crate::Real;
 use crate::scalar::power;
 
-/// Control of the length of the next step by the errors of this one and of the one before: steadily by proportion and
-/// integral, or as the error per length goes on.
+/// How the length of the next step follows the errors of this one and of the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    /// By proportion and integral.
+    Proportional,
+    /// The same, but a step up to a fifth longer is not worth the work.
+    Steady,
+    /// As the error goes on growing or falling.
+    Trend,
+}
+
+/// Control of the length of steps.
 pub(super) struct Control {
     pub(super) length: f64,
     /// The error to this power is what the length is to be divided by.
@@ -32,11 +42,11 @@ impl Control {
     }
 
     #[inline]
-    pub(super) fn accept(&mut self, length: f64, error: f64, steady: bool) {
+    pub(super) fn accept(&mut self, length: f64, error: f64, rule: Rule) {
         // Single precision is enough for a length, and takes half the time.
         let error = f64::from(Real::ln(error as f32));
         let power = |error: f64| f64::from(Real::exp((self.exponent * error) as f32));
-        let needed = if steady {
+        let needed = if rule != Rule::Trend {
             power(PROPORTION * error - MEMORY * self.before)
         } else {
             let needed = power(error);
@@ -45,10 +55,10 @@ impl Control {
             self.last = Some((needed.max(self.least), length));
             needed * if trend > 1.0 { trend } else { 1.0 }
         };
-        let proposal = length * (SAFETY / needed).clamp(0.2, 5.0);
+        let proposal = length * (SAFETY / needed).clamp(0.2, 10.0);
         self.length = if self.after_rejection {
             proposal.min(length)
-        } else if steady && (1.0..=1.2).contains(&(proposal / length)) {
+        } else if rule == Rule::Steady && (1.0..=1.2).contains(&(proposal / length)) {
             length
         } else {
             proposal
@@ -65,7 +75,7 @@ impl Control {
 
     pub(super) fn reject(&mut self, length: f64, error: f64) {
         let shorter = if error.is_finite() {
-            (power(error, self.exponent) / SAFETY).min(5.0)
+            (power(error, PROPORTION * self.exponent) / SAFETY).min(5.0)
         } else {
             5.0
         };
@@ -75,7 +85,7 @@ impl Control {
 }
 
 /// The next step is shorter than the error allows by this factor.
-const SAFETY: f64 = 0.85;
+const SAFETY: f64 = 0.9;
 /// Parts of the error of this step and of the one before in steady control.
 const PROPORTION: f64 = 0.85;
 const MEMORY: f64 = 0.2;

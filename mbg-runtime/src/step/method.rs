@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 
+use super::control::Rule;
 use super::dense::Polynomial;
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -72,8 +73,9 @@ pub trait Family: Copy {
     /// The implementation that all methods of the family share.
     type Work<T: Real, const N: usize>: Stepper<Self, T, N>;
 
-    /// Whether a step up to a fifth longer is not worth the work.
-    const STEADY: bool = false;
+    /// How the length of steps follows the error.
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const RULE: Rule = Rule::Proportional;
 }
 
 /// Steps of a method, with the stages of the last one and what else is used again.

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::linear::{Complex, Element};
@@ -415,7 +416,8 @@ impl Estimating for Radau5 {
 impl Family for Radau5 {
     type Work<T: Real, const N: usize> = Stages<T, N>;
 
-    const STEADY: bool = true;
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const RULE: Rule = Rule::Steady;
 }
 
 #[cfg(test)]

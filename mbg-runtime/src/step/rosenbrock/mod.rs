@@ -7,6 +7,7 @@ use core::marker::PhantomData;
 
 use nalgebra::{SMatrix, SVector};
 
+use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{
@@ -233,6 +234,9 @@ macro_rules! rosenbrock {
 
         impl Family for $name {
             type Work<T: Real, const N: usize> = Stages<Self, T, N, $stages>;
+
+            #[allow(private_interfaces, reason = "no method is written outside")]
+            const RULE: Rule = Rule::Trend;
         }
     };
 }

@@ -14,7 +14,6 @@ mod models;
 mod problems;
 
 use std::error::Error;
-use std::f64::consts::FRAC_PI_2;
 
 use arm::{Arm, ArmParameters};
 use mbg_compare::{Comparison, Problem, compare};
@@ -56,7 +55,7 @@ fn pendulum() -> Result<(), Box<dyn Error>> {
         stiffness: 1e8,
         damping: 1e3,
     });
-    let start = SVector::from([0.0, 0.0, FRAC_PI_2, 0.0, 0.0, 0.0]);
+    let start = StiffPin::level();
     let title = "pendulum on a pin of 1e8 N/m";
     let problem = Problem::new(title, &pin, &(), (0.0, 5.0), start)
         .nominal([1e-7, 1e-7, 1.0, 1e-3, 1e-3, 1.0]);

@@ -21,6 +21,21 @@ fn assert_holds(name: &str) {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
+/// What the report lets pass, and what it does not.
+#[test]
+fn lines_hold_only_as_expected() {
+    use suite::{Expected, Found, Line};
+    let holds = |expected, error| {
+        let found = Found { error, steps: 1 };
+        Line::run(("", "", ""), expected, || Ok(found)).holds()
+    };
+    assert!(holds(Expected::Within(1.0), 1.0));
+    assert!(!holds(Expected::Within(1.0), 1.1));
+    assert!(!holds(Expected::Within(1.0), f64::NAN));
+    assert!(!holds(Expected::Within(1.0), Found::NONE.error));
+    assert!(!holds(Expected::Refused(""), 0.0));
+}
+
 macro_rules! cases {
     ($($test:ident = $name:literal;)*) => {
         $(#[test] fn $test() { assert_holds($name); })*

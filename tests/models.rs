@@ -25,6 +25,7 @@ mod models {
     mod audit;
     mod behaviour;
     mod closed;
+    mod columns;
     mod dependent;
     mod energy;
     mod gimbals;

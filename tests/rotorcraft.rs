@@ -1,10 +1,14 @@
 //! A rotor of four blades over many turns: what it keeps, and what it takes to drive it.
 #![allow(clippy::unwrap_used)]
 
+#[path = "references/errors.rs"]
+#[allow(dead_code)]
+mod errors;
 #[path = "../examples/rotor/model.rs"]
 #[allow(unreachable_pub)]
 mod model;
 
+use errors::larger;
 use mbg_runtime::{Adaptive, Dop853, Integrator, System};
 use model::{Coasting, CoastingParameters, Sliding, SlidingParameters};
 use nalgebra::SVector;
@@ -34,8 +38,8 @@ fn a_free_hub_keeps_energy_and_momentum_about_its_axis() {
     FINE.integrate(&model, &(), 0.0, 5.0, x0, |step| {
         let (t, x) = (step.end(), step.state());
         let output = model.output(t, x, &u, &mut ());
-        worst[0] = worst[0].max((model.energy(t, x) / start.0 - 1.0).abs());
-        worst[1] = worst[1].max((output[0] / start.1[0] - 1.0).abs());
+        worst[0] = larger(worst[0], (model.energy(t, x) / start.0 - 1.0).abs());
+        worst[1] = larger(worst[1], (output[0] / start.1[0] - 1.0).abs());
         speeds = [speeds[0].min(output[1]), speeds[1].max(output[1])];
     })
     .unwrap();
@@ -73,7 +77,7 @@ fn a_driven_hub_takes_what_its_blades_gain() {
         }
         let gained = model.energy(to, step.state()) - start;
         most = most.max(gained.abs());
-        worst = worst.max((gained - work).abs());
+        worst = larger(worst, (gained - work).abs());
     })
     .unwrap();
     println!("gained up to {most:.1} J of {start:.1} J, off by {worst:.1e} J");

@@ -20,6 +20,7 @@ use mbg_runtime::__private::{Complex, Shifted};
 use mbg_runtime::{Adaptive, Elimination, Estimating, Integrator, Radau5, Rodas4, Rodas5P, System};
 use models::{
     Chain, ChainParameters, Dense, RingModulator, RingModulatorParameters, Row, RowParameters,
+    ring_error, ring_nominal,
 };
 use nalgebra::SVector;
 
@@ -112,28 +113,10 @@ where
     );
 }
 
-/// States at 1 ms as voltages and currents, published with the problem.
-const PUBLISHED: [f64; 7] = [
-    -0.023_390_573_584_867_45,
-    -0.007_367_485_485_540_825,
-    0.258_295_670_929_116_9,
-    -0.406_446_572_128_345,
-    -0.403_945_566_514_979_4,
-    0.260_796_676_542_294_3,
-    0.110_676_186_126_997_5,
-];
-
 /// The ring modulator to 1 ms: error of the largest voltage, and the ratio of times.
 fn run<E: Estimating>(method: E, tolerance: f64) -> Result<(), Box<dyn Error>> {
     let system = RingModulator::<f64>::new(RingModulatorParameters::default())?;
-    let names = RingModulator::<f64>::META.states;
-    let nominal: [f64; 15] = std::array::from_fn(|state| match names[state].name {
-        "c1.q" | "c2.q" => 1.6e-8,
-        "c7.q" => 1e-8,
-        name if name.ends_with(".q") => 2e-12,
-        "l1.p" | "l2.p" => 4.45e-6,
-        _ => 5e-7,
-    });
+    let nominal = ring_nominal();
     let solver = Adaptive {
         nominal: &nominal,
         ..Adaptive::new(method, tolerance, tolerance)
@@ -159,20 +142,7 @@ fn run<E: Estimating>(method: E, tolerance: f64) -> Result<(), Box<dyn Error>> {
             |step| *last = *step.state(),
         );
     };
-    let found = end(&sparse);
-    let error = PUBLISHED
-        .iter()
-        .enumerate()
-        .fold(0.0, |largest: f64, (node, voltage)| {
-            let name = format!("c{}.q", node + 1);
-            let state = names.iter().position(|it| it.name == name).unwrap_or(0);
-            let capacitance = match node {
-                0 | 1 => 1.6e-8,
-                6 => 1e-8,
-                _ => 2e-12,
-            };
-            largest.max((found[state] / capacitance - voltage).abs())
-        });
+    let error = ring_error(&end(&sparse));
     let statistics = solver.integrate(&system, &(), 0.0, 1e-3, system.initial_state(), |_| ())?;
     let times = medians([
         &|| {

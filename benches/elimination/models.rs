@@ -88,6 +88,52 @@ mbg! {
     }
 }
 
+/// Voltages of the ring modulator's nodes at 1 ms, published with the problem.
+const RING_END: [f64; 7] = [
+    -0.023_390_573_584_867_45,
+    -0.007_367_485_485_540_825,
+    0.258_295_670_929_116_9,
+    -0.406_446_572_128_345,
+    -0.403_945_566_514_979_4,
+    0.260_796_676_542_294_3,
+    0.110_676_186_126_997_5,
+];
+
+/// Capacitances of the ring modulator's nodes in F.
+const RING_CAPACITANCES: [f64; 7] = [1.6e-8, 1.6e-8, 2e-12, 2e-12, 2e-12, 2e-12, 1e-8];
+
+/// The state with the charge of a node of the ring modulator.
+fn ring_charge(node: usize) -> Option<usize> {
+    let name = format!("c{}.q", node + 1);
+    let states = RingModulator::<f64>::META.states;
+    states.iter().position(|state| state.name == name)
+}
+
+/// The usual sizes of the ring modulator's states: charges at 1 V, momenta at 1 µA in the large coils and 1 mA in the
+/// small ones.
+pub(crate) fn ring_nominal() -> [f64; 15] {
+    let states = RingModulator::<f64>::META.states;
+    let mut nominal = std::array::from_fn(|state| match states[state].name {
+        "l1.p" | "l2.p" => 4.45e-6,
+        _ => 5e-7,
+    });
+    for (node, capacitance) in RING_CAPACITANCES.into_iter().enumerate() {
+        if let Some(state) = ring_charge(node) {
+            nominal[state] = capacitance;
+        }
+    }
+    nominal
+}
+
+/// Largest error in V of the ring modulator's voltages at 1 ms; infinite if one is not found.
+pub(crate) fn ring_error(end: &SVector<f64, 15>) -> f64 {
+    let nodes = RING_END.into_iter().zip(RING_CAPACITANCES).enumerate();
+    nodes.fold(0.0, |largest: f64, (node, (expected, capacitance))| {
+        let voltage = ring_charge(node).map(|state| end[state] / capacitance);
+        largest.max(voltage.map_or(f64::INFINITY, |found| (found - expected).abs()))
+    })
+}
+
 /// A system that is taken for dense.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dense<S>(pub S);

@@ -8,6 +8,8 @@
 #[path = "../../examples/ins/models.rs"]
 #[allow(dead_code)]
 mod models;
+#[path = "../../tests/references/noise.rs"]
+mod noise;
 mod plain;
 
 use std::error::Error;
@@ -18,6 +20,7 @@ use mbg_runtime::lanes::{Lanes, f32x8, f32x16, f64x4, f64x8};
 use mbg_runtime::{FUSED, ParameterError, Real, System};
 use models::{Ins, InsParameters};
 use nalgebra::SVector;
+use noise::noise;
 use plain::Plain;
 
 /// States that take turns.
@@ -39,17 +42,6 @@ struct Contestant {
     run: Run,
 }
 
-/// Numbers in (−1, 1), the same in every run: a linear congruence (Knuth, MMIX).
-fn random() -> impl FnMut() -> f64 {
-    let mut state: u64 = 1;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 /// A run on states that `number` makes of numbers.
 fn contestant<T: Real>(
     name: &'static str,
@@ -57,7 +49,7 @@ fn contestant<T: Real>(
     number: impl Fn(&mut dyn FnMut() -> f64) -> T,
 ) -> Result<Contestant, ParameterError> {
     let model = Ins::<T>::new(InsParameters::default())?;
-    let mut random = random();
+    let mut random = noise(1);
     let scales = [1e3, 1e3, 1e3, 10.0, 10.0, 10.0, 0.5, 0.5, 0.5];
     let mut scaled = |scale: f64| number(&mut || scale * random());
     let scenes: Vec<Scene<T>> = (0..STATES)

@@ -8,19 +8,7 @@ use mbg_runtime::{System, mbg};
 use crate::draw::{BLUE, GREY, ORANGE, Panel, Point, picture, shade};
 use crate::run::{over, run, states};
 
-mbg! {
-    include "tests/models/mechanisms/row.mbg";
-
-    /// Three cranks and two couplers.
-    #[derivative]
-    pub(crate) model FourBars {
-        causality componentwise;
-        gravity [0.0, -9.81];
-        1 ground[3];
-        Sf fixed[3] { flow: 0.0 } -> ground;
-        row: Row { loops: 2 } (ground);
-    }
-}
+mbg! { include "tests/models/mechanisms/two_four_bars.mbg"; }
 
 /// The tips of the cranks with these angles.
 fn tips(angles: [f64; 3]) -> [Point; 3] {
@@ -32,7 +20,7 @@ fn tips(angles: [f64; 3]) -> [Point; 3] {
 }
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
-    let row = FourBars::<f64>::new(FourBarsParameters::default())?;
+    let row = FourBars2::<f64>::new(FourBars2Parameters::default())?;
     let mut start = row.initial_state();
     for (link, rate) in states(&row, "rate.f").into_iter().enumerate() {
         start[rate] = if link <= 2 { -1.0 } else { 1.0 };

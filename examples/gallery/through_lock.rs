@@ -1,15 +1,14 @@
 //! A body is pulled through the attitude in which gimbals lock, its orientation held as a quaternion.
 
 use std::error::Error;
-use std::f64::consts::PI;
 use std::path::Path;
 
 use mbg_runtime::attitude::rotation_from_quaternion;
-use mbg_runtime::{Pulse, Sum, System, mbg};
-use nalgebra::{Vector3, Vector4};
+use mbg_runtime::{System, mbg};
+use nalgebra::Vector4;
 
 use crate::draw::{BLUE, GREEN, GREY, ORANGE, PURPLE, Panel, picture};
-use crate::orientation::THROUGH_LOCK;
+use crate::orientation::{THROUGH_LOCK, through_lock};
 use crate::run::{Instant, over, run};
 
 mbg! { include "examples/gallery/flying.mbg"; }
@@ -22,17 +21,8 @@ fn cosine(it: &Instant<10, 7>) -> f64 {
 
 pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let body = PulledQuaternion::<f64>::new(PulledQuaternionParameters::default())?;
-    let pulse = |amplitude, start, end| Pulse {
-        amplitude,
-        start,
-        end,
-    };
-    let torque = Sum(
-        pulse(Vector3::new(0.0, PI, 0.0), 0.0, 2.0),
-        pulse(Vector3::new(0.5, 0.0, -0.4), 2.0, f64::INFINITY),
-    );
     let end = THROUGH_LOCK.iter().map(|row| row.0).fold(0.0, f64::max);
-    let found = run(&body, &torque, body.initial_state(), end, 3000)?;
+    let found = run(&body, &through_lock(), body.initial_state(), end, 3000)?;
     let mut parts = Panel::new("Quaternion", "time in s", "part").weight(1.2);
     let names = ["w", "x", "y", "z"];
     let colors = [PURPLE, BLUE, ORANGE, GREEN];

@@ -154,17 +154,9 @@ fn main() -> Result<(), Stopped> {
         stiffness: 1e8,
         damping: 1e3,
     };
-    let horizontal = [0.0, 0.0, std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0];
     let nominal = [1e-7, 1e-7, 1.0, 1e-3, 1e-3, 1.0];
     let title = "pendulum on a stiff pin, 1e8 N/m";
-    Task::new(
-        title,
-        pin,
-        (SVector::from(horizontal), 5.0),
-        nominal,
-        Radau5,
-    )?
-    .stiff()?;
+    Task::new(title, pin, (StiffPin::level(), 5.0), nominal, Radau5)?.stiff()?;
     let start = SVector::from([2.0, 0.0]);
     Task::new(
         "Van der Pol, 1e-6",

@@ -1,5 +1,7 @@
 //! Problems written by hand, for measurements of methods.
 
+use std::f64::consts::FRAC_PI_2;
+
 use mbg_runtime::{Dual, Meta, Operations, Power, Real, System, Variable};
 use nalgebra::{SMatrix, SVector};
 
@@ -238,6 +240,12 @@ impl Law<2, 0> for Kaps {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VanDerPol;
 
+impl VanDerPol {
+    /// The state after 2 s from (2, 0), published (Mazzia and Magherini, *Test Set for Initial Value Problem Solvers*,
+    /// 2008).
+    pub(crate) const AFTER_2_S: [f64; 2] = [1.706_167_732_170_469, -0.892_809_701_024_812_5];
+}
+
 impl Law<2, 0> for VanDerPol {
     const STATES: &'static [Variable] = &[state("x"), state("y")];
 
@@ -270,6 +278,37 @@ pub(crate) struct StiffPin {
     pub stiffness: f64,
     /// Damping in N s/m.
     pub damping: f64,
+}
+
+impl StiffPin {
+    /// Two pins, and angle and rate of the rod after 5 s from [`StiffPin::level`], computed with more digits.
+    pub(crate) const AFTER_5_S: [(Self, [f64; 2]); 2] = [
+        (
+            Self {
+                stiffness: 1e6,
+                damping: 2e3,
+            },
+            [-1.366922113009797, 2.440936668346874],
+        ),
+        (
+            Self {
+                stiffness: 1e12,
+                damping: 2e6,
+            },
+            [-1.366714573477783, 2.44223685380214],
+        ),
+    ];
+
+    /// Level and at rest.
+    pub(crate) fn level() -> SVector<f64, 6> {
+        SVector::from([0.0, 0.0, FRAC_PI_2, 0.0, 0.0, 0.0])
+    }
+
+    /// Nominal sizes of the states: the pin gives as much as under the weight.
+    pub(crate) fn nominal(&self) -> [f64; 6] {
+        let small = 9.81 / self.stiffness;
+        [small, small, 1.0, 1e-3, 1e-3, 1.0]
+    }
 }
 
 impl Law<6, 0> for StiffPin {

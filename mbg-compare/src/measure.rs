@@ -179,24 +179,50 @@ impl<'a, S, I, const N: usize, const M: usize, const P: usize> Comparison<'a, S,
     /// The time in seconds that a method takes to an error, between two settings along a power law; none where no
     /// setting comes to that error.
     pub fn time_to(&self, method: &str, error: f64) -> Option<f64> {
-        let series = self.series(method);
-        let mut best: Option<f64> = None;
-        let mut take = |time: f64| best = Some(best.map_or(time, |best| best.min(time)));
-        for pair in series.windows(2) {
-            let [coarse, fine] = [pair[0], pair[1]];
-            if coarse.error >= error && fine.error <= error && fine.error > 0.0 {
-                let span = (coarse.error / fine.error).ln();
-                let part = if span > 0.0 {
-                    (coarse.error / error).ln() / span
-                } else {
-                    0.0
-                };
-                take(coarse.time * (fine.time / coarse.time).powf(part));
-            }
+        time_to(&self.series(method), error)
+    }
+}
+
+/// The time to an error in a series with the largest error first.
+fn time_to(series: &[Measured], error: f64) -> Option<f64> {
+    let mut best: Option<f64> = None;
+    let mut take = |time: f64| best = Some(best.map_or(time, |best| best.min(time)));
+    for pair in series.windows(2) {
+        let [coarse, fine] = [pair[0], pair[1]];
+        if coarse.error >= error && fine.error <= error && fine.error > 0.0 {
+            let span = (coarse.error / fine.error).ln();
+            let part = if span > 0.0 {
+                (coarse.error / error).ln() / span
+            } else {
+                0.0
+            };
+            take(coarse.time * (fine.time / coarse.time).powf(part));
         }
-        for point in series.iter().filter(|point| point.error <= error) {
-            take(point.time);
+    }
+    for point in series.iter().filter(|point| point.error <= error) {
+        take(point.time);
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_lie_along_a_power_law() {
+        let point = |(error, time)| Measured {
+            error,
+            time,
+            evaluations: 0,
+            steps: 0,
+        };
+        let series = [(1e-3, 1.0), (1e-5, 4.0), (1e-6, 32.0), (1e-9, 30.0)].map(point);
+        let times = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-10].map(|error| time_to(&series, error));
+        let expected = [1.0, 1.0, 2.0, 4.0, 30.0];
+        for (found, expected) in times.iter().zip(expected) {
+            assert!((found.unwrap() - expected).abs() < 1e-12, "{times:?}");
         }
-        best
+        assert_eq!(times[5], None);
     }
 }

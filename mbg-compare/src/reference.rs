@@ -202,3 +202,18 @@ pub(crate) fn distance<const N: usize>(
     }
     largest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_relative_to_sizes() {
+        let [found, expected] = [[1.0, 1000.0], [1.5, 1010.0]].map(|x| [SVector::from(x)]);
+        assert_eq!(distance(&found, &expected, &[1.0, 1000.0]), 0.5);
+        assert_eq!(distance(&found, &expected, &[1.0, 10.0]), 1.0);
+        assert_eq!(distance(&found, &[], &[1.0; 2]), f64::INFINITY);
+        let lost = [SVector::from([f64::NAN, 1010.0])];
+        assert_eq!(distance(&lost, &expected, &[1.0; 2]), f64::INFINITY);
+    }
+}

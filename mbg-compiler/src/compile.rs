@@ -61,6 +61,19 @@ impl Compiled {
         sizes.filter(|size| *size > 0)
     }
 
+    /// Arithmetic of a routine as it is emitted; where Jacobians go by columns, that of a dual number counts as one.
+    #[must_use]
+    pub fn operations(&self, routine: usize) -> usize {
+        let operations = |routine: usize| self.program.routines[routine].operations();
+        let derivative = operations(Routines::DERIVATIVE);
+        match routine {
+            _ if self.unrolled => operations(routine),
+            Routines::DERIVATIVE_AND_JACOBIAN => (1 + self.states.len()) * derivative,
+            Routines::JACOBIAN_INPUT => self.model.inputs.len() * derivative,
+            _ => operations(routine),
+        }
+    }
+
     /// Where the unknowns of an iteration begin among those of all.
     #[must_use]
     pub fn first(&self, number: usize) -> usize {
@@ -286,17 +299,18 @@ pub(crate) fn text(
     expression: Expression,
 ) -> String {
     let name = |symbol: Symbol| match symbol {
-        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
-        Symbol::State(index) => model.states[index].variable.name.clone(),
-        Symbol::Input(index) => model.inputs[index].name.clone(),
-        Symbol::Time => "t".to_owned(),
-        Symbol::Signal(index) => format!("signal {index}"),
-        Symbol::Unknown(index) => match scalars.names.get(index) {
-            Some(name) if !name.is_empty() => name.clone(),
-            _ => format!("unknown {index}"),
-        },
+        Symbol::Unknown(index) => unknown_text(scalars, index),
+        other => model.symbol_text(other),
     };
     Printer::new(pool, &name).text(expression)
+}
+
+/// The name of an unknown, or its number.
+pub(crate) fn unknown_text(scalars: &Scalars, unknown: usize) -> String {
+    match scalars.names.get(unknown) {
+        Some(name) if !name.is_empty() => name.clone(),
+        _ => format!("unknown {unknown}"),
+    }
 }
 
 /// The loops, by the names of what closes them.

@@ -76,7 +76,7 @@ fn equation_lines(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> String 
             .terms
             .iter()
             .map(|(unknown, coefficient)| {
-                let unknown = unknown_name(scalars, *unknown);
+                let unknown = compile::unknown_text(scalars, *unknown);
                 match *coefficient {
                     Expression::ONE => unknown,
                     other if other == Expression::ONE.negated() => format!("-{unknown}"),
@@ -100,7 +100,7 @@ fn value_lines(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool:
     let mut text = String::new();
     for (unknown, value) in solution.values.iter().enumerate() {
         let value = compile::text(model, scalars, pool, *value);
-        text += &format!("{} = {value}\n", unknown_name(scalars, unknown));
+        text += &format!("{} = {value}\n", compile::unknown_text(scalars, unknown));
     }
     for implicit in pool.implicit() {
         if let Method::Newton { residuals, .. } = &implicit.method {
@@ -115,13 +115,6 @@ fn value_lines(model: &Elaborated, scalars: &Scalars, solution: &Solution, pool:
         text += &format!("inverted: {divisor}\n");
     }
     text
-}
-
-fn unknown_name(scalars: &Scalars, unknown: usize) -> String {
-    match scalars.names[unknown].as_str() {
-        "" => format!("unknown {unknown}"),
-        name => name.to_owned(),
-    }
 }
 
 fn programs(compiled: &Compiled) -> String {
@@ -147,7 +140,7 @@ fn operations(compiled: &Compiled) -> String {
         ("conditioning", Routines::CONDITIONING),
     ];
     let lines = functions.map(|(name, number)| {
-        let count = compiled.program.routines[number].operations();
+        let count = compiled.operations(number);
         format!("{name:<24}{count:>6}")
     });
     lines.join("\n")

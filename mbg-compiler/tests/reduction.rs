@@ -208,8 +208,9 @@ fn programs_satisfy_their_graphs() {
     survey(300);
 }
 
+/// Takes minutes: `cargo test --release -p mbg-compiler --features long --test reduction`.
+#[cfg(feature = "long")]
 #[test]
-#[ignore = "minutes; `cargo test -- --ignored`"]
 fn thousands_of_programs_satisfy_their_graphs() {
     survey(20_000);
 }

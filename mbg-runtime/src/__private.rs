@@ -100,20 +100,19 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     })
 }
 
-/// A function and its Jacobian, one column after the other.
+/// The Jacobian of a function, one column after the other.
 pub fn by_columns<T: Real, const N: usize, const K: usize>(
     x: &SVector<T, N>,
-    function: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, K>,
-) -> (SVector<T, K>, SMatrix<T, K, N>) {
+    mut function: impl FnMut(&SVector<Dual<T>, N>) -> SVector<Dual<T>, K>,
+) -> SMatrix<T, K, N> {
     let constant = x.map(Dual::constant);
-    let value = function(&constant).map(|it| it.value);
     let mut jacobian = SMatrix::<T, K, N>::from_element(T::from_f64(0.0));
     for (column, mut entries) in jacobian.column_iter_mut().enumerate() {
         let mut along = constant;
         along[column].slope = T::from_f64(1.0);
         entries.copy_from(&function(&along).map(|it| it.slope));
     }
-    (value, jacobian)
+    jacobian
 }
 
 /// A symmetric matrix from row, column and value of the elements below and on its diagonal that are not zero.

@@ -101,7 +101,7 @@ pub enum LoopClass {
 /// How an algebraic loop is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
-    /// By straight-line arithmetic.
+    /// Directly.
     Linear,
     /// By a bounded Newton iteration with the exact Jacobian.
     Newton {
@@ -115,7 +115,7 @@ pub enum Solver {
 impl core::fmt::Display for Solver {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Linear => formatter.write_str("linear, unrolled"),
+            Self::Linear => formatter.write_str("linear"),
             Self::Newton {
                 unknowns,
                 iterations,
@@ -141,7 +141,7 @@ pub struct Operations {
     pub output: usize,
     /// Of `derivative_and_jacobian`; where it goes by columns, those of a dual number count as one.
     pub derivative_and_jacobian: usize,
-    /// Of `jacobian_input`.
+    /// Of `jacobian_input`, counted alike.
     pub jacobian_input: usize,
     /// Of `energy`.
     pub energy: usize,

@@ -136,6 +136,11 @@ fn what_is_left_out_is_told() {
             "5: mass and inertia of `b` are not positive, as those of a moving body must be",
         ),
         (
+            "ixx=\"1\" iyy=\"1\"",
+            "ixx=\"-1\" iyy=\"-1\"",
+            "5: mass and inertia of `b` are not positive, as those of a moving body must be",
+        ),
+        (
             "value=\"1\"",
             "value=\"0\"",
             "7: nothing that `j` moves has a mass, which `mbg!` will refuse",

@@ -3,6 +3,8 @@
 use mbg_runtime::{Input, System};
 use nalgebra::SVector;
 
+use crate::references::errors::larger;
+
 /// Runs RK4 with the energies supplied and dissipated as two more states. Gives the state at the end and the largest
 /// imbalance as a part of the energy supplied, or of that at the start if this is more.
 pub(super) fn run<const N: usize, const M: usize, const P: usize>(
@@ -31,7 +33,7 @@ pub(super) fn run<const N: usize, const M: usize, const P: usize>(
         x += (k1.0 + k2.0 * 2.0 + k3.0 * 2.0 + k4.0) * (h / 6.0);
         let energy = model.energy(t + h, &x);
         most = most.max(energy.abs());
-        worst = worst.max((energy - start - gained).abs());
+        worst = larger(worst, (energy - start - gained).abs());
     }
     (x, worst / most)
 }

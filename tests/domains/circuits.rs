@@ -4,6 +4,7 @@ use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Pulse, Rk4, System, mb
 use nalgebra::SVector;
 
 use super::balance;
+use crate::references::errors::larger;
 use crate::references::rectifier;
 
 mbg! {
@@ -153,7 +154,7 @@ fn a_motor_of_the_library_starts_a_load_through_a_rigid_gear() {
                 let found = model.output(t, x, &SVector::zeros(), &mut Default::default());
                 let (_, expected) = expected.next().unwrap();
                 for (found, expected) in found.iter().zip(expected) {
-                    worst = worst.max(((found - expected) / expected).abs());
+                    worst = larger(worst, ((found - expected) / expected).abs());
                 }
             },
         )
@@ -183,7 +184,7 @@ fn a_diode_of_the_library_rectifies() {
             &times,
             |t, x| {
                 let found = model.output(t, x, &SVector::zeros(), &mut Default::default())[0];
-                worst = worst.max((found - expected.next().unwrap().1).abs());
+                worst = larger(worst, (found - expected.next().unwrap().1).abs());
             },
         )
         .unwrap();

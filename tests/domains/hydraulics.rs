@@ -5,6 +5,7 @@ use nalgebra::SVector;
 
 use super::balance;
 use crate::drive::{Drive, DriveParameters};
+use crate::references::errors::larger;
 use crate::references::integrate::integrate;
 
 mbg! {
@@ -114,7 +115,7 @@ fn a_hydraulic_drive_equals_its_derivation_by_hand() {
                 ];
                 let found = model.output(t, x, &SVector::from([load]), &mut Default::default());
                 for (found, expected) in found.iter().zip(expected) {
-                    worst = worst.max(((found - expected) / expected).abs());
+                    worst = larger(worst, ((found - expected) / expected).abs());
                 }
             },
         )

@@ -87,30 +87,6 @@ fn no_event_runs_to_the_end() {
     assert!((arrival.state[0] - 3.0_f64.cos()).abs() < 1e-8);
 }
 
-/// A mass on a spring that a wall at 0 throws back with 0.8 of its speed, ten times over.
-#[test]
-fn impacts_go_on_from_the_event() {
-    let solver = Adaptive::new(Dop853, 1e-12, 1e-14);
-    let (mut t, mut x) = (0.0, SVector::from([1.0, 0.0]));
-    let mut speed = 1.0_f64;
-    for impact in 0..10 {
-        let event = (Direction::Falling, |_t: f64, x: &State| x[0]);
-        let arrival = solver
-            .until(&Written(Oscillator), &(), t, 100.0, x, event, |_| ())
-            .unwrap();
-        let expected = std::f64::consts::PI * (0.5 + f64::from(impact));
-        assert!(
-            (arrival.time - expected).abs() < 1e-9,
-            "{impact}: {}",
-            arrival.time
-        );
-        assert!((arrival.state[1] + speed).abs() < 1e-9);
-        (t, x) = (arrival.time, arrival.state);
-        x[1] *= -0.8;
-        speed *= 0.8;
-    }
-}
-
 /// Every adaptive method ends a step on the jumps, and none is stepped over from rest.
 #[test]
 fn jumps_are_met_by_every_method() {

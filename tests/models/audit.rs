@@ -4,19 +4,10 @@
 use mbg_runtime::{Dual, System};
 use nalgebra::SVector;
 
+use crate::references::noise::noise;
+
 /// States at which a divisor is smaller are not tried.
 const REGULAR: f64 = 0.05;
-
-/// A pseudo-random sequence in [-1, 1), the same every time.
-pub(super) fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 /// A model on dual numbers, at a point and along directions of it.
 pub(super) struct Probe<'a, S, const N: usize, const M: usize> {

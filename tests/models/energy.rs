@@ -6,6 +6,7 @@ use nalgebra::SVector;
 use super::behaviour::{Ladder, LadderParameters, Oscillator, OscillatorParameters};
 use crate::dc_motor::{Motor, MotorParameters, brake};
 use crate::ins::{Ins, InsParameters, gust};
+use crate::references::errors::larger;
 
 /// Runs RK4 with the energies supplied and dissipated as two more states; the input is constant in each step.
 /// Gives the largest imbalance as a part of the energy supplied, or of that at the start if this is more.
@@ -37,7 +38,7 @@ pub(super) fn imbalance<const N: usize, const M: usize, const P: usize>(
         x += (k1.0 + k2.0 * 2.0 + k3.0 * 2.0 + k4.0) * (h / 6.0);
         let balance = model.energy(t + h, &x) - start - supplied + dissipated;
         most = most.max(supplied.abs());
-        worst = worst.max(balance.abs());
+        worst = larger(worst, balance.abs());
     }
     worst / most
 }

@@ -53,7 +53,7 @@ mbg! {
 
     pub(crate) model PulledMatrix {
         input torque[3]: N*m;
-        1 frame[6] { }
+        1 frame[6];
         flying: Flying { orientation: matrix, inertia: diag(1.0, 2.0, 1.5) } (frame);
         Se pull[3] { effort: torque } -> frame[0..3];
         output rates[3]: rad/s = frame.f[0..3];

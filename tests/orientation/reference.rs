@@ -1,6 +1,11 @@
 //! Rigid bodies, by closed forms in elliptic functions and by integration in multiple precision, to 18 digits.
 #![allow(clippy::approx_constant, reason = "numbers as they were computed")]
 
+use std::f64::consts::PI;
+
+use mbg_runtime::{Input, Pulse, Sum};
+use nalgebra::Vector3;
+
 /// Time in s, angular velocity in body axes in rad/s, and the quaternion that takes body axes to those of the world,
 /// its sign continuous.
 pub(crate) type Row = (f64, [f64; 3], [f64; 4]);
@@ -352,6 +357,24 @@ pub(crate) const SLEEPING: &[Row] = &[
         ],
     ),
 ];
+
+/// π N m about y until a time, and another torque from then on.
+pub(crate) fn pulled(until: f64, then: Vector3<f64>) -> impl Input<f64, 3> {
+    let pulse = |amplitude, start, end| Pulse {
+        amplitude,
+        start,
+        end,
+    };
+    Sum(
+        pulse(Vector3::new(0.0, PI, 0.0), 0.0, until),
+        pulse(then, until, f64::INFINITY),
+    )
+}
+
+/// The torque of [`THROUGH_LOCK`].
+pub(crate) fn through_lock() -> impl Input<f64, 3> {
+    pulled(2.0, Vector3::new(0.5, 0.0, -0.4))
+}
 
 /// Inertias 1, 2, 1.5 kg m², pulled by π N m about y for 2 s and by (0.5, 0, -0.4) N m after that.
 pub(crate) const THROUGH_LOCK: &[Row] = &[

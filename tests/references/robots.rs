@@ -72,29 +72,13 @@ pub(crate) fn panda() -> Vec<Link> {
         angles: [turn, 0.0, 0.0],
         axis: [0.0, 0.0, 1.0],
         damping: 0.003,
-        friction: 0.0,
         mass,
         centre,
-        centre_angles: [0.0; 3],
         inertia,
+        ..Link::PLAIN
     };
     rows.into_iter().enumerate().map(link).collect()
 }
-
-/// A link of no mass on a hinge about x in the base.
-const PLAIN: Link = Link {
-    parent: None,
-    kind: Kind::Revolute,
-    place: [0.0; 3],
-    angles: [0.0; 3],
-    axis: [1.0, 0.0, 0.0],
-    damping: 0.0,
-    friction: 0.0,
-    mass: 0.0,
-    centre: [0.0; 3],
-    centre_angles: [0.0; 3],
-    inertia: [0.0; 6],
-};
 
 /// What a file that was written by hand gives for π/2.
 #[allow(clippy::approx_constant, reason = "it is meant to be near")]
@@ -112,7 +96,7 @@ pub(crate) fn crane() -> Vec<Link> {
         centre: [0.1, 0.0, 0.2],
         centre_angles: [0.1, 0.2, 0.3],
         inertia: [0.5, 0.02, -0.03, 0.6, 0.04, 0.7],
-        ..PLAIN
+        ..Link::PLAIN
     };
     let tower = Link {
         parent: Some(0),
@@ -124,7 +108,7 @@ pub(crate) fn crane() -> Vec<Link> {
         mass: 3.0,
         centre: [0.0, 0.0, 0.5],
         inertia: [0.4, 0.0, 0.0, 0.4, 0.0, 0.1],
-        ..PLAIN
+        ..Link::PLAIN
     };
     let boom = Link {
         parent: Some(1),
@@ -136,7 +120,7 @@ pub(crate) fn crane() -> Vec<Link> {
         centre: [0.6, -0.02, 0.03],
         centre_angles: [0.0, FRAC_PI_2, 0.4],
         inertia: [0.03, 0.001, 0.002, 0.2, -0.003, 0.21],
-        ..PLAIN
+        ..Link::PLAIN
     };
     let lamp = Link {
         parent: Some(1),
@@ -145,7 +129,7 @@ pub(crate) fn crane() -> Vec<Link> {
         mass: 0.2,
         centre: [0.0, 0.0, -0.3],
         inertia: [0.002, 0.0, 0.0, 0.002, 0.0, 0.0005],
-        ..PLAIN
+        ..Link::PLAIN
     };
     let counterweight = Link {
         parent: Some(2),
@@ -156,7 +140,7 @@ pub(crate) fn crane() -> Vec<Link> {
         centre: [-0.1, 0.0, 0.0],
         centre_angles: [0.2, 0.0, 0.0],
         inertia: [0.01, 0.0, 0.001, 0.02, 0.0, 0.015],
-        ..PLAIN
+        ..Link::PLAIN
     };
     let hook = Link {
         parent: Some(2),
@@ -165,14 +149,14 @@ pub(crate) fn crane() -> Vec<Link> {
         axis: [0.0, 0.0, -1.0],
         mass: 0.8,
         inertia: [0.001, 0.0, 0.0, 0.002, 0.0, 0.003],
-        ..PLAIN
+        ..Link::PLAIN
     };
     let tip = Link {
         parent: Some(5),
         kind: Kind::Fixed,
         place: [0.2, 0.0, 0.0],
         angles: [0.0, 0.0, PI],
-        ..PLAIN
+        ..Link::PLAIN
     };
     vec![cart, tower, boom, lamp, counterweight, hook, tip]
 }

@@ -39,6 +39,23 @@ pub(crate) struct Link {
     pub(crate) inertia: [f64; 6],
 }
 
+impl Link {
+    /// A link of no mass on a hinge about x in the base.
+    pub(crate) const PLAIN: Self = Self {
+        parent: None,
+        kind: Kind::Revolute,
+        place: [0.0; 3],
+        angles: [0.0; 3],
+        axis: [1.0, 0.0, 0.0],
+        damping: 0.0,
+        friction: 0.0,
+        mass: 0.0,
+        centre: [0.0; 3],
+        centre_angles: [0.0; 3],
+        inertia: [0.0; 6],
+    };
+}
+
 /// Rate at which dry friction has three quarters of its value.
 pub(crate) const SLIP: f64 = 1e-3;
 
@@ -192,10 +209,8 @@ mod tests {
                 [0.0, 1.0, 0.0]
             },
             damping: chain::DAMPING,
-            friction: 0.0,
             mass: chain::MASS,
             centre: [0.0, 0.0, -chain::LENGTH / 2.0],
-            centre_angles: [0.0; 3],
             inertia: [
                 chain::INERTIA_ACROSS,
                 0.0,
@@ -204,6 +219,7 @@ mod tests {
                 0.0,
                 chain::INERTIA_ALONG,
             ],
+            ..Link::PLAIN
         };
         (0..n).map(link).collect()
     }
@@ -229,24 +245,14 @@ mod tests {
     fn a_slide_on_a_turntable() {
         // A point mass at r on a table that turns at ω: r̈ = r ω², and the table slows by 2 r ṙ ω / r².
         let frame = Link {
-            parent: None,
-            kind: Kind::Revolute,
-            place: [0.0; 3],
-            angles: [0.0; 3],
             axis: [0.0, 0.0, 2.0],
-            damping: 0.0,
-            friction: 0.0,
-            mass: 0.0,
-            centre: [0.0; 3],
-            centre_angles: [0.0; 3],
-            inertia: [0.0; 6],
+            ..Link::PLAIN
         };
         let slide = Link {
             parent: Some(0),
             kind: Kind::Prismatic,
-            axis: [1.0, 0.0, 0.0],
             mass: 3.0,
-            ..frame
+            ..Link::PLAIN
         };
         let (r, rate, omega) = (0.7, 0.3, 1.1);
         let found = accelerations(

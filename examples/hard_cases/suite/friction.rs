@@ -5,7 +5,7 @@ use mbg_runtime::{Adaptive, Integrator, Method, Radau5, Rodas5P, Stopped, System
 use nalgebra::SVector;
 
 use super::models::{Belt, BeltParameters};
-use super::{Expected, Found, Line};
+use super::{Expected, Found, Line, larger};
 
 /// A block on a belt, with Coulomb's and with Stribeck's curve.
 pub(crate) fn dry() -> Vec<Line> {
@@ -37,7 +37,7 @@ pub(crate) fn dry() -> Vec<Line> {
                     if let Some(row) = rows.next() {
                         let apart: SVector<f64, 2> = x - row;
                         for (apart, size) in apart.iter().zip(reference.sizes) {
-                            error = error.max(apart.abs() / size);
+                            error = larger(error, apart.abs() / size);
                         }
                     }
                 })?;
@@ -48,15 +48,11 @@ pub(crate) fn dry() -> Vec<Line> {
             Adaptive::new(Rodas5P, 1e-7, 1e-8),
         );
         let expected = Expected::Within(1e-4);
-        let none = Found {
-            error: f64::INFINITY,
-            steps: 0,
-        };
         let reference = "two methods at 1e-8";
         lines.push(Line::run((case, Radau5::NAME, reference), expected, || {
             comparison
                 .as_ref()
-                .map_or(Ok(none), |it| run(&belt, it, &radau))
+                .map_or(Ok(Found::NONE), |it| run(&belt, it, &radau))
         }));
         lines.push(Line::run(
             (case, Rodas5P::NAME, reference),
@@ -64,7 +60,7 @@ pub(crate) fn dry() -> Vec<Line> {
             || {
                 comparison
                     .as_ref()
-                    .map_or(Ok(none), |it| run(&belt, it, &rodas))
+                    .map_or(Ok(Found::NONE), |it| run(&belt, it, &rodas))
             },
         ));
     }

@@ -1,5 +1,7 @@
 //! The cases, and what is expected of each.
 
+#[path = "../../../tests/references/errors.rs"]
+mod errors;
 mod friction;
 mod inputs;
 #[path = "../../ins/models.rs"]
@@ -23,6 +25,7 @@ mod stiffness;
 use std::fmt;
 use std::time::Instant;
 
+use errors::{apart, larger};
 use mbg_runtime::{Statistics, Stopped};
 
 /// A case by its name: some methods on one problem.
@@ -62,6 +65,12 @@ pub(crate) struct Found {
 }
 
 impl Found {
+    /// Of a run that has not been made: no bound holds for it.
+    pub(crate) const NONE: Self = Self {
+        error: f64::INFINITY,
+        steps: 0,
+    };
+
     pub(crate) fn new(error: f64, statistics: Statistics) -> Self {
         Self {
             error,
@@ -144,17 +153,4 @@ impl fmt::Display for Line {
             "  NOT AS EXPECTED"
         })
     }
-}
-
-/// The largest difference of components.
-pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
-    let pairs = found.iter().zip(expected);
-    pairs.fold(0.0, |largest, (found, expected)| {
-        let apart = (found - expected).abs();
-        if apart > largest || apart.is_nan() {
-            apart
-        } else {
-            largest
-        }
-    })
 }

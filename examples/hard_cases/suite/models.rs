@@ -3,53 +3,18 @@
 use mbg_runtime::mbg;
 
 mbg! {
-    include "tests/models/mechanisms/row.mbg";
+    include "examples/gallery/flying.mbg";
+    include "examples/gallery/top.mbg";
+    include "tests/models/mechanisms/two_four_bars.mbg";
 
     /// A body whose orientation is held in three angles, turned by a torque.
     pub(crate) model PulledAngles {
         input torque[3]: N*m;
-        1 ground[3] { Sf held { flow: 0.0 } }
-        1 frame[3];
-        joint: FreeRotation { orientation: angles } (ground, frame);
-        frame -> I body { inertia: diag(1.0, 2.0, 1.5), gyroscopic };
-        Se pull[3] { effort: torque } -> frame;
-        output quaternion[4] = joint.quaternion;
-    }
-
-    /// The same with a quaternion.
-    pub(crate) model PulledQuaternion {
-        input torque[3]: N*m;
-        1 ground[3] { Sf held { flow: 0.0 } }
-        1 frame[3];
-        joint: FreeRotation { orientation: quaternion } (ground, frame);
-        frame -> I body { inertia: diag(1.0, 2.0, 1.5), gyroscopic };
-        Se pull[3] { effort: torque } -> frame;
-        output quaternion[4] = joint.quaternion;
-    }
-
-    /// A top of 1 kg, its centre of mass 0.5 m above its foot, that turns slightly slower than what keeps it upright.
-    #[derivative]
-    pub(crate) model Top {
-        gravity [0.0, 0.0, -10.0];
-        1 ground[6] { Sf held { flow: 0.0 } }
         1 frame[6];
-        foot: Spherical {
-            orientation: quaternion, initial: [0.01, 0.0, 0.0], initial_rate: [0.0, 0.0, 13.2]
-        } (ground, frame);
-        body: Body {
-            mass: 1.0, inertia: diag(0.55, 0.55, 0.3), centre: [0.0, 0.0, 0.5], gravity_at: foot.gravity_b
-        } (frame);
-        output quaternion[4] = foot.quaternion;
-    }
-
-    /// Two four-bars in a row.
-    #[derivative]
-    pub(crate) model FourBars {
-        causality componentwise;
-        gravity [0.0, -9.81];
-        1 ground[3];
-        Sf fixed[3] { flow: 0.0 } -> ground;
-        row: Row { loops: 2 } (ground);
+        flying: Flying { orientation: angles, inertia: diag(1.0, 2.0, 1.5) } (frame);
+        Se pull[3] { effort: torque } -> frame[0..3];
+        output rates[3]: rad/s = frame.f[0..3];
+        output quaternion[4] = flying.quaternion;
     }
 
     /// A block of 1 kg on a belt, held by a spring: with a Stribeck curve it sticks and slips, with Coulomb's it comes to

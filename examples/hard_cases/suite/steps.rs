@@ -9,8 +9,8 @@ use nalgebra::{SVector, Vector3};
 use super::ins::{Ins, InsParameters};
 use super::ins_reference::PULSE;
 use super::problems::{Pendulum, StiffPin, Written};
-use super::stiffness::{angles_of_ins, horizontal};
-use super::{Expected, Found, Line, apart};
+use super::stiffness::angles_of_ins;
+use super::{Expected, Found, Line, apart, larger};
 
 const PIN: StiffPin = StiffPin {
     stiffness: 1e8,
@@ -36,10 +36,7 @@ impl Input<f32, 3> for Gust {
 
 fn ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
     let Ok(model) = Ins::<f32>::new(InsParameters::default()) else {
-        return Ok(Found {
-            error: f64::INFINITY,
-            steps: 0,
-        });
+        return Ok(Found::NONE);
     };
     let times: Vec<f32> = PULSE.iter().map(|instant| instant.time as f32).collect();
     let (mut error, mut rows) = (0.0_f64, PULSE.iter());
@@ -52,7 +49,7 @@ fn ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
         |_t, x| {
             if let Some(row) = rows.next() {
                 let found = [x[6], x[7], x[8]].map(f64::from);
-                error = error.max(apart(&found, &row.alpha));
+                error = larger(error, apart(&found, &row.alpha));
             }
         },
     )?;
@@ -61,10 +58,10 @@ fn ins(solver: &impl Integrator<9>) -> Result<Found, Stopped> {
 
 /// The angle of a pendulum on a stiff pin after 2 s in single precision, against double precision.
 fn pin(solver: &impl Integrator<6>) -> Result<Found, Stopped> {
-    let mut reference = horizontal();
+    let mut reference = StiffPin::level();
     let keep = |step: &mut mbg_runtime::Step<'_, f64, 6>| reference = *step.state();
-    Fixed::new(Radau5, 1e-4).integrate(&Written(PIN), &(), 0.0, 2.0, horizontal(), keep)?;
-    let start = horizontal().map(|number| number as f32);
+    Fixed::new(Radau5, 1e-4).integrate(&Written(PIN), &(), 0.0, 2.0, StiffPin::level(), keep)?;
+    let start = StiffPin::level().map(|number| number as f32);
     let mut last = start;
     let keep = |step: &mut mbg_runtime::Step<'_, f32, 6>| last = *step.state();
     let statistics = solver.integrate(&Written(PIN), &(), 0.0_f32, 2.0, start, keep)?;
@@ -116,7 +113,7 @@ pub(crate) fn single_precision() -> Vec<Line> {
 pub(crate) fn too_long() -> Vec<Line> {
     fn end(solver: &impl Integrator<6>, duration: f64) -> Result<Found, Stopped> {
         let statistics =
-            solver.integrate(&Written(PIN), &(), 0.0, duration, horizontal(), |_| ())?;
+            solver.integrate(&Written(PIN), &(), 0.0, duration, StiffPin::level(), |_| ())?;
         Ok(Found::new(f64::INFINITY, statistics))
     }
     let first = Adaptive {

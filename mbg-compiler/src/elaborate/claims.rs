@@ -243,8 +243,7 @@ impl Builder<'_> {
         };
         let mut found = Vec::new();
         for field in &element.fields {
-            // A range is not read yet.
-            let (Some(value), false) = (&field.value, field.name == "range") else {
+            let Some(value) = &field.value else {
                 continue;
             };
             let (pool, mut lookup) = self.lookup(scope);

@@ -41,8 +41,8 @@ pub(super) fn law_words(kind: ElementKind) -> &'static [&'static str] {
 /// The other words, by element.
 pub(super) fn other_words(kind: ElementKind) -> &'static [&'static str] {
     match kind {
-        ElementKind::I => &["initial", "initial_flow", "range", "gyroscopic"],
-        ElementKind::C => &["initial", "range"],
+        ElementKind::I => &["initial", "initial_flow", "gyroscopic"],
+        ElementKind::C => &["initial"],
         _ => &[],
     }
 }

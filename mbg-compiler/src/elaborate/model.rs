@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Span};
 use syn::{Attribute, Visibility};
 
 use crate::graph::{BondGraph, ElementId, JunctionId};
-use crate::symbolic::Expression;
+use crate::symbolic::{Expression, Symbol};
 
 /// A model in which every name is resolved.
 pub struct Elaborated {
@@ -32,6 +32,21 @@ pub struct Elaborated {
     pub signals: Signals,
     /// What parameters must fulfil.
     pub assumptions: Vec<Assumption>,
+}
+
+impl Elaborated {
+    /// A symbol for people: the name of what was declared, or a number.
+    #[must_use]
+    pub fn symbol_text(&self, symbol: Symbol) -> String {
+        match symbol {
+            Symbol::Parameter(index) => self.parameters[index].name.to_string(),
+            Symbol::State(index) => self.states[index].variable.name.clone(),
+            Symbol::Input(index) => self.inputs[index].name.clone(),
+            Symbol::Time => "t".to_owned(),
+            Symbol::Signal(index) => format!("signal {index}"),
+            Symbol::Unknown(index) => format!("unknown {index}"),
+        }
+    }
 }
 
 /// A scalar parameter.

@@ -18,7 +18,7 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
         .collect();
     let inputs: Vec<&Variable> = model.inputs.iter().collect();
     let outputs: Vec<&Variable> = model.outputs.iter().map(|it| &it.variable).collect();
-    let operations = compiled.program.routines[Routines::DERIVATIVE].operations();
+    let operations = compiled.operations(Routines::DERIVATIVE);
     let mut lines = vec![
         String::new(),
         format!("{operations} operations per derivative."),
@@ -54,7 +54,7 @@ pub(super) fn documentation(compiled: &Compiled) -> Vec<String> {
         let through = found.through.join("`, `");
         let size = found.variables;
         let solver = match found.iterated {
-            0 => "linear, unrolled".to_owned(),
+            0 => "linear".to_owned(),
             1 => "Newton iteration on one of them".to_owned(),
             count => format!("Newton iteration on {count} of them"),
         };
@@ -179,18 +179,7 @@ fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
 }
 
 fn operations(compiled: &Compiled) -> TokenStream {
-    let routines = &compiled.program.routines;
-    let count = |routine: usize| {
-        let columns = match routine {
-            _ if compiled.unrolled => None,
-            Routines::DERIVATIVE_AND_JACOBIAN => Some(compiled.states.len()),
-            Routines::JACOBIAN_INPUT => Some(compiled.model.inputs.len()),
-            _ => None,
-        };
-        let derivative = routines[Routines::DERIVATIVE].operations();
-        let unrolled = routines[routine].operations();
-        Literal::usize_suffixed(columns.map_or(unrolled, |columns| (columns + 1) * derivative))
-    };
+    let count = |routine: usize| Literal::usize_suffixed(compiled.operations(routine));
     let [
         derivative,
         output,
@@ -207,7 +196,7 @@ fn operations(compiled: &Compiled) -> TokenStream {
         Routines::POWER,
     ]
     .map(count);
-    let angles = Literal::usize_suffixed(routines[Routines::DERIVATIVE].angles());
+    let angles = Literal::usize_suffixed(compiled.program.routines[Routines::DERIVATIVE].angles());
     quote! {
         ::mbg_runtime::Operations {
             derivative: #derivative, output: #output, derivative_and_jacobian: #derivative_and_jacobian,

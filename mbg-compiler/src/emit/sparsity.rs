@@ -19,14 +19,25 @@ const HALVES: usize = 7;
 /// A product of the loop takes so many times as long as one of a dense factorisation in a large model.
 const LOOP: usize = 7;
 
-/// Pattern and plan; no plan where a dense factorisation is as fast, and nothing where the states have no numbers.
-pub(super) fn constant(pattern: &Pattern) -> TokenStream {
-    let size = pattern.len();
-    if u16::try_from(size).is_err() {
+/// Pattern and plan, and the plan written out where it is short enough. There is no plan where a dense factorisation is
+/// as fast, and nothing where the states have no numbers.
+pub(super) fn items(pattern: &Pattern) -> TokenStream {
+    let plan = Elimination::of(pattern);
+    let plan = pays(&plan).then_some(plan);
+    let constant = constant(pattern, plan.as_ref());
+    let short = plan.filter(|plan| plan.operations() <= UNROLLED);
+    let unrolled = short.map(|plan| unrolled(pattern, &plan));
+    quote! {
+        const SPARSITY: ::core::option::Option<&'static ::mbg_runtime::Sparsity> = #constant;
+        #unrolled
+    }
+}
+
+fn constant(pattern: &Pattern, plan: Option<&Elimination>) -> TokenStream {
+    if u16::try_from(pattern.len()).is_err() {
         return quote!(::core::option::Option::None);
     }
-    let plan = Elimination::of(pattern);
-    let elimination = if pays(&plan) {
+    let elimination = if let Some(plan) = plan {
         let [lower, upper] = [&plan.lower, &plan.upper].map(|rows| nested(rows));
         let order = numbers(&plan.order);
         quote! {
@@ -72,16 +83,11 @@ fn numbers<'a>(numbers: impl IntoIterator<Item = &'a usize>) -> TokenStream {
     quote!(&[#(#numbers),*])
 }
 
-/// The plan written out, where it is short enough.
-pub(super) fn unrolled(pattern: &Pattern) -> Option<TokenStream> {
-    let plan = Elimination::of(pattern);
-    let size = pattern.len();
-    if !pays(&plan) || plan.operations() > UNROLLED {
-        return None;
-    }
-    let [eliminated, substituted] = [eliminated(pattern, &plan), substituted(&plan)];
-    let size = Literal::usize_suffixed(size);
-    Some(quote! {
+/// The plan written out.
+fn unrolled(pattern: &Pattern, plan: &Elimination) -> TokenStream {
+    let [eliminated, substituted] = [eliminated(pattern, plan), substituted(plan)];
+    let size = Literal::usize_suffixed(pattern.len());
+    quote! {
         const UNROLLED: bool = true;
         #[inline]
         fn eliminate<E: ::mbg_runtime::__private::Element>(
@@ -95,7 +101,7 @@ pub(super) fn unrolled(pattern: &Pattern) -> Option<TokenStream> {
         fn substitute<E: ::mbg_runtime::__private::Element>(rows: &[[E; #size]; #size], x: &mut [E; #size]) {
             #substituted
         }
-    })
+    }
 }
 
 /// Row by row: what the matrix holds there, less what the rows above contribute.

@@ -100,8 +100,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     ]
     .map(Literal::usize_suffixed);
     let meta = meta::constant(compiled);
-    let elimination = sparsity::unrolled(&compiled.pattern);
-    let sparsity = sparsity::constant(&compiled.pattern);
+    let sparsity = sparsity::items(&compiled.pattern);
     let body = |routine: usize, build: Build| body(compiled, routine, build);
     let initial = body(Routines::INITIAL, &vector);
     let derivative = body(Routines::DERIVATIVE, &vector);
@@ -131,7 +130,6 @@ fn system(compiled: &Compiled) -> TokenStream {
         #[allow(clippy::all, unused_variables, unused_parens)]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
             const META: &'static ::mbg_runtime::Meta = #meta;
-            const SPARSITY: ::core::option::Option<&'static ::mbg_runtime::Sparsity> = #sparsity;
             type Memory = #memory;
             type Conditioning = [T; #k];
 
@@ -145,7 +143,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
             #[inline]
             fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
-                self.derivative_and_jacobian(t, x, u, memory).1
+                ::mbg_runtime::System::derivative_and_jacobian(self, t, x, u, memory).1
             }
             #[inline]
             fn derivative_and_jacobian(
@@ -168,7 +166,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
             #close
-            #elimination
+            #sparsity
         }
     }
 }

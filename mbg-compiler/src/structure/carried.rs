@@ -94,17 +94,17 @@ impl Carried {
             carrier.pass(pool, &path, *vector, *origin)?;
         }
         let left = std::mem::take(&mut carrier.left);
+        let is_mass = |row| {
+            let efforts = masses.iter().map(|(_, law): &(usize, Given)| law.unknown);
+            let mut entries = efforts.map(|effort| system.entry(row, effort));
+            entries.any(|entry| entry != Expression::ZERO)
+        };
         let moves_more = |rate: &usize| {
-            let mut rows = system
-                .rows_with(*rate)
-                .filter_map(|row| match tree.given_by(row) {
-                    Some(given) => (!left.contains_key(&given)).then_some(()),
-                    None => (!masses.iter().any(|mass: &(usize, Given)| {
-                        system.entry(row, mass.1.unknown) != Expression::ZERO
-                    }))
-                    .then_some(()),
-                });
-            rows.next().is_some()
+            let mut rows = system.rows_with(*rate);
+            rows.any(|row| match tree.given_by(row) {
+                Some(given) => !left.contains_key(&given),
+                None => !is_mass(row),
+            })
         };
         (!masses.is_empty() && !left.keys().any(moves_more)).then_some(Self { left, masses })
     }

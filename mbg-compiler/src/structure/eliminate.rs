@@ -21,6 +21,17 @@ pub(super) struct System {
 pub(super) struct Vanished;
 
 impl System {
+    /// `matrix · x = right`.
+    pub(super) fn of(matrix: &Matrix, right: Vec<Expression>) -> Self {
+        let row = |row| {
+            let entries = (0..matrix.columns).map(|column| (column, matrix.at(row, column)));
+            entries
+                .filter(|(_, value)| *value != Expression::ZERO)
+                .collect()
+        };
+        Self::new((0..matrix.rows).map(row).collect(), right)
+    }
+
     /// `Σ rows · x = right`.
     pub(super) fn new(rows: Vec<BTreeMap<usize, Expression>>, right: Vec<Expression>) -> Self {
         let size = rows.len();
@@ -49,31 +60,31 @@ impl System {
         columns: &BTreeSet<usize>,
         admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Result<(), Vanished> {
-        while let Some((row, column)) = self.constant_pivot(pool, rows, columns, admitted) {
+        let constant = |rate, row, column| {
+            rate == Rate::Constant && columns.contains(&column) && admitted(row, column)
+        };
+        while let Some((row, column)) = self.pivot(pool, rows, &constant) {
             self.eliminate(pool, row, column)?;
         }
         Ok(())
     }
 
-    fn constant_pivot(
+    /// A pivot in one of the rows given: constants before parameters before what varies, then the one that fills in least.
+    pub(super) fn pivot(
         &self,
         pool: &Pool,
         rows: &BTreeSet<usize>,
-        columns: &BTreeSet<usize>,
-        admitted: &dyn Fn(usize, usize) -> bool,
+        admitted: &dyn Fn(Rate, usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
         rows.intersection(&self.open_rows)
             .flat_map(|row| {
-                self.rows[*row]
-                    .iter()
-                    .map(move |(c, value)| (*row, *c, *value))
+                let entries = self.rows[*row].iter();
+                entries.map(move |(column, value)| (pool.rate(*value), *row, *column))
             })
-            .filter(|(_, column, value)| {
-                columns.contains(column) && pool.rate(*value) == Rate::Constant
-            })
-            .filter(|(row, column, _)| admitted(*row, *column))
-            .map(|(row, column, _)| (row, column))
-            .min_by_key(|(row, column)| (self.fill(*row, *column), *row, *column))
+            .filter(|(rate, row, column)| admitted(*rate, *row, *column))
+            .map(|(rate, row, column)| (rate, self.fill(row, column), row, column))
+            .min()
+            .map(|(_, _, row, column)| (row, column))
     }
 
     /// How many entries a pivot there fills in at most.
@@ -81,40 +92,9 @@ impl System {
         (self.rows[row].len() - 1) * (self.columns[column].len() - 1)
     }
 
-    /// A pivot in none of the rows and columns given: constants before parameters before what varies, then the one that
-    /// fills in least.
-    pub(super) fn pivot_outside(
-        &self,
-        pool: &Pool,
-        rows: &BTreeSet<usize>,
-        columns: &BTreeSet<usize>,
-    ) -> Option<(usize, usize)> {
-        let outside = self.open_rows.iter().filter(|row| !rows.contains(row));
-        outside
-            .flat_map(|row| {
-                self.rows[*row]
-                    .iter()
-                    .map(move |(c, value)| (*row, *c, *value))
-            })
-            .filter(|(_, column, _)| !columns.contains(column))
-            .map(|(row, column, value)| (pool.rate(value), self.fill(row, column), row, column))
-            .min()
-            .map(|(_, _, row, column)| (row, column))
-    }
-
     /// Rows that are left.
     pub(super) fn open(&self) -> &BTreeSet<usize> {
         &self.open_rows
-    }
-
-    /// Rows that are left and hold a column.
-    pub(super) fn holders(&self, column: usize) -> impl Iterator<Item = usize> {
-        self.columns[column].iter().copied()
-    }
-
-    /// Columns of a row with their coefficients.
-    pub(super) fn entries(&self, row: usize) -> impl Iterator<Item = (&usize, &Expression)> {
-        self.rows[row].iter()
     }
 
     /// The right side of a row.

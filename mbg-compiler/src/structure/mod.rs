@@ -2,8 +2,10 @@
 //!
 //! Input: [`Scalars`]. Output: a [`Solution`]: every unknown as an expression of states, inputs, parameters and time.
 //! The equations are brought into block triangular form (Dulmage and Mendelsohn 1958; Duff and Reid 1978), which is
-//! unique, and each irreducible block is solved by itself. **A block divides by its own determinant or by a constant
-//! and by nothing else**, so the program's singular set is that of the model. Errors: `MBG04xx`.
+//! unique, and each irreducible block is solved by itself. **A block divides by constants and parameters, by inertias, and
+//! by its own determinant**, or is solved with numbers where it is too large for that, so that the program's singular set
+//! is that of the model. Closed loops may add pivots to it, which are told like determinants. Only slopes through an
+//! iteration on more than three unknowns divide by pivots that nothing is known of. Errors: `MBG04xx`.
 
 pub mod blocks;
 mod carried;
@@ -15,6 +17,7 @@ mod mesh;
 mod nonlinear;
 mod reduction;
 mod resolve;
+mod rest;
 mod selection;
 mod shift;
 mod solve;

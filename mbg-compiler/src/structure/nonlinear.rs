@@ -31,15 +31,11 @@ impl Solver<'_> {
         let Tearing { system, held, .. } = tearing;
         let (columns, matrix, right) = system.rest();
         let iterated = held.iter().any(|held| !held.is_empty());
-        let values = if columns.is_empty() {
-            Vec::new()
-        } else if iterated {
-            let left: Vec<usize> = columns.iter().map(|column| unknowns[*column]).collect();
+        let left: Vec<usize> = columns.iter().map(|column| unknowns[*column]).collect();
+        let values = if iterated && !left.is_empty() {
             self.define(left, &matrix, &right, unknowns)?
         } else {
-            let mut divisor = Expression::ONE;
-            let values =
-                dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
+            let (values, divisor) = self.linear(System::of(&matrix, right), &left)?;
             self.note(divisor, &[]);
             values
         };
@@ -201,9 +197,9 @@ impl Tearing<'_> {
         for row in self.system.open() {
             let linear = self.held[*row].is_empty();
             let homogeneous = self.system.right(*row) == Expression::ZERO;
-            for (column, coefficient) in self.system.entries(*row) {
-                let enters = entering.contains(column);
-                let class = match (pool.rate(*coefficient), linear, enters) {
+            for (column, coefficient) in self.system.row(*row) {
+                let enters = entering.contains(&column);
+                let class = match (pool.rate(coefficient), linear, enters) {
                     // A law gives its result more exactly than a balance of large numbers does.
                     (Rate::Constant, false, false) if self.laws.contains(row) => 0,
                     (Rate::Constant, true, false) => 1,
@@ -214,7 +210,7 @@ impl Tearing<'_> {
                     (Rate::Parameter, false, false) if large => 5,
                     _ => continue,
                 };
-                let candidate = (class, self.system.fill(*row, *column), *row, *column);
+                let candidate = (class, self.system.fill(*row, column), *row, column);
                 if best.is_none_or(|best| candidate < best) {
                     best = Some(candidate);
                 }
@@ -225,7 +221,7 @@ impl Tearing<'_> {
 
     fn eliminate(&mut self, pool: &mut Pool, row: usize, column: usize) -> Result<(), Failure> {
         let own = self.held[row].clone();
-        for other in self.system.holders(column) {
+        for other in self.system.rows_with(column) {
             self.held[other].extend(&own);
             self.laws.remove(&other);
         }
@@ -239,11 +235,9 @@ impl Tearing<'_> {
     /// Puts what a homogeneous row says of an unknown in the place of its symbol.
     fn replace(&mut self, pool: &mut Pool, row: usize, column: usize) -> Result<(), Failure> {
         let pivot = self.system.entry(row, column);
-        let others = self.system.entries(row);
-        let others: Vec<(usize, Expression)> = others
-            .filter(|(other, _)| **other != column)
-            .map(|(other, coefficient)| (*other, *coefficient))
-            .collect();
+        let others = self.system.row(row);
+        let others: Vec<(usize, Expression)> =
+            others.filter(|(other, _)| *other != column).collect();
         let mut sum = Expression::ZERO;
         for (other, coefficient) in &others {
             let symbol = pool.symbol(Symbol::Unknown(self.unknowns[*other]));

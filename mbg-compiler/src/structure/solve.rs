@@ -10,14 +10,9 @@ use super::tree::{Columns, Tree};
 use super::{Failure, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Owner, Scalars};
-use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::{
-    Differentiator, Expression, Function, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest,
-    RestSolver, Substitution, Symbol,
+    Differentiator, Expression, Function, Linear, Pool, Rate, Substitution, Symbol,
 };
-
-/// Up to this size a determinant is expanded by minors, which divides by nothing.
-const LAPLACE: usize = 6;
 
 impl From<Vanished> for Failure {
     fn from(_: Vanished) -> Self {
@@ -117,24 +112,15 @@ impl Solver<'_> {
             return self.by_levels(equations, unknowns);
         }
         let place = places(unknowns);
-        let mut matrix = Vec::new();
-        let mut right = Vec::new();
+        let (mut matrix, mut right) = (Vec::new(), Vec::new());
         let mut norms = Vec::new();
         for row in &rows {
             let (coefficients, rest) = self.sparse_row(row, &place)?;
             norms.push(self.norm(row)?);
-            let entry = |column| {
-                coefficients
-                    .get(&column)
-                    .copied()
-                    .unwrap_or(Expression::ZERO)
-            };
-            matrix.extend((0..unknowns.len()).map(entry));
+            matrix.push(coefficients);
             right.push(rest.negated());
         }
-        let matrix = Matrix::new(unknowns.len(), unknowns.len(), matrix);
-        let mut divisor = Expression::ONE;
-        let values = dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?;
+        let (values, divisor) = self.linear(System::new(matrix, right), unknowns)?;
         self.note(divisor, &norms);
         let by_law = rows
             .iter()
@@ -245,136 +231,6 @@ impl Solver<'_> {
         }
         self.store(unknowns, values);
         Ok(())
-    }
-
-    /// What is left when no level has it, solved as a whole: the rest and its values.
-    fn rest(
-        &mut self,
-        system: &mut System,
-        tree: &Tree,
-        unknowns: &[usize],
-    ) -> Result<(Rest, Vec<Expression>), Failure> {
-        let rows = system.open().clone();
-        let columns = (0..system.size()).collect();
-        system.eliminate_constants(self.pool, &rows, &columns, &|row, column| {
-            tree.allows(row, column)
-        })?;
-        let (columns, matrix, right) = system.rest();
-        let rows: Vec<usize> = system.open().iter().copied().collect();
-        let mut divisor = Expression::ONE;
-        if columns.len() > ADJUGATE {
-            self.note_determinant(&matrix, &right)?;
-            let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-            let method = Method::Linear {
-                matrix: matrix.negated(),
-                right: right.into_iter().map(Expression::negated).collect(),
-                kind: Kind::Regular,
-            };
-            return Ok(self.by_numbers(rows, columns, numbers, method));
-        }
-        let values = if columns.is_empty() {
-            Vec::new()
-        } else {
-            dense(self.pool, &matrix, &right, &mut divisor).ok_or(Failure::Singular)?
-        };
-        self.note(divisor, &[]);
-        let solver = RestSolver::Dense(matrix);
-        let rest = Rest {
-            rows,
-            columns,
-            solver,
-        };
-        Ok((rest, values))
-    }
-
-    /// Remembers the determinant of a block that is solved with numbers. No pivot of such a block is known not to vanish
-    /// at some state at which the block is regular, so its own solution takes none beforehand.
-    fn note_determinant(&mut self, matrix: &Matrix, right: &[Expression]) -> Result<(), Failure> {
-        let mut determinant = Expression::ONE;
-        if matrix.rows <= LAPLACE {
-            determinant = matrix.determinant(self.pool);
-        } else {
-            dense(self.pool, matrix, right, &mut determinant).ok_or(Failure::Singular)?;
-        }
-        if determinant == Expression::ZERO {
-            return Err(Failure::Singular);
-        }
-        self.note(determinant, &[]);
-        Ok(())
-    }
-
-    /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
-    fn multipliers(
-        &mut self,
-        system: &mut System,
-        equations: &[usize],
-        unknowns: &[usize],
-    ) -> Result<(Rest, Vec<Expression>), Failure> {
-        let place = places(unknowns);
-        let multipliers: Vec<(usize, usize)> = self
-            .scalars
-            .closures
-            .iter()
-            .flat_map(|closure| &closure.multipliers)
-            .filter_map(|unknown| {
-                let constrains = |equation: &usize| {
-                    self.scalars.equations[*equation].about == [*unknown; 2]
-                        && self.scalars.equations[*equation].level.is_none()
-                };
-                Some((equations.iter().position(constrains)?, *place.get(unknown)?))
-            })
-            .collect();
-        let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
-        let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
-        while let Some((row, column)) = system.pivot_outside(self.pool, &rows, &columns) {
-            self.note(system.entry(row, column), &[]);
-            system.eliminate(self.pool, row, column)?;
-        }
-        let mut entries = Vec::with_capacity(multipliers.len() * multipliers.len());
-        for (row, _) in &multipliers {
-            entries.extend(
-                multipliers
-                    .iter()
-                    .map(|(_, column)| system.entry(*row, *column).negated()),
-            );
-        }
-        let matrix = Matrix::new(multipliers.len(), multipliers.len(), entries);
-        let right = multipliers
-            .iter()
-            .map(|(row, _)| system.right(*row).negated())
-            .collect();
-        let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
-        let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-        let method = Method::Linear {
-            matrix,
-            right,
-            kind: Kind::Semidefinite,
-        };
-        Ok(self.by_numbers(rows, columns, numbers, method))
-    }
-
-    /// Leaves equations, with both sides negated, to be solved with numbers: what is left, and its values.
-    fn by_numbers(
-        &mut self,
-        rows: Vec<usize>,
-        columns: Vec<usize>,
-        unknowns: Vec<usize>,
-        method: Method,
-    ) -> (Rest, Vec<Expression>) {
-        let implicit = Implicit { unknowns, method };
-        let symbols: Vec<Symbol> = implicit.symbols().collect();
-        let solver = RestSolver::Numbers(self.pool.implicit().len());
-        self.pool.define(implicit);
-        let values = symbols
-            .into_iter()
-            .map(|symbol| self.pool.symbol(symbol))
-            .collect();
-        let rest = Rest {
-            rows,
-            columns,
-            solver,
-        };
-        (rest, values)
     }
 
     fn shift(

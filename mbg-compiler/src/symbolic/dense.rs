@@ -4,10 +4,11 @@ use super::expression::Expression;
 use super::matrix::Matrix;
 use super::pool::Pool;
 
-/// Up to this size equations are solved by the adjugate; more are made fewer by pivots that never vanish.
+/// Up to this size equations are solved by the adjugate, which divides by nothing but the determinant.
 pub const ADJUGATE: usize = 3;
 
-/// Solves `A x = b`; `divisor` is multiplied by what was divided by.
+/// Solves `A x = b`; `divisor` is multiplied by what was divided by. More equations are made fewer by pivots, and one of
+/// these that varies can vanish where the matrix is regular.
 pub fn dense(
     pool: &mut Pool,
     matrix: &Matrix,
@@ -44,7 +45,7 @@ fn by_adjugate(
         .collect()
 }
 
-/// Eliminates one unknown by the pivot that is safest, then sparsest, and solves the rest.
+/// Eliminates one unknown and solves the rest.
 fn by_pivot(
     pool: &mut Pool,
     matrix: &Matrix,

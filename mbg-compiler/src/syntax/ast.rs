@@ -380,7 +380,7 @@ pub enum ElementKind {
 pub struct Field {
     /// The word.
     pub name: Ident,
-    /// The value after the colon; none for a bare word. `range: lo..hi` arrives as a range expression.
+    /// The value after the colon; none for a bare word.
     pub value: Option<Expr>,
 }
 

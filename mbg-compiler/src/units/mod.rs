@@ -365,12 +365,9 @@ pub(super) fn expression_text(
     expression: Expression,
 ) -> String {
     let name = |symbol: Symbol| match symbol {
-        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
-        Symbol::State(index) => model.states[index].variable.name.clone(),
-        Symbol::Input(index) => model.inputs[index].name.clone(),
-        Symbol::Time => "t".to_owned(),
         Symbol::Unknown(index) => claims.hidden[index].text.clone(),
         Symbol::Signal(index) => report::signal_text(model, claims.signals.list()[index]),
+        other => model.symbol_text(other),
     };
     crate::symbolic::print::Printer::new(pool, &name).text(expression)
 }

@@ -48,12 +48,12 @@ impl Ports {
         for junction in &graph.junctions {
             ports.junctions.push(pairs(junction.dimension));
         }
-        for (index, element) in graph.elements.iter().enumerate() {
+        for (element, size) in graph.elements.iter().zip(sizes(graph)) {
             let (inner, outer) = match element.rule {
                 Rule::Transformer { rows, columns, .. } | Rule::Gyrator { rows, columns, .. } => {
                     (columns, rows)
                 }
-                _ => (size(graph, ElementId(index)), 0),
+                _ => (size, 0),
             };
             ports.inner.push(pairs(inner));
             ports.outer.push(pairs(outer));
@@ -192,12 +192,15 @@ fn is_pseudo(graph: &BondGraph, end: &End) -> Option<bool> {
     }
 }
 
-/// The dimension of a one-port, which is that of its bond.
-fn size(graph: &BondGraph, id: ElementId) -> usize {
-    let own = |end: &End| *end == End::OnePort(id);
-    let bond = graph
-        .bonds
-        .iter()
-        .find(|bond| own(&bond.from) || own(&bond.to));
-    bond.map_or(0, |bond| bond.dimension)
+/// The dimension of each one-port, which is that of its bond.
+fn sizes(graph: &BondGraph) -> Vec<usize> {
+    let mut sizes = vec![0; graph.elements.len()];
+    for bond in &graph.bonds {
+        for end in [&bond.from, &bond.to] {
+            if let End::OnePort(id) = end {
+                sizes[id.0] = bond.dimension;
+            }
+        }
+    }
+    sizes
 }

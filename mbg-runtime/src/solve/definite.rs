@@ -41,15 +41,6 @@ impl<T: Real, const K: usize> Definite<T, K> {
         Self { lower, regular }
     }
 
-    /// Factors of nothing, regular in no lane.
-    pub(super) fn none() -> Self {
-        let zero = T::from_f64(0.0);
-        Self {
-            lower: [[zero; K]; K],
-            regular: zero,
-        }
-    }
-
     #[inline]
     pub(super) fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
         let mut x = right.data.0[0];

@@ -78,9 +78,15 @@ fn remainder<T: Real, const K: usize>(
 #[derive(Clone, Debug)]
 pub struct Semidefinite<T, const K: usize> {
     matrix: SMatrix<T, K, K>,
-    short: Definite<T, K>,
-    /// Where a lane is near singular.
-    long: Option<Pivoted<T, K>>,
+    factors: Factors<T, K>,
+}
+
+/// Of a matrix of which every lane, no lane or some lanes are small and far from singular.
+#[derive(Clone, Debug)]
+enum Factors<T, const K: usize> {
+    Short(Definite<T, K>),
+    Long(Pivoted<T, K>),
+    Both(Definite<T, K>, Pivoted<T, K>),
 }
 
 impl<T: Real, const K: usize> Semidefinite<T, K> {
@@ -88,22 +94,14 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn new(matrix: SMatrix<T, K, K>) -> Self {
-        let short = if K <= SHORT {
-            Definite::new(&matrix)
-        } else {
-            Definite::none()
+        let short = (K <= SHORT).then(|| Definite::new(&matrix));
+        let regular_is = |short: &Definite<T, K>, flag| everywhere(short.regular, |it| it == flag);
+        let factors = match short {
+            Some(short) if regular_is(&short, 1.0) => Factors::Short(short),
+            Some(short) if !regular_is(&short, 0.0) => Factors::Both(short, Pivoted::new(matrix)),
+            _ => Factors::Long(Pivoted::new(matrix)),
         };
-        let is_regular = everywhere(short.regular, |lane| lane == 1.0);
-        let long = if is_regular {
-            None
-        } else {
-            Some(Pivoted::new(matrix))
-        };
-        Self {
-            matrix,
-            short,
-            long,
-        }
+        Self { matrix, factors }
     }
 
     /// The solution of least norm with this right side.
@@ -111,10 +109,9 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[inline]
     pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
         let solution = self.solution(right);
-        let some_regular = !everywhere(self.short.regular, |lane| lane == 0.0);
-        let rank = match &self.long {
-            Some(long) if !some_regular => long.rank,
-            _ => K,
+        let rank = match &self.factors {
+            Factors::Long(long) => long.rank,
+            Factors::Short(_) | Factors::Both(..) => K,
         };
         let zero = T::from_f64(0.0);
         let size = largest(right.iter().copied());
@@ -130,13 +127,17 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        let plain = self.short.solve(right);
-        let Some(long) = &self.long else { return plain };
-        let half = T::from_f64(0.5);
-        long.refined(&self.matrix, right)
-            .zip_map(&plain, |careful, plain| {
-                self.short.regular.select_less(half, careful, plain)
-            })
+        match &self.factors {
+            Factors::Short(short) => short.solve(right),
+            Factors::Long(long) => long.refined(&self.matrix, right),
+            Factors::Both(short, long) => {
+                let careful = long.refined(&self.matrix, right);
+                let half = T::from_f64(0.5);
+                careful.zip_map(&short.solve(right), |careful, plain| {
+                    short.regular.select_less(half, careful, plain)
+                })
+            }
+        }
     }
 }
 

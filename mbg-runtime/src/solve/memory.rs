@@ -44,6 +44,15 @@ impl<T, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UNKNOWNS
     pub fn outcomes(&self) -> &[Outcome; LOOPS] {
         &self.outcomes
     }
+
+    /// The same with other scalars; generated code calls it.
+    #[doc(hidden)]
+    pub fn map<U>(self, scalar: impl FnMut(T) -> U) -> LoopMemory<U, LOOPS, UNKNOWNS> {
+        LoopMemory {
+            unknowns: self.unknowns.map(scalar),
+            outcomes: self.outcomes,
+        }
+    }
 }
 
 impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> Default
@@ -103,7 +112,7 @@ impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UN
             };
         }
         if !solved.converged {
-            return SVector::from_element(T::from_f64(f64::NAN));
+            return solved.solution.map(|z| z * T::from_f64(f64::NAN));
         }
         let next = self.unknowns.iter_mut().skip(first);
         next.zip(solved.solution.iter())

@@ -4,6 +4,7 @@ use mbg_runtime::{System, mbg};
 
 use super::{Figures, Method, Task};
 use crate::references::andrews::REFERENCE;
+use crate::references::errors::larger;
 
 mbg! {
     /// Lengths, masses and angles at the start are those of the reference.
@@ -88,6 +89,6 @@ pub(crate) fn run() -> Figures {
             .iter()
             .zip(instant.angles)
             .map(|(angle, expected)| angle / expected - 1.0);
-        errors.fold(0.0, |error: f64, next| error.max(next.abs()))
+        errors.map(f64::abs).fold(0.0, larger)
     })
 }

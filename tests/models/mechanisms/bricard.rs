@@ -2,8 +2,9 @@
 
 use mbg_runtime::{System, mbg};
 
-use super::{Figures, Method, Task, apart};
+use super::{Figures, Method, Task};
 use crate::references::bricard::{DURATION, recorded};
+use crate::references::errors::apart;
 
 mbg! {
     include "tests/models/mechanisms/bricard.mbg";

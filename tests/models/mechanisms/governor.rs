@@ -2,7 +2,8 @@
 
 use mbg_runtime::{System, mbg};
 
-use super::{Figures, Method, Task, apart, states};
+use super::{Figures, Method, Task, states};
+use crate::references::errors::apart;
 use crate::references::governor::{DURATION, RATE, START, motion};
 
 mbg! {

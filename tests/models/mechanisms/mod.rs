@@ -9,4 +9,4 @@ mod task;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use task::{Figures, Method, Task, apart, states};
+pub(crate) use task::{Figures, Method, Task, states};

@@ -3,7 +3,8 @@
 
 use mbg_runtime::{System, mbg};
 
-use super::{Figures, Method, Task, apart, states};
+use super::{Figures, Method, Task, states};
+use crate::references::errors::apart;
 use crate::references::integrate::integrate;
 use crate::references::slider_crank::{DURATION, RATE, angle, slider};
 

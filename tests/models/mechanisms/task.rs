@@ -9,6 +9,8 @@ use mbg_runtime::solve::least_norm;
 use mbg_runtime::{Adaptive, Constant, Integrator, Meta, Rk4, Stopped, System, Tsit5};
 use nalgebra::{SMatrix, SVector};
 
+use crate::references::errors::larger;
+
 /// What a run shows.
 #[allow(dead_code, reason = "tests read less than the example prints")]
 pub(crate) struct Figures {
@@ -83,13 +85,13 @@ impl<S, const N: usize> Task<S, N> {
             let steps = self.advance((from, to), x, |t, next| {
                 x = *next;
                 let found = self.read(t, &x);
-                figures.gap = figures.gap.max(found.gap);
-                figures.energy = figures.energy.max((found.energy / first - 1.0).abs());
+                figures.gap = larger(figures.gap, found.gap);
+                figures.energy = larger(figures.energy, (found.energy / first - 1.0).abs());
             });
             figures.steps +=
                 steps.unwrap_or_else(|stopped| panic!("{}: {stopped}", self.mechanism));
             let point = self.read(to, &x).point;
-            figures.point = figures.point.max(error(to, &point));
+            figures.point = larger(figures.point, error(to, &point));
             figures.trajectory.push((to, point));
         }
         figures.closing[1] = self.rank(&x, &gap);
@@ -134,7 +136,7 @@ impl<S, const N: usize> Task<S, N> {
                 .map(|place| output[place])
         });
         Reading {
-            gap: gap.fold(0.0, |gap, open| gap.max(open.abs())),
+            gap: gap.map(f64::abs).fold(0.0, larger),
             energy: self.system.energy(t, x) + balance.sum::<f64>(),
             point: point.collect(),
         }
@@ -179,13 +181,4 @@ pub(crate) fn states(meta: &Meta, ending: &str) -> Vec<usize> {
         .filter(|(_, state)| state.name.ends_with(ending))
         .map(|(place, _)| place)
         .collect()
-}
-
-/// The largest difference.
-pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
-    assert_eq!(found.len(), expected.len());
-    found
-        .iter()
-        .zip(expected)
-        .fold(0.0, |apart, (a, b)| apart.max((a - b).abs()))
 }

@@ -1,0 +1,196 @@
+//! What is left of linear equations, solved as a whole: by the adjugate where it is small, else with numbers.
+
+use std::collections::BTreeSet;
+
+use super::Failure;
+use super::eliminate::System;
+use super::solve::{Solver, places};
+use super::tree::Tree;
+use crate::symbolic::dense::{ADJUGATE, dense};
+use crate::symbolic::{
+    Expression, Implicit, Kind, Linear, Matrix, Method, Rate, Rest, RestSolver, Symbol,
+};
+
+/// Up to this size a determinant is expanded by minors, which divides by nothing.
+const LAPLACE: usize = 6;
+
+impl Solver<'_> {
+    /// What is left when no level has it, solved as a whole: the rest and its values.
+    pub(super) fn rest(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+        unknowns: &[usize],
+    ) -> Result<(Rest, Vec<Expression>), Failure> {
+        let rows = system.open().clone();
+        let columns = (0..system.size()).collect();
+        let allowed = |row, column| tree.allows(row, column);
+        system.eliminate_constants(self.pool, &rows, &columns, &allowed)?;
+        let mut divisor = Expression::ONE;
+        let solved = self.whole(system, unknowns, &allowed, &mut divisor)?;
+        self.note(divisor, &[]);
+        Ok(solved)
+    }
+
+    /// Solves linear equations: the values, and what was divided by.
+    pub(super) fn linear(
+        &mut self,
+        mut system: System,
+        unknowns: &[usize],
+    ) -> Result<(Vec<Expression>, Expression), Failure> {
+        let (matrix, right) = system.equations();
+        let mut divisor = Expression::ONE;
+        let (rest, values) = self.whole(&mut system, unknowns, &|_, _| true, &mut divisor)?;
+        let values = system.back_substitute(self.pool, &rest.columns, &values)?;
+        // What was found by numbers has slopes by these equations alone; expressions are differentiated themselves.
+        if matches!(rest.solver, RestSolver::Numbers(_)) {
+            self.pool.solved(Linear {
+                matrix,
+                right,
+                eliminations: system.into_eliminations(),
+                rest,
+                values: values.clone(),
+            });
+        }
+        Ok((values, divisor))
+    }
+
+    /// What is left of a system, and its values. Where it is large, pivots that do not vary make it smaller. What is
+    /// large all the same is solved with numbers: no pivot that varies is known not to vanish at some state at which the
+    /// block is regular.
+    fn whole(
+        &mut self,
+        system: &mut System,
+        unknowns: &[usize],
+        allowed: &dyn Fn(usize, usize) -> bool,
+        divisor: &mut Expression,
+    ) -> Result<(Rest, Vec<Expression>), Failure> {
+        let all = system.open().clone();
+        let steady = |rate, row, column| rate < Rate::Varying && allowed(row, column);
+        while system.open().len() > ADJUGATE
+            && let Some((row, column)) = system.pivot(self.pool, &all, &steady)
+        {
+            *divisor = self.pool.multiply(*divisor, system.entry(row, column));
+            system.eliminate(self.pool, row, column)?;
+        }
+        let rows: Vec<usize> = system.open().iter().copied().collect();
+        let (columns, matrix, right) = system.rest();
+        if rows.len() > ADJUGATE {
+            let determinant = self.determinant(&matrix, &right)?;
+            *divisor = self.pool.multiply(*divisor, determinant);
+            let numbers = columns.iter().map(|column| unknowns[*column]).collect();
+            let method = Method::Linear {
+                matrix: matrix.negated(),
+                right: right.into_iter().map(Expression::negated).collect(),
+                kind: Kind::Regular,
+            };
+            return Ok(self.by_numbers(rows, columns, numbers, method));
+        }
+        let values = if rows.is_empty() {
+            Vec::new()
+        } else {
+            dense(self.pool, &matrix, &right, divisor).ok_or(Failure::Singular)?
+        };
+        let solver = RestSolver::Dense(matrix);
+        let rest = Rest {
+            rows,
+            columns,
+            solver,
+        };
+        Ok((rest, values))
+    }
+
+    /// The determinant of a block that is solved with numbers.
+    fn determinant(
+        &mut self,
+        matrix: &Matrix,
+        right: &[Expression],
+    ) -> Result<Expression, Failure> {
+        let mut determinant = Expression::ONE;
+        if matrix.rows <= LAPLACE {
+            determinant = matrix.determinant(self.pool);
+        } else {
+            dense(self.pool, matrix, right, &mut determinant).ok_or(Failure::Singular)?;
+        }
+        if determinant == Expression::ZERO {
+            return Err(Failure::Singular);
+        }
+        Ok(determinant)
+    }
+
+    /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
+    pub(super) fn multipliers(
+        &mut self,
+        system: &mut System,
+        equations: &[usize],
+        unknowns: &[usize],
+    ) -> Result<(Rest, Vec<Expression>), Failure> {
+        let place = places(unknowns);
+        let multipliers: Vec<(usize, usize)> = self
+            .scalars
+            .closures
+            .iter()
+            .flat_map(|closure| &closure.multipliers)
+            .filter_map(|unknown| {
+                let constrains = |equation: &usize| {
+                    self.scalars.equations[*equation].about == [*unknown; 2]
+                        && self.scalars.equations[*equation].level.is_none()
+                };
+                Some((equations.iter().position(constrains)?, *place.get(unknown)?))
+            })
+            .collect();
+        let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
+        let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
+        let others: BTreeSet<usize> = system.open().difference(&rows).copied().collect();
+        let outside = |_, _, column| !columns.contains(&column);
+        while let Some((row, column)) = system.pivot(self.pool, &others, &outside) {
+            self.note(system.entry(row, column), &[]);
+            system.eliminate(self.pool, row, column)?;
+        }
+        let mut entries = Vec::with_capacity(multipliers.len() * multipliers.len());
+        for (row, _) in &multipliers {
+            entries.extend(
+                multipliers
+                    .iter()
+                    .map(|(_, column)| system.entry(*row, *column).negated()),
+            );
+        }
+        let matrix = Matrix::new(multipliers.len(), multipliers.len(), entries);
+        let right = multipliers
+            .iter()
+            .map(|(row, _)| system.right(*row).negated())
+            .collect();
+        let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
+        let numbers = columns.iter().map(|column| unknowns[*column]).collect();
+        let method = Method::Linear {
+            matrix,
+            right,
+            kind: Kind::Semidefinite,
+        };
+        Ok(self.by_numbers(rows, columns, numbers, method))
+    }
+
+    /// Leaves equations, with both sides negated, to be solved with numbers: what is left, and its values.
+    fn by_numbers(
+        &mut self,
+        rows: Vec<usize>,
+        columns: Vec<usize>,
+        unknowns: Vec<usize>,
+        method: Method,
+    ) -> (Rest, Vec<Expression>) {
+        let implicit = Implicit { unknowns, method };
+        let symbols: Vec<Symbol> = implicit.symbols().collect();
+        let solver = RestSolver::Numbers(self.pool.implicit().len());
+        self.pool.define(implicit);
+        let values = symbols
+            .into_iter()
+            .map(|symbol| self.pool.symbol(symbol))
+            .collect();
+        let rest = Rest {
+            rows,
+            columns,
+            solver,
+        };
+        (rest, values)
+    }
+}

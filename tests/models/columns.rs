@@ -1,0 +1,101 @@
+//! A model whose Jacobians are too large to write out.
+
+use mbg_runtime::{System, mbg};
+use nalgebra::SVector;
+
+const CELLS: usize = 52;
+
+mbg! {
+    /// A force on cells that are all joined with each other, through a friction which has no force for a strong push backwards.
+    pub(crate) model Mesh {
+        let count = 52;
+        input force;
+        1 slide {
+            Se push { effort: force }
+            R linear { resistance: 1.0 }
+            R parabola { effort: 1.0 * powi(f, 2) }
+        }
+        cells: for k in 0..count { 0 node { C store { effort: 1.0 * q + 1.0 * powi(q, 3) } } }
+        slide -> cells[0].node;
+        wires: for k in 0..count {
+            others: for j in 0..k {
+                1 wire { R loss { resistance: 2.0 } }
+                cells[k].node -> wire;
+                wire -> cells[j].node;
+            }
+        }
+        output flow = slide.f;
+    }
+}
+
+fn effort(x: f64) -> f64 {
+    x + x.powi(3)
+}
+
+/// The flow of the slide, with its slope by the effort across it: `1 f + 1 f² = effort`.
+fn slide(effort: f64) -> [f64; 2] {
+    let root = f64::sqrt(1.0 + 4.0 * effort);
+    [0.5 * (root - 1.0), 1.0 / root]
+}
+
+#[test]
+fn jacobians_by_columns_equal_the_closed_form_and_remember_their_loop() {
+    let model = Mesh::new(MeshParameters::default()).unwrap();
+    assert!(Mesh::<f64>::META.notes[0].starts_with("the Jacobians are taken column by column"));
+    let x = SVector::<f64, CELLS>::from_fn(|k, _| 0.3 * (k as f64).sin());
+    let u = SVector::from([2.0]);
+    let mut memory = Default::default();
+    let (derivative, by_state) = model.derivative_and_jacobian(0.0, &x, &u, &mut memory);
+    let direct = model.derivative(0.0, &x, &u, &mut Default::default());
+    assert!((derivative - direct).amax() < 1e-15);
+    let [flow, slope] = slide(2.0 - effort(x[0]));
+    let total: f64 = x.iter().copied().map(effort).sum();
+    let expected = flow + 0.5 * (total - CELLS as f64 * effort(x[0]));
+    assert!((derivative[0] - expected).abs() < 1e-13);
+    for column in 0..CELLS {
+        let stiffness = 1.0 + 3.0 * x[column] * x[column];
+        for row in 0..CELLS {
+            let conductance = match (row, column) {
+                (0, 0) => -0.5 * (CELLS - 1) as f64 - slope,
+                _ if row == column => -0.5 * (CELLS - 1) as f64,
+                _ => 0.5,
+            };
+            let error = by_state[(row, column)] - conductance * stiffness;
+            assert!(error.abs() < 1e-13, "{row} {column} {error}");
+        }
+    }
+    let by_input = model.jacobian_input(0.0, &x, &u, &mut memory);
+    assert!((by_input[0] - slope).abs() < 1e-15);
+    assert_eq!(by_input.iter().filter(|it| **it != 0.0).count(), 1);
+    // The last iterations began where the first ended.
+    assert!(memory.outcomes()[0].iterations <= 2, "{memory:?}");
+}
+
+#[test]
+fn jacobians_by_columns_are_in_trouble_where_their_loop_has_no_solution() {
+    let model = Mesh::new(MeshParameters::default()).unwrap();
+    let x = SVector::<f64, CELLS>::zeros();
+    let (possible, impossible) = (SVector::from([2.0]), SVector::from([-1.0]));
+    let trouble = |u, memory: &_| model.trouble(0.0, &x, u, memory).is_some();
+
+    let mut memory = Default::default();
+    let (derivative, by_state) = model.derivative_and_jacobian(0.0, &x, &impossible, &mut memory);
+    assert!(derivative[0].is_nan() && by_state[(0, 0)].is_nan());
+    assert!(trouble(&impossible, &memory));
+    let by_state = model.jacobian_state(0.0, &x, &possible, &mut memory);
+    assert!(!trouble(&possible, &memory) && by_state[(0, 0)].is_finite());
+
+    let by_input = model.jacobian_input(0.0, &x, &impossible, &mut memory);
+    assert!(by_input[0].is_nan());
+    assert!(trouble(&impossible, &memory));
+    let by_input = model.jacobian_input(0.0, &x, &possible, &mut memory);
+    assert!(!trouble(&possible, &memory) && by_input[0].is_finite());
+}
+
+#[test]
+fn operations_of_jacobians_by_columns() {
+    let operations = Mesh::<f64>::META.operations;
+    let columns = (1 + CELLS) * operations.derivative;
+    assert_eq!(operations.derivative_and_jacobian, columns);
+    assert_eq!(operations.jacobian_input, operations.derivative);
+}

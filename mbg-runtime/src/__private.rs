@@ -5,7 +5,6 @@ pub use nalgebra::{SMatrix, SVector};
 
 pub use crate::solve::ITERATIONS;
 use crate::solve::project;
-use crate::step::magnitude;
 pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
     Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
@@ -80,7 +79,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
 ) -> Result<SVector<T, N>, Trouble> {
     let jacobian = evaluate(&x).1;
     let largest = (0..M).fold(1.0, |largest: f64, row| {
-        let terms = (0..N).map(|state| magnitude(jacobian[(row, state)] * x[state]));
+        let terms = (0..N).map(|state| (jacobian[(row, state)] * x[state]).magnitude());
         largest.max(terms.sum())
     });
     let tolerance = CLOSED * T::EPSILON * largest;

@@ -6,7 +6,6 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::Real;
-use crate::step::magnitude;
 
 /// `R = Rx(a) Ry(b) Rz(c)` of the angles `[a, b, c]` in rad: about x first, then about the new y, then the newest z.
 ///
@@ -119,7 +118,7 @@ pub fn orthonormal<T: Real, const R: usize, const C: usize>(
         });
         let largest = missing
             .iter()
-            .fold(0.0, |largest: f64, entry| largest.max(magnitude(*entry)));
+            .fold(0.0, |largest: f64, entry| largest.max(entry.magnitude()));
         if largest * largest < T::EPSILON {
             break;
         }

@@ -141,6 +141,10 @@ impl<T: Real> Real for Dual<T> {
         self.value.find(test)
     }
 
+    fn magnitude(self) -> f64 {
+        self.value.magnitude()
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = self.value.sin_cos();
         (self.chain(sine, cosine), self.chain(cosine, -sine))

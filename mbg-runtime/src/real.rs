@@ -1,5 +1,6 @@
 //! The scalar that generated code and steppers are written in.
 
+use core::cell::Cell;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -54,6 +55,17 @@ pub trait Real:
     ///
     /// Lanes are asked in order, each once, until one passes. `number.find(|_| true)` is the first lane.
     fn find(self, test: impl Fn(f64) -> bool) -> Option<f64>;
+    /// Absolute value, seen as `f64`; of several lanes the largest, and NaN when one is.
+    fn magnitude(self) -> f64 {
+        let largest = Cell::new(0.0_f64);
+        self.find(|lane| {
+            if lane.is_nan() || lane.abs() > largest.get() {
+                largest.set(lane.abs());
+            }
+            lane.is_nan()
+        });
+        largest.get()
+    }
     /// `self · factor + addend`, rounded once where [`FUSED`] holds, else twice.
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend

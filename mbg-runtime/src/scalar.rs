@@ -35,6 +35,11 @@ macro_rules! ordered {
         }
 
         #[inline]
+        fn magnitude(self) -> f64 {
+            f64::from(self.abs())
+        }
+
+        #[inline]
         fn multiply_add(self, factor: Self, addend: Self) -> Self {
             #[cfg(any(test, feature = "std"))]
             if crate::FUSED {

@@ -3,20 +3,42 @@
 use mbg_compare::{Comparison, Problem, TOLERANCES};
 use mbg_runtime::{Input, Statistics, System};
 use nalgebra::SVector;
-use numeris::ode::{AdaptiveSettings, RKAdaptive, RKTS54, RKV98NoInterp, RODAS4, Rosenbrock};
+use numeris::ode::{
+    AdaptiveSettings, RKAdaptive, RKTS54, RKV87, RKV98NoInterp, RODAS4, Rosenbrock,
+};
 use numeris::{Matrix, Vector};
 use ode_solvers::dop_shared::OutputType;
 
-type Row<const N: usize> = SVector<f64, N>;
+pub type Row<const N: usize> = SVector<f64, N>;
+
+/// The right-hand side that is given to others.
+pub trait Law<const N: usize, const M: usize> {
+    /// The derivative of the state.
+    fn slope(&self, t: f64, x: &Row<N>, u: &SVector<f64, M>) -> Row<N>;
+}
+
+/// That of our model.
+pub struct Ours<'a, S, const P: usize>(pub &'a S);
+
+impl<S, const N: usize, const M: usize, const P: usize> Law<N, M> for Ours<'_, S, P>
+where
+    S: System<f64, N, M, P>,
+{
+    #[inline]
+    fn slope(&self, t: f64, x: &Row<N>, u: &SVector<f64, M>) -> Row<N> {
+        self.0.derivative(t, x, u, &mut S::Memory::default())
+    }
+}
+
 /// The state at the end of a piece, and what it took.
 type Piece<const N: usize> = Result<(Row<N>, Statistics), String>;
 
 /// Runs a solver from jump to jump, and to each time at which the problem is judged.
-fn pieces<S, I, const N: usize, const M: usize, const P: usize>(
+pub fn pieces<S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, S, I, N, M, P>,
     times: &[f64],
     states: &mut Vec<Row<N>>,
-    piece: impl Fn([f64; 2], Row<N>) -> Piece<N>,
+    mut piece: impl FnMut([f64; 2], Row<N>) -> Piece<N>,
 ) -> Result<Statistics, String>
 where
     S: System<f64, N, M, P>,
@@ -34,6 +56,7 @@ where
             sum.evaluations += statistics.evaluations;
             sum.steps += statistics.steps;
             sum.rejected += statistics.rejected;
+            sum.factorisations += statistics.factorisations;
             (t, x) = (end, next);
         }
         states.push(x);
@@ -70,44 +93,49 @@ fn taken<const N: usize>(solution: numeris::ode::Solution<f64, N, 1>) -> (Row<N>
 }
 
 /// A right-hand side as `ode_solvers` takes it.
-struct Slope<'a, 'b, S, I, const N: usize, const M: usize, const P: usize> {
-    problem: &'b Problem<'a, S, I, N, M, P>,
+struct Slope<'b, I, L, const M: usize> {
+    input: &'b I,
+    law: &'b L,
     since: f64,
 }
 
 type Column<const N: usize> = ode_solvers::SVector<f64, N>;
 
-impl<S, I, const N: usize, const M: usize, const P: usize> ode_solvers::System<f64, Column<N>>
-    for Slope<'_, '_, S, I, N, M, P>
+impl<I, L, const N: usize, const M: usize> ode_solvers::System<f64, Column<N>>
+    for Slope<'_, I, L, M>
 where
-    S: System<f64, N, M, P>,
     I: Input<f64, M>,
+    L: Law<N, M>,
 {
     fn system(&self, t: f64, y: &Column<N>, dy: &mut Column<N>) {
-        let u = self.problem.input.value(t, self.since);
+        let u = self.input.value(t, self.since);
         let x = Row::from(<[f64; N]>::from(*y));
-        let slope = self
-            .problem
-            .system
-            .derivative(t, &x, &u, &mut S::Memory::default());
+        let slope = self.law.slope(t, &x, &u);
         *dy = Column::from(<[f64; N]>::from(slope));
     }
 }
 
 /// Puts solvers of other crates into a comparison, at all its tolerances.
-pub struct Peers<'c, 'p, S, I, const N: usize, const M: usize, const P: usize> {
+pub struct Peers<'c, 'p, S, I, L, const N: usize, const M: usize, const P: usize> {
     comparison: &'c mut Comparison<'p, S, I, N, M, P>,
+    law: &'c L,
     /// Absolute tolerances as a part of relative ones.
     small: f64,
 }
 
-impl<'c, 'p, S, I, const N: usize, const M: usize, const P: usize> Peers<'c, 'p, S, I, N, M, P>
+impl<'c, 'p, S, I, L, const N: usize, const M: usize, const P: usize>
+    Peers<'c, 'p, S, I, L, N, M, P>
 where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
+    L: Law<N, M>,
 {
-    pub fn new(comparison: &'c mut Comparison<'p, S, I, N, M, P>, small: f64) -> Self {
-        Self { comparison, small }
+    pub fn new(comparison: &'c mut Comparison<'p, S, I, N, M, P>, law: &'c L, small: f64) -> Self {
+        Self {
+            comparison,
+            law,
+            small,
+        }
     }
 
     /// Adds a solver. `piece` goes from one time to another, between which nothing jumps, at a relative and an absolute
@@ -132,15 +160,11 @@ where
 
     /// An explicit method of `numeris`.
     fn explicit<A: RKAdaptive<G, D>, const G: usize, const D: usize>(&mut self, name: &str) {
+        let law = self.law;
         self.add(name, |problem, tolerances, [t, end], x| {
-            let mut memory = S::Memory::default();
             let slope = |time: f64, y: &Vector<f64, N>| {
                 let u = problem.input.value(time, t);
-                spread(
-                    &problem
-                        .system
-                        .derivative(time, &gathered(y), &u, &mut memory),
-                )
+                spread(&law.slope(time, &gathered(y), &u))
             };
             A::integrate(t, end, &spread(&x), slope, &settings(tolerances))
                 .map(taken)
@@ -148,9 +172,10 @@ where
         });
     }
 
-    /// `numeris`: Verner's pair of orders 9 and 8, and that of Tsitouras.
+    /// `numeris`: Verner's pairs of orders 9 and 8 and of 8 and 7, and that of Tsitouras.
     pub fn numeris_smooth(&mut self) {
         self.explicit::<RKV98NoInterp, _, _>("numeris rkv98");
+        self.explicit::<RKV87, _, _>("numeris rkv87");
         self.explicit::<RKTS54, _, _>("numeris rkts54");
     }
 
@@ -182,10 +207,15 @@ where
 
     /// `ode_solvers`: the method of Dormand and Prince of order 8.
     pub fn ode_solvers_smooth(&mut self) {
+        let law = self.law;
         self.add(
             "ode_solvers dop853",
             |problem, [relative, absolute], [t, end], x| {
-                let slope = Slope { problem, since: t };
+                let slope = Slope {
+                    input: problem.input,
+                    law,
+                    since: t,
+                };
                 let start = Column::from(<[f64; N]>::from(x));
                 let mut stepper =
                     ode_solvers::Dop853::new(slope, t, end, end - t, start, relative, absolute);

@@ -8,8 +8,8 @@ use crate::Real;
 /// A square matrix as `P D A = L U`: rows scaled by `D` to a largest element of one, then exchanged by `P` so that no
 /// multiplier in `L` exceeds one (Golub and Van Loan, *Matrix Computations*, 4th ed., 3.4.1 and 3.5.2).
 ///
-/// The scaling makes the pivots independent of the units of the rows. Of a singular matrix the solutions are not
-/// finite.
+/// The scaling makes the pivots independent of the units of the rows, and each lane has its own. Steps of implicit methods
+/// have factors without either, which may be complex. Of a singular matrix the solutions are not finite.
 #[derive(Clone, Debug)]
 pub struct Regular<T, const K: usize> {
     /// `U` on and above the diagonal, `L` without its unit diagonal below.

@@ -4,23 +4,26 @@ use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
+use super::control::Control;
 use super::dense::Step;
 use super::integrator::Integrator;
-use super::method::{Estimating, Span, Start, along};
+use super::method::{Estimating, Span, Start, Stepper, along};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
-use super::{Cause, Stopped, check_result, magnitude, seen};
+use super::{Cause, Stopped, check_result, seen};
 use crate::scalar::power;
 use crate::{Input, Real, System};
 
 /// A method at steps whose length follows its estimate of the error.
 ///
 /// An error counts as small enough when the root of the mean square of
-/// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the error
-/// of the step and of the one before (PI control) and starts from the first two derivatives, both as in `dopri5` of
-/// Hairer, Nørsett and Wanner. Steps end exactly on the jumps of the input, and the starting step is chosen anew behind
-/// each. With [`Dual`](crate::Dual) numbers the values alone control the step.
+/// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
+/// and lengths of the step and of the one before: for methods of Rosenbrock as the error goes on growing or falling, else
+/// by proportion and integral (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
+/// 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
+/// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
+/// numbers the values alone control the step.
 ///
 /// Jumps that the input does not declare cost rejected steps. So that none is stepped over while the system is at rest,
 /// the input is looked at between the ends of each step; what is shorter than a sixty-fourth of the longest step may
@@ -116,7 +119,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         I: Input<T, M>,
     {
         let tolerance = Tolerance::new(self.relative, self.absolute, self.nominal);
-        let mut work = self.method.prepare::<T, N>();
+        let mut work = Scheme::Work::<T, N>::new(&self.method);
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
@@ -126,7 +129,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         };
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first);
         let smallest =
-            |t: T| T::EPSILON * (10.0 * magnitude(t)).max(T::EPSILON * seen(end - start));
+            |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
         let mut again = false;
         loop {
@@ -147,9 +150,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 again,
             };
             let memory = problem.memory;
-            let trial = self
-                .method
-                .attempt(&mut work, problem, &from, Some(&tolerance));
+            let trial = work.attempt(problem, &from, Some(&tolerance));
             if trial.error <= 1.0 {
                 let next = x + trial.change;
                 let (known, ahead) = match trial.slope {
@@ -159,8 +160,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 problem.statistics.steps += 1;
                 problem.check(span.end, &known, &ahead)?;
                 let next = problem.close(span.end, known)?;
-                let mut dense =
-                    || Scheme::polynomial(&mut work, problem, &from, (&next, Some(ahead)));
+                let mut dense = || work.polynomial(problem, &from, (&next, Some(ahead)));
                 let mut step = Step::new(span, (x, next), &mut dense);
                 if observer(&mut step).is_break() {
                     return Ok(ControlFlow::Break(()));
@@ -168,7 +168,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 if last {
                     return Ok(ControlFlow::Continue(next));
                 }
-                control.accept(seen(span.length), trial.error, Scheme::STEADY);
+                control.accept(seen(span.length), trial.error, Scheme::RULE);
                 (t, x, slope, again) = (span.end, next, ahead, false);
             } else {
                 problem.statistics.rejected += 1;
@@ -200,26 +200,26 @@ impl<M: Estimating> Adaptive<'_, M> {
         I: Input<T, K>,
     {
         let longest = seen(end - start).min(self.longest);
-        let (state, first) = (tolerance.norm(x, x), tolerance.norm(slope, x));
+        let measure = tolerance.around(x);
+        let (state, first) = (measure.norm(x), measure.norm(slope));
         let trial = if state <= 1e-5 || first <= 1e-5 {
             1e-6
         } else {
             0.01 * state / first
         }
         .min(longest);
+        // Over rest a step may be as long as the piece, unless the input may do something in between.
+        let rests = first * longest <= 1e-5 && problem.input.is_constant_between_jumps();
+        let most = if rests { longest } else { 100.0 * trial };
         let h = T::from_f64(trial);
         let memory = problem.memory;
         let ahead = problem.slope(start + h, &along(x, h, slope));
         problem.memory = memory;
-        let second = tolerance.norm(&(ahead - slope), x) / trial;
+        let second = measure.norm(&(ahead - slope)) / trial;
         let largest = first.max(second);
-        let accurate = if largest <= 1e-15 {
-            (trial * 1e-3).max(1e-6)
-        } else {
-            power(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER))
-        };
+        let accurate = power(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER));
         // An infinite slope ahead gives zero or NaN; the first trial is safer then.
-        let step = (100.0 * trial).min(accurate).min(longest);
+        let step = most.min(accurate).min(longest);
         if step > 0.0 && second.is_finite() {
             step
         } else {
@@ -236,67 +236,6 @@ fn next_span<T: Real>(start: T, end: T, length: f64) -> (Span<T>, bool) {
     let end = if last { end } else { start + length };
     (Span { start, end, length }, last)
 }
-
-/// Control of the length of the next step by the errors of this one and of the one before.
-struct Control {
-    length: f64,
-    exponent: f64,
-    /// Weight of the step before.
-    memory: f64,
-    /// Logarithm of the error of the step before.
-    before: f64,
-    after_rejection: bool,
-}
-
-impl Control {
-    fn new(order: u32, length: f64) -> Self {
-        let order = f64::from(order);
-        let memory = 0.2 / order;
-        Self {
-            length,
-            exponent: 1.0 / order - 0.75 * memory,
-            memory,
-            before: LEAST,
-            after_rejection: false,
-        }
-    }
-
-    fn accept(&mut self, length: f64, error: f64, steady: bool) {
-        let error = Real::ln(error);
-        let needed = Real::exp(self.exponent * error - self.memory * self.before) / SAFETY;
-        let proposal = length / needed.clamp(0.1, 5.0);
-        self.length = if self.after_rejection {
-            proposal.min(length)
-        } else if steady && (1.0..=1.2).contains(&(proposal / length)) {
-            length
-        } else {
-            proposal
-        };
-        self.before = error.max(LEAST);
-        self.after_rejection = false;
-    }
-
-    /// Takes back a step that has not been tried.
-    fn halve(&mut self, length: f64) {
-        self.length = 0.5 * length;
-        self.after_rejection = true;
-    }
-
-    fn reject(&mut self, length: f64, error: f64) {
-        let shorter = if error.is_finite() {
-            (power(error, self.exponent) / SAFETY).min(5.0)
-        } else {
-            5.0
-        };
-        self.length = length / shorter;
-        self.after_rejection = true;
-    }
-}
-
-/// The next step is shorter than the error allows by this factor.
-const SAFETY: f64 = 0.9;
-/// Logarithm of 1e-4, the smallest error that is remembered.
-const LEAST: f64 = -9.210_340_371_976_182;
 
 #[cfg(test)]
 mod tests {

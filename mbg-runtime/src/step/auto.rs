@@ -13,7 +13,7 @@ use super::method::Method;
 use super::problem::Problem;
 use super::radau::Radau5;
 use super::rosenbrock::Rodas5P;
-use super::{Stopped, magnitude, piece_end, seen};
+use super::{Stopped, piece_end, seen};
 use crate::{Input, Real, System};
 
 /// Integrates with a method that it picks for each piece between two jumps of the input.
@@ -300,7 +300,7 @@ fn fastest<const N: usize>(jacobian: &SMatrix<f64, N, N>) -> (f64, bool) {
 fn balanced<const N: usize>(v: &SVector<f64, N>) -> SVector<f64, N> {
     let largest = v
         .iter()
-        .fold(0.0, |largest: f64, it| largest.max(magnitude(*it)));
+        .fold(0.0, |largest: f64, it| largest.max(it.magnitude()));
     if largest > 0.0 && largest.is_finite() {
         v.map(|it| it / largest)
     } else {

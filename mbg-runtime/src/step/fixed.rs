@@ -7,9 +7,9 @@ use nalgebra::SVector;
 use super::dense::Step;
 use super::explicit::Rk4;
 use super::integrator::{Integrator, begin};
-use super::method::{Method, Span, Start, along};
+use super::method::{Method, Span, Start, Stepper, along};
 use super::problem::Problem;
-use super::{Cause, Statistics, Stopped, check_result, magnitude, seen};
+use super::{Cause, Statistics, Stopped, check_result, seen};
 use crate::{Input, Real, System};
 
 /// A method at steps of constant length.
@@ -68,7 +68,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
             let what = "the step must be finite and larger than zero";
             return Err(Stopped::new(t0, Cause::Argument(what)));
         }
-        if self.step <= 4.0 * T::EPSILON * magnitude(t0).max(magnitude(t1)) {
+        if self.step <= 4.0 * T::EPSILON * t0.magnitude().max(t1.magnitude()) {
             return Err(Stopped::new(t0, Cause::StepTooSmall));
         }
         Ok(())
@@ -87,7 +87,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
         I: Input<T, M>,
     {
         let (count, step) = divide(start, end, T::from_f64(self.step));
-        let mut work = self.method.prepare::<T, N>();
+        let mut work = Scheme::Work::<T, N>::new(&self.method);
         let mut lost = SVector::from_element(T::from_f64(0.0));
         let mut t = start;
         for index in 1..=count {
@@ -114,7 +114,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                 slope,
                 again: false,
             };
-            let trial = self.method.attempt(&mut work, problem, &from, None);
+            let trial = work.attempt(problem, &from, None);
             if !trial.error.is_finite() {
                 check_result(problem.system, t, &trial.change, &problem.memory)?;
                 return Err(Stopped::new(t, Cause::Diverged));
@@ -128,7 +128,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
             check_result(problem.system, t, &x, &problem.memory)?;
             x = problem.close(t, x)?;
             problem.statistics.steps += 1;
-            let mut dense = || Scheme::polynomial(&mut work, problem, &from, (&x, None));
+            let mut dense = || work.polynomial(problem, &from, (&x, None));
             let mut step = Step::new(span, (from.x, x), &mut dense);
             if observer(&mut step).is_break() {
                 return Ok(ControlFlow::Break(()));
@@ -271,7 +271,7 @@ fn divide<T: Real>(start: T, end: T, h: T) -> (u64, T) {
     let ratio = seen((end - start) / h);
     let whole = ratio as u64;
     let rest = ratio - whole as f64;
-    let times = magnitude(start).max(magnitude(end)) / seen(h);
+    let times = start.magnitude().max(end.magnitude()) / seen(h);
     let rounding = (8.0 * T::EPSILON * (times + ratio)).min(0.25);
     let even = |count: u64| (count, (end - start) / T::from_f64(count as f64));
     if whole > 0 && rest <= rounding {

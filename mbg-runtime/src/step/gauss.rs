@@ -1,11 +1,13 @@
 //! Gauss's methods of collocation, solved by sweeps over the stages.
 
+use core::marker::PhantomData;
+
 use nalgebra::SVector;
 
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{
-    Family, Method, Progress, Settling, Start, Trial, along, combination, converted, relative,
+    Family, Method, Progress, Settling, Start, Stepper, Trial, along, combination, relative,
 };
 use super::problem::Problem;
 use super::seen;
@@ -103,81 +105,128 @@ enum Solve {
 /// Most sweeps to rounding.
 const MOST: u32 = 50;
 
-/// A tableau in the scalar of the run, and the stages of the last step.
-pub struct Work<T, const N: usize, const S: usize> {
-    matrix: [[T; S]; S],
-    weights: [T; S],
+/// A method of this family.
+pub trait Collocation<const S: usize>: Copy {
+    #[doc(hidden)]
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const TABLEAU: Tableau<S>;
+
+    /// How its stages are found.
+    #[doc(hidden)]
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    fn solve(&self) -> Solve;
+}
+
+/// The stages of the last step.
+pub struct Stages<A, T, const N: usize, const S: usize> {
+    solve: Solve,
     slopes: [SVector<T, N>; S],
     /// Length of the last step; none at the start and behind a jump.
     length: Option<T>,
+    method: PhantomData<A>,
 }
 
-impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
-    fn new(tableau: &Tableau<S>) -> Self {
+#[allow(private_interfaces, reason = "no method is written outside")]
+impl<A, T, const N: usize, const S: usize> Stepper<A, T, N> for Stages<A, T, N, S>
+where
+    A: Collocation<S>,
+    T: Real,
+{
+    fn new(method: &A) -> Self {
         Self {
-            matrix: tableau.matrix.map(|row| converted(&row)),
-            weights: converted(&tableau.weights),
+            solve: method.solve(),
             slopes: [SVector::from_element(T::from_f64(0.0)); S],
             length: None,
-        }
-    }
-
-    /// The stages as the last step continues; without one, the derivative at the start.
-    fn predict(&mut self, tableau: &Tableau<S>, start: &Start<T, N>) {
-        let Some(before) = self.length.filter(|_| !start.again) else {
-            self.slopes = [start.slope; S];
-            return;
-        };
-        let ratio = seen(start.span.length / before);
-        let known = self.slopes;
-        for (node, slope) in tableau.nodes.iter().zip(&mut self.slopes) {
-            let weights = lagrange(&tableau.nodes, 1.0 + node * ratio);
-            *slope = combination(&converted::<T, S>(&weights), &known);
+            method: PhantomData,
         }
     }
 
     fn attempt<Y, I, const M: usize, const P: usize>(
         &mut self,
-        tableau: &Tableau<S>,
-        solve: Solve,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
+        _tolerance: Option<&Tolerance<N>>,
     ) -> Trial<T, N>
     where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
     {
         let first = self.length.is_none();
-        self.predict(tableau, start);
-        let found = match solve {
+        self.predict(start);
+        let found = match self.solve {
             Solve::Newton(sweeps) => {
-                let factors = self.factors(problem, start);
+                let factors = Self::factors(problem, start);
                 for _ in 0..sweeps {
-                    self.sweep(tableau, problem, start, Some(&factors));
+                    self.sweep(problem, start, Some(&factors));
                 }
                 true
             }
             Solve::Sweeps(Some(sweeps)) => {
                 for _ in 0..if first { sweeps + 2 } else { sweeps } {
-                    self.sweep(tableau, problem, start, None);
+                    self.sweep(problem, start, None);
                 }
                 true
             }
-            Solve::Sweeps(None) => self.settle(tableau, problem, start),
+            Solve::Sweeps(None) => self.settle(problem, start),
         };
         let length = start.span.length;
         self.length = Some(length);
+        let weights = const { &A::TABLEAU.weights };
         Trial {
-            change: combination(&self.weights, &self.slopes).map(|sum| length * sum),
+            change: combination(weights, &self.slopes).map(|sum| length * sum),
             slope: None,
             error: if found { 0.0 } else { f64::INFINITY },
+        }
+    }
+
+    fn polynomial<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        _problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        between(&A::TABLEAU, &self.slopes, start, end)
+    }
+}
+
+/// The polynomial over a step.
+fn between<T: Real, const N: usize, const S: usize>(
+    tableau: &Tableau<S>,
+    slopes: &[SVector<T, N>; S],
+    start: &Start<T, N>,
+    end: &SVector<T, N>,
+) -> Polynomial<T, N> {
+    let mut polynomial = Polynomial::line(&start.x, end);
+    let higher = polynomial.coefficients.iter_mut().skip(1);
+    for (coefficient, weights) in higher.zip(&tableau.dense) {
+        let sum = combination(weights, slopes);
+        *coefficient = sum.map(|sum| start.span.length * sum);
+    }
+    polynomial
+}
+
+impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S> {
+    /// The stages as the last step continues; without one, the derivative at the start.
+    fn predict(&mut self, start: &Start<T, N>) {
+        let Some(before) = self.length.filter(|_| !start.again) else {
+            self.slopes = [start.slope; S];
+            return;
+        };
+        let ratio = seen(start.span.length / before);
+        let known = self.slopes;
+        for (node, slope) in A::TABLEAU.nodes.iter().zip(&mut self.slopes) {
+            let weights = lagrange(&A::TABLEAU.nodes, 1.0 + node * ratio);
+            *slope = combination(&weights, &known);
         }
     }
 
     /// Sweeps to rounding; whether it came to that.
     fn settle<Y, I, const M: usize, const P: usize>(
         &mut self,
-        tableau: &Tableau<S>,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
     ) -> bool
@@ -187,7 +236,7 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
     {
         let mut settling = Settling::new();
         for _ in 0..MOST {
-            let change = self.sweep(tableau, problem, start, None);
+            let change = self.sweep(problem, start, None);
             match settling.after::<T>(change) {
                 Progress::Settled => return true,
                 Progress::Lost => return false,
@@ -199,7 +248,6 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
 
     /// `I − h a J` of the first stage.
     fn factors<Y, I, const M: usize, const P: usize>(
-        &self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
     ) -> Shifted<T, N>
@@ -209,14 +257,13 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
     {
         let jacobian = problem.jacobian(start.span.start, &start.x);
         problem.statistics.factorisations += 1;
-        let scale = start.span.length * self.matrix[0][0];
+        let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
         Shifted::new::<Y, M, P>(T::from_f64(1.0), scale, &jacobian)
     }
 
     /// One sweep over all stages; gives the largest change of a stage relative to the state.
     fn sweep<Y, I, const M: usize, const P: usize>(
         &mut self,
-        tableau: &Tableau<S>,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
         newton: Option<&Shifted<T, N>>,
@@ -229,9 +276,9 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let known = self.slopes;
         let mut largest = 0.0_f64;
         for stage in 0..S {
-            let direction = combination(&self.matrix[stage], &known);
+            let direction = combination(&A::TABLEAU.matrix[stage], &known);
             let x = along(&start.x, length, &direction);
-            let t = start.span.at(T::from_f64(tableau.nodes[stage]));
+            let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
             let slope = problem.slope(t, &x);
             let mut change = slope - known[stage];
             if let Some(factors) = newton {
@@ -247,21 +294,6 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
             }
         }
         largest
-    }
-
-    fn polynomial(
-        &self,
-        tableau: &Tableau<S>,
-        start: &Start<T, N>,
-        end: &SVector<T, N>,
-    ) -> Polynomial<T, N> {
-        let mut polynomial = Polynomial::line(&start.x, end);
-        let higher = polynomial.coefficients.iter_mut().skip(1);
-        for (coefficient, weights) in higher.zip(&tableau.dense) {
-            let sum = combination(&converted::<T, S>(weights), &self.slopes);
-            *coefficient = sum.map(|sum| start.span.length * sum);
-        }
-        polynomial
     }
 }
 
@@ -284,43 +316,19 @@ macro_rules! gauss {
             const DENSE_ORDER: u32 = $dense;
         }
 
-        #[allow(private_interfaces, reason = "no method is written outside")]
-        impl Family for $name {
-            type Work<T: Real, const N: usize> = Work<T, N, $stages>;
+        impl Collocation<$stages> for $name {
+            #[allow(private_interfaces, reason = "no method is written outside")]
+            const TABLEAU: Tableau<$stages> = $tableau;
 
-            fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
-                Work::new(&$tableau)
-            }
-
-            fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
-                &self,
-                work: &mut Self::Work<T, N>,
-                problem: &mut Problem<'_, T, S, I, N, M, P>,
-                start: &Start<T, N>,
-                _tolerance: Option<&Tolerance<N>>,
-            ) -> Trial<T, N>
-            where
-                T: Real,
-                S: System<T, N, M, P>,
-                I: Input<T, M>,
-            {
+            #[allow(private_interfaces, reason = "no method is written outside")]
+            fn solve(&self) -> Solve {
                 let $method = self;
-                work.attempt(&$tableau, $solve, problem, start)
+                $solve
             }
+        }
 
-            fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
-                work: &mut Self::Work<T, N>,
-                _problem: &mut Problem<'_, T, S, I, N, M, P>,
-                start: &Start<T, N>,
-                (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
-            ) -> Polynomial<T, N>
-            where
-                T: Real,
-                S: System<T, N, M, P>,
-                I: Input<T, M>,
-            {
-                work.polynomial(&$tableau, start, end)
-            }
+        impl Family for $name {
+            type Work<T: Real, const N: usize> = Stages<Self, T, N, $stages>;
         }
     };
 }
@@ -348,9 +356,9 @@ mod tests {
                 assert!(sum.abs() < 1e-16, "{name} {i} {j} {sum:e}");
             }
         }
-        let mut work = Work::<f64, S, S>::new(tableau);
-        work.slopes =
-            core::array::from_fn(|stage| SVector::from_fn(|row, _| f64::from(row == stage)));
+        let slopes = core::array::from_fn(|stage| {
+            SVector::<f64, S>::from_fn(|row, _| f64::from(row == stage))
+        });
         let span = crate::step::method::Span {
             start: 0.0,
             end: 1.0,
@@ -363,7 +371,7 @@ mod tests {
             slope: zero,
             again: false,
         };
-        let between = work.polynomial(tableau, &start, &SVector::from(tableau.weights));
+        let between = between(tableau, &slopes, &start, &SVector::from(tableau.weights));
         for s in [0.1, 0.35, 0.8] {
             let weights = between.at(s);
             scheme.assert_order(name, weights.as_slice(), S, s, 1e-14);

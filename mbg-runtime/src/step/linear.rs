@@ -2,10 +2,6 @@
 
 use core::ops::{Add, Mul, Sub};
 
-#[cfg(test)]
-use nalgebra::{SMatrix, SVector};
-
-use super::magnitude;
 use crate::Real;
 
 /// A number that elimination works on.
@@ -44,7 +40,7 @@ impl<T: Real> Element for T {
     }
 
     fn size(self) -> f64 {
-        magnitude(self)
+        self.magnitude()
     }
 }
 
@@ -101,7 +97,7 @@ impl<T: Real> Element for Complex<T> {
     /// Divides by the larger part first, so that no square overflows.
     fn reciprocal(self) -> Self {
         let one = T::from_f64(1.0);
-        if magnitude(self.real) >= magnitude(self.imaginary) {
+        if self.real.magnitude() >= self.imaginary.magnitude() {
             let ratio = self.imaginary / self.real;
             let scale = one / (self.real + self.imaginary * ratio);
             Self {
@@ -119,13 +115,19 @@ impl<T: Real> Element for Complex<T> {
     }
 
     fn size(self) -> f64 {
-        magnitude(self.real) + magnitude(self.imaginary)
+        self.real.magnitude() + self.imaginary.magnitude()
     }
 }
 
+/// So many equations are solved by the inverse.
+const INVERTED: usize = 3;
+
 /// `P A = L U` with partial pivoting; the pivots' reciprocals are kept in their place.
 ///
-/// Of a singular matrix the solutions are not finite. Lanes share their pivots.
+/// For steps of implicit methods, whose lanes share all decisions and so their pivots, and whose matrices may be complex;
+/// [`Regular`](crate::solve::Regular) is for loops in models, where each lane must give what it would give alone, in
+/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the inverse is
+/// kept instead: its products need not wait for each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<E, const N: usize> {
     rows: [[E; N]; N],
@@ -157,11 +159,32 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 }
             }
         }
+        let factors = Self { rows, order };
+        if N > INVERTED {
+            return factors;
+        }
+        let columns: [[E; N]; N] = core::array::from_fn(|column| {
+            factors.substituted(core::array::from_fn(|row| {
+                E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
+            }))
+        });
+        let rows = core::array::from_fn(|row| core::array::from_fn(|column| columns[column][row]));
         Self { rows, order }
     }
 
     /// The `x` of `A x = right`.
+    #[inline]
     pub(super) fn solve(&self, right: [E; N]) -> [E; N] {
+        if N > INVERTED {
+            return self.substituted(right);
+        }
+        core::array::from_fn(|row| {
+            let products = self.rows[row].iter().zip(right);
+            products.fold(E::zero(), |sum, (factor, right)| sum + *factor * right)
+        })
+    }
+
+    fn substituted(&self, right: [E; N]) -> [E; N] {
         let mut x = self.order.map(|row| right[row]);
         for i in 1..N {
             for j in 0..i {
@@ -179,45 +202,25 @@ impl<E: Element, const N: usize> Factors<E, N> {
 }
 
 #[cfg(test)]
-impl<T: Real, const N: usize> Factors<T, N> {
-    /// Of `diagonal · I − scale · matrix`.
-    pub(super) fn shifted(diagonal: T, scale: T, matrix: &SMatrix<T, N, N>) -> Self {
-        Self::new(core::array::from_fn(|row| {
-            core::array::from_fn(|column| {
-                let element = -(scale * matrix[(row, column)]);
-                if row == column {
-                    element + diagonal
-                } else {
-                    element
-                }
-            })
-        }))
-    }
-
-    pub(super) fn solved(&self, right: &SVector<T, N>) -> SVector<T, N> {
-        SVector::from(self.solve(right.data.0[0]))
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use std::vec::Vec;
 
     #[test]
     fn solves_what_needs_pivots() {
-        let matrix: SMatrix<f64, 3, 3> =
-            SMatrix::from([[0.0, 2.0, 1e20], [1e-20, 1.0, 0.0], [3.0, 0.0, 1e20]]);
-        let x = SVector::from([1.0, -2.0, 3.0]);
-        let found = Factors::shifted(0.0, -1.0, &matrix).solved(&(matrix * x));
-        assert!((found - x).norm() < 1e-14, "{found}");
+        let rows = [[0.0, 1e-20, 3.0], [2.0, 1.0, 0.0], [1e20, 0.0, 1e20]];
+        let x = [1.0, -2.0, 3.0];
+        let right = rows.map(|row: [f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum());
+        let found = Factors::new(rows).solve(right);
+        for (found, x) in found.iter().zip(x) {
+            assert!((found - x).abs() < 1e-14, "{found}");
+        }
     }
 
     #[test]
     fn a_singular_matrix_gives_nothing_finite() {
-        let matrix: SMatrix<f64, 2, 2> = SMatrix::from([[1.0, 2.0], [2.0, 4.0]]);
-        let x = Factors::shifted(0.0, -1.0, &matrix).solved(&SVector::from([1.0, 1.0]));
-        assert!(x.iter().all(|x| !x.is_finite()), "{x}");
+        let x = Factors::new([[1.0, 2.0], [2.0, 4.0]]).solve([1.0, 1.0]);
+        assert!(x.iter().all(|x: &f64| !x.is_finite()), "{x:?}");
     }
 
     #[test]

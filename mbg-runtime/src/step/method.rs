@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
+use super::control::Rule;
 use super::dense::Polynomial;
-use super::magnitude;
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use crate::{Input, Real, System};
@@ -68,81 +68,108 @@ pub struct Trial<T, const N: usize> {
     pub(super) error: f64,
 }
 
-/// One implementation for all methods of a family.
-#[allow(private_interfaces, reason = "no method is written outside")]
+/// What the implementation of a method works with.
 pub trait Family: Copy {
-    /// Coefficients in the scalar of the run, stages of the last step, and what else is used again.
-    type Work<T: Real, const N: usize>;
+    /// The implementation that all methods of the family share.
+    type Work<T: Real, const N: usize>: Stepper<Self, T, N>;
 
+    /// How the length of steps follows the error.
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const RULE: Rule = Rule::Proportional;
+}
+
+/// Steps of a method, with the stages of the last one and what else is used again.
+#[allow(private_interfaces, reason = "no method is written outside")]
+pub trait Stepper<A, T: Real, const N: usize> {
     /// Everything before the first step, and before the first behind a jump.
-    fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N>;
-
-    /// Whether a step up to a fifth longer is not worth the work.
-    const STEADY: bool = false;
+    fn new(method: &A) -> Self;
 
     /// Tries a step; without a tolerance no error is estimated, and what is iterated is iterated as far as it goes.
-    fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
-        &self,
-        work: &mut Self::Work<T, N>,
+    fn attempt<S, I, const M: usize, const P: usize>(
+        &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         start: &Start<T, N>,
         tolerance: Option<&Tolerance<N>>,
     ) -> Trial<T, N>
     where
-        T: Real,
         S: System<T, N, M, P>,
         I: Input<T, M>;
 
     /// What the method knows between the ends of the step that it has tried last, from the states and derivatives at
     /// both.
-    fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
-        work: &mut Self::Work<T, N>,
+    fn polynomial<S, I, const M: usize, const P: usize>(
+        &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         start: &Start<T, N>,
         end: (&SVector<T, N>, Option<SVector<T, N>>),
     ) -> Polynomial<T, N>
     where
-        T: Real,
         S: System<T, N, M, P>,
         I: Input<T, M>;
 }
 
-/// Numbers of a table in the scalar of the run.
-pub(super) fn converted<T: Real, const K: usize>(numbers: &[f64]) -> [T; K] {
-    core::array::from_fn(|place| T::from_f64(numbers.get(place).copied().unwrap_or(0.0)))
+/// A call with the number of a stage as a constant, so that the stage's row of weights is written out.
+macro_rules! of_stage {
+    ($stage:expr, $work:ident.$method:ident($($argument:expr),*)) => {
+        match $stage {
+            0 => $work.$method::<0>($($argument),*),
+            1 => $work.$method::<1>($($argument),*),
+            2 => $work.$method::<2>($($argument),*),
+            3 => $work.$method::<3>($($argument),*),
+            4 => $work.$method::<4>($($argument),*),
+            5 => $work.$method::<5>($($argument),*),
+            6 => $work.$method::<6>($($argument),*),
+            7 => $work.$method::<7>($($argument),*),
+            8 => $work.$method::<8>($($argument),*),
+            9 => $work.$method::<9>($($argument),*),
+            10 => $work.$method::<10>($($argument),*),
+            11 => $work.$method::<11>($($argument),*),
+            12 => $work.$method::<12>($($argument),*),
+            13 => $work.$method::<13>($($argument),*),
+            14 => $work.$method::<14>($($argument),*),
+            _ => $work.$method::<15>($($argument),*),
+        }
+    };
+}
+pub(super) use of_stage;
+
+/// The row of a table, empty behind the last.
+pub(super) const fn row<const K: usize>(
+    rows: &[&'static [f64]; K],
+    number: usize,
+) -> &'static [f64] {
+    if number < K { rows[number] } else { &[] }
 }
 
-/// `Σ weight · vector`; vectors of weight zero are left out.
-#[inline]
+/// `Σ weight · vector`; vectors of weight zero are left out. Weights that are constants are written out.
+#[inline(always)]
 pub(super) fn combination<T: Real, const N: usize>(
-    weights: &[T],
+    weights: &[f64],
     vectors: &[SVector<T, N>],
 ) -> SVector<T, N> {
-    let zero = T::from_f64(0.0);
-    let mut sum = SVector::<T, N>::from_element(zero);
+    let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
     for (weight, vector) in weights.iter().zip(vectors) {
-        if *weight != zero {
-            sum.zip_apply(vector, |sum, component| *sum += *weight * component);
+        if *weight != 0.0 {
+            let weight = T::from_f64(*weight);
+            sum.zip_apply(vector, |sum, component| {
+                *sum = weight.multiply_add(component, *sum);
+            });
         }
     }
     sum
 }
 
-/// Two sums `Σ weight · vector` over the same vectors in one pass, whose additions need not wait for each other.
-#[inline]
-pub(super) fn combinations<T: Real, const N: usize>(
-    [first, second]: [&[T]; 2],
+/// `Σ weight · vector`, the last of the vectors apart: it may still be on its way to memory.
+#[inline(always)]
+pub(super) fn continued<T: Real, const N: usize>(
+    weights: &[f64],
     vectors: &[SVector<T, N>],
-) -> [SVector<T, N>; 2] {
-    let mut sums = [SVector::<T, N>::from_element(T::from_f64(0.0)); 2];
-    let [low, high] = &mut sums;
-    for ((a, b), vector) in first.iter().zip(second).zip(vectors) {
-        for row in 0..N {
-            low[row] += *a * vector[row];
-            high[row] += *b * vector[row];
-        }
+    last: &SVector<T, N>,
+) -> SVector<T, N> {
+    match weights {
+        [earlier @ .., weight] => along(&combination(earlier, vectors), T::from_f64(*weight), last),
+        [] => combination(weights, vectors),
     }
-    sums
 }
 
 /// `x + factor · direction`.
@@ -213,11 +240,11 @@ pub(super) fn relative<T: Real, const N: usize>(
 ) -> f64 {
     let pairs = change.iter().zip(x.iter().zip(y.iter()));
     pairs.fold(0.0, |largest: f64, (change, (x, y))| {
-        let change = magnitude(*change);
+        let change = change.magnitude();
         if change == 0.0 {
             return largest;
         }
-        let quotient = change / (magnitude(*x) + magnitude(*y));
+        let quotient = change / (x.magnitude() + y.magnitude());
         if quotient > largest || quotient.is_nan() {
             quotient
         } else {

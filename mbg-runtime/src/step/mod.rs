@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod auto;
+mod control;
 mod dense;
 mod elimination;
 mod explicit;
@@ -20,7 +21,6 @@ mod tolerance;
 mod trees;
 mod watch;
 
-use core::cell::Cell;
 use core::fmt;
 
 use nalgebra::SVector;
@@ -130,22 +130,10 @@ pub(crate) fn less<T: Real>(a: T, b: T) -> bool {
     (a - b).find(|difference| difference < 0.0).is_some()
 }
 
-/// Largest absolute value of all lanes; NaN when one is.
-pub(crate) fn magnitude<T: Real>(number: T) -> f64 {
-    let largest = Cell::new(0.0_f64);
-    number.find(|lane| {
-        if lane.is_nan() || lane.abs() > largest.get() {
-            largest.set(lane.abs());
-        }
-        lane.is_nan()
-    });
-    largest.get()
-}
-
 /// Whether two times differ by rounding alone, in units of the time or of `scale`.
 fn same_time<T: Real>(a: T, b: T, scale: f64) -> bool {
-    let largest = magnitude(a).max(magnitude(b)).max(scale);
-    magnitude(b - a) <= 8.0 * T::EPSILON * largest
+    let largest = a.magnitude().max(b.magnitude()).max(scale);
+    (b - a).magnitude() <= 8.0 * T::EPSILON * largest
 }
 
 /// Where the piece of the input that begins at `from` ends, at most `end`.
@@ -192,10 +180,14 @@ where
     T: Real,
     S: System<T, N, M, P>,
 {
-    match x
-        .iter()
-        .position(|component| component.find(|lane| !lane.is_finite()).is_some())
+    // Without a branch per state, since nearly always all are finite.
+    let finite = |component: &T| component.magnitude().is_finite();
+    if x.iter()
+        .fold(true, |all, component| all & finite(component))
     {
+        return Ok(());
+    }
+    match x.iter().position(|component| !finite(component)) {
         Some(index) => {
             let state = S::META.states.get(index).map_or("?", |state| state.name);
             Err(Stopped::new(time, Cause::NotFinite { state }))

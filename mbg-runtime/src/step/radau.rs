@@ -2,10 +2,13 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
-use super::linear::Complex;
-use super::method::{Estimating, Family, Method, Progress, Settling, Start, Trial, relative};
+use super::linear::{Complex, Element};
+use super::method::{
+    Estimating, Family, Method, Progress, Settling, Start, Stepper, Trial, combination, relative,
+};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use crate::scalar::power;
@@ -76,7 +79,7 @@ const MOST: i32 = 20;
 const FAST: f64 = 1e-3;
 
 /// What a step leaves for the next.
-pub struct Work<T, const N: usize> {
+pub struct Stages<T, const N: usize> {
     jacobian: SMatrix<T, N, N>,
     /// Whether the Jacobian may serve for another step.
     keeps: bool,
@@ -91,10 +94,11 @@ pub struct Work<T, const N: usize> {
     rejected: bool,
 }
 
-type Stages<T, const N: usize> = [SVector<T, N>; 3];
+type Three<T, const N: usize> = [SVector<T, N>; 3];
 
-impl<T: Real, const N: usize> Work<T, N> {
-    fn new() -> Self {
+#[allow(private_interfaces, reason = "no method is written outside")]
+impl<T: Real, const N: usize> Stepper<Radau5, T, N> for Stages<T, N> {
+    fn new(_method: &Radau5) -> Self {
         let zero = T::from_f64(0.0);
         Self {
             jacobian: SMatrix::from_element(zero),
@@ -155,6 +159,24 @@ impl<T: Real, const N: usize> Work<T, N> {
         }
     }
 
+    fn polynomial<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        _problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut polynomial = Polynomial::line(&start.x, end);
+        let [_, bend, twist, ..] = &mut polynomial.coefficients;
+        [*bend, *twist] = [self.tried.1[1], self.tried.1[2]];
+        polynomial
+    }
+}
+
+impl<T: Real, const N: usize> Stages<T, N> {
     /// A Jacobian and factors that serve for this step.
     fn factorise<Y, I, const M: usize, const P: usize>(
         &mut self,
@@ -187,7 +209,7 @@ impl<T: Real, const N: usize> Work<T, N> {
     }
 
     /// The stages as the last step continues.
-    fn predict(&self, length: T) -> Stages<T, N> {
+    fn predict(&self, length: T) -> Three<T, N> {
         let Some((before, [change, bend, twist])) = &self.last else {
             return [SVector::from_element(T::from_f64(0.0)); 3];
         };
@@ -204,7 +226,7 @@ impl<T: Real, const N: usize> Work<T, N> {
 }
 
 /// A step that did not come off.
-fn failed<T: Real, const N: usize>(stages: &Stages<T, N>) -> Trial<T, N> {
+fn failed<T: Real, const N: usize>(stages: &Three<T, N>) -> Trial<T, N> {
     Trial {
         change: stages[2],
         slope: None,
@@ -213,7 +235,7 @@ fn failed<T: Real, const N: usize>(stages: &Stages<T, N>) -> Trial<T, N> {
 }
 
 /// Coefficients of the polynomial through the stages.
-fn coefficients<T: Real, const N: usize>([first, second, third]: &Stages<T, N>) -> Stages<T, N> {
+fn coefficients<T: Real, const N: usize>([first, second, third]: &Three<T, N>) -> Three<T, N> {
     let [c1, c2] = NODES;
     let slope = |stage: &SVector<T, N>, c: f64| {
         let (by, rest) = (T::from_f64(1.0 / c), T::from_f64(1.0 / (1.0 - c)));
@@ -227,14 +249,16 @@ fn coefficients<T: Real, const N: usize>([first, second, third]: &Stages<T, N>) 
 }
 
 /// A matrix of numbers times three vectors.
+#[inline(always)]
 fn transformed<T: Real, const N: usize>(
-    matrix: &[[f64; 3]; 3],
-    [a, b, c]: &Stages<T, N>,
-) -> Stages<T, N> {
-    matrix.map(|row| {
-        let [p, q, r] = row.map(T::from_f64);
-        a.zip_zip_map(b, c, |a, b, c| p * a + q * b + r * c)
-    })
+    [first, second, third]: &[[f64; 3]; 3],
+    vectors: &Three<T, N>,
+) -> Three<T, N> {
+    [
+        combination(first, vectors),
+        combination(second, vectors),
+        combination(third, vectors),
+    ]
 }
 
 /// The search for the stages of one step.
@@ -256,7 +280,7 @@ where
     I: Input<T, M>,
 {
     /// One sweep; gives what it changed in the transformed stages.
-    fn sweep(&mut self, stages: &mut Stages<T, N>, inner: &mut Stages<T, N>) -> Stages<T, N> {
+    fn sweep(&mut self, stages: &mut Three<T, N>, inner: &mut Three<T, N>) -> Three<T, N> {
         let Start { span, x, .. } = self.start;
         let nodes = [NODES[0], NODES[1], 1.0];
         let mut slopes = *stages;
@@ -267,21 +291,21 @@ where
         }
         let [first, second, third] = transformed(&INVERSE, &slopes);
         let by = |number: f64| T::from_f64(number) / span.length;
-        let (real, [alpha, beta]) = (by(REAL), PAIR.map(by));
+        let (real, alpha, beta) = (by(REAL), by(PAIR[0]), by(PAIR[1]));
         let [a, b, c] = &*inner;
         let one = self
             .real
             .solved::<Y, M, P>(&first.zip_map(a, |slope, a| slope - real * a));
-        let rights = core::array::from_fn(|row| Complex {
-            real: second[row] - (alpha * b[row] - beta * c[row]),
-            imaginary: third[row] - (alpha * c[row] + beta * b[row]),
-        });
+        let mut rights = [Complex::zero(); N];
+        for (row, right) in rights.iter_mut().enumerate() {
+            right.real = second[row] - (alpha * b[row] - beta * c[row]);
+            right.imaginary = third[row] - (alpha * c[row] + beta * b[row]);
+        }
+        let mut changes = [one; 3];
         let both = self.pair.solve::<Y, M, P>(rights);
-        let changes = [
-            one,
-            SVector::from(both.map(|it| it.real)),
-            SVector::from(both.map(|it| it.imaginary)),
-        ];
+        for (row, both) in both.iter().enumerate() {
+            (changes[1][row], changes[2][row]) = (both.real, both.imaginary);
+        }
         for (inner, change) in inner.iter_mut().zip(&changes) {
             *inner += change;
         }
@@ -293,19 +317,20 @@ where
     /// the bound on sweeps is not going to suffice.
     fn controlled(
         &mut self,
-        stages: &mut Stages<T, N>,
+        stages: &mut Three<T, N>,
         tolerance: &Tolerance<N>,
         rate: &mut f64,
     ) -> Option<f64> {
         let relative = tolerance.relative.max(1e-300);
         let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(0.03));
+        let measure = tolerance.around(&self.start.x);
         let mut inner = transformed(&INVERSE, stages);
         let (mut before, mut quotient, mut theta) = (0.0, 0.0, FAST);
         *rate = power(rate.max(T::EPSILON), 0.8);
         for sweep in 1..=SWEEPS {
             let changes = self.sweep(stages, &mut inner);
-            let norms = changes.map(|change| tolerance.norm(&change, &self.start.x));
-            let size = Real::sqrt(norms.iter().fold(0.0, |sum, it| sum + it * it) / 3.0);
+            let squares = changes.iter().map(|change| measure.square(change));
+            let size = Real::sqrt(squares.sum::<f64>() / 3.0);
             if !size.is_finite() {
                 return None;
             }
@@ -335,7 +360,7 @@ where
     }
 
     /// Sweeps to rounding; whether it came to that.
-    fn settled(&mut self, stages: &mut Stages<T, N>) -> bool {
+    fn settled(&mut self, stages: &mut Three<T, N>) -> bool {
         let mut inner = transformed(&INVERSE, stages);
         let mut settling = Settling::new();
         for _ in 0..MOST {
@@ -362,18 +387,19 @@ where
     }
 
     /// The filtered estimate; a second filter takes care of large ones where `doubtful`.
-    fn error(&mut self, stages: &Stages<T, N>, tolerance: &Tolerance<N>, doubtful: bool) -> f64 {
+    fn error(&mut self, stages: &Three<T, N>, tolerance: &Tolerance<N>, doubtful: bool) -> f64 {
         let Start { span, x, slope, .. } = self.start;
         let [a, b, c] = ERROR.map(|weight| T::from_f64(weight) / span.length);
         let [first, second, third] = stages;
         let sum = first.zip_zip_map(second, third, |x, y, z| a * x + b * y + c * z);
         let estimate = self.real.solved::<Y, M, P>(&(sum + slope));
-        let size = tolerance.norm_between(&estimate, x, third);
+        let measure = tolerance.between(x, third);
+        let size = measure.norm(&estimate);
         if size <= 1.0 || !doubtful || size.is_nan() {
             return size;
         }
         let slope = self.problem.slope(span.start, &(x + estimate));
-        tolerance.norm_between(&self.real.solved::<Y, M, P>(&(sum + slope)), x, third)
+        measure.norm(&self.real.solved::<Y, M, P>(&(sum + slope)))
     }
 }
 
@@ -387,53 +413,16 @@ impl Estimating for Radau5 {
     const ESTIMATE_ORDER: u32 = 4;
 }
 
-#[allow(private_interfaces, reason = "no method is written outside")]
 impl Family for Radau5 {
-    type Work<T: Real, const N: usize> = Work<T, N>;
+    type Work<T: Real, const N: usize> = Stages<T, N>;
 
-    const STEADY: bool = true;
-
-    fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
-        Work::new()
-    }
-
-    fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
-        &self,
-        work: &mut Self::Work<T, N>,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        start: &Start<T, N>,
-        tolerance: Option<&Tolerance<N>>,
-    ) -> Trial<T, N>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        work.attempt(problem, start, tolerance)
-    }
-
-    fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
-        work: &mut Self::Work<T, N>,
-        _problem: &mut Problem<'_, T, S, I, N, M, P>,
-        start: &Start<T, N>,
-        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
-    ) -> Polynomial<T, N>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        let mut polynomial = Polynomial::line(&start.x, end);
-        let [_, bend, twist, ..] = &mut polynomial.coefficients;
-        [*bend, *twist] = [work.tried.1[1], work.tried.1[2]];
-        polynomial
-    }
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const RULE: Rule = Rule::Steady;
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::linear::Factors;
     use crate::step::trees::Scheme;
 
     /// The tableau's matrix `T Λ⁻¹ T⁻¹` meets the conditions of order 5 with its last row as result.
@@ -446,13 +435,7 @@ mod tests {
         let identity: SMatrix<f64, 3, 3> = vectors * inverse;
         assert!((identity - SMatrix::identity()).norm() < 1e-14);
         let slopes: SMatrix<f64, 3, 3> = vectors * blocks * inverse;
-        let factors = Factors::shifted(0.0, -1.0, &slopes);
-        let columns = [0, 1, 2].map(|column| {
-            factors.solved(&SVector::<f64, 3>::from_fn(|row, _| {
-                f64::from(row == column)
-            }))
-        });
-        let matrix = SMatrix::<f64, 3, 3>::from_columns(&columns);
+        let matrix = slopes.try_inverse().unwrap();
         let rows: std::vec::Vec<std::vec::Vec<f64>> = matrix
             .row_iter()
             .map(|row| row.iter().copied().collect())

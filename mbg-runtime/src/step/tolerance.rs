@@ -2,14 +2,13 @@
 
 use nalgebra::SVector;
 
-use super::magnitude;
 use crate::Real;
 
 /// Tolerances of each state.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<const N: usize> {
     pub(super) relative: f64,
-    pub(super) absolute: [f64; N],
+    absolute: [f64; N],
 }
 
 impl<const N: usize> Tolerance<N> {
@@ -22,24 +21,52 @@ impl<const N: usize> Tolerance<N> {
         }
     }
 
-    /// Root of the mean square of `vector / (absolute + relative · |scale|)`.
-    pub(super) fn norm<T: Real>(&self, vector: &SVector<T, N>, scale: &SVector<T, N>) -> f64 {
-        let components = vector.iter().zip(scale.iter()).zip(&self.absolute);
-        let sum = components.fold(0.0, |sum, ((component, scale), absolute)| {
-            let quotient = magnitude(*component) / (absolute + self.relative * magnitude(*scale));
-            sum + quotient * quotient
-        });
-        Real::sqrt(sum / N.max(1) as f64)
+    /// Errors in units of the tolerance at a state.
+    #[inline]
+    pub(super) fn around<T: Real>(&self, x: &SVector<T, N>) -> Measure<N> {
+        self.of(|state| x[state].magnitude())
     }
 
-    /// The same for a vector of many lengths: the larger of two states is the scale.
-    pub(super) fn norm_between<T: Real>(
-        &self,
-        vector: &SVector<T, N>,
-        x: &SVector<T, N>,
-        change: &SVector<T, N>,
-    ) -> f64 {
-        let larger = x.zip_map(change, |x, change| x.abs().max((x + change).abs()));
-        self.norm(vector, &larger)
+    /// Errors in units of the tolerance on a step: each component of the larger of two states counts.
+    #[inline]
+    pub(super) fn between<T: Real>(&self, x: &SVector<T, N>, change: &SVector<T, N>) -> Measure<N> {
+        self.of(|state| {
+            x[state]
+                .abs()
+                .max((x[state] + change[state]).abs())
+                .magnitude()
+        })
+    }
+
+    #[inline]
+    fn of(&self, size: impl Fn(usize) -> f64) -> Measure<N> {
+        let Self { relative, absolute } = self;
+        let factors =
+            core::array::from_fn(|state| 1.0 / (absolute[state] + relative * size(state)));
+        Measure { factors }
+    }
+}
+
+/// What makes errors of each state comparable: the reciprocals of their tolerances.
+pub(super) struct Measure<const N: usize> {
+    factors: [f64; N],
+}
+
+impl<const N: usize> Measure<N> {
+    /// Root of the mean square of an error in units of the tolerances.
+    #[inline]
+    pub(super) fn norm<T: Real>(&self, error: &SVector<T, N>) -> f64 {
+        Real::sqrt(self.square(error))
+    }
+
+    /// The mean square of an error in units of the tolerances.
+    #[inline]
+    pub(super) fn square<T: Real>(&self, error: &SVector<T, N>) -> f64 {
+        let components = error.iter().zip(&self.factors);
+        let sum = components.fold(0.0, |sum, (component, factor)| {
+            let quotient = component.magnitude() * factor;
+            sum + quotient * quotient
+        });
+        sum / N.max(1) as f64
     }
 }

@@ -2,7 +2,6 @@
 
 use nalgebra::SVector;
 
-use super::magnitude;
 use super::method::Span;
 use super::problem::Problem;
 use super::seen;
@@ -78,7 +77,7 @@ fn stands_out<T: Real, const M: usize>(
         .any(|(value, (first, last))| {
             let size = half * value.abs().max(first.abs()).max(last.abs());
             let [above, below] = [*value - first.max(*last), first.min(*last) - *value];
-            magnitude(size) > 0.0
+            size.magnitude() > 0.0
                 && (above - size)
                     .max(below - size)
                     .find(|lane| lane > 0.0)

@@ -3,10 +3,15 @@
 mod dop853;
 mod tsit5;
 
+use core::marker::PhantomData;
+use core::ops::Range;
+
 use nalgebra::SVector;
 
 use super::dense::Polynomial;
-use super::method::{Estimating, Family, Method, Start, Trial, along, combination, converted};
+use super::method::{
+    Estimating, Family, Method, Start, Stepper, Trial, along, combination, continued, of_stage, row,
+};
 use super::problem::Problem;
 use super::seen;
 use super::tolerance::Tolerance;
@@ -76,49 +81,76 @@ const RK4: Tableau<4, 5> = Tableau {
     dense: [&[], &[], &[], &[]],
 };
 
-/// A tableau in the scalar of the run, and the slopes of the last step.
-pub struct Work<T, const N: usize, const S: usize, const F: usize> {
-    nodes: [T; F],
-    rows: [[T; F]; F],
-    slopes: [SVector<T, N>; F],
+impl<const S: usize, const F: usize> Tableau<S, F> {
+    /// The weights of the result.
+    const fn result(&self) -> &'static [f64] {
+        self.rows[S]
+    }
 }
 
-impl<T: Real, const N: usize, const S: usize, const F: usize> Work<T, N, S, F> {
-    fn new(tableau: &Tableau<S, F>) -> Self {
-        Self {
-            nodes: converted(&tableau.nodes),
-            rows: tableau.rows.map(converted),
-            slopes: [SVector::from_element(T::from_f64(0.0)); F],
-        }
+/// A method of this family.
+pub trait Tabulated<const S: usize, const F: usize>: Copy {
+    #[doc(hidden)]
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const TABLEAU: Tableau<S, F>;
+}
+
+/// The slopes of the last step.
+pub struct Slopes<A, T, const N: usize, const S: usize, const F: usize> {
+    slopes: [SVector<T, N>; F],
+    method: PhantomData<A>,
+}
+
+impl<A, T, const N: usize, const S: usize, const F: usize> Slopes<A, T, N, S, F>
+where
+    A: Tabulated<S, F>,
+    T: Real,
+{
+    /// The mean slope from the start to a stage.
+    #[inline(always)]
+    fn direction<const STAGE: usize>(&self, last: &SVector<T, N>) -> SVector<T, N> {
+        let weights = const { row(&A::TABLEAU.rows, STAGE) };
+        continued(weights, &self.slopes, last)
     }
 
-    /// What a row of weights adds to the state.
-    fn change(&self, row: usize, length: T) -> SVector<T, N> {
-        let (weights, slopes) = (&self.rows[row][..row], &self.slopes[..row]);
-        combination(weights, slopes).map(|sum| length * sum)
-    }
-
-    /// Evaluates the stages from `first` to before `end`.
+    /// Evaluates stages.
+    #[inline(always)]
     fn evaluate<Y, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
-        stages: core::ops::Range<usize>,
+        stages: Range<usize>,
     ) where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
     {
+        let mut last = self.slopes[stages.start - 1];
         for stage in stages {
-            let weights = &self.rows[stage][..stage];
-            let direction = combination(weights, &self.slopes[..stage]);
+            let direction = of_stage!(stage, self.direction(&last));
             let x = along(&start.x, start.span.length, &direction);
-            self.slopes[stage] = problem.slope(start.span.at(self.nodes[stage]), &x);
+            let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
+            last = problem.slope(t, &x);
+            self.slopes[stage] = last;
+        }
+    }
+}
+
+#[allow(private_interfaces, reason = "no method is written outside")]
+impl<A, T, const N: usize, const S: usize, const F: usize> Stepper<A, T, N>
+    for Slopes<A, T, N, S, F>
+where
+    A: Tabulated<S, F>,
+    T: Real,
+{
+    fn new(_method: &A) -> Self {
+        Self {
+            slopes: [SVector::from_element(T::from_f64(0.0)); F],
+            method: PhantomData,
         }
     }
 
     fn attempt<Y, I, const M: usize, const P: usize>(
         &mut self,
-        tableau: &Tableau<S, F>,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
         tolerance: Option<&Tolerance<N>>,
@@ -130,21 +162,26 @@ impl<T: Real, const N: usize, const S: usize, const F: usize> Work<T, N, S, F> {
         let length = start.span.length;
         self.slopes[0] = start.slope;
         self.evaluate(problem, start, 1..S);
-        let change = self.change(S, length);
-        let [fine, coarse] = tableau.errors;
+        let result = const { A::TABLEAU.result() };
+        let change = combination(result, &self.slopes).map(|sum| length * sum);
+        let [fine, coarse] = const { A::TABLEAU.errors };
         // An estimate that weighs the slope at the end makes it the first of the next step.
         let slope = (tolerance.is_some() && fine.len() > S).then(|| {
             self.slopes[S] = problem.slope(start.span.end, &(start.x + change));
             self.slopes[S]
         });
-        let norm = |tolerance: &Tolerance<N>, weights: &[f64]| {
-            let error = combination(&converted::<T, F>(weights), &self.slopes);
-            seen(length) * tolerance.norm_between(&error, &start.x, &change)
-        };
-        let error = match (tolerance, fine, coarse) {
-            (None, ..) | (_, [], _) => 0.0,
-            (Some(tolerance), _, []) => norm(tolerance, fine),
-            (Some(tolerance), ..) => both(norm(tolerance, fine), norm(tolerance, coarse)),
+        let error = match tolerance {
+            Some(tolerance) if !fine.is_empty() => {
+                let measure = tolerance.between(&start.x, &change);
+                let norm =
+                    |weights| seen(length) * measure.norm(&combination(weights, &self.slopes));
+                if coarse.is_empty() {
+                    norm(fine)
+                } else {
+                    both(norm(fine), norm(coarse))
+                }
+            }
+            _ => 0.0,
         };
         Trial {
             change,
@@ -155,7 +192,6 @@ impl<T: Real, const N: usize, const S: usize, const F: usize> Work<T, N, S, F> {
 
     fn polynomial<Y, I, const M: usize, const P: usize>(
         &mut self,
-        tableau: &Tableau<S, F>,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
         (end, slope): (&SVector<T, N>, Option<SVector<T, N>>),
@@ -172,8 +208,8 @@ impl<T: Real, const N: usize, const S: usize, const F: usize> Work<T, N, S, F> {
         let mut polynomial =
             Polynomial::cubic((&start.x, scaled(start.slope)), (end, scaled(last)));
         let higher = polynomial.coefficients.iter_mut().skip(3);
-        for (coefficient, weights) in higher.zip(tableau.dense) {
-            *coefficient = scaled(combination(&converted::<T, F>(weights), &self.slopes));
+        for (coefficient, weights) in higher.zip(A::TABLEAU.dense) {
+            *coefficient = scaled(combination(weights, &self.slopes));
         }
         polynomial
     }
@@ -196,42 +232,13 @@ macro_rules! explicit {
             const DENSE_ORDER: u32 = $dense;
         }
 
-        #[allow(private_interfaces, reason = "no method is written outside")]
+        impl Tabulated<$stages, $all> for $name {
+            #[allow(private_interfaces, reason = "no method is written outside")]
+            const TABLEAU: Tableau<$stages, $all> = $tableau;
+        }
+
         impl Family for $name {
-            type Work<T: Real, const N: usize> = Work<T, N, $stages, $all>;
-
-            fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
-                Work::new(&$tableau)
-            }
-
-            fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
-                &self,
-                work: &mut Self::Work<T, N>,
-                problem: &mut Problem<'_, T, S, I, N, M, P>,
-                start: &Start<T, N>,
-                tolerance: Option<&Tolerance<N>>,
-            ) -> Trial<T, N>
-            where
-                T: Real,
-                S: System<T, N, M, P>,
-                I: Input<T, M>,
-            {
-                work.attempt(&$tableau, problem, start, tolerance)
-            }
-
-            fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
-                work: &mut Self::Work<T, N>,
-                problem: &mut Problem<'_, T, S, I, N, M, P>,
-                start: &Start<T, N>,
-                end: (&SVector<T, N>, Option<SVector<T, N>>),
-            ) -> Polynomial<T, N>
-            where
-                T: Real,
-                S: System<T, N, M, P>,
-                I: Input<T, M>,
-            {
-                work.polynomial(&$tableau, problem, start, end)
-            }
+            type Work<T: Real, const N: usize> = Slopes<Self, T, N, $stages, $all>;
         }
     };
 }

@@ -3,12 +3,15 @@
 mod rodas4;
 mod rodas5p;
 
+use core::marker::PhantomData;
+
 use nalgebra::{SMatrix, SVector};
 
+use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{
-    Estimating, Family, Method, Start, Trial, along, combination, combinations, converted,
+    Estimating, Family, Method, Start, Stepper, Trial, combination, continued, of_stage, row,
 };
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -88,34 +91,52 @@ const ROS2: Tableau<2> = Tableau {
     dense: [&[], &[], &[]],
 };
 
-/// A tableau in the scalar of the run, what is known where the step starts, and the stages of the last step.
-pub struct Work<T, const N: usize, const S: usize> {
-    points: [[T; S]; S],
-    slopes: [[T; S]; S],
-    result: [T; S],
-    error: [T; S],
+/// A method of this family.
+pub trait Tabulated<const S: usize>: Copy {
+    #[doc(hidden)]
+    #[allow(private_interfaces, reason = "no method is written outside")]
+    const TABLEAU: Tableau<S>;
+}
+
+/// What is known where the step starts, and the stages of the last step.
+pub struct Stages<A, T, const N: usize, const S: usize> {
     jacobian: SMatrix<T, N, N>,
     by_time: SVector<T, N>,
     stages: [SVector<T, N>; S],
+    method: PhantomData<A>,
 }
 
-impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
-    fn new(tableau: &Tableau<S>) -> Self {
+impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S> {
+    /// What earlier stages add to the state and to the slope of a stage.
+    #[inline(always)]
+    fn ahead<const STAGE: usize>(&self, last: &SVector<T, N>) -> [SVector<T, N>; 2] {
+        let points = const { row(&A::TABLEAU.points, STAGE) };
+        let slopes = const { row(&A::TABLEAU.slopes, STAGE) };
+        [
+            continued(points, &self.stages, last),
+            continued(slopes, &self.stages, last),
+        ]
+    }
+}
+
+#[allow(private_interfaces, reason = "no method is written outside")]
+impl<A, T, const N: usize, const S: usize> Stepper<A, T, N> for Stages<A, T, N, S>
+where
+    A: Tabulated<S>,
+    T: Real,
+{
+    fn new(_method: &A) -> Self {
         let zero = T::from_f64(0.0);
         Self {
-            points: tableau.points.map(converted),
-            slopes: tableau.slopes.map(converted),
-            result: converted(&tableau.result),
-            error: converted(&tableau.error),
             jacobian: SMatrix::from_element(zero),
             by_time: SVector::from_element(zero),
             stages: [SVector::from_element(zero); S],
+            method: PhantomData,
         }
     }
 
     fn attempt<Y, I, const M: usize, const P: usize>(
         &mut self,
-        tableau: &Tableau<S>,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
         tolerance: Option<&Tolerance<N>>,
@@ -133,45 +154,64 @@ impl<T: Real, const N: usize, const S: usize> Work<T, N, S> {
         let one = T::from_f64(1.0);
         let inverse = one / length;
         problem.statistics.factorisations += 1;
-        let diagonal = inverse / T::from_f64(tableau.diagonal);
+        let diagonal = inverse / T::from_f64(A::TABLEAU.diagonal);
         let factors = Shifted::new::<Y, M, P>(diagonal, one, &self.jacobian);
+        let mut last = SVector::from_element(T::from_f64(0.0));
         for stage in 0..S {
-            let (earlier, _) = self.stages.split_at(stage);
-            let weights: [&[T]; 2] = [&self.points[stage], &self.slopes[stage]];
-            let [ahead, coupling] = combinations(weights, earlier);
+            let [ahead, coupling] = of_stage!(stage, self.ahead(&last));
             let slope = if stage == 0 {
                 start.slope
             } else {
-                problem.slope(span.at(T::from_f64(tableau.nodes[stage])), &(x + ahead))
+                let t = span.at(T::from_f64(A::TABLEAU.nodes[stage]));
+                problem.slope(t, &(x + ahead))
             };
-            let by_time = T::from_f64(tableau.times[stage]) * length;
-            let right = along(&along(&slope, inverse, &coupling), by_time, &self.by_time);
-            self.stages[stage] = factors.solved::<Y, M, P>(&right);
+            let by_time = T::from_f64(A::TABLEAU.times[stage]) * length;
+            let known = coupling.zip_map(&self.by_time, |coupling, change| {
+                inverse * coupling + by_time * change
+            });
+            last = factors.solved::<Y, M, P>(&(slope + known));
+            self.stages[stage] = last;
         }
-        let [change, error] = combinations([&self.result, &self.error], &self.stages);
+        let change = combination(const { &A::TABLEAU.result }, &self.stages);
+        let error = tolerance.map_or(0.0, |tolerance| {
+            let error = combination(const { &A::TABLEAU.error }, &self.stages);
+            tolerance.between(x, &change).norm(&error)
+        });
         Trial {
-            error: tolerance.map_or(0.0, |it| it.norm_between(&error, x, &change)),
             change,
             slope: None,
+            error,
         }
     }
 
-    fn polynomial(
-        &self,
-        tableau: &Tableau<S>,
-        start: &SVector<T, N>,
-        end: &SVector<T, N>,
-    ) -> Polynomial<T, N> {
-        let [first, second, third] = tableau
-            .dense
-            .map(|weights| combination(&converted::<T, S>(weights), &self.stages));
-        let mut polynomial = Polynomial::line(start, end);
-        let [_, bend, twist, turn, ..] = &mut polynomial.coefficients;
-        *bend = first;
-        *twist = second + third;
-        *turn = -third;
-        polynomial
+    fn polynomial<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        _problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        between(&A::TABLEAU, &self.stages, &start.x, end)
     }
+}
+
+/// The polynomial over a step.
+fn between<T: Real, const N: usize, const S: usize>(
+    tableau: &Tableau<S>,
+    stages: &[SVector<T, N>; S],
+    start: &SVector<T, N>,
+    end: &SVector<T, N>,
+) -> Polynomial<T, N> {
+    let [first, second, third] = tableau.dense.map(|weights| combination(weights, stages));
+    let mut polynomial = Polynomial::line(start, end);
+    let [_, bend, twist, turn, ..] = &mut polynomial.coefficients;
+    *bend = first;
+    *twist = second + third;
+    *turn = -third;
+    polynomial
 }
 
 /// A method of this family.
@@ -187,42 +227,16 @@ macro_rules! rosenbrock {
             const ESTIMATE_ORDER: u32 = $estimate;
         }
 
-        #[allow(private_interfaces, reason = "no method is written outside")]
+        impl Tabulated<$stages> for $name {
+            #[allow(private_interfaces, reason = "no method is written outside")]
+            const TABLEAU: Tableau<$stages> = $tableau;
+        }
+
         impl Family for $name {
-            type Work<T: Real, const N: usize> = Work<T, N, $stages>;
+            type Work<T: Real, const N: usize> = Stages<Self, T, N, $stages>;
 
-            fn prepare<T: Real, const N: usize>(&self) -> Self::Work<T, N> {
-                Work::new(&$tableau)
-            }
-
-            fn attempt<T, S, I, const N: usize, const M: usize, const P: usize>(
-                &self,
-                work: &mut Self::Work<T, N>,
-                problem: &mut Problem<'_, T, S, I, N, M, P>,
-                start: &Start<T, N>,
-                tolerance: Option<&Tolerance<N>>,
-            ) -> Trial<T, N>
-            where
-                T: Real,
-                S: System<T, N, M, P>,
-                I: Input<T, M>,
-            {
-                work.attempt(&$tableau, problem, start, tolerance)
-            }
-
-            fn polynomial<T, S, I, const N: usize, const M: usize, const P: usize>(
-                work: &mut Self::Work<T, N>,
-                _problem: &mut Problem<'_, T, S, I, N, M, P>,
-                start: &Start<T, N>,
-                (end, _): (&SVector<T, N>, Option<SVector<T, N>>),
-            ) -> Polynomial<T, N>
-            where
-                T: Real,
-                S: System<T, N, M, P>,
-                I: Input<T, M>,
-            {
-                work.polynomial(&$tableau, &start.x, end)
-            }
+            #[allow(private_interfaces, reason = "no method is written outside")]
+            const RULE: Rule = Rule::Trend;
         }
     };
 }
@@ -234,7 +248,6 @@ rosenbrock!(Rodas5P, RODAS5P: 8, "Rodas5P", order 5, 5, 5);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::linear::Factors;
     use crate::step::trees::Scheme;
     use std::vec::Vec;
 
@@ -245,13 +258,7 @@ mod tests {
     /// Back from the form without products to `α`, `γ` and weights of the stages `kᵢ`.
     fn scheme<const S: usize>(tableau: &Tableau<S>) -> (Scheme, SMatrix<f64, S, S>) {
         let inverse = SMatrix::<f64, S, S>::identity() / tableau.diagonal - matrix(&tableau.slopes);
-        let columns: Vec<_> = (0..S)
-            .map(|column| {
-                let unit = SVector::<f64, S>::from_fn(|row, _| f64::from(row == column));
-                Factors::shifted(0.0, -1.0, &inverse).solved(&unit)
-            })
-            .collect();
-        let gamma = SMatrix::<f64, S, S>::from_columns(&columns);
+        let gamma = inverse.try_inverse().unwrap();
         let alpha = matrix(&tableau.points) * gamma;
         for row in 0..S {
             assert!(
@@ -288,10 +295,10 @@ mod tests {
         let (result, error) = (SVector::from(tableau.result), SVector::from(tableau.error));
         scheme.assert_order(name, &weights(result), order, 1.0, 1e-11);
         scheme.assert_order(name, &weights(result - error), estimate, 1.0, 1e-11);
-        let mut work = Work::<f64, S, S>::new(tableau);
-        work.stages =
-            core::array::from_fn(|stage| SVector::from_fn(|row, _| f64::from(row == stage)));
-        let between = work.polynomial(tableau, &SVector::zeros(), &result);
+        let stages = core::array::from_fn(|stage| {
+            SVector::<f64, S>::from_fn(|row, _| f64::from(row == stage))
+        });
+        let between = between(tableau, &stages, &SVector::zeros(), &result);
         for s in [0.1, 0.35, 0.8] {
             scheme.assert_order(name, &weights(between.at(s)), dense, s, 1e-11);
         }

@@ -1,0 +1,93 @@
+//! The length of steps that follow the error.
+
+use crate::Real;
+use crate::scalar::power;
+
+/// How the length of the next step follows the errors of this one and of the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    /// By proportion and integral.
+    Proportional,
+    /// The same, but a step up to a fifth longer is not worth the work.
+    Steady,
+    /// As the error goes on growing or falling.
+    Trend,
+}
+
+/// Control of the length of steps.
+pub(super) struct Control {
+    pub(super) length: f64,
+    /// The error to this power is what the length is to be divided by.
+    exponent: f64,
+    /// Logarithm of the error of the step before.
+    before: f64,
+    /// The smallest error that is remembered, to that power.
+    least: f64,
+    /// What the length of the step before was to be divided by, and that length; none at the start.
+    last: Option<(f64, f64)>,
+    after_rejection: bool,
+}
+
+impl Control {
+    pub(super) fn new(order: u32, length: f64) -> Self {
+        let exponent = 1.0 / f64::from(order);
+        Self {
+            length,
+            exponent,
+            least: Real::exp(exponent * LEAST),
+            before: LEAST,
+            last: None,
+            after_rejection: false,
+        }
+    }
+
+    #[inline]
+    pub(super) fn accept(&mut self, length: f64, error: f64, rule: Rule) {
+        // Single precision is enough for a length, and takes half the time.
+        let error = f64::from(Real::ln(error as f32));
+        let power = |error: f64| f64::from(Real::exp((self.exponent * error) as f32));
+        let needed = if rule != Rule::Trend {
+            power(PROPORTION * error - MEMORY * self.before)
+        } else {
+            let needed = power(error);
+            let (before, last) = self.last.unwrap_or((needed, length));
+            let trend = needed * last / (before * length);
+            self.last = Some((needed.max(self.least), length));
+            needed * if trend > 1.0 { trend } else { 1.0 }
+        };
+        let proposal = length * (SAFETY / needed).clamp(0.2, 10.0);
+        self.length = if self.after_rejection {
+            proposal.min(length)
+        } else if rule == Rule::Steady && (1.0..=1.2).contains(&(proposal / length)) {
+            length
+        } else {
+            proposal
+        };
+        self.before = error.max(LEAST);
+        self.after_rejection = false;
+    }
+
+    /// Takes back a step that has not been tried.
+    pub(super) fn halve(&mut self, length: f64) {
+        self.length = 0.5 * length;
+        self.after_rejection = true;
+    }
+
+    pub(super) fn reject(&mut self, length: f64, error: f64) {
+        let shorter = if error.is_finite() {
+            (power(error, PROPORTION * self.exponent) / SAFETY).min(5.0)
+        } else {
+            5.0
+        };
+        self.length = length / shorter;
+        self.after_rejection = true;
+    }
+}
+
+/// The next step is shorter than the error allows by this factor.
+const SAFETY: f64 = 0.9;
+/// Parts of the error of this step and of the one before in steady control.
+const PROPORTION: f64 = 0.85;
+const MEMORY: f64 = 0.2;
+/// Logarithm of 1e-4, the smallest error that is remembered.
+const LEAST: f64 = -9.210_340_371_976_182;

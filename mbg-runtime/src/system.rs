@@ -23,6 +23,11 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// small beside its column they search for pivots in the whole matrix.
     const SPARSITY: Option<&'static Sparsity> = None;
 
+    /// Whether time has an influence on the derivative by the input alone; `false` unless it is given.
+    ///
+    /// Generated models give it. Where it is `false`, [`Adaptive`](crate::Adaptive) looks for what its steps may miss.
+    const AUTONOMOUS: bool = false;
+
     /// Warm start and residual of bounded solves; `()` for a model without any.
     type Memory: Memory;
 

@@ -8,6 +8,7 @@ use super::routine::{Setting, lines};
 use super::{jacobians, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
+use crate::symbolic::Symbol;
 
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
@@ -114,6 +115,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let [cold_energy, cold_conditioning] =
         [Routines::ENERGY, Routines::CONDITIONING].map(|routine| cold_memory(compiled, routine));
     let memory = memory(compiled);
+    let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
     let arguments = quote! {
         t: T,
         x: &::mbg_runtime::__private::SVector<T, #n>,
@@ -125,6 +127,7 @@ fn system(compiled: &Compiled) -> TokenStream {
         #[allow(clippy::all, unused_variables, unused_parens)]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
             const META: &'static ::mbg_runtime::Meta = #meta;
+            const AUTONOMOUS: bool = #autonomous;
             type Memory = #memory;
             type Conditioning = [T; #k];
 

@@ -229,6 +229,14 @@ impl Routine {
         self.results.iter().copied().chain(read).collect()
     }
 
+    /// Whether its steps read a symbol or return it.
+    #[must_use]
+    pub fn reads(&self, symbol: Symbol) -> bool {
+        let read = self.steps.iter().flat_map(Step::operands);
+        let mut read = read.chain(self.read_behind());
+        read.any(|operand| operand.source == Source::Symbol(symbol))
+    }
+
     /// Whether there is an iteration in it.
     #[must_use]
     pub fn iterates(&self) -> bool {

@@ -29,6 +29,12 @@ use crate::{Input, Real, System};
 /// the input is looked at between the ends of each step; what is shorter than a sixty-fourth of the longest step may
 /// still be missed, and [`Adaptive::longest`] is the remedy.
 ///
+/// A model that depends on time by itself ([`System::AUTONOMOUS`] is `false`) may pulse while nothing else happens, as the
+/// source of a rectifier does. Steps that are long beside those before are therefore checked in between: model and
+/// dense output must have much the same derivative. The checks are half as far apart as steps were when they last became
+/// short, and a 32nd of the time since: what lasts longer is seen, once or again and again. At steps of much the
+/// same length there are none after a while.
+///
 /// # Example
 ///
 /// ```
@@ -140,7 +146,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             let (span, last) = next_span(t, end, control.length.min(self.longest));
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
-                control.halve(seen(span.length));
+                control.shorten(0.5 * seen(span.length));
                 continue;
             }
             let from = Start {
@@ -152,11 +158,24 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             let memory = problem.memory;
             let trial = work.attempt(problem, &from, Some(&tolerance));
             if trial.error <= 1.0 {
-                let next = x + trial.change;
-                let (known, ahead) = match trial.slope {
-                    Some(slope) => (next, slope),
-                    None => (next, problem.slope(span.end, &next)),
-                };
+                let known = x + trial.change;
+                let ahead = trial
+                    .slope
+                    .unwrap_or_else(|| problem.slope(span.end, &known));
+                let dense =
+                    |problem: &mut _| work.polynomial(problem, &from, (&known, Some(ahead)));
+                if let Some(clear) =
+                    problem.clear_length::<Scheme>(&from, &trial, &tolerance, dense)
+                {
+                    problem.statistics.rejected += 1;
+                    problem.memory = memory;
+                    control.shorten(clear);
+                    if control.length <= smallest(t) {
+                        return Err(Stopped::new(t, Cause::StepTooSmall));
+                    }
+                    again = true;
+                    continue;
+                }
                 problem.statistics.steps += 1;
                 problem.check(span.end, &known, &ahead)?;
                 let next = problem.close(span.end, known)?;
@@ -168,6 +187,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 if last {
                     return Ok(ControlFlow::Continue(next));
                 }
+                problem.probes.heed(seen(t), seen(span.length));
                 control.accept(seen(span.length), trial.error, Scheme::RULE);
                 (t, x, slope, again) = (span.end, next, ahead, false);
             } else {
@@ -208,8 +228,9 @@ impl<M: Estimating> Adaptive<'_, M> {
             0.01 * state / first
         }
         .min(longest);
-        // Over rest a step may be as long as the piece, unless the input may do something in between.
-        let rests = first * longest <= 1e-5 && problem.input.is_constant_between_jumps();
+        // Over rest a step may be as long as the piece, unless input or model may do something in between.
+        let rests =
+            first * longest <= 1e-5 && problem.input.is_constant_between_jumps() && S::AUTONOMOUS;
         let most = if rests { longest } else { 100.0 * trial };
         let h = T::from_f64(trial);
         let memory = problem.memory;

@@ -67,9 +67,9 @@ impl Control {
         self.after_rejection = false;
     }
 
-    /// Takes back a step that has not been tried.
-    pub(super) fn halve(&mut self, length: f64) {
-        self.length = 0.5 * length;
+    /// Takes back a step that does not see enough, for one of this length.
+    pub(super) fn shorten(&mut self, length: f64) {
+        self.length = length;
         self.after_rejection = true;
     }
 

@@ -51,6 +51,24 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
         }
         self.start.zip_map(&sum, |start, sum| start + sum)
     }
+
+    /// The value, and the derivative by `s`.
+    pub(super) fn with_slope(&self, s: T) -> (SVector<T, N>, SVector<T, N>) {
+        let one = T::from_f64(1.0);
+        let zero = SVector::<T, N>::from_element(T::from_f64(0.0));
+        let (mut sum, mut slope) = (zero, zero);
+        for (place, coefficient) in self.coefficients.iter().enumerate().rev() {
+            let (factor, change) = if place % 2 == 0 {
+                (s, one)
+            } else {
+                (one - s, -one)
+            };
+            sum += coefficient;
+            slope.zip_apply(&sum, |slope, sum| *slope = factor * *slope + change * sum);
+            sum.apply(|sum| *sum = factor * *sum);
+        }
+        (self.start + sum, slope)
+    }
 }
 
 /// A step with its dense output.

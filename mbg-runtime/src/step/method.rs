@@ -76,6 +76,9 @@ pub trait Family: Copy {
     /// How the length of steps follows the error.
     #[allow(private_interfaces, reason = "no method is written outside")]
     const RULE: Rule = Rule::Proportional;
+
+    /// Whether it takes Jacobians.
+    const IMPLICIT: bool = true;
 }
 
 /// Steps of a method, with the stages of the last one and what else is used again.

@@ -13,6 +13,7 @@ mod linear;
 mod method;
 #[cfg(test)]
 mod models;
+mod probes;
 mod problem;
 mod radau;
 mod rosenbrock;

@@ -45,6 +45,7 @@ macro_rules! system {
 
         impl<T: Real> System<T, $states, $inputs, 0> for $name {
             const META: &'static Meta = &meta(&[$(Variable { name: $state, unit: "" }),*], &[$($block),*]);
+            const AUTONOMOUS: bool = true;
             type Memory = ();
             type Conditioning = [T; $blocks];
 

@@ -2,7 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Cause, Statistics, Stopped, check_result};
+use super::probes::Probes;
+use super::{Cause, Statistics, Stopped, check_result, seen};
 use crate::{Input, Real, System};
 
 /// What a run carries from step to step besides the state.
@@ -17,6 +18,7 @@ where
     pub(super) memory: S::Memory,
     /// Where the present piece of the input begins.
     pub(super) since: T,
+    pub(super) probes: Probes,
 }
 
 impl<'a, T, S, I, const N: usize, const M: usize, const P: usize> Problem<'a, T, S, I, N, M, P>
@@ -32,6 +34,7 @@ where
             statistics: Statistics::default(),
             memory: S::Memory::default(),
             since: start,
+            probes: Probes::new(seen(start)),
         }
     }
 

@@ -239,6 +239,8 @@ macro_rules! explicit {
 
         impl Family for $name {
             type Work<T: Real, const N: usize> = Slopes<Self, T, N, $stages, $all>;
+
+            const IMPLICIT: bool = false;
         }
     };
 }

@@ -129,23 +129,26 @@ pub(crate) fn tumbling() -> Vec<Line> {
     };
     let solver = Fixed::new(Gauss6::default(), 0.05).compensated();
     let (case, method) = (TUMBLING.1, "Gauss 6, h = 0.05 s");
-    let mut away = Ok(Found::NONE);
-    // Rounding alone, which adds up like the steps of a drunkard; and the error of the method in the length of a period.
-    let [rounding, late] = [1e-14 * PERIODS.sqrt(), 1e-7 * PERIODS].map(Expected::Within);
-    let keeps = Line::run((case, method, "energy, momentum, length"), rounding, || {
-        let mut last = start;
+    let (mut last, mut statistics) = (start, None);
+    // The error of the method in the length of a period.
+    let late = Expected::Within(1e-7 * PERIODS);
+    let returns = Line::run((case, method, "elliptic functions"), late, || {
         let keep = |step: &mut Step<'_, f64, 7>| last = *step.state();
-        let ran = solver.integrate(&Written(RigidBody), &(), 0.0, end, start, keep);
-        away =
-            ran.map(|statistics| Found::new(apart(&last.as_slice()[..3], &momentum), statistics));
-        let ways = kept(&last).into_iter().zip(kept(&start));
-        let drift = ways
-            .map(|(now, then)| (now / then - 1.0).abs())
-            .fold(0.0, larger);
-        ran.map(|statistics| Found::new(drift, statistics))
+        let taken = solver.integrate(&Written(RigidBody), &(), 0.0, end, start, keep)?;
+        statistics = Some(taken);
+        Ok(Found::new(apart(&last.as_slice()[..3], &momentum), taken))
     });
-    vec![
-        keeps,
-        Line::run((case, "the same run", "elliptic functions"), late, || away),
-    ]
+    // Rounding alone: of either sign, which adds up like the steps of a drunkard, and of one.
+    let rounding = Expected::Within(1e-14 * PERIODS.sqrt() + 1e-16 * PERIODS);
+    let ways = kept(&last).into_iter().zip(kept(&start));
+    let ways = ["energy", "momentum", "length of the quaternion"]
+        .into_iter()
+        .zip(ways);
+    let keeps = ways.map(|(what, (now, then))| {
+        let drift = (now / then - 1.0).abs();
+        Line::run((case, "the same run", what), rounding, || {
+            Ok(statistics.map_or(Found::NONE, |taken| Found::new(drift, taken)))
+        })
+    });
+    core::iter::once(returns).chain(keeps).collect()
 }

@@ -95,7 +95,13 @@ impl Order {
     }
 
     /// Appends a sum or product, as it is or ready earlier.
-    fn result(&mut self, list: &mut Vec<Numbered>, value: usize, is_sum: bool, parts: [Operand; 2]) {
+    fn result(
+        &mut self,
+        list: &mut Vec<Numbered>,
+        value: usize,
+        is_sum: bool,
+        parts: [Operand; 2],
+    ) {
         let ready = self.ready_of(is_sum, parts);
         let mut terms = Vec::new();
         let mut partial = Vec::new();
@@ -236,14 +242,18 @@ struct Numbers {
 
 impl Numbers {
     fn steps(&mut self, steps: Vec<Numbered>, order: &Order, names: &[String]) -> Vec<Step> {
-        let kept = steps.into_iter().filter(|(value, step)| step.results() == 0 || !order.gone[*value]);
-        kept.map(|(value, step)| self.step(value, step, names)).collect()
+        let kept = steps
+            .into_iter()
+            .filter(|(value, step)| step.results() == 0 || !order.gone[*value]);
+        kept.map(|(value, step)| self.step(value, step, names))
+            .collect()
     }
 
     fn step(&mut self, value: usize, step: Step, names: &[String]) -> Step {
         for value in value..value + step.results() {
             self.new[value] = self.names.len();
-            self.names.push(names.get(value).cloned().unwrap_or_default());
+            self.names
+                .push(names.get(value).cloned().unwrap_or_default());
         }
         self.renumbered(&step)
     }

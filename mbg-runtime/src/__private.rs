@@ -129,8 +129,10 @@ pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
             let entries = jacobian.as_mut_slice().chunks_exact_mut(N).nth(*variable);
             let entries = entries.unwrap_or_default();
             for (row, slope) in rows.iter().zip(&found) {
-                if let Some(entry) = entries.get_mut(*row) {
-                    *entry = slope.column(column);
+                if let (Some(entry), Some(slope)) =
+                    (entries.get_mut(*row), slope.as_columns().get(column))
+                {
+                    *entry = *slope;
                 }
             }
         }
@@ -142,16 +144,17 @@ pub fn by_lane<T: Real, const K: usize>(
     right: &[T::Columns; K],
     solution: impl Fn(&SVector<T, K>) -> SVector<T, K>,
 ) -> [T::Columns; K] {
+    let lane = |row: usize, lane: usize| right[row].as_columns()[lane];
     let mut solved = *right;
-    for lane in 0..<T::Columns as Columns<T>>::COUNT {
-        let values = solution(&SVector::from_fn(|row, _| right[row].column(lane)));
+    for column in 0..<T::Columns as Columns<T>>::COUNT {
+        let values = solution(&SVector::from_fn(|row, _| lane(row, column)));
         for (solved, value) in solved.iter_mut().zip(values.iter()) {
             let before = *solved;
             *solved = Columns::<T>::from_columns(|other| {
-                if other == lane {
+                if other == column {
                     *value
                 } else {
-                    before.column(other)
+                    before.as_columns()[other]
                 }
             });
         }

@@ -11,8 +11,8 @@ pub trait Columns<T: Real>: Real {
     const COUNT: usize;
     /// The same number in all columns.
     fn whole(value: T) -> Self;
-    /// The number in a column; NaN where there is no such column.
-    fn column(&self, column: usize) -> T;
+    /// The numbers by column.
+    fn as_columns(&self) -> &[T];
     /// Numbers by column.
     fn from_columns(number: impl FnMut(usize) -> T) -> Self;
 }
@@ -26,8 +26,8 @@ impl<T: Real> Columns<T> for T {
     }
 
     #[inline]
-    fn column(&self, _: usize) -> T {
-        *self
+    fn as_columns(&self) -> &[T] {
+        core::slice::from_ref(self)
     }
 
     #[inline]

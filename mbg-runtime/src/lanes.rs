@@ -100,8 +100,8 @@ macro_rules! lanes {
             }
 
             #[inline]
-            fn column(&self, column: usize) -> $scalar {
-                self.as_array().get(column).copied().unwrap_or($scalar::NAN)
+            fn as_columns(&self) -> &[$scalar] {
+                self.as_array()
             }
 
             #[inline]

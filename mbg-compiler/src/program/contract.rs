@@ -3,14 +3,7 @@
 //! On a target with a fused multiply-add that is one instruction in place of two, and half of their latency. Of a sum of
 //! two products the one that is ready last is taken in, so that the other does not wait for it.
 
-use super::{Columns, Operand, Routine, Solve, Source, Step};
-
-/// Cycles until a result can be used, on the processors of today about the same everywhere.
-mod latency {
-    pub(super) const SUM: u32 = 4;
-    pub(super) const QUOTIENT: u32 = 14;
-    pub(super) const FUNCTION: u32 = 40;
-}
+use super::{Columns, Operand, Routine, Solve, Source, Step, latency};
 
 /// The routine with products taken into sums.
 pub(super) fn contract(routine: &Routine) -> Routine {
@@ -89,15 +82,11 @@ impl Contraction {
                     self.products[value] = Some([*a, *b]);
                     start + latency::SUM
                 }
-                Step::MultiplyAdd(..) => start + latency::SUM,
-                Step::Divide(..) => start + latency::QUOTIENT,
-                Step::SineCosine(_) | Step::Sine(_) | Step::Cosine(_) | Step::Call(..) => {
-                    start + latency::FUNCTION
-                }
                 Step::Solve(solve) => {
                     self.choose(&solve.steps, value);
                     start
                 }
+                _ => start + latency::of(step),
             };
             let next = value + step.results();
             if !matches!(step, Step::Solve(_)) {

@@ -7,6 +7,8 @@ mod contract;
 mod dump;
 mod interpret;
 mod iterate;
+mod latency;
+mod reorder;
 mod schedule;
 
 use std::collections::BTreeSet;

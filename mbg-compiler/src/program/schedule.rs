@@ -203,7 +203,10 @@ impl Context<'_> {
             .iter()
             .map(|root| self.operand(&draft, *root, folding))
             .collect();
-        contract(&draft.routine)
+        if folding || std::env::var("NOREORDER").is_ok() {
+            return contract(&draft.routine);
+        }
+        contract(&super::reorder::reorder(&draft.routine))
     }
 
     /// Whether each node changes along a direction; operands come before what uses them.

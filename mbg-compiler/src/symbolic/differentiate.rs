@@ -148,7 +148,9 @@ fn rule(
     match operation {
         Operation::Constant(_) => Expression::ZERO,
         Operation::Symbol(symbol) => slopes.get(symbol).copied().unwrap_or(Expression::ZERO),
-        Operation::Add(a, b) => pool.add(known.of(*a), known.of(*b)),
+        Operation::Add(a, b) => {
+            turned(pool, known, *a, *b).unwrap_or_else(|| pool.add(known.of(*a), known.of(*b)))
+        }
         Operation::Multiply(a, b) => {
             let first = pool.multiply(known.of(*a), *b);
             let second = pool.multiply(*a, known.of(*b));
@@ -170,6 +172,55 @@ fn rule(
         }
         Operation::Call(function, arguments) => call_rule(pool, known, whole, *function, arguments),
     }
+}
+
+/// The derivative of `a cos α + b sin α`, a component of a vector that is turned: where the angle changes, that is the
+/// component at right angles to it, which often is there already.
+fn turned(
+    pool: &mut Pool,
+    known: &Rewritten,
+    first: Expression,
+    second: Expression,
+) -> Option<Expression> {
+    let circular = |pool: &Pool, product: Expression| {
+        let Operation::Multiply(a, b) = *pool.operation(product) else {
+            return Vec::new();
+        };
+        let angle = |factor: Expression| match *pool.operation(factor) {
+            Operation::Sine(angle) | Operation::Cosine(angle) => Some(angle),
+            _ => None,
+        };
+        let both = [(a, b), (b, a)].into_iter();
+        both.filter_map(|(factor, rest)| Some((angle(factor)?, factor, rest)))
+            .collect()
+    };
+    let others = circular(pool, second);
+    let (angle, [a, b]) = circular(pool, first)
+        .into_iter()
+        .find_map(|(angle, a, x)| {
+            let (_, b, y) = others
+                .iter()
+                .find(|other| other.0 == angle && other.1 != a)?;
+            Some((angle, [(first, a, x), (second, *b, *y)]))
+        })?;
+    let turning = known.of(angle);
+    if turning == Expression::ZERO {
+        return None;
+    }
+    let mut slope = Expression::ZERO;
+    let mut across = Expression::ZERO;
+    for (whole, factor, rest) in [a, b] {
+        let changed = pool.multiply(factor, known.of(rest));
+        slope = pool.add(slope, changed.flipped(whole.is_negative()));
+        let quarter = match *pool.operation(factor) {
+            Operation::Sine(angle) => pool.cosine(angle),
+            _ => pool.sine(angle).negated(),
+        };
+        let moved = pool.multiply(quarter, rest);
+        across = pool.add(across, moved.flipped(whole.is_negative()));
+    }
+    let moved = pool.multiply(across, turning);
+    Some(pool.add(slope, moved))
 }
 
 fn call_rule(

@@ -32,9 +32,11 @@ fn andrews_squeezer_meets_the_reference() {
 
 #[test]
 fn four_bars_turn_over_through_their_singular_position() {
-    check(&four_bars::run1(), 2, 1e-6, 1e-8);
-    check(&four_bars::run2(), 4, 1e-6, 1e-8);
-    check(&four_bars::run5(), 10, 1e-6, 1e-8);
+    // Rounding grows as the inverse cube of the smallest singular value there, so another order of operations moves point
+    // and energy by a factor of ten and more.
+    check(&four_bars::run1(), 2, 1e-5, 1e-7);
+    check(&four_bars::run2(), 4, 1e-5, 1e-7);
+    check(&four_bars::run5(), 10, 1e-5, 1e-7);
 }
 
 #[test]

@@ -1,0 +1,16 @@
+//! Cycles until a result can be used, on the processors of today about the same everywhere.
+
+use super::Step;
+
+/// Of a sum, a product, or both fused.
+pub(super) const SUM: u32 = 4;
+
+/// Of a step, once its operands are there.
+pub(super) fn of(step: &Step) -> u32 {
+    match step {
+        Step::Add(..) | Step::Multiply(..) | Step::MultiplyAdd(..) => SUM,
+        Step::Divide(..) => 14,
+        Step::SineCosine(_) | Step::Sine(_) | Step::Cosine(_) | Step::Call(..) => 40,
+        Step::Solve(_) => 0,
+    }
+}

@@ -1,0 +1,293 @@
+//! Sums and products take last what is ready last.
+//!
+//! A sum of several terms of which one comes late, as everywhere where links depend on each other in a row, waits for it
+//! only once if it is added last. Terms are added in the order in which they are ready, where nothing else needs a partial
+//! sum, and factors are multiplied likewise. The number of operations stays.
+
+use super::{Columns, Operand, Routine, Solve, Source, Step, latency};
+
+/// The routine with sums and products reordered.
+pub(super) fn reorder(routine: &Routine) -> Routine {
+    let values = routine.names.len();
+    let mut order = Order {
+        uses: vec![0; values],
+        ready: vec![0; values],
+        parts: vec![None; values],
+        gone: vec![false; values],
+    };
+    order.count(routine);
+    let steps = order.list(&routine.steps, 0);
+    let columns: Vec<Vec<Numbered>> = routine
+        .columns
+        .iter()
+        .map(|it| order.list(&it.steps, it.first))
+        .collect();
+    let mut numbers = Numbers {
+        new: vec![0; order.uses.len()],
+        names: Vec::new(),
+    };
+    let steps = numbers.steps(steps, &order, &routine.names);
+    let columns = routine.columns.iter().zip(columns).map(|(columns, steps)| {
+        let first = numbers.names.len();
+        Columns {
+            first,
+            steps: numbers.steps(steps, &order, &routine.names),
+            results: numbers.operands(&columns.results),
+            variables: columns.variables.clone(),
+        }
+    });
+    let columns = columns.collect();
+    Routine {
+        steps,
+        columns,
+        results: numbers.operands(&routine.results),
+        names: numbers.names,
+    }
+}
+
+/// A step with the old number of its first value; new ones are numbered behind all old.
+type Numbered = (usize, Step);
+
+/// A sum or a product of two.
+#[derive(Clone, Copy)]
+struct Parts {
+    is_sum: bool,
+    parts: [Operand; 2],
+}
+
+struct Order {
+    uses: Vec<usize>,
+    /// When each value is ready.
+    ready: Vec<u32>,
+    /// The sums and products of the list at hand.
+    parts: Vec<Option<Parts>>,
+    /// Partial results in whose place others came.
+    gone: Vec<bool>,
+}
+
+impl Order {
+    fn count(&mut self, routine: &Routine) {
+        let steps = routine.steps.iter().flat_map(Step::operands);
+        for operand in steps.chain(routine.read_behind()) {
+            if let Source::Value(value) = operand.source {
+                self.uses[value] += 1;
+            }
+        }
+    }
+
+    /// The steps of a list whose values begin with number `value`.
+    fn list(&mut self, steps: &[Step], mut value: usize) -> Vec<Numbered> {
+        self.parts.fill(None);
+        let mut list = Vec::with_capacity(steps.len());
+        for step in steps {
+            match *step {
+                Step::Add(a, b) => self.result(&mut list, value, true, [a, b]),
+                Step::Multiply(a, b) => self.result(&mut list, value, false, [a, b]),
+                _ => {
+                    let ready = self.latest(&step.operands()) + latency::of(step);
+                    self.ready[value..value + step.results()].fill(ready);
+                    list.push((value, step.clone()));
+                }
+            }
+            value += step.results();
+        }
+        list
+    }
+
+    /// Appends a sum or product, as it is or ready earlier.
+    fn result(
+        &mut self,
+        list: &mut Vec<Numbered>,
+        value: usize,
+        is_sum: bool,
+        parts: [Operand; 2],
+    ) {
+        let ready = self.ready_of(is_sum, parts);
+        let mut terms = Vec::new();
+        let mut partial = Vec::new();
+        for part in parts {
+            self.flatten(part, is_sum, &mut terms, &mut partial);
+        }
+        self.parts[value] = Some(Parts { is_sum, parts });
+        self.ready[value] = ready;
+        if partial.is_empty() {
+            list.push((value, step(is_sum, parts)));
+            return;
+        }
+        terms.sort_by_key(|term| self.ready_as(*term, is_sum));
+        if is_sum && let Some(positive) = terms.iter().position(|term| !term.negative) {
+            // A sum of two begins with a term that carries no sign.
+            let positive = terms.remove(positive);
+            terms.insert(0, positive);
+        }
+        let before = self.uses.len();
+        let chain = self.chain(value, is_sum, &terms);
+        if self.ready[value] < ready {
+            partial.iter().for_each(|it| self.gone[*it] = true);
+            list.extend(chain);
+            return;
+        }
+        self.forget(before);
+        self.parts[value] = Some(Parts { is_sum, parts });
+        self.ready[value] = ready;
+        list.push((value, step(is_sum, parts)));
+    }
+
+    /// The terms one after the other, the last of which gives `value`.
+    fn chain(&mut self, value: usize, is_sum: bool, terms: &[Operand]) -> Vec<Numbered> {
+        let mut chain = Vec::new();
+        let mut so_far = terms[0];
+        for (place, term) in terms.iter().enumerate().skip(1) {
+            let parts = [so_far, *term];
+            let number = if place + 1 == terms.len() {
+                value
+            } else {
+                self.fresh()
+            };
+            self.parts[number] = Some(Parts { is_sum, parts });
+            self.ready[number] = self.ready_of(is_sum, parts);
+            chain.push((number, step(is_sum, parts)));
+            so_far = Operand::plain(Source::Value(number));
+        }
+        chain
+    }
+
+    /// A partial result, which is used once.
+    fn fresh(&mut self) -> usize {
+        self.uses.push(1);
+        self.ready.push(0);
+        self.parts.push(None);
+        self.gone.push(false);
+        self.uses.len() - 1
+    }
+
+    /// Forgets partial results from this number on.
+    fn forget(&mut self, from: usize) {
+        self.uses.truncate(from);
+        self.ready.truncate(from);
+        self.parts.truncate(from);
+        self.gone.truncate(from);
+    }
+
+    /// When a sum or product is ready.
+    fn ready_of(&self, is_sum: bool, [a, b]: [Operand; 2]) -> u32 {
+        let whole = |operand: Operand| self.latest(&[operand]);
+        let first = self.ready_as(a, is_sum).max(whole(b));
+        let second = whole(a).max(self.ready_as(b, is_sum));
+        first.min(second) + latency::SUM
+    }
+
+    /// When a term can go into a sum: a product that nothing else needs takes no time of its own there.
+    fn ready_as(&self, term: Operand, of_sum: bool) -> u32 {
+        match self.inner(term, false) {
+            Some(product) if of_sum => self.latest(&product.parts),
+            _ => self.latest(&[term]),
+        }
+    }
+
+    /// The parts of a sum, or of a product, that nothing else needs.
+    fn inner(&self, operand: Operand, is_sum: bool) -> Option<Parts> {
+        match operand.source {
+            Source::Value(value) if self.uses[value] == 1 => {
+                self.parts[value].filter(|parts| parts.is_sum == is_sum)
+            }
+            _ => None,
+        }
+    }
+
+    /// Takes terms apart as long as nothing else needs them.
+    fn flatten(
+        &self,
+        term: Operand,
+        is_sum: bool,
+        terms: &mut Vec<Operand>,
+        partial: &mut Vec<usize>,
+    ) {
+        match (self.inner(term, is_sum), term.source) {
+            (Some(inner), Source::Value(value)) => {
+                partial.push(value);
+                for (place, part) in inner.parts.into_iter().enumerate() {
+                    // The sign of a product is that of one of its factors.
+                    let flip = term.negative && (is_sum || place == 0);
+                    let negative = part.negative ^ flip;
+                    self.flatten(Operand { negative, ..part }, is_sum, terms, partial);
+                }
+            }
+            _ => terms.push(term),
+        }
+    }
+
+    fn latest(&self, operands: &[Operand]) -> u32 {
+        let ready = |operand: &Operand| match operand.source {
+            Source::Value(value) => self.ready[value],
+            _ => 0,
+        };
+        operands.iter().map(ready).max().unwrap_or(0)
+    }
+}
+
+fn step(is_sum: bool, [a, b]: [Operand; 2]) -> Step {
+    if is_sum {
+        Step::Add(a, b)
+    } else {
+        Step::Multiply(a, b)
+    }
+}
+
+/// The new numbers of values.
+struct Numbers {
+    new: Vec<usize>,
+    names: Vec<String>,
+}
+
+impl Numbers {
+    fn steps(&mut self, steps: Vec<Numbered>, order: &Order, names: &[String]) -> Vec<Step> {
+        let kept = steps
+            .into_iter()
+            .filter(|(value, step)| step.results() == 0 || !order.gone[*value]);
+        kept.map(|(value, step)| self.step(value, step, names))
+            .collect()
+    }
+
+    fn step(&mut self, value: usize, step: Step, names: &[String]) -> Step {
+        for value in value..value + step.results() {
+            self.new[value] = self.names.len();
+            self.names
+                .push(names.get(value).cloned().unwrap_or_default());
+        }
+        self.renumbered(&step)
+    }
+
+    fn renumbered(&self, step: &Step) -> Step {
+        let new = |operand: &Operand| self.operand(*operand);
+        match step {
+            Step::Add(a, b) => Step::Add(new(a), new(b)),
+            Step::Multiply(a, b) => Step::Multiply(new(a), new(b)),
+            Step::MultiplyAdd(a, b, c) => Step::MultiplyAdd(new(a), new(b), new(c)),
+            Step::Divide(a, b) => Step::Divide(new(a), new(b)),
+            Step::SineCosine(a) => Step::SineCosine(new(a)),
+            Step::Sine(a) => Step::Sine(new(a)),
+            Step::Cosine(a) => Step::Cosine(new(a)),
+            Step::Call(function, operands) => Step::Call(*function, self.operands(operands)),
+            Step::Solve(solve) => Step::Solve(Solve {
+                steps: solve.steps.iter().map(|it| self.renumbered(it)).collect(),
+                results: self.operands(&solve.results),
+                ..solve.clone()
+            }),
+        }
+    }
+
+    fn operands(&self, operands: &[Operand]) -> Vec<Operand> {
+        operands.iter().map(|it| self.operand(*it)).collect()
+    }
+
+    fn operand(&self, operand: Operand) -> Operand {
+        match operand.source {
+            Source::Value(value) => Operand {
+                source: Source::Value(self.new[value]),
+                ..operand
+            },
+            _ => operand,
+        }
+    }
+}

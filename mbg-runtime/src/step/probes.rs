@@ -31,6 +31,9 @@ const PARTS: f64 = 32.0;
 /// A difference of slopes over a whole step counts from so many times the tolerance on.
 const LARGE: f64 = 30.0;
 
+/// A difference of so many roundings is none.
+const ROUNDING: f64 = 64.0;
+
 impl Probes {
     /// For a run from this time on; its first step is looked into most closely.
     pub(super) const fn new(start: f64) -> Self {
@@ -120,7 +123,16 @@ where
         let t = span.at(fraction);
         let (x, change) = polynomial.with_slope(fraction);
         let slope = self.slope(t, &x);
-        let defect = slope.zip_map(&change, |slope, change| span.length * slope - change);
+        let defect = slope.zip_zip_map(&change, &x, |slope, change, x| {
+            let expected = span.length * slope;
+            let rounding = ROUNDING * T::EPSILON * (x.magnitude() + expected.magnitude());
+            let defect = expected - change;
+            if defect.magnitude() <= rounding {
+                T::from_f64(0.0)
+            } else {
+                defect
+            }
+        });
         // Written so that NaN counts as much.
         let small = |defect: &SVector<T, N>| measure.norm(defect) <= LARGE;
         if small(&defect) || !A::IMPLICIT {

@@ -138,8 +138,8 @@ pub(crate) fn tumbling() -> Vec<Line> {
         statistics = Some(taken);
         Ok(Found::new(apart(&last.as_slice()[..3], &momentum), taken))
     });
-    // Rounding alone: of either sign, which adds up like the steps of a drunkard, and of one.
-    let rounding = Expected::Within(1e-14 * PERIODS.sqrt() + 1e-16 * PERIODS);
+    // Rounding alone: of either sign, which adds up like the steps of a drunkard, or in long runs of one.
+    let rounding = Expected::Within(larger(1e-14 * PERIODS.sqrt(), 1e-16 * PERIODS));
     let ways = kept(&last).into_iter().zip(kept(&start));
     let ways = ["energy", "momentum", "length of the quaternion"]
         .into_iter()

@@ -5,13 +5,13 @@ use std::f64::consts::FRAC_PI_2;
 use mbg_runtime::{Dual, Meta, Operations, Power, Real, System, Variable};
 use nalgebra::{SMatrix, SVector};
 
-/// A right-hand side; its Jacobians follow on dual numbers.
+/// A right-hand side, which does not read the time; its Jacobians follow on dual numbers.
 pub(crate) trait Law<const N: usize, const M: usize> {
     /// Names of the states.
     const STATES: &'static [Variable];
 
     /// The derivative.
-    fn slope<T: Real>(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> SVector<T, N>;
+    fn slope<T: Real>(&self, x: &SVector<T, N>, u: &SVector<T, M>) -> SVector<T, N>;
 }
 
 /// A law as a system.
@@ -44,6 +44,7 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
         },
         diagram: "",
     };
+    const AUTONOMOUS: bool = true;
     type Memory = ();
     type Conditioning = [T; 0];
 
@@ -52,8 +53,8 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
     }
 
     #[inline]
-    fn derivative(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>, _: &mut ()) -> SVector<T, N> {
-        self.0.slope(t, x, u)
+    fn derivative(&self, _: T, x: &SVector<T, N>, u: &SVector<T, M>, _: &mut ()) -> SVector<T, N> {
+        self.0.slope(x, u)
     }
 
     fn output(&self, _: T, _: &SVector<T, N>, _: &SVector<T, M>, _: &mut ()) -> SVector<T, 0> {
@@ -62,48 +63,47 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
 
     fn jacobian_state(
         &self,
-        t: T,
+        _: T,
         x: &SVector<T, N>,
         u: &SVector<T, M>,
         _: &mut (),
     ) -> SMatrix<T, N, N> {
-        let (t, u) = (Dual::constant(t), u.map(Dual::constant));
+        let u = u.map(Dual::constant);
         let mut jacobian = SMatrix::<T, N, N>::from_element(T::from_f64(0.0));
         for column in 0..N {
             let mut x = x.map(Dual::constant);
             x[column].slope = T::from_f64(1.0);
-            jacobian.set_column(column, &self.0.slope(t, &x, &u).map(|it| it.slope));
+            jacobian.set_column(column, &self.0.slope(&x, &u).map(|it| it.slope));
         }
         jacobian
     }
 
     fn jacobian_input(
         &self,
-        t: T,
+        _: T,
         x: &SVector<T, N>,
         u: &SVector<T, M>,
         _: &mut (),
     ) -> SMatrix<T, N, M> {
-        let (t, x) = (Dual::constant(t), x.map(Dual::constant));
+        let x = x.map(Dual::constant);
         let mut jacobian = SMatrix::<T, N, M>::from_element(T::from_f64(0.0));
         for column in 0..M {
             let mut u = u.map(Dual::constant);
             u[column].slope = T::from_f64(1.0);
-            jacobian.set_column(column, &self.0.slope(t, &x, &u).map(|it| it.slope));
+            jacobian.set_column(column, &self.0.slope(&x, &u).map(|it| it.slope));
         }
         jacobian
     }
 
     fn derivative_time(
         &self,
-        t: T,
-        x: &SVector<T, N>,
-        u: &SVector<T, M>,
+        _: T,
+        _: &SVector<T, N>,
+        _: &SVector<T, M>,
         _: &mut (),
         _: T,
     ) -> SVector<T, N> {
-        let (x, u) = (x.map(Dual::constant), u.map(Dual::constant));
-        self.0.slope(Dual::variable(t), &x, &u).map(|it| it.slope)
+        SVector::from_element(T::from_f64(0.0))
     }
 
     fn energy(&self, _: T, _: &SVector<T, N>) -> T {
@@ -134,7 +134,7 @@ pub(crate) struct Oscillator;
 impl Law<2, 1> for Oscillator {
     const STATES: &'static [Variable] = &[state("way"), state("velocity")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, u: &SVector<T, 1>) -> SVector<T, 2> {
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, u: &SVector<T, 1>) -> SVector<T, 2> {
         SVector::from([x[1], u[0] - x[0]])
     }
 }
@@ -146,7 +146,7 @@ pub(crate) struct Pendulum;
 impl Law<2, 0> for Pendulum {
     const STATES: &'static [Variable] = &[state("angle"), state("rate")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
         SVector::from([x[1], -x[0].sin()])
     }
 }
@@ -158,7 +158,7 @@ pub(crate) struct Hunters;
 impl Law<2, 0> for Hunters {
     const STATES: &'static [Variable] = &[state("hunted"), state("hunters")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
         let one = T::from_f64(1.0);
         SVector::from([x[0] * (one - x[1]), x[1] * (x[0] - one)])
     }
@@ -188,7 +188,7 @@ impl Law<7, 0> for RigidBody {
         state("q.z"),
     ];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 7>, _: &SVector<T, 0>) -> SVector<T, 7> {
+    fn slope<T: Real>(&self, x: &SVector<T, 7>, _: &SVector<T, 0>) -> SVector<T, 7> {
         let half = T::from_f64(0.5);
         let [h1, h2, h3, w, i, j, k] = x.data.0[0];
         let [a, b, c] = [h1, half * h2, T::from_f64(1.0 / 3.0) * h3];
@@ -211,7 +211,7 @@ pub(crate) struct Follower(pub f64);
 impl Law<3, 0> for Follower {
     const STATES: &'static [Variable] = &[state("angle"), state("rate"), state("torque")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 3>, _: &SVector<T, 0>) -> SVector<T, 3> {
+    fn slope<T: Real>(&self, x: &SVector<T, 3>, _: &SVector<T, 0>) -> SVector<T, 3> {
         let [angle, rate, torque] = x.data.0[0];
         let behind = torque + angle.sin();
         SVector::from([rate, torque, -(behind * T::from_f64(1.0 / self.0))])
@@ -225,7 +225,7 @@ pub(crate) struct Kaps(pub f64);
 impl Law<2, 0> for Kaps {
     const STATES: &'static [Variable] = &[state("x"), state("y")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
         let stiffness = T::from_f64(1.0 / self.0);
         let [x, y] = x.data.0[0];
         let behind = x - y * y;
@@ -249,7 +249,7 @@ impl VanDerPol {
 impl Law<2, 0> for VanDerPol {
     const STATES: &'static [Variable] = &[state("x"), state("y")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
         let one = T::from_f64(1.0);
         let slope = ((one - x[0] * x[0]) * x[1] - x[0]) * T::from_f64(1e6);
         SVector::from([x[1], slope])
@@ -263,7 +263,7 @@ pub(crate) struct Robertson;
 impl Law<3, 0> for Robertson {
     const STATES: &'static [Variable] = &[state("a"), state("b"), state("c")];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 3>, _: &SVector<T, 0>) -> SVector<T, 3> {
+    fn slope<T: Real>(&self, x: &SVector<T, 3>, _: &SVector<T, 0>) -> SVector<T, 3> {
         let first = T::from_f64(0.04) * x[0];
         let second = T::from_f64(1e4) * x[1] * x[2];
         let third = T::from_f64(3e7) * x[1] * x[1];
@@ -321,7 +321,7 @@ impl Law<6, 0> for StiffPin {
         state("rate"),
     ];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 6>, _: &SVector<T, 0>) -> SVector<T, 6> {
+    fn slope<T: Real>(&self, x: &SVector<T, 6>, _: &SVector<T, 0>) -> SVector<T, 6> {
         let [px, py, angle, vx, vy, rate] = x.data.0[0];
         let [k, c] = [self.stiffness, self.damping].map(T::from_f64);
         let (fx, fy) = (-(k * px) - c * vx, -(k * py) - c * vy);

@@ -35,7 +35,7 @@ impl Law<4, 0> for DoublePendulum {
         },
     ];
 
-    fn slope<T: Real>(&self, _: T, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
+    fn slope<T: Real>(&self, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
         let number = T::from_f64;
         let [first, second, u, v] = x.data.0[0];
         let (sin, cos) = (first - second).sin_cos();

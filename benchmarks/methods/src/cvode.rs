@@ -156,7 +156,7 @@ where
         )
     };
     let u = user.problem.input.value(t, user.since);
-    found.copy_from_slice(user.law.slope(&x, &u).as_slice());
+    found.copy_from_slice(user.law.slope(t, &x, &u).as_slice());
     0
 }
 

@@ -110,7 +110,7 @@ where
     fn system(&self, t: f64, y: &Column<N>, dy: &mut Column<N>) {
         let u = self.input.value(t, self.since);
         let x = Row::from(<[f64; N]>::from(*y));
-        let slope = self.law.slope(&x, &u);
+        let slope = self.law.slope(t, &x, &u);
         *dy = Column::from(<[f64; N]>::from(slope));
     }
 }
@@ -164,7 +164,7 @@ where
         self.add(name, |problem, tolerances, [t, end], x| {
             let slope = |time: f64, y: &Vector<f64, N>| {
                 let u = problem.input.value(time, t);
-                spread(&law.slope(&gathered(y), &u))
+                spread(&law.slope(time, &gathered(y), &u))
             };
             A::integrate(t, end, &spread(&x), slope, &settings(tolerances))
                 .map(taken)

@@ -76,15 +76,24 @@ impl System {
         rows: &BTreeSet<usize>,
         admitted: &dyn Fn(Rate, usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
-        rows.intersection(&self.open_rows)
-            .flat_map(|row| {
-                let entries = self.rows[*row].iter();
-                entries.map(move |(column, value)| (pool.rate(*value), *row, *column))
-            })
-            .filter(|(rate, row, column)| admitted(*rate, *row, *column))
-            .map(|(rate, row, column)| (rate, self.fill(row, column), row, column))
-            .min()
-            .map(|(_, _, row, column)| (row, column))
+        let mut best = None;
+        for row in rows.intersection(&self.open_rows) {
+            for (column, value) in &self.rows[*row] {
+                let rate = pool.rate(*value);
+                if !admitted(rate, *row, *column) {
+                    continue;
+                }
+                let found = (rate, self.fill(*row, *column), *row, *column);
+                // None is better, and what comes later stands behind it.
+                if found.0 == Rate::Constant && found.1 == 0 {
+                    return Some((*row, *column));
+                }
+                if best.is_none_or(|best| found < best) {
+                    best = Some(found);
+                }
+            }
+        }
+        best.map(|(_, _, row, column)| (row, column))
     }
 
     /// How many entries a pivot there fills in at most.

@@ -392,9 +392,10 @@ impl<'a> Writer<'a> {
 
     fn call(&self, function: &str, arguments: &[Operand]) -> TokenStream {
         let function = format_ident!("{}", function);
-        let arguments = arguments.iter().map(|argument| self.operand(*argument));
+        let mut arguments = arguments.iter().map(|argument| self.operand(*argument));
         if self.columns.is_some() {
-            return quote!(::mbg_runtime::Real::#function(#(#arguments),*));
+            let first = arguments.next();
+            return quote!(#first.#function(#(#arguments),*));
         }
         quote!(T::#function(#(#arguments),*))
     }
@@ -435,10 +436,13 @@ impl<'a> Writer<'a> {
                     quote!(parameters.#name)
                 }
             }
-            Source::Symbol(Symbol::State(index)) => element(&format_ident!("x"), index),
-            Source::Symbol(Symbol::Input(index)) => element(&format_ident!("u"), index),
-            Source::Symbol(Symbol::Slope(index)) => element(&format_ident!("slopes"), index),
-            Source::Solved(place) => element(&unknowns(place.number), place.row),
+            Source::Symbol(Symbol::State(index)) => element(quote!(x), index),
+            Source::Symbol(Symbol::Input(index)) => element(quote!(u), index),
+            Source::Symbol(Symbol::Slope(index)) => element(quote!(slopes), index),
+            Source::Solved(place) => {
+                let unknowns = unknowns(place.number);
+                element(quote!(#unknowns), place.row)
+            }
             Source::Symbol(Symbol::Time | Symbol::Signal(_) | Symbol::Unknown(_)) => quote!(t),
             Source::Folded(index) => {
                 let index = Literal::usize_suffixed(index);
@@ -449,7 +453,7 @@ impl<'a> Writer<'a> {
                 }
             }
             Source::Value(index) => match (&self.columns, self.kept.get(&index)) {
-                (Some(_), Some(place)) => element(&format_ident!("kept"), *place),
+                (Some(_), Some(place)) => element(quote!(kept), *place),
                 _ => {
                     let name = &self.names[index];
                     quote!(#name)
@@ -489,7 +493,7 @@ fn factors(number: usize) -> Ident {
     format_ident!("s{}", number, span = Span::mixed_site())
 }
 
-fn element(array: &Ident, index: usize) -> TokenStream {
+fn element(array: TokenStream, index: usize) -> TokenStream {
     let index = Literal::usize_suffixed(index);
     quote!(#array[#index])
 }

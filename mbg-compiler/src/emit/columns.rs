@@ -32,6 +32,7 @@ fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStre
     quote! {
         #(#constant)*
         ::mbg_runtime::__private::columns(jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| {
+            use ::mbg_runtime::Real as _;
             let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
             #lines
             [#(#slopes),*]

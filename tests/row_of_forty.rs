@@ -8,6 +8,7 @@
 
 #[path = "references/mod.rs"]
 mod references;
+#[allow(dead_code, reason = "the adaptive pair is for smaller mechanisms")]
 #[path = "models/mechanisms/task.rs"]
 mod task;
 

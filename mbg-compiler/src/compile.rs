@@ -157,7 +157,8 @@ fn finish(
     let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
     let by_states = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
-    let by_inputs = jacobians::request(&mut pool, &[], rates, &by_input, &[]);
+    let inputs = [(0..by_input.len()).collect()];
+    let by_inputs = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let pattern = if by_states.columns.is_empty() {
         sparsity::of_entries(&by_states.results[rates.len()..], by_state.len())
     } else {

@@ -16,9 +16,6 @@ use crate::symbolic::{Differentiator, Expression, Pool, Symbol, jacobian};
 /// Largest product of variables and operations of the derivative up to which a Jacobian is written out.
 const WRITTEN_OUT: usize = 8_000;
 
-/// Columns at once by which ways of grouping them are compared.
-const LANES: usize = 4;
-
 /// The derivative of `rates` by `variables`; written out, its entries follow by rows what `before` it is returned.
 pub fn request(
     pool: &mut Pool,
@@ -31,24 +28,12 @@ pub fn request(
         let entries = jacobian(pool, rates, variables).entries;
         return Request::from([before, &entries].concat());
     }
-    let all: Vec<usize> = (0..variables.len()).collect();
-    let whole = vec![slopes(pool, rates, variables, &all)];
-    let grouped = groups.iter();
-    let grouped: Vec<Slopes> = grouped
-        .map(|group| slopes(pool, rates, variables, group))
-        .collect();
-    let cost = |pool: &Pool, columns: &[Slopes]| -> usize {
-        let cost = |it: &Slopes| it.variables.len().div_ceil(LANES) * operations(pool, &it.rates);
-        columns.iter().map(cost).sum()
-    };
-    let columns = if grouped.is_empty() || cost(pool, &whole) <= cost(pool, &grouped) {
-        whole
-    } else {
-        grouped
-    };
+    let columns = groups.iter();
     Request {
         results: before.to_vec(),
-        columns,
+        columns: columns
+            .map(|group| slopes(pool, rates, variables, group))
+            .collect(),
     }
 }
 
@@ -73,8 +58,8 @@ fn slopes(
     }
 }
 
-/// The places of displacements and those of all other states, if there are both. What displacements change is long, since
-/// everything turns with them; by momenta and rates it is short.
+/// The places of displacements and those of all other states. What displacements change is long, since everything turns
+/// with them; by momenta and rates it is short.
 #[must_use]
 pub fn groups(model: &Elaborated, states: &[usize]) -> Vec<Vec<usize>> {
     let displacement = |place: &usize| match model.states[states[*place]].rate {
@@ -84,8 +69,6 @@ pub fn groups(model: &Elaborated, states: &[usize]) -> Vec<Vec<usize>> {
     };
     let (displacements, others): (Vec<usize>, Vec<usize>) =
         (0..states.len()).partition(displacement);
-    if displacements.is_empty() || others.is_empty() {
-        return Vec::new();
-    }
-    vec![displacements, others]
+    let groups = [displacements, others].into_iter();
+    groups.filter(|group| !group.is_empty()).collect()
 }

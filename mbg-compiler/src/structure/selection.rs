@@ -6,6 +6,7 @@
 //! other, they are chosen once more: flows of `coordinate` junctions come first, and what is fixed for almost every
 //! state, but not at the nominal one, comes last.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::mesh;
@@ -432,12 +433,13 @@ impl Echelon {
                 break;
             };
             for (unknown, entry) in pivot {
-                let known = row.get(unknown).copied().unwrap_or(0);
-                let reduced = field::subtract(known, field::multiply(value, *entry));
-                if reduced == 0 {
-                    row.remove(unknown);
-                } else {
-                    row.insert(*unknown, reduced);
+                let product = field::multiply(value, *entry);
+                match row.entry(*unknown) {
+                    Entry::Vacant(place) => drop(place.insert(field::subtract(0, product))),
+                    Entry::Occupied(place) if *place.get() == product => drop(place.remove()),
+                    Entry::Occupied(mut place) => {
+                        *place.get_mut() = field::subtract(*place.get(), product);
+                    }
                 }
             }
             causes.extend(origin.iter().copied());
@@ -450,7 +452,8 @@ impl Echelon {
 #[derive(Default)]
 struct NominalEchelon {
     rows: Vec<(usize, BTreeMap<usize, f64>)>,
-    leads: BTreeMap<usize, usize>,
+    /// The row that each unknown leads.
+    leads: Vec<Option<usize>>,
 }
 
 impl NominalEchelon {
@@ -465,7 +468,7 @@ impl NominalEchelon {
         let largest =
             |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |a: f64, b| a.max(b.abs()));
         let size = largest(&row);
-        let position = |unknown: &usize| self.leads.get(unknown).copied();
+        let position = |unknown: &usize| self.leads.get(*unknown).copied().flatten();
         let mut pending: BTreeSet<usize> = row.keys().filter_map(position).collect();
         while let Some(next) = pending.pop_first() {
             let (lead, pivot) = &self.rows[next];
@@ -487,7 +490,9 @@ impl NominalEchelon {
             .iter()
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()).then(b.0.cmp(a.0)));
         if let Some((&lead, _)) = lead {
-            self.leads.insert(lead, self.rows.len());
+            let known = self.leads.len().max(lead + 1);
+            self.leads.resize(known, None);
+            self.leads[lead] = Some(self.rows.len());
             self.rows.push((lead, row));
         }
     }

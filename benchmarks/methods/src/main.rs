@@ -153,10 +153,10 @@ where
 /// A row: the method, its steps and evaluations, its time, and the ratio of our time to it.
 fn line(title: &str, best: &Option<Best>, mine: Option<&Best>) -> String {
     let (Some(best), Some(mine)) = (best, mine) else {
-        return format!("{title:<42}none comes to {ERROR:e}");
+        return format!("{title:<44}none comes to {ERROR:e}");
     };
     format!(
-        "{title:<42}{:<30}{:>7}{:>8}{:>10.1}{:>8.3}",
+        "{title:<44}{:<30}{:>7}{:>8}{:>10.1}{:>8.3}",
         best.method,
         best.nearest.steps,
         best.nearest.evaluations,
@@ -217,7 +217,7 @@ fn ring_modulator() -> Result<String> {
         times[2]
     });
     Ok(format!(
-        "{:<42}{:<30}{:>7}{:>8}{:>10.1}{:>8.3}",
+        "{:<44}{:<30}{:>7}{:>8}{:>10.1}{:>8.3}",
         "ring modulator, 1 ms, against our dense LU",
         "Rodas5P",
         statistics.steps + statistics.rejected,
@@ -308,7 +308,7 @@ fn main() -> Result<()> {
         "to an error of {ERROR:e}: the best of ours, and what our time is of that of the best crate and of CVODE\n"
     );
     println!(
-        "{:<42}{:<30}{:>7}{:>8}{:>10}{:>8}",
+        "{:<44}{:<30}{:>7}{:>8}{:>10}{:>8}",
         "problem", "method", "steps", "evals", "time / µs", "ratio"
     );
     for line in run.lines {

@@ -4,8 +4,8 @@ use crate::Real;
 
 /// Numbers that belong to several columns of a matrix of `T`.
 ///
-/// [`Real::Columns`] says how many columns a scalar takes at once. With the feature `lanes` `f64` takes as many as one
-/// register of the target holds, and `f32` eight; otherwise it is one.
+/// [`Real::Columns`] says how many columns a scalar takes at once. With the feature `lanes` `f64` takes eight where the
+/// target has AVX-512 and four elsewhere, and `f32` eight; otherwise it is one.
 pub trait Columns<T: Real>: Real {
     /// How many columns.
     const COUNT: usize;

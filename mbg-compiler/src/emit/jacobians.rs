@@ -55,12 +55,13 @@ pub(super) fn methods(
 /// Writes the results of a routine: the derivative, if it is one of both, and a Jacobian with so many columns.
 fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
     let routine = &compiled.program.routines[routine];
-    let entries = columns * compiled.states.len();
-    let rates = match routine.columns.is_empty() {
-        true => routine.results.len() - entries,
-        false => routine.results.len(),
+    let is_written_out = routine.columns.is_empty();
+    let entries = if is_written_out {
+        columns * compiled.states.len()
+    } else {
+        0
     };
-    let rates = (0..rates).map(Literal::usize_suffixed);
+    let rates = (0..routine.results.len() - entries).map(Literal::usize_suffixed);
     let rates = rates.map(|row| Some(quote!(derivative[#row])));
     let entries = routine.results[rates.len()..].iter().enumerate();
     let entries = entries.map(|(entry, result)| {
@@ -69,6 +70,6 @@ fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
     });
     let places: Vec<_> = rates.chain(entries).collect();
     let lines = written_lines(compiled, routine, &places);
-    let by_columns = (!routine.columns.is_empty()).then(|| columns::write(compiled, routine));
+    let by_columns = columns::write(compiled, routine);
     quote!(#lines #by_columns)
 }

@@ -59,14 +59,10 @@ pub(super) fn written_lines(
         }
     }
     let columns = routine.columns.iter().flat_map(|it| &it.steps);
-    let behind: Vec<Made> = columns.filter_map(Made::needed_by).collect();
-    let solved = Made::read(&routine.results).into_iter();
-    let solved = solved.filter(|made| matches!(made, Made::Solved(_)));
-    let lines = writer.lines(
-        &routine.steps,
-        0,
-        &behind.into_iter().chain(solved).collect::<Vec<_>>(),
-    );
+    let mut behind: Vec<Made> = columns.filter_map(Made::needed_by).collect();
+    let results = Made::read(&routine.results).into_iter();
+    behind.extend(results.filter(|made| matches!(made, Made::Solved(_))));
+    let lines = writer.lines(&routine.steps, 0, &behind);
     let kept = Literal::usize_suffixed(writer.kept.len());
     let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));
     quote!(#kept #lines #known)

@@ -168,18 +168,12 @@ impl Rewrite<'_> {
                 (None, Some([x, y])) => Step::MultiplyAdd(x, y, place(a)),
                 (None, None) => Step::Add(place(a), place(b)),
             },
-            Step::Multiply(a, b) => Step::Multiply(place(a), place(b)),
-            Step::MultiplyAdd(a, b, c) => Step::MultiplyAdd(place(a), place(b), place(c)),
-            Step::Divide(a, b) => Step::Divide(place(a), place(b)),
-            Step::SineCosine(a) => Step::SineCosine(place(a)),
-            Step::Sine(a) => Step::Sine(place(a)),
-            Step::Cosine(a) => Step::Cosine(place(a)),
-            Step::Call(function, operands) => Step::Call(*function, self.operands(operands)),
             Step::Solve(solve) => Step::Solve(Solve {
                 steps: self.steps(&solve.steps, value),
                 results: self.operands(&solve.results),
                 ..solve.clone()
             }),
+            _ => step.with(&|operand| self.operand(operand)),
         }
     }
 

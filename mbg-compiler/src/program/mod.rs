@@ -119,6 +119,27 @@ impl Step {
         }
     }
 
+    /// The same step with other operands; that of a solve holds its steps as well.
+    #[must_use]
+    fn with(&self, other: &dyn Fn(Operand) -> Operand) -> Self {
+        let all = |operands: &[Operand]| operands.iter().map(|it| other(*it)).collect();
+        match self {
+            Self::Add(a, b) => Self::Add(other(*a), other(*b)),
+            Self::Multiply(a, b) => Self::Multiply(other(*a), other(*b)),
+            Self::MultiplyAdd(a, b, c) => Self::MultiplyAdd(other(*a), other(*b), other(*c)),
+            Self::Divide(a, b) => Self::Divide(other(*a), other(*b)),
+            Self::SineCosine(a) => Self::SineCosine(other(*a)),
+            Self::Sine(a) => Self::Sine(other(*a)),
+            Self::Cosine(a) => Self::Cosine(other(*a)),
+            Self::Call(function, operands) => Self::Call(*function, all(operands)),
+            Self::Solve(solve) => Self::Solve(Solve {
+                steps: solve.steps.iter().map(|it| it.with(other)).collect(),
+                results: all(&solve.results),
+                ..solve.clone()
+            }),
+        }
+    }
+
     /// How many operations it counts: sine and cosine of one angle two, a product and a sum two, an iteration those of
     /// one evaluation, anything else one.
     #[must_use]

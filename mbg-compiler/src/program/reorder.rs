@@ -4,7 +4,7 @@
 //! only once if it is added last. Terms are added in the order in which they are ready, where nothing else needs a partial
 //! sum, and factors are multiplied likewise. The number of operations stays.
 
-use super::{Columns, Operand, Routine, Solve, Source, Step, latency};
+use super::{Columns, Operand, Routine, Source, Step, latency};
 
 /// The routine with sums and products reordered.
 pub(super) fn reorder(routine: &Routine) -> Routine {
@@ -102,17 +102,27 @@ impl Order {
         is_sum: bool,
         parts: [Operand; 2],
     ) {
-        let ready = self.ready_of(is_sum, parts);
-        let mut terms = Vec::new();
-        let mut partial = Vec::new();
+        if let Some(chain) = self.improved(value, is_sum, parts) {
+            list.extend(chain);
+            return;
+        }
+        self.enter(value, is_sum, parts);
+        list.push((value, step(is_sum, parts)));
+    }
+
+    /// The same sum or product with its terms in the order in which they are ready, if it is ready earlier then.
+    fn improved(
+        &mut self,
+        value: usize,
+        is_sum: bool,
+        parts: [Operand; 2],
+    ) -> Option<Vec<Numbered>> {
+        let (mut terms, mut partial) = (Vec::new(), Vec::new());
         for part in parts {
             self.flatten(part, is_sum, &mut terms, &mut partial);
         }
-        self.parts[value] = Some(Parts { is_sum, parts });
-        self.ready[value] = ready;
         if partial.is_empty() {
-            list.push((value, step(is_sum, parts)));
-            return;
+            return None;
         }
         terms.sort_by_key(|term| self.ready_as(*term, is_sum));
         if is_sum && let Some(positive) = terms.iter().position(|term| !term.negative) {
@@ -120,17 +130,19 @@ impl Order {
             let positive = terms.remove(positive);
             terms.insert(0, positive);
         }
-        let before = self.uses.len();
+        let (ready, before) = (self.ready_of(is_sum, parts), self.uses.len());
         let chain = self.chain(value, is_sum, &terms);
         if self.ready[value] < ready {
             partial.iter().for_each(|it| self.gone[*it] = true);
-            list.extend(chain);
-            return;
+            return Some(chain);
         }
         self.forget(before);
+        None
+    }
+
+    fn enter(&mut self, value: usize, is_sum: bool, parts: [Operand; 2]) {
         self.parts[value] = Some(Parts { is_sum, parts });
-        self.ready[value] = ready;
-        list.push((value, step(is_sum, parts)));
+        self.ready[value] = self.ready_of(is_sum, parts);
     }
 
     /// The terms one after the other, the last of which gives `value`.
@@ -144,8 +156,7 @@ impl Order {
             } else {
                 self.fresh()
             };
-            self.parts[number] = Some(Parts { is_sum, parts });
-            self.ready[number] = self.ready_of(is_sum, parts);
+            self.enter(number, is_sum, parts);
             chain.push((number, step(is_sum, parts)));
             so_far = Operand::plain(Source::Value(number));
         }
@@ -255,26 +266,7 @@ impl Numbers {
             self.names
                 .push(names.get(value).cloned().unwrap_or_default());
         }
-        self.renumbered(&step)
-    }
-
-    fn renumbered(&self, step: &Step) -> Step {
-        let new = |operand: &Operand| self.operand(*operand);
-        match step {
-            Step::Add(a, b) => Step::Add(new(a), new(b)),
-            Step::Multiply(a, b) => Step::Multiply(new(a), new(b)),
-            Step::MultiplyAdd(a, b, c) => Step::MultiplyAdd(new(a), new(b), new(c)),
-            Step::Divide(a, b) => Step::Divide(new(a), new(b)),
-            Step::SineCosine(a) => Step::SineCosine(new(a)),
-            Step::Sine(a) => Step::Sine(new(a)),
-            Step::Cosine(a) => Step::Cosine(new(a)),
-            Step::Call(function, operands) => Step::Call(*function, self.operands(operands)),
-            Step::Solve(solve) => Step::Solve(Solve {
-                steps: solve.steps.iter().map(|it| self.renumbered(it)).collect(),
-                results: self.operands(&solve.results),
-                ..solve.clone()
-            }),
-        }
+        step.with(&|operand| self.operand(operand))
     }
 
     fn operands(&self, operands: &[Operand]) -> Vec<Operand> {
@@ -289,5 +281,69 @@ impl Numbers {
             },
             _ => operand,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symbolic::Symbol;
+
+    fn value(number: usize) -> Operand {
+        Operand::plain(Source::Value(number))
+    }
+
+    fn state(number: usize) -> Operand {
+        Operand::plain(Source::Symbol(Symbol::State(number)))
+    }
+
+    fn ordered(steps: &[Step]) -> Vec<Step> {
+        let values: usize = steps.iter().map(Step::results).sum();
+        let routine = Routine {
+            steps: steps.to_vec(),
+            names: vec![String::new(); values],
+            results: vec![value(values - 1)],
+            columns: Vec::new(),
+        };
+        reorder(&routine).steps
+    }
+
+    #[test]
+    fn what_is_late_is_added_last() {
+        let late = Step::Sine(state(0));
+        let negated = Operand {
+            negative: true,
+            ..value(0)
+        };
+        let found = ordered(&[
+            late.clone(),
+            Step::Add(state(1), negated),
+            Step::Add(value(1), state(2)),
+        ]);
+        let sum = Step::Add(state(1), state(2));
+        assert_eq!(found, [late, sum, Step::Add(value(1), negated)]);
+    }
+
+    #[test]
+    fn what_is_late_is_multiplied_last() {
+        let late = Step::Sine(state(0));
+        let found = ordered(&[
+            late.clone(),
+            Step::Multiply(state(1), value(0)),
+            Step::Multiply(value(1), state(2)),
+        ]);
+        let product = Step::Multiply(state(1), state(2));
+        assert_eq!(found, [late, product, Step::Multiply(value(1), value(0))]);
+    }
+
+    #[test]
+    fn a_partial_sum_that_is_needed_stays() {
+        let steps = [
+            Step::Sine(state(0)),
+            Step::Add(state(1), value(0)),
+            Step::Add(value(1), state(2)),
+            Step::Multiply(value(1), value(2)),
+        ];
+        assert_eq!(ordered(&steps), steps);
     }
 }

@@ -366,7 +366,6 @@ pub(super) fn expression_text(
 ) -> String {
     let name = |symbol: Symbol| match symbol {
         Symbol::Unknown(index) => claims.hidden[index].text.clone(),
-        Symbol::Slope(index) => format!("slope {index}"),
         Symbol::Signal(index) => report::signal_text(model, claims.signals.list()[index]),
         other => model.symbol_text(other),
     };

@@ -370,6 +370,13 @@ mod tests {
     }
 
     #[test]
+    fn rest_takes_one_step() {
+        let rest = SVector::from([0.0, 0.0]);
+        let statistics = STRICT.integrate(&Oscillator, &(), 0.0, 1e3, rest, |_| ());
+        assert_eq!(statistics.map(|statistics| statistics.steps), Ok(1));
+    }
+
+    #[test]
     fn samples_at_the_start_at_jumps_and_twice() {
         let input = Pulse {
             amplitude: SVector::from([1.0]),

@@ -10,7 +10,7 @@ pub(super) enum Rule {
     Proportional,
     /// The same, but a step up to a fifth longer is not worth the work.
     Steady,
-    /// As the error goes on growing or falling.
+    /// By the error alone where it falls; where it has grown it goes on growing as fast.
     Trend,
 }
 

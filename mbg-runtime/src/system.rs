@@ -103,8 +103,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// `∂f/∂t` at a fixed state and input.
     ///
-    /// Generated models give it exactly. Unless it is given, it is a difference quotient over five evaluations of
-    /// [`System::derivative`] ahead, whose error falls with the fourth power of `ahead`, the length of the step.
+    /// Generated models give it exactly. Unless it is given, it is zero where the model is [`AUTONOMOUS`](Self::AUTONOMOUS),
+    /// else a difference quotient over five evaluations of [`System::derivative`] ahead, whose error falls with the fourth
+    /// power of `ahead`, the length of the step.
     fn derivative_time(
         &self,
         t: T,
@@ -113,6 +114,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
         ahead: T,
     ) -> SVector<T, N> {
+        if Self::AUTONOMOUS {
+            return SVector::from_element(T::from_f64(0.0));
+        }
         quotient(t, ahead, |t| self.derivative(t, x, u, memory))
     }
 

@@ -19,7 +19,7 @@ use crate::{Input, Real, System};
 ///
 /// An error counts as small enough when the root of the mean square of
 /// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
-/// and lengths of the step and of the one before: for methods of Rosenbrock as the error goes on growing or falling, else
+/// and lengths of the step and of the one before: for methods of Rosenbrock an error that has grown goes on growing, else
 /// by proportion and integral (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
 /// 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
 /// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
@@ -157,50 +157,49 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             };
             let memory = problem.memory;
             let trial = work.attempt(problem, &from, Some(&tolerance));
-            if trial.error <= 1.0 {
+            let taken = if trial.error <= 1.0 {
                 let known = x + trial.change;
                 let ahead = trial
                     .slope
                     .unwrap_or_else(|| problem.slope(span.end, &known));
                 let dense =
                     |problem: &mut _| work.polynomial(problem, &from, (&known, Some(ahead)));
-                if let Some(clear) =
-                    problem.clear_length::<Scheme>(&from, &trial, &tolerance, dense)
-                {
-                    problem.statistics.rejected += 1;
-                    problem.memory = memory;
-                    control.shorten(clear);
-                    if control.length <= smallest(t) {
-                        return Err(Stopped::new(t, Cause::StepTooSmall));
+                match problem.clear_length::<Scheme>(&from, &trial, &tolerance, dense) {
+                    None => Some((known, ahead)),
+                    Some(clear) => {
+                        control.shorten(clear);
+                        None
                     }
-                    again = true;
-                    continue;
                 }
-                problem.statistics.steps += 1;
-                problem.check(span.end, &known, &ahead)?;
-                let next = problem.close(span.end, known)?;
-                let mut dense = || work.polynomial(problem, &from, (&next, Some(ahead)));
-                let mut step = Step::new(span, (x, next), &mut dense);
-                if observer(&mut step).is_break() {
-                    return Ok(ControlFlow::Break(()));
-                }
-                if last {
-                    return Ok(ControlFlow::Continue(next));
-                }
-                problem.probes.heed(seen(t), seen(span.length));
-                control.accept(seen(span.length), trial.error, Scheme::RULE);
-                (t, x, slope, again) = (span.end, next, ahead, false);
             } else {
+                control.reject(seen(span.length), trial.error);
+                None
+            };
+            let Some((known, ahead)) = taken else {
                 problem.statistics.rejected += 1;
                 let tried = core::mem::replace(&mut problem.memory, memory);
-                control.reject(seen(span.length), trial.error);
                 again = true;
                 // Written so that a step of NaN is refused as well.
                 if control.length.is_nan() || control.length <= smallest(t) {
                     check_result(problem.system, t, &trial.change, &tried)?;
                     return Err(Stopped::new(t, Cause::StepTooSmall));
                 }
+                continue;
+            };
+            problem.statistics.steps += 1;
+            problem.check(span.end, &known, &ahead)?;
+            let next = problem.close(span.end, known)?;
+            let mut dense = || work.polynomial(problem, &from, (&next, Some(ahead)));
+            let mut step = Step::new(span, (x, next), &mut dense);
+            if observer(&mut step).is_break() {
+                return Ok(ControlFlow::Break(()));
             }
+            if last {
+                return Ok(ControlFlow::Continue(next));
+            }
+            problem.probes.heed(seen(t), seen(span.length));
+            control.accept(seen(span.length), trial.error, Scheme::RULE);
+            (t, x, slope, again) = (span.end, next, ahead, false);
         }
     }
 }
@@ -368,6 +367,13 @@ mod tests {
             "{}",
             last[0]
         );
+    }
+
+    #[test]
+    fn rest_takes_one_step() {
+        let rest = SVector::from([0.0, 0.0]);
+        let statistics = STRICT.integrate(&Oscillator, &(), 0.0, 1e3, rest, |_| ());
+        assert_eq!(statistics.map(|statistics| statistics.steps), Ok(1));
     }
 
     #[test]

@@ -10,7 +10,7 @@ pub(super) enum Rule {
     Proportional,
     /// The same, but a step up to a fifth longer is not worth the work.
     Steady,
-    /// As the error goes on growing or falling.
+    /// By the error alone where it falls; where it has grown it goes on growing as fast.
     Trend,
 }
 
@@ -91,3 +91,55 @@ const PROPORTION: f64 = 0.85;
 const MEMORY: f64 = 0.2;
 /// Logarithm of 1e-4, the smallest error that is remembered.
 const LEAST: f64 = -9.210_340_371_976_182;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The length behind two steps of length 1 with these errors, at order 4.
+    fn next(rule: Rule, errors: [f64; 2]) -> f64 {
+        let mut control = Control::new(4, 1.0);
+        for error in errors {
+            control.accept(1.0, error, rule);
+        }
+        control.length
+    }
+
+    #[test]
+    fn the_trend_of_the_error_goes_on_only_where_it_grows() {
+        let allowed = |error| SAFETY / power(error, 0.25);
+        let assert_next = |errors, expected: f64| {
+            let found = next(Rule::Trend, errors);
+            assert!(
+                (found - expected).abs() < 1e-6 * expected,
+                "{errors:?}: {found}"
+            );
+        };
+        assert_next([1e-2, 1e-2], allowed(1e-2));
+        assert_next([1e-1, 1e-2], allowed(1e-2));
+        // Ten times the error counts as ten times more to come.
+        assert_next([1e-2, 1e-1], allowed(1.0));
+    }
+
+    #[test]
+    fn steady_steps_keep_their_length_over_a_small_gain() {
+        let errors = [0.2, 0.3];
+        let gain = next(Rule::Proportional, errors);
+        assert!(gain > 1.0 && gain < 1.2, "{gain}");
+        assert_eq!(next(Rule::Steady, errors), 1.0);
+        let errors = [0.2, 1e-3];
+        assert!(next(Rule::Proportional, errors) > 1.2);
+        assert_eq!(next(Rule::Steady, errors), next(Rule::Proportional, errors));
+    }
+
+    #[test]
+    fn no_step_grows_behind_a_rejection() {
+        let mut control = Control::new(4, 1.0);
+        control.reject(1.0, f64::NAN);
+        assert_eq!(control.length, 0.2);
+        control.accept(0.2, 1e-6, Rule::Trend);
+        assert_eq!(control.length, 0.2);
+        control.accept(0.2, 1e-6, Rule::Trend);
+        assert!(control.length > 1.0);
+    }
+}

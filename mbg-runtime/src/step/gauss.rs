@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{
-    Family, Method, Progress, Settling, Start, Stepper, Trial, along, combination, relative,
+    Family, Method, Start, Stepper, Trial, along, combination, larger, relative, settles,
 };
 use super::problem::Problem;
 use super::seen;
@@ -167,7 +167,7 @@ where
                 }
                 true
             }
-            Solve::Sweeps(None) => self.settle(problem, start),
+            Solve::Sweeps(None) => settles::<T>(MOST, || self.sweep(problem, start, None)),
         };
         let length = start.span.length;
         self.length = Some(length);
@@ -224,28 +224,6 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
         }
     }
 
-    /// Sweeps to rounding; whether it came to that.
-    fn settle<Y, I, const M: usize, const P: usize>(
-        &mut self,
-        problem: &mut Problem<'_, T, Y, I, N, M, P>,
-        start: &Start<T, N>,
-    ) -> bool
-    where
-        Y: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        let mut settling = Settling::new();
-        for _ in 0..MOST {
-            let change = self.sweep(problem, start, None);
-            match settling.after::<T>(change) {
-                Progress::Settled => return true,
-                Progress::Lost => return false,
-                Progress::Going => (),
-            }
-        }
-        settling.suffices::<T>()
-    }
-
     /// `I − h a J` of the first stage.
     fn factors<Y, I, const M: usize, const P: usize>(
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
@@ -288,10 +266,7 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
                 self.slopes[stage] = slope;
             }
             let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
-            let change = relative(&scaled(change), &start.x, &scaled(slope));
-            if change > largest || change.is_nan() {
-                largest = change;
-            }
+            largest = larger(largest, relative(&scaled(change), &start.x, &scaled(slope)));
         }
         largest
     }

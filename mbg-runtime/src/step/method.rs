@@ -185,54 +185,39 @@ pub(super) fn along<T: Real, const N: usize>(
     x.zip_map(direction, |x, direction| x + factor * direction)
 }
 
-/// An iteration that goes on until nothing but rounding is left.
-pub(super) struct Settling {
-    before: f64,
-    stalls: u32,
-}
-
-/// How far an iteration has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Progress {
-    Going,
-    Settled,
-    Lost,
-}
-
-impl Settling {
-    pub(super) const fn new() -> Self {
-        Self {
-            before: f64::INFINITY,
-            stalls: 0,
+/// Repeats what gives the size of a change, relative to what is changed, until nothing but rounding is left, at most so
+/// many times; whether it came to that.
+///
+/// It has when nothing changes, or when a small change no longer becomes smaller (Hairer, McLachlan and Razakarivony,
+/// *BIT Numerical Mathematics* 48 (2008), 231–243). A component near zero may be all rounding: then a change of a
+/// hundredth that stalls twice counts. Where the iteration is cut off, the last change must be small.
+pub(super) fn settles<T: Real>(most: u32, mut change: impl FnMut() -> f64) -> bool {
+    let mut before = f64::INFINITY;
+    let mut stalls = 0;
+    for _ in 0..most {
+        let change = change();
+        if change >= before {
+            stalls += 1;
         }
-    }
-
-    /// Takes the size of a change, relative to what is changed. It has settled when nothing changes, or when a small
-    /// change no longer becomes smaller (Hairer, McLachlan and Razakarivony, *BIT Numerical Mathematics* 48 (2008),
-    /// 231–243). A component near zero may be all rounding: then a change of a hundredth that stalls twice counts.
-    pub(super) fn after<T: Real>(&mut self, change: f64) -> Progress {
-        if change >= self.before {
-            self.stalls += 1;
-        }
-        self.before = change;
-        let small = match self.stalls {
+        before = change;
+        let small = match stalls {
             0 => 0.0,
             1 => T::SINGULAR,
             _ => 1e-2,
         };
         if change <= small {
-            Progress::Settled
-        } else if change.is_nan() {
-            Progress::Lost
-        } else {
-            Progress::Going
+            return true;
+        }
+        if change.is_nan() {
+            return false;
         }
     }
+    before < T::SINGULAR
+}
 
-    /// Whether the last change was small enough to go on with where the iteration was cut off.
-    pub(super) fn suffices<T: Real>(&self) -> bool {
-        self.before < T::SINGULAR
-    }
+/// The larger of two sizes, or NaN where one is.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
 }
 
 /// Largest component of a change relative to those of what it changes, `x` and `y` together.
@@ -247,11 +232,6 @@ pub(super) fn relative<T: Real, const N: usize>(
         if change == 0.0 {
             return largest;
         }
-        let quotient = change / (x.magnitude() + y.magnitude());
-        if quotient > largest || quotient.is_nan() {
-            quotient
-        } else {
-            largest
-        }
+        larger(largest, change / (x.magnitude() + y.magnitude()))
     })
 }

@@ -7,7 +7,7 @@ use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::linear::{Complex, Element};
 use super::method::{
-    Estimating, Family, Method, Progress, Settling, Start, Stepper, Trial, combination, relative,
+    Estimating, Family, Method, Start, Stepper, Trial, combination, larger, relative, settles,
 };
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -74,7 +74,7 @@ const ERROR: [f64; 3] = [-(13.0 + 7.0 * Q) / 3.0, (-13.0 + 7.0 * Q) / 3.0, -1.0 
 /// Most sweeps in a step that is controlled by its error.
 const SWEEPS: i32 = 8;
 /// Most sweeps to rounding.
-const MOST: i32 = 20;
+const MOST: u32 = 20;
 /// A sweep that reduces the error so much keeps the Jacobian.
 const FAST: f64 = 1e-3;
 
@@ -362,28 +362,13 @@ where
     /// Sweeps to rounding; whether it came to that.
     fn settled(&mut self, stages: &mut Three<T, N>) -> bool {
         let mut inner = transformed(&INVERSE, stages);
-        let mut settling = Settling::new();
-        for _ in 0..MOST {
+        settles::<T>(MOST, || {
             let old = *stages;
             self.sweep(stages, &mut inner);
-            let sizes = old
-                .iter()
-                .zip(&*stages)
-                .map(|(old, new)| relative(&(new - old), &self.start.x, new));
-            let change = sizes.fold(0.0, |largest: f64, size| {
-                if size > largest || size.is_nan() {
-                    size
-                } else {
-                    largest
-                }
-            });
-            match settling.after::<T>(change) {
-                Progress::Settled => return true,
-                Progress::Lost => return false,
-                Progress::Going => (),
-            }
-        }
-        settling.suffices::<T>()
+            let changes = old.iter().zip(&*stages);
+            let sizes = changes.map(|(old, new)| relative(&(new - old), &self.start.x, new));
+            sizes.fold(0.0, larger)
+        })
     }
 
     /// The filtered estimate; a second filter takes care of large ones where `doubtful`.

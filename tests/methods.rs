@@ -1,6 +1,9 @@
 //! Methods of integration on problems with known answers: orders, dense output, events, hard cases.
 #![allow(clippy::unwrap_used)]
 
+#[path = "references/errors.rs"]
+#[allow(dead_code)]
+mod errors;
 #[path = "../examples/methods/problems.rs"]
 mod problems;
 

@@ -123,7 +123,8 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
     }
 }
 
-const fn state(name: &'static str) -> Variable {
+/// A state without a unit.
+pub(crate) const fn state(name: &'static str) -> Variable {
     Variable { name, unit: "" }
 }
 

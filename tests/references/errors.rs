@@ -18,6 +18,12 @@ pub(crate) fn apart(found: &[f64], expected: &[f64]) -> f64 {
     })
 }
 
+/// The same of two quaternions, of which both signs are one rotation.
+pub(crate) fn turned(found: &[f64], expected: &[f64; 4]) -> f64 {
+    let product: f64 = found.iter().zip(expected).map(|(a, b)| a * b).sum();
+    apart(found, &expected.map(|part| product.signum() * part))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

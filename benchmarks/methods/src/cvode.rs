@@ -10,8 +10,9 @@ use std::ptr::null_mut;
 use libloading::Library;
 use mbg_compare::{Comparison, Problem, TOLERANCES};
 use mbg_runtime::{Input, Statistics, System};
+use nalgebra::SVector;
 
-use crate::peers::{Law, Row, pieces};
+use crate::peers::{RightHandSide, Row, pieces};
 
 type Handle = *mut c_void;
 type Slope = extern "C" fn(f64, Handle, Handle, Handle) -> c_int;
@@ -134,6 +135,28 @@ struct User<'a, 'b, S, I, L, const N: usize, const M: usize, const P: usize> {
     since: f64,
 }
 
+/// What CVODE gives to a function: the user's data, the state and the input.
+///
+/// # Safety
+///
+/// The pointers are those given to CVODE, which live as long as its run.
+unsafe fn asked<'a, S, I, L, const N: usize, const M: usize, const P: usize>(
+    t: f64,
+    y: Handle,
+    user: Handle,
+) -> (&'a User<'a, 'a, S, I, L, N, M, P>, Row<N>, SVector<f64, M>)
+where
+    I: Input<f64, M>,
+{
+    // SAFETY: as promised; the vector has N numbers.
+    let (user, x) = unsafe {
+        let user = &*user.cast::<User<'a, 'a, S, I, L, N, M, P>>();
+        (user, std::slice::from_raw_parts((user.numbers)(y), N))
+    };
+    let u = user.problem.input.value(t, user.since);
+    (user, Row::from_column_slice(x), u)
+}
+
 extern "C" fn slope<S, I, L, const N: usize, const M: usize, const P: usize>(
     t: f64,
     y: Handle,
@@ -143,19 +166,14 @@ extern "C" fn slope<S, I, L, const N: usize, const M: usize, const P: usize>(
 where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
-    L: Law<N, M>,
+    L: RightHandSide<N, M>,
 {
-    // SAFETY: the pointers are those given to CVODE, which live as long as its run.
-    let (user, x, found) = unsafe {
-        let user = &*user.cast::<User<'_, '_, S, I, L, N, M, P>>();
-        let x = Row::<N>::from_column_slice(std::slice::from_raw_parts((user.numbers)(y), N));
-        (
-            user,
-            x,
-            std::slice::from_raw_parts_mut((user.numbers)(slope), N),
-        )
+    // SAFETY: the pointers are those given to CVODE, which live as long as its run; the vector has N numbers.
+    let (user, x, u, found) = unsafe {
+        let (user, x, u) = asked::<S, I, L, N, M, P>(t, y, user);
+        let found = std::slice::from_raw_parts_mut((user.numbers)(slope), N);
+        (user, x, u, found)
     };
-    let u = user.problem.input.value(t, user.since);
     found.copy_from_slice(user.law.slope(t, &x, &u).as_slice());
     0
 }
@@ -173,16 +191,14 @@ extern "C" fn jacobian<S, I, L, const N: usize, const M: usize, const P: usize>(
 where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
-    L: Law<N, M>,
+    L: RightHandSide<N, M>,
 {
     // SAFETY: as above; the matrix has N columns of N entries each.
-    let (user, x, found) = unsafe {
-        let user = &*user.cast::<User<'_, '_, S, I, L, N, M, P>>();
-        let x = Row::<N>::from_column_slice(std::slice::from_raw_parts((user.numbers)(y), N));
-        let entries = (user.entries)(matrix);
-        (user, x, std::slice::from_raw_parts_mut(entries, N * N))
+    let (user, x, u, found) = unsafe {
+        let (user, x, u) = asked::<S, I, L, N, M, P>(t, y, user);
+        let found = std::slice::from_raw_parts_mut((user.entries)(matrix), N * N);
+        (user, x, u, found)
     };
-    let u = user.problem.input.value(t, user.since);
     let memory = &mut S::Memory::default();
     found.copy_from_slice(
         user.problem
@@ -203,7 +219,7 @@ pub fn cvode<S, I, L, const N: usize, const M: usize, const P: usize>(
 ) where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
-    L: Law<N, M>,
+    L: RightHandSide<N, M>,
 {
     let problem = comparison.problem().clone();
     let sizes = comparison.reference().sizes;

@@ -4,6 +4,8 @@
 //! CVODE besides.
 
 mod cvode;
+#[path = "../../../examples/methods/double_pendulum.rs"]
+mod double_pendulum;
 #[path = "../../../benches/elimination/models.rs"]
 #[allow(dead_code)]
 mod elimination;
@@ -22,16 +24,17 @@ use std::ops::Range;
 use std::time::Instant;
 
 use cvode::Sundials;
-use elimination::{Dense, RingModulator, RingModulatorParameters};
+use double_pendulum::DoublePendulum;
+use elimination::{Dense, RingModulator, RingModulatorParameters, ring_nominal};
 use mbg_compare::{Comparison, Measured, Problem, TOLERANCES, compare};
 use mbg_runtime::{
     Adaptive, Estimating, Input, Integrator, Radau5, Rodas4, Rodas5P, Statistics, System, mbg,
 };
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
-use peers::{Law, Ours, Peers};
+use peers::{Ours, Peers, RightHandSide};
 use problems::{RigidBody, Robertson, VanDerPol, Written};
-use written::{DoublePendulum, Navigation};
+use written::Navigation;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -60,7 +63,7 @@ impl Run {
     where
         S: System<f64, N, M, P>,
         I: Input<f64, M>,
-        L: Law<N, M>,
+        L: RightHandSide<N, M>,
     {
         let title = problem.title.clone();
         let mut comparison: Comparison<'_, S, I, N, M, P> = compare(problem)?;
@@ -189,30 +192,23 @@ fn ring_modulator() -> Result<String> {
     let model = RingModulator::new(RingModulatorParameters::default())?;
     let start: SVector<f64, 15> = System::<f64, 15, 0, 0>::initial_state(&model);
     let dense = Dense(model);
-    let states = <RingModulator<f64> as System<f64, 15, 0, 0>>::META.states;
-    // Of one volt and one microampere.
-    let nominal: [f64; 15] = std::array::from_fn(|state| match states[state].name {
-        "c1.q" | "c2.q" => 1.6e-8,
-        "c7.q" => 1e-8,
-        name if name.ends_with(".q") => 2e-12,
-        "l1.p" | "l2.p" => 4.45e-6,
-        _ => 5e-7,
-    });
+    let nominal = ring_nominal();
     let solver = Adaptive {
         nominal: &nominal,
         ..Adaptive::new(Rodas5P, 1e-3, 1e-3)
     };
-    let mut times = [[0.0; 5]; 2];
+    let mut times = [[0.0; 2]; 5];
     let mut statistics = Statistics::default();
-    for round in 0..5 {
+    for [planned, searched] in &mut times {
         let now = Instant::now();
         statistics = solver.integrate(&dense.0, &(), 0.0, 1e-3, start, |_step| ())?;
-        times[0][round] = now.elapsed().as_secs_f64();
+        *planned = now.elapsed().as_secs_f64();
         let now = Instant::now();
         solver.integrate(&dense, &(), 0.0, 1e-3, start, |_step| ())?;
-        times[1][round] = now.elapsed().as_secs_f64();
+        *searched = now.elapsed().as_secs_f64();
     }
-    let [planned, searched] = times.map(|mut times| {
+    let [planned, searched] = [0, 1].map(|which| {
+        let mut times = times.map(|round| round[which]);
         times.sort_by(f64::total_cmp);
         times[2]
     });

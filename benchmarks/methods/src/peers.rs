@@ -12,7 +12,7 @@ use ode_solvers::dop_shared::OutputType;
 pub type Row<const N: usize> = SVector<f64, N>;
 
 /// The right-hand side that is given to others.
-pub trait Law<const N: usize, const M: usize> {
+pub trait RightHandSide<const N: usize, const M: usize> {
     /// The derivative of the state.
     fn slope(&self, t: f64, x: &Row<N>, u: &SVector<f64, M>) -> Row<N>;
 }
@@ -20,7 +20,7 @@ pub trait Law<const N: usize, const M: usize> {
 /// That of our model.
 pub struct Ours<'a, S, const P: usize>(pub &'a S);
 
-impl<S, const N: usize, const M: usize, const P: usize> Law<N, M> for Ours<'_, S, P>
+impl<S, const N: usize, const M: usize, const P: usize> RightHandSide<N, M> for Ours<'_, S, P>
 where
     S: System<f64, N, M, P>,
 {
@@ -105,7 +105,7 @@ impl<I, L, const N: usize, const M: usize> ode_solvers::System<f64, Column<N>>
     for Slope<'_, I, L, M>
 where
     I: Input<f64, M>,
-    L: Law<N, M>,
+    L: RightHandSide<N, M>,
 {
     fn system(&self, t: f64, y: &Column<N>, dy: &mut Column<N>) {
         let u = self.input.value(t, self.since);
@@ -128,7 +128,7 @@ impl<'c, 'p, S, I, L, const N: usize, const M: usize, const P: usize>
 where
     S: System<f64, N, M, P>,
     I: Input<f64, M>,
-    L: Law<N, M>,
+    L: RightHandSide<N, M>,
 {
     pub fn new(comparison: &'c mut Comparison<'p, S, I, N, M, P>, law: &'c L, small: f64) -> Self {
         Self {

@@ -7,6 +7,16 @@ use nalgebra::SVector;
 use super::models::{Belt, BeltParameters};
 use super::{Expected, Found, Line, larger};
 
+/// With this force to break away.
+#[allow(clippy::expect_used, reason = "its own constants suit it")]
+fn belt(breakaway: f64) -> Belt<f64> {
+    Belt::new(BeltParameters {
+        breakaway,
+        ..BeltParameters::default()
+    })
+    .expect("forces and speeds above zero")
+}
+
 /// A block on a belt, with Coulomb's and with Stribeck's curve.
 pub(crate) fn dry() -> Vec<Line> {
     let mut lines = Vec::new();
@@ -14,13 +24,7 @@ pub(crate) fn dry() -> Vec<Line> {
         ("Coulomb friction on a belt", 2.0),
         ("Stribeck friction, stick and slip", 4.0),
     ] {
-        let parameters = BeltParameters {
-            breakaway,
-            ..BeltParameters::default()
-        };
-        let Ok(belt) = Belt::new(parameters) else {
-            continue;
-        };
+        let belt = belt(breakaway);
         let problem = Problem::new(case, &belt, &(), (0.0, 10.0), belt.initial_state())
             .at((1..=100).map(|k| 0.1 * f64::from(k)).collect::<Vec<_>>())
             .nominal([1.0, 0.1]);

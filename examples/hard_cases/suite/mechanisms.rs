@@ -1,56 +1,14 @@
 //! Chaos, closed loops near singular positions, and impacts.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
-use mbg_runtime::{
-    Adaptive, Direction, Dop853, Integrator, Real, Statistics, Stopped, System, Tsit5, Variable,
-};
+use mbg_runtime::{Adaptive, Direction, Dop853, Integrator, Statistics, Stopped, System, Tsit5};
 use nalgebra::SVector;
 
+use super::double_pendulum::DoublePendulum;
 use super::models::{FourBars2, FourBars2Parameters};
-use super::problems::{Law, Oscillator, Written};
+use super::problems::{Oscillator, Written};
 use super::{Expected, Found, Line, apart, larger};
-
-/// Two rods of 1 m and 1 kg, one below the other; angles from the downward vertical, and their rates.
-#[derive(Clone, Copy)]
-struct DoublePendulum;
-
-impl Law<4, 0> for DoublePendulum {
-    const STATES: &'static [Variable] = &[
-        Variable {
-            name: "first",
-            unit: "rad",
-        },
-        Variable {
-            name: "second",
-            unit: "rad",
-        },
-        Variable {
-            name: "first rate",
-            unit: "rad/s",
-        },
-        Variable {
-            name: "second rate",
-            unit: "rad/s",
-        },
-    ];
-
-    fn slope<T: Real>(&self, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
-        let number = T::from_f64;
-        let [first, second, u, v] = x.data.0[0];
-        let (sin, cos) = (first - second).sin_cos();
-        let (a, b, c) = (number(4.0 / 3.0), number(0.5) * cos, number(1.0 / 3.0));
-        let p = -(number(0.5) * sin * v * v) - number(1.5 * 9.81) * first.sin();
-        let q = number(0.5) * sin * u * u - number(0.5 * 9.81) * second.sin();
-        let determinant = a * c - b * b;
-        SVector::from([
-            u,
-            v,
-            (c * p - b * q) / determinant,
-            (a * q - b * p) / determinant,
-        ])
-    }
-}
 
 /// Errors grow up to a million times within 10 s, those of the reference too.
 pub(crate) fn double_pendulum() -> Vec<Line> {
@@ -61,7 +19,7 @@ pub(crate) fn double_pendulum() -> Vec<Line> {
         -3.821_686_311_117_514,
         -0.046_064_713_430_667_89,
     ];
-    let start = SVector::from([FRAC_PI_2, FRAC_PI_2 + 0.1, 0.0, 0.0]);
+    let start = DoublePendulum::start();
     let run = |tolerance: f64| {
         let mut last = start;
         let solver = Adaptive::new(Dop853, tolerance, tolerance);

@@ -1,5 +1,7 @@
 //! The cases, and what is expected of each.
 
+#[path = "../../methods/double_pendulum.rs"]
+mod double_pendulum;
 #[path = "../../../tests/references/errors.rs"]
 mod errors;
 mod friction;

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, SQRT_2};
 use mbg_runtime::{Adaptive, Dop853, Fixed, Gauss6, Input, Integrator, Step, Stopped, System};
 use nalgebra::{SVector, Vector3};
 
+use super::errors::turned;
 use super::models::{
     PulledAngles, PulledAnglesParameters, PulledQuaternion, PulledQuaternionParameters,
     TopQuaternion, TopQuaternionParameters,
@@ -14,7 +15,7 @@ use super::rotations::{self, Row};
 use super::{Expected, Found, Line, apart, larger};
 
 /// Runs over the rows of a reference; the outputs are rates and the parts of a quaternion, of either sign.
-fn turned<S, const N: usize, const M: usize, const P: usize>(
+fn flown<S, const N: usize, const M: usize, const P: usize>(
     model: &S,
     input: &impl Input<f64, M>,
     rows: &[Row],
@@ -29,10 +30,7 @@ where
     let statistics = solver.sample(model, input, 0.0, model.initial_state(), &times, |t, x| {
         let found = model.output(t, x, &input.at(t), &mut ());
         if let Some((_, _, expected)) = rows.next() {
-            let opposite = expected.map(|part| -part);
-            let found = &found.as_slice()[3..7];
-            let apart = apart(found, expected).min(apart(found, &opposite));
-            error = larger(error, apart);
+            error = larger(error, turned(&found.as_slice()[3..7], expected));
         }
     })?;
     Ok(Found::new(error, statistics))
@@ -51,7 +49,7 @@ pub(crate) fn gimbal_lock() -> Vec<Line> {
                 "stopped at t = 1.4142135623730951: cos(flying.joint.rotation.gimbal.angle.y)",
             ),
             || match PulledAngles::new(PulledAnglesParameters::default()) {
-                Ok(model) => turned(&model, &at_lock, rows),
+                Ok(model) => flown(&model, &at_lock, rows),
                 Err(_) => Ok(Found::NONE),
             },
         ),
@@ -59,7 +57,7 @@ pub(crate) fn gimbal_lock() -> Vec<Line> {
             (case, "quaternion, Dop853", "elliptic functions"),
             Expected::Within(1e-12),
             || match PulledQuaternion::new(PulledQuaternionParameters::default()) {
-                Ok(model) => turned(&model, &rotations::through_lock(), rows),
+                Ok(model) => flown(&model, &rotations::through_lock(), rows),
                 Err(_) => Ok(Found::NONE),
             },
         ),
@@ -75,7 +73,7 @@ pub(crate) fn sleeping_top() -> Vec<Line> {
             tilt: 0.01,
             rate: 13.2,
         }) {
-            Ok(model) => turned(&model, &(), rotations::SLEEPING),
+            Ok(model) => flown(&model, &(), rotations::SLEEPING),
             Err(_) => Ok(Found::NONE),
         },
     )]

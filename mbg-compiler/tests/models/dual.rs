@@ -1,4 +1,6 @@
-//! Programs on dual numbers: values and slopes along one direction, exact to rounding.
+//! Programs on dual numbers: values and slopes along one direction, exact to rounding. The machine stands apart from that
+//! of the compiler, whose library knows no scalar but `f64`: dual numbers belong to the runtime, on which it does not
+//! depend.
 
 use std::collections::BTreeMap;
 

@@ -167,7 +167,7 @@ impl Carrier<'_> {
         }
         let mut origins = self.vectors.iter().filter_map(|other| {
             let is_whole = causes.iter().all(|cause| other.contains(cause));
-            match is_orthonormal(&self.images(pool, vector, other))? {
+            match self.in_axes_of(pool, vector, other)? {
                 true if self.is_moved_itself(pool, other) => Some((*other, true)),
                 false if is_whole => Some((*other, false)),
                 _ => None,
@@ -192,7 +192,17 @@ impl Carrier<'_> {
         let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
         let mut others = self.vectors.iter().filter(|other| *other != vector);
         terms().next().is_none()
-            || others.any(|other| is_orthonormal(&self.images(pool, vector, other)).is_some())
+            || others.any(|other| self.in_axes_of(pool, vector, other).is_some())
+    }
+
+    /// Whether a vector follows from another in the same axes, and not in others; none if it does not follow with its length.
+    fn in_axes_of(&self, pool: &Pool, vector: &Triple, other: &Triple) -> Option<bool> {
+        let follows = |rate: &usize| {
+            let mut terms = self.given[rate].terms.iter();
+            terms.any(|(cause, _)| other.contains(cause))
+        };
+        let all_follow = vector.iter().all(follows);
+        all_follow.then(|| is_orthonormal(&self.images(pool, vector, other)))?
     }
 
     /// Coefficients of one vector in the rows of another.

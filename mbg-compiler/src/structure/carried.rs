@@ -8,7 +8,7 @@
 //! A shift by anything known is right. It is made if what it leaves in the rows is nothing or a product that is known,
 //! and therefore passed on as a bare value ([`Image`]).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::System;
 use super::shift::Given;
@@ -52,6 +52,8 @@ struct Carrier<'a> {
     tree: &'a Tree,
     given: BTreeMap<usize, &'a Given>,
     vectors: &'a [Triple],
+    /// The vectors of which each rate is a component.
+    holding: BTreeMap<usize, Vec<Triple>>,
     velocity: &'a dyn Fn(usize) -> Expression,
     /// Value that each rate is counted from.
     values: BTreeMap<usize, Image>,
@@ -73,6 +75,7 @@ impl Carried {
             tree,
             given: rows.iter().map(|given| (given.unknown, given)).collect(),
             vectors,
+            holding: holding(vectors),
             velocity,
             values: BTreeMap::new(),
             left: BTreeMap::new(),
@@ -165,11 +168,12 @@ impl Carrier<'_> {
         for rate in vector {
             causes.extend(self.given[rate].terms.iter().map(|(column, _)| *column));
         }
-        let mut origins = self.vectors.iter().filter_map(|other| {
+        let candidates = self.candidates(vector);
+        let mut origins = candidates.into_iter().filter_map(|other| {
             let is_whole = causes.iter().all(|cause| other.contains(cause));
-            match self.in_axes_of(pool, vector, other)? {
-                true if self.is_moved_itself(pool, other) => Some((*other, true)),
-                false if is_whole => Some((*other, false)),
+            match is_orthonormal(&self.images(pool, vector, &other))? {
+                true if self.is_moved_itself(pool, &other) => Some((other, true)),
+                false if is_whole => Some((other, false)),
                 _ => None,
             }
         });
@@ -190,19 +194,17 @@ impl Carrier<'_> {
     /// Whether a vector is at the base, or follows from another with its length.
     fn is_moved_itself(&self, pool: &Pool, vector: &Triple) -> bool {
         let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
-        let mut others = self.vectors.iter().filter(|other| *other != vector);
+        let others = self.candidates(vector);
+        let mut others = others.iter().filter(|other| *other != vector);
         terms().next().is_none()
-            || others.any(|other| self.in_axes_of(pool, vector, other).is_some())
+            || others.any(|other| is_orthonormal(&self.images(pool, vector, other)).is_some())
     }
 
-    /// Whether a vector follows from another in the same axes, and not in others; none if it does not follow with its length.
-    fn in_axes_of(&self, pool: &Pool, vector: &Triple, other: &Triple) -> Option<bool> {
-        let follows = |rate: &usize| {
-            let mut terms = self.given[rate].terms.iter();
-            terms.any(|(cause, _)| other.contains(cause))
-        };
-        let all_follow = vector.iter().all(follows);
-        all_follow.then(|| is_orthonormal(&self.images(pool, vector, other)))?
+    /// Vectors that the first component of a vector follows from.
+    fn candidates(&self, vector: &Triple) -> BTreeSet<Triple> {
+        let terms = self.given[&vector[0]].terms.iter();
+        let holding = terms.filter_map(|(cause, _)| self.holding.get(cause));
+        holding.flatten().copied().collect()
     }
 
     /// Coefficients of one vector in the rows of another.
@@ -323,6 +325,17 @@ impl Carrier<'_> {
             velocity,
         }))
     }
+}
+
+/// The vectors of which each rate is a component.
+fn holding(vectors: &[Triple]) -> BTreeMap<usize, Vec<Triple>> {
+    let mut holding: BTreeMap<usize, Vec<Triple>> = BTreeMap::new();
+    for vector in vectors {
+        for rate in vector {
+            holding.entry(*rate).or_default().push(*vector);
+        }
+    }
+    holding
 }
 
 /// `ω × ṙ`.

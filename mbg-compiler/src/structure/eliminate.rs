@@ -61,16 +61,18 @@ impl System {
         admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Result<(), Vanished> {
         let mut is_wanted = vec![false; self.size()];
+        // An elimination puts no column into a row that held none of them.
+        let mut holding = BTreeSet::new();
         for column in columns {
             is_wanted[*column] = true;
+            holding.extend(self.rows_with(*column).filter(|row| rows.contains(row)));
         }
         let constant = |rate, row, column: usize| {
             rate == Rate::Constant && is_wanted[column] && admitted(row, column)
         };
-        let mut rows: Vec<usize> = rows.intersection(&self.open_rows).copied().collect();
-        while let Some((row, column)) = self.pivot(pool, rows.iter().copied(), &constant) {
+        while let Some((row, column)) = self.pivot(pool, holding.iter().copied(), &constant) {
             self.eliminate(pool, row, column)?;
-            rows.retain(|other| *other != row);
+            holding.remove(&row);
         }
         Ok(())
     }

@@ -226,9 +226,9 @@ impl<'a> Selector<'a> {
         let values = values.map(|(unknown, c)| (*unknown, value(c))).collect();
         let reduced = self.nominal.reduced(values);
         let own = match equation.owner {
-            Owner::Element(id, _) if !is_cause(self.model, id) => BTreeSet::new(),
-            Owner::Structure => BTreeSet::new(),
-            owner => BTreeSet::from([owner]),
+            Owner::Element(id, _) if !is_cause(self.model, id) => None,
+            Owner::Structure => None,
+            owner => Some(owner),
         };
         let images = self.images(equation);
         if cautious && reduced.is_none() && !self.exact.vanishes(images.clone()) {
@@ -407,15 +407,25 @@ type Row<T> = Vec<(usize, T)>;
 #[derive(Clone, Default)]
 struct Echelon {
     /// By the unknown that leads, with coefficient one.
-    rows: Vec<Option<(Row<u64>, BTreeSet<Owner>)>>,
+    rows: Vec<Option<(Row<u64>, Origin)>>,
+}
+
+/// What a row was made of.
+#[derive(Clone)]
+struct Origin {
+    /// What the equation belongs to, if that is a cause.
+    owner: Option<Owner>,
+    /// Leads of the rows that were taken from it.
+    taken: Vec<usize>,
 }
 
 impl Echelon {
     /// Adds a row; if it vanishes, gives the rows it is a combination of.
-    fn reduce(&mut self, row: Row<u64>, mut causes: BTreeSet<Owner>) -> Option<BTreeSet<Owner>> {
-        let mut rest = self.rest(row, &mut causes);
+    fn reduce(&mut self, row: Row<u64>, owner: Option<Owner>) -> Option<BTreeSet<Owner>> {
+        let (mut rest, taken) = self.rest(row);
+        let origin = Origin { owner, taken };
         let Some(&(lead, value)) = rest.first() else {
-            return Some(causes);
+            return Some(self.causes(&origin));
         };
         let inverse = field::invert(value).unwrap_or(0);
         for (_, entry) in &mut rest {
@@ -423,28 +433,46 @@ impl Echelon {
         }
         let known = self.rows.len().max(lead + 1);
         self.rows.resize(known, None);
-        self.rows[lead] = Some((rest, causes));
+        self.rows[lead] = Some((rest, origin));
         None
     }
 
     /// Whether a row vanishes.
     fn vanishes(&self, row: Row<u64>) -> bool {
-        self.rest(row, &mut BTreeSet::new()).is_empty()
+        self.rest(row).0.is_empty()
     }
 
-    /// What remains of a row up to the first unknown that no earlier row leads with.
-    fn rest(&self, mut row: Row<u64>, causes: &mut BTreeSet<Owner>) -> Row<u64> {
+    /// All owners of what a row was made of.
+    fn causes(&self, origin: &Origin) -> BTreeSet<Owner> {
+        let mut causes = BTreeSet::from_iter(origin.owner);
+        let mut seen = vec![false; self.rows.len()];
+        let mut pending = origin.taken.clone();
+        while let Some(lead) = pending.pop() {
+            if !std::mem::replace(&mut seen[lead], true)
+                && let Some((_, origin)) = &self.rows[lead]
+            {
+                causes.extend(origin.owner);
+                pending.extend(&origin.taken);
+            }
+        }
+        causes
+    }
+
+    /// What remains of a row up to the first unknown that no earlier row leads with, and the leads of those that were taken
+    /// from it.
+    fn rest(&self, mut row: Row<u64>) -> (Row<u64>, Vec<usize>) {
+        let mut taken = Vec::new();
         while let Some(&(lead, value)) = row.first() {
-            let Some(Some((pivot, origin))) = self.rows.get(lead) else {
+            let Some(Some((pivot, _))) = self.rows.get(lead) else {
                 break;
             };
             row = merged(&row, pivot, |own, entry| {
                 let rest = field::subtract(own.unwrap_or(0), field::multiply(value, entry));
                 (rest != 0).then_some(rest)
             });
-            causes.extend(origin);
+            taken.push(lead);
         }
-        row
+        (row, taken)
     }
 }
 

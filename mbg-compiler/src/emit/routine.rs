@@ -49,6 +49,10 @@ pub(super) fn written_lines(
     places: &[Option<TokenStream>],
 ) -> TokenStream {
     let mut writer = writer.clone();
+    for (value, place) in &*writer.kept {
+        let (name, place) = (&writer.names[*value], Literal::usize_suffixed(*place));
+        writer.written.insert(*value, quote!(kept[#place] = #name;));
+    }
     let mut known = TokenStream::new();
     for (result, place) in routine.results.iter().zip(places) {
         let Some(place) = place else { continue };
@@ -249,15 +253,8 @@ impl<'a> Writer<'a> {
 
     /// Puts values where they are wanted.
     fn store(&self, values: Range<usize>) -> TokenStream {
-        let kept = self.kept.range(values.clone());
-        let kept = kept.filter(|_| self.columns.is_none());
-        let kept = kept.map(|(value, place)| {
-            let (value, place) = (&self.names[*value], Literal::usize_suffixed(*place));
-            quote!(kept[#place] = #value;)
-        });
         let written = self.written.range(values);
-        kept.chain(written.map(|(_, lines)| lines.clone()))
-            .collect()
+        written.map(|(_, lines)| lines.clone()).collect()
     }
 
     /// The names that a step gives to what it makes.
@@ -458,9 +455,10 @@ impl<'a> Writer<'a> {
                     quote!(folded[#index])
                 }
             }
-            Source::Value(index) => match (&self.columns, self.kept.get(&index)) {
-                (Some(_), Some(place)) => element(quote!(kept), *place),
-                _ => self.names[index].to_token_stream(),
+            Source::Value(index) => match self.columns.as_ref().and_then(|_| self.kept.get(&index))
+            {
+                Some(place) => element(quote!(kept), *place),
+                None => self.names[index].to_token_stream(),
             },
         }
     }

@@ -28,7 +28,7 @@ impl Method for Pirk8 {
 }
 
 impl Estimating for Pirk8 {
-    const ESTIMATE_ORDER: u32 = 8;
+    const ESTIMATE_ORDER: u32 = 9;
 }
 
 impl Family for Pirk8 {
@@ -96,13 +96,14 @@ const DENSE: [[f64; 5]; 2] = [
 ];
 
 /// Sweeps of a step.
-const SWEEPS: u32 = 3;
+const SWEEPS: u32 = 4;
 /// Further sweeps where there is no step before.
-const FIRST: u32 = 4;
-/// An error up to so many tolerances is worth one more sweep.
+const FIRST: u32 = 3;
+/// An error of up to so many tolerances is worth one more sweep.
 const WORTH: f64 = 30.0;
-/// What is left of a change counts after each sweep at least as so much.
-const REMAINS: f64 = 0.02;
+/// Part of the square of the first change that counts as error whatever the other sweeps change: where the slope depends
+/// on time alone they change nothing.
+const REMAINS: f64 = 1e-8;
 
 /// Slopes at the nodes of a step.
 #[derive(Clone, Copy)]
@@ -147,41 +148,45 @@ impl<T: Real, const N: usize> Stepper<Pirk8, T, N> for Stages<T, N> {
             weights[0].multiply_add(slope, T::Stages::whole(start.x[state]))
         });
         let times = T::Stages::from_columns(|stage| start.span.at(T::from_f64(NODES[stage + 1])));
-        let sweeps = if self.before.is_some() {
-            SWEEPS
-        } else {
-            SWEEPS + FIRST
+        let is_first = self.before.is_none();
+        let sweeps = SWEEPS + if is_first { FIRST } else { 0 };
+
+        let mut stages = advanced::<T, N>(&base, &weights, &self.predicted(start));
+        let measure = tolerance.map(|it| it.between(&start.x, &(end::<T, N>(&stages) - start.x)));
+        let square = |change: &SVector<T::Stages, N>| match &measure {
+            Some(measure) => measure.square(&end::<T, N>(change)),
+            None => 0.0,
         };
-        let mut slopes = self.predicted(start);
-        let mut states = advanced::<T, N>(&base, &weights, &slopes);
-        let measure = tolerance.map(|it| it.between(&start.x, &(last::<T, N>(&states) - start.x)));
-        let mut error = 0.0;
-        let mut sweep = 0;
-        loop {
-            slopes = problem.slopes(times, &states);
+        let (mut sweep, mut missed) = (0, 0.0);
+        let (slopes, error) = loop {
+            let slopes = problem.slopes(times, &stages);
             let next = advanced::<T, N>(&base, &weights, &slopes);
+            let change = next - stages;
+            stages = next;
             sweep += 1;
-            if let Some(measure) = &measure {
-                error = REMAINS * error + measure.norm(&last::<T, N>(&(next - states)));
+            if sweep == 1 && !is_first {
+                missed = REMAINS * square(&change);
             }
-            states = next;
-            let more = error > 1.0 && error < WORTH && sweep == sweeps;
-            if sweep >= sweeps && !more {
-                break;
+            if sweep < sweeps {
+                continue;
             }
-        }
-        if sweep > sweeps && error < 1.0 {
-            // Taken, but the next step shall be shorter.
-            error = 1.0;
-        }
+            let error = Real::sqrt(square(&change) + missed);
+            if sweep > sweeps {
+                // Good enough or not, the next step shall be shorter.
+                break (slopes, error.max(1.0));
+            }
+            if !(1.0..WORTH).contains(&error) {
+                break (slopes, error);
+            }
+        };
         self.tried = Some(Slopes {
             length,
             first: start.slope,
             others: slopes,
         });
         Trial {
-            change: last::<T, N>(&states) - start.x,
-            slope: Some(last::<T, N>(&slopes)),
+            change: end::<T, N>(&stages) - start.x,
+            slope: Some(end::<T, N>(&slopes)),
             error,
         }
     }
@@ -266,13 +271,13 @@ fn advanced<T: Real, const N: usize>(
 #[inline(always)]
 fn summed<T: Real>(sum: T::Stages, weights: &[T::Stages; 5], slopes: &T::Stages) -> T::Stages {
     let slopes = slopes.as_columns();
-    (0..4).fold(sum, |sum, stage| {
-        weights[stage + 1].multiply_add(T::Stages::whole(slopes[stage]), sum)
-    })
+    let [a, b, c, d] = [0, 1, 2, 3].map(|stage| T::Stages::whole(slopes[stage]));
+    let early = weights[2].multiply_add(b, weights[1].multiply_add(a, sum));
+    early + weights[4].multiply_add(d, weights[3] * c)
 }
 
 /// The last stage, at the end of the step.
 #[inline(always)]
-fn last<T: Real, const N: usize>(stages: &SVector<T::Stages, N>) -> SVector<T, N> {
+fn end<T: Real, const N: usize>(stages: &SVector<T::Stages, N>) -> SVector<T, N> {
     stages.map(|it| it.as_columns()[3])
 }

@@ -5,7 +5,6 @@ use nalgebra::SVector;
 use super::dense::Polynomial;
 use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combination};
 use super::problem::Problem;
-use super::seen;
 use super::tolerance::{Measure, Tolerance};
 use crate::{Columns, Input, Real, System};
 
@@ -161,28 +160,27 @@ impl<T: Real, const N: usize> Stepper<Pirk8, T, N> for Stages<T, N> {
 
         let mut stages = advanced::<T, N>(&base, &weights, &self.predicted(start));
         let measure = tolerance.map(|it| it.between(&start.x, &(at::<T, N>(3, &stages) - start.x)));
-        let mut sweep = 0;
-        let (slopes, mut square) = loop {
+        let (mut sweep, mut missed) = (0, 0.0);
+        let (slopes, mut error) = loop {
             let slopes = problem.slopes(times, &stages);
             let next = advanced::<T, N>(&base, &weights, &slopes);
-            let change = next - stages;
+            let change = at::<T, N>(3, &(next - stages));
             stages = next;
             sweep += 1;
+            if let Some(measure) = &measure
+                && sweep == 1
+            {
+                missed = truncation::<T, N>(measure, start, &slopes);
+            }
             if sweep < sweeps {
                 continue;
             }
-            let square = measure
-                .as_ref()
-                .map_or(0.0, |it| it.square(&at::<T, N>(3, &change)));
-            if sweep > sweeps || !(1.0..WORTH * WORTH).contains(&square) {
-                break (slopes, square);
+            let square = measure.as_ref().map_or(0.0, |it| it.square(&change));
+            let error = Real::sqrt(square + missed);
+            if sweep > sweeps || !(1.0..WORTH).contains(&error) {
+                break (slopes, error);
             }
         };
-        if let Some(measure) = &measure {
-            let truncated = truncated::<T, N>(measure, &start.slope, &slopes);
-            square += truncated * seen(length) * seen(length);
-        }
-        let mut error = Real::sqrt(square);
         if sweep > sweeps {
             // Good enough or not, the next step shall be shorter.
             error = error.max(1.0);
@@ -284,23 +282,22 @@ fn summed<T: Real>(sum: T::Stages, weights: &[T::Stages; 5], slopes: &T::Stages)
     early + weights[4].multiply_add(d, weights[3] * c)
 }
 
-/// What the method misses even where the sweeps have come to their end, in units of the tolerance and of the length of
-/// the step.
+/// What the method misses even where the sweeps come to their end: the mean square in units of the tolerance.
 ///
 /// Legendre's coefficients of smooth slopes fall by much the same ratio r from the second to the fourth and from there to
 /// the eighth, which is the first that the method takes for another: of a sine it is the fourth times r² / 16, and a
 /// quarter of it counts. Where slopes jump r is near one, and all of the fourth counts.
-#[inline(always)]
-fn truncated<T: Real, const N: usize>(
+#[inline(never)]
+fn truncation<T: Real, const N: usize>(
     measure: &Measure<N>,
-    first: &SVector<T, N>,
-    others: &SVector<T::Stages, N>,
+    start: &Start<T, N>,
+    slopes: &SVector<T::Stages, N>,
 ) -> f64 {
-    let weights =
-        LEGENDRE.map(|[second, fourth]| scaled::<T>(T::from_f64(1.0), [second, fourth, 0.0, 0.0]));
+    let length = start.span.length;
+    let weights = LEGENDRE.map(|[second, fourth]| scaled::<T>(length, [second, fourth, 0.0, 0.0]));
     let both = SVector::from_fn(|state, _| {
-        let first = weights[0] * T::Stages::whole(first[state]);
-        summed::<T>(first, &weights, &others[state])
+        let first = weights[0] * T::Stages::whole(start.slope[state]);
+        summed::<T>(first, &weights, &slopes[state])
     });
     let [second, fourth] = [0, 1].map(|place| measure.square(&at::<T, N>(place, &both)));
     let ratio = fourth / (fourth + second).max(f64::MIN_POSITIVE);

@@ -139,3 +139,45 @@ impl<T: Real> Real for Four<T> {
         }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_is_what_it_is_alone() {
+        let (a, b) = ([0.3, -0.7, 0.0, 2.5], [1.5, -0.2, -3.0, 2.5]);
+        let (first, second) = (Four(a), Four(b));
+        let bits = |numbers: [f64; 4]| numbers.map(f64::to_bits);
+        macro_rules! each {
+            ($($name:ident),*; $($pair:ident),*) => {
+                $( assert_eq!(bits(Real::$name(first).0), bits(a.map(Real::$name)), stringify!($name)); )*
+                $(
+                    let alone = [0, 1, 2, 3].map(|place| Real::$pair(a[place], b[place]));
+                    assert_eq!(bits(Real::$pair(first, second).0), bits(alone), stringify!($pair));
+                )*
+            };
+        }
+        each!(sin, cos, tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, min, max);
+        let with = |operator: fn(f64, f64) -> f64| [0, 1, 2, 3].map(|k| operator(a[k], b[k]));
+        assert_eq!((first + second).0, with(|a, b| a + b));
+        assert_eq!((first - second).0, with(|a, b| a - b));
+        assert_eq!((first * second).0, with(|a, b| a * b));
+        assert_eq!((first / second).0, with(|a, b| a / b));
+        assert_eq!((-first).0, a.map(|a| -a));
+        assert_eq!(
+            first.multiply_add(second, first).0,
+            with(|a, b| a.multiply_add(b, a))
+        );
+        assert_eq!(
+            first.select_less(second, first, -second).0,
+            with(|a, b| if a < b { a } else { -b })
+        );
+        let mut sum = first;
+        sum += second;
+        sum -= first;
+        assert_eq!(sum.0, with(|a, b| (a + b) - a));
+        assert_eq!(first.find(|number| number < 0.0), Some(-0.7));
+        assert_eq!(first.find(|number| number > 3.0), None);
+    }
+}

@@ -85,10 +85,12 @@ pub trait Real:
         (both.map(|it| it.0), both.map(|it| it.1))
     }
     /// Sine.
+    #[inline]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
     /// Cosine.
+    #[inline]
     fn cos(self) -> Self {
         self.sin_cos().1
     }

@@ -162,15 +162,11 @@ fn system(compiled: &Compiled) -> TokenStream {
 fn derivatives(compiled: &Compiled) -> Option<TokenStream> {
     let name = &compiled.model.name;
     let parameters = format_ident!("{}Parameters", name);
-    let fields: Vec<_> = compiled
-        .model
-        .parameters
-        .iter()
-        .map(|it| &it.name)
-        .collect();
+    let declared = &compiled.model.parameters;
+    let fields: Vec<_> = declared.iter().map(|it| &it.name).collect();
     let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
-    let phantom = compiled.model.parameters.is_empty();
-    let phantom = phantom.then(|| quote!(scalar: ::core::marker::PhantomData));
+    let phantom = quote!(scalar: ::core::marker::PhantomData);
+    let phantom = declared.is_empty().then_some(phantom);
     compiled.iterations().next().is_none().then(|| {
         quote! {
             #[inline]

@@ -102,12 +102,6 @@ const DENSE: [[f64; 5]; 2] = [
     [2.8, -98.0 / 15.0, 112.0 / 15.0, -98.0 / 15.0, 2.8],
 ];
 
-/// Sweeps of a step.
-const SWEEPS: u32 = 4;
-/// Further sweeps where there is no step before.
-const FIRST: u32 = 3;
-/// An error of up to so many tolerances is worth one more sweep.
-const WORTH: f64 = 30.0;
 /// Weights of the slope at each node in the second and in the fourth of Legendre's coefficients.
 const LEGENDRE: [[f64; 2]; 5] = [
     [0.25, 0.2],
@@ -116,6 +110,13 @@ const LEGENDRE: [[f64; 2]; 5] = [
     [7.0 / 36.0, -7.0 / 15.0],
     [0.25, 0.2],
 ];
+
+/// Sweeps of a step.
+const SWEEPS: u32 = 4;
+/// Further sweeps where there is no step before.
+const FIRST: u32 = 3;
+/// An error of up to so many tolerances is worth one more sweep.
+const WORTH: f64 = 30.0;
 
 /// Slopes at the nodes of a step.
 #[derive(Clone, Copy)]

@@ -26,7 +26,6 @@ impl Law<4, 0> for DoublePendulum {
         state("second rate"),
     ];
 
-    #[inline(always)]
     fn slope<T: Real>(&self, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
         let number = T::from_f64;
         let [first, second, v, w] = x.data.0[0];

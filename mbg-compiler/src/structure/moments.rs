@@ -4,7 +4,7 @@
 //! junction. Both together are a moment of its [`Tensor`]. So the efforts of the law are counted from `−ω × J ω`: a shift
 //! by something known, which is made where the balances then hold nothing that was not there before.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::carried::Triple;
 use super::eliminate::System;
@@ -42,28 +42,44 @@ impl Moment {
         vectors: &[Triple],
         velocity: &dyn Fn(usize) -> Expression,
     ) -> Vec<Self> {
-        let moment = |omega: &Triple| {
-            let rows = omega.iter().flat_map(|rate| system.rows_with(*rate));
-            let rows: BTreeSet<usize> = rows.filter(|row| tree.given_by(*row).is_none()).collect();
-            let laws: Option<Vec<Law>> = rows.iter().map(|row| law(system, *row, omega)).collect();
-            let laws: [Law; 3] = laws?.try_into().ok()?;
-            let speeds = omega.map(|rate| pool.image(velocity(rate)));
-            ORDERS.iter().find_map(|order| {
-                let inertia = order.map(|number| laws[number].row_of_inertia(omega));
-                let symmetric = |a: usize| (0..a).all(|b| inertia[a][b] == inertia[b][a]);
-                if !(0..3).all(symmetric) {
-                    return None;
-                }
-                let turning = gyroscopic(pool, &speeds, &inertia);
-                let effort = |k: usize| laws[order[k]].effort(pool, system, turning[k]);
-                Some(Self {
-                    omega: *omega,
-                    inertia,
-                    efforts: [effort(0)?, effort(1)?, effort(2)?],
-                })
-            })
+        let mut balances = Balances {
+            system,
+            left: BTreeMap::new(),
         };
-        vectors.iter().filter_map(moment).collect()
+        let mut moments = Vec::new();
+        for omega in vectors {
+            let speeds = omega.map(|rate| pool.image(velocity(rate)));
+            let moment = laws(system, tree, omega)
+                .and_then(|laws| Self::of(pool, &balances, *omega, &speeds, &laws));
+            for effort in moment.iter().flat_map(|it: &Self| &it.efforts) {
+                balances.left.insert(effort.balance, effort.left);
+            }
+            moments.extend(moment);
+        }
+        moments
+    }
+
+    fn of(
+        pool: &Pool,
+        balances: &Balances,
+        omega: Triple,
+        speeds: &[Image; 3],
+        laws: &[Law; 3],
+    ) -> Option<Self> {
+        ORDERS.iter().find_map(|order| {
+            let inertia = order.map(|number| laws[number].row_of_inertia(&omega));
+            let symmetric = |a: usize| (0..a).all(|b| inertia[a][b] == inertia[b][a]);
+            let turning = gyroscopic(pool, speeds, &inertia);
+            if !(0..3).all(symmetric) || turning == [Image::ZERO; 3] {
+                return None;
+            }
+            let effort = |k: usize| laws[order[k]].effort(pool, balances, turning[k]);
+            Some(Self {
+                omega,
+                inertia,
+                efforts: [effort(0)?, effort(1)?, effort(2)?],
+            })
+        })
     }
 
     /// Counts the efforts anew, with the motion that rates are counted from; gives what they were.
@@ -96,7 +112,33 @@ struct Law {
     terms: Vec<(usize, Expression)>,
 }
 
-fn law(system: &System, row: usize, omega: &Triple) -> Option<Law> {
+/// What is known in rows, as far as moments have changed it.
+struct Balances<'a> {
+    system: &'a System,
+    left: BTreeMap<usize, Expression>,
+}
+
+impl Balances<'_> {
+    fn right(&self, row: usize) -> Expression {
+        let left = self.left.get(&row).copied();
+        left.unwrap_or_else(|| self.system.right(row))
+    }
+}
+
+/// The rows that give efforts from a vector of rates, if there are three of them with balances of their own.
+fn laws(system: &System, tree: &Tree, omega: &Triple) -> Option<[Law; 3]> {
+    let rows = omega.iter().flat_map(|rate| system.rows_with(*rate));
+    let rows: BTreeSet<usize> = rows.filter(|row| tree.given_by(*row).is_none()).collect();
+    let laws: Option<Vec<Law>> = rows
+        .iter()
+        .map(|row| law(system, tree, *row, omega))
+        .collect();
+    let laws: [Law; 3] = laws?.try_into().ok()?;
+    let balances: BTreeSet<usize> = laws.iter().map(|law| law.balance).collect();
+    (balances.len() == 3).then_some(laws)
+}
+
+fn law(system: &System, tree: &Tree, row: usize, omega: &Triple) -> Option<Law> {
     let mut efforts = system
         .row(row)
         .map(|(column, _)| column)
@@ -109,7 +151,8 @@ fn law(system: &System, row: usize, omega: &Triple) -> Option<Law> {
         return None;
     };
     let given = Given::of(system, row, effort)?;
-    (given.constant == Expression::ZERO).then_some(Law {
+    // What closes a loop gives a rate from others.
+    (given.constant == Expression::ZERO && !tree.is_given(effort)).then_some(Law {
         row,
         balance,
         effort,
@@ -126,9 +169,9 @@ impl Law {
     }
 
     /// The effort, if its balance holds this component of `ω × J ω`.
-    fn effort(&self, pool: &Pool, system: &System, turning: Image) -> Option<Effort> {
-        let factor = pool.image(system.entry(self.balance, self.effort));
-        let left = pool.image(system.right(self.balance));
+    fn effort(&self, pool: &Pool, balances: &Balances, turning: Image) -> Option<Effort> {
+        let factor = pool.image(balances.system.entry(self.balance, self.effort));
+        let left = pool.image(balances.right(self.balance));
         Some(Effort {
             law: Given {
                 unknown: self.effort,

@@ -13,3 +13,5 @@ mod events;
 mod hard;
 #[path = "methods/orders.rs"]
 mod orders;
+#[path = "methods/parallel.rs"]
+mod parallel;

@@ -36,4 +36,5 @@ mod models {
     mod navigation;
     mod parameters;
     mod pins;
+    mod stages;
 }

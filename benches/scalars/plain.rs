@@ -53,6 +53,7 @@ macro_rules! functions {
 
 impl<const LIBRARY: bool> Real for Plain<LIBRARY> {
     type Columns = Self;
+    type Stages = mbg_runtime::Four<Self>;
 
     const SINGULAR: f64 = <f64 as Real>::SINGULAR;
     const EPSILON: f64 = <f64 as Real>::EPSILON;

@@ -57,6 +57,17 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
         self.0.slope(x, u)
     }
 
+    #[inline]
+    fn derivatives(
+        &self,
+        _: T::Stages,
+        x: &SVector<T::Stages, N>,
+        u: &SVector<T::Stages, M>,
+        _: &mut (),
+    ) -> SVector<T::Stages, N> {
+        self.0.slope(x, u)
+    }
+
     fn output(&self, _: T, _: &SVector<T, N>, _: &SVector<T, M>, _: &mut ()) -> SVector<T, 0> {
         SVector::from_element(T::from_f64(0.0))
     }

@@ -27,7 +27,7 @@ mod picture;
 mod reference;
 mod table;
 
-use mbg_runtime::{Dop853, Input, Radau5, Rodas4, Rodas5P, System, Tsit5};
+use mbg_runtime::{Dop853, Input, Pirk8, Radau5, Rodas4, Rodas5P, System, Tsit5};
 use nalgebra::SVector;
 
 pub use measure::{Comparison, Measured, Point};
@@ -137,6 +137,7 @@ where
     } else {
         comparison.over_tolerances(Tsit5, &TOLERANCES);
         comparison.over_tolerances(Dop853, &TOLERANCES);
+        comparison.over_tolerances(Pirk8, &TOLERANCES);
     }
     Ok(comparison)
 }

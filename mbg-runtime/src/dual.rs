@@ -129,6 +129,7 @@ impl<T: Real> SubAssign for Dual<T> {
 
 impl<T: Real> Real for Dual<T> {
     type Columns = Self;
+    type Stages = crate::Four<Self>;
 
     const SINGULAR: f64 = T::SINGULAR;
     const EPSILON: f64 = T::EPSILON;

@@ -112,6 +112,7 @@ macro_rules! lanes {
 
         impl Real for $lanes {
             type Columns = Self;
+            type Stages = crate::Four<Self>;
 
             const SINGULAR: f64 = <$scalar as Real>::SINGULAR;
             const EPSILON: f64 = <$scalar as Real>::EPSILON;

@@ -17,6 +17,7 @@ pub mod __private;
 pub mod attitude;
 mod columns;
 mod dual;
+mod four;
 mod input;
 #[cfg(feature = "lanes")]
 pub mod lanes;
@@ -37,6 +38,7 @@ mod system;
 
 pub use columns::Columns;
 pub use dual::Dual;
+pub use four::Four;
 pub use input::{Constant, Differentiable, Input, Pulse, Smooth, Sum};
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
 pub use real::{FUSED, Real};
@@ -46,8 +48,8 @@ pub use sparsity::{Elimination, Sparsity};
 pub use step::Verner9;
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
-    ImplicitMidpoint, Integrator, Method, Picked, Radau5, Reason, Rk4, Rodas4, Rodas5P, Ros2,
-    Statistics, Step, Stopped, Tsit5,
+    ImplicitMidpoint, Integrator, Method, Picked, Pirk8, Radau5, Reason, Rk4, Rodas4, Rodas5P,
+    Ros2, Statistics, Step, Stopped, Tsit5,
 };
 pub use system::{ParameterError, Power, System, Trouble};
 

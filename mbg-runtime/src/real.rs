@@ -43,6 +43,9 @@ pub trait Real:
 {
     /// What several columns of a Jacobian are worked out in at once.
     type Columns: crate::Columns<Self>;
+    /// Four of them side by side, as the stages of a step are: lanes where the feature `lanes` has them, else
+    /// [`Four`](crate::Four), which takes one after the other.
+    type Stages: crate::Columns<Self>;
 
     /// Below this a normalised determinant counts as singular: the square root of the precision.
     const SINGULAR: f64;
@@ -82,10 +85,12 @@ pub trait Real:
         (both.map(|it| it.0), both.map(|it| it.1))
     }
     /// Sine.
+    #[inline]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
     /// Cosine.
+    #[inline]
     fn cos(self) -> Self {
         self.sin_cos().1
     }

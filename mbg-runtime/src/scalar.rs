@@ -112,6 +112,10 @@ impl Real for f64 {
     type Columns = crate::lanes::f64x4;
     #[cfg(not(feature = "lanes"))]
     type Columns = Self;
+    #[cfg(feature = "lanes")]
+    type Stages = crate::lanes::f64x4;
+    #[cfg(not(feature = "lanes"))]
+    type Stages = crate::Four<Self>;
     const SINGULAR: f64 = 1.490_116_119_384_765_6e-8;
 
     ordered!(f64);
@@ -131,6 +135,7 @@ impl Real for f32 {
     type Columns = crate::lanes::f32x8;
     #[cfg(not(feature = "lanes"))]
     type Columns = Self;
+    type Stages = crate::Four<Self>;
     const SINGULAR: f64 = 3.452_669_830_012_439_4e-4;
 
     ordered!(f32);

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::input::quotient;
 use crate::step::Element;
-use crate::{Loop, Memory, Meta, Real, Solver, Sparsity};
+use crate::{Columns, Loop, Memory, Meta, Real, Solver, Sparsity};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -45,6 +45,25 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         u: &SVector<T, M>,
         memory: &mut Self::Memory,
     ) -> SVector<T, N>;
+
+    /// [`derivative`](Self::derivative) at four stages of a step, each with its time, state and input.
+    ///
+    /// Generated models without nonlinear loops evaluate all four at once where the scalar has lanes. Unless it is
+    /// given, one stage follows the other.
+    fn derivatives(
+        &self,
+        t: T::Stages,
+        x: &SVector<T::Stages, N>,
+        u: &SVector<T::Stages, M>,
+        memory: &mut Self::Memory,
+    ) -> SVector<T::Stages, N> {
+        let slopes: [SVector<T, N>; 4] = core::array::from_fn(|stage| {
+            let x = x.map(|state| state.as_columns()[stage]);
+            let u = u.map(|input| input.as_columns()[stage]);
+            self.derivative(t.as_columns()[stage], &x, &u, memory)
+        });
+        SVector::from_fn(|state, _| T::Stages::from_columns(|stage| slopes[stage][state]))
+    }
 
     /// Outputs.
     fn output(

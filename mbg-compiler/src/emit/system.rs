@@ -115,6 +115,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let [cold_energy, cold_conditioning] =
         [Routines::ENERGY, Routines::CONDITIONING].map(|routine| cold_memory(compiled, routine));
     let memory = memory(compiled);
+    let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
     let arguments = quote! {
         t: T,
@@ -137,6 +138,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn derivative(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
                 #derivative
             }
+            #derivatives
             #[inline]
             fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
             #jacobians
@@ -154,6 +156,36 @@ fn system(compiled: &Compiled) -> TokenStream {
             #sparsity
         }
     }
+}
+
+/// The derivative at four stages at once, by the model with its numbers four times side by side; none where it remembers.
+fn derivatives(compiled: &Compiled) -> Option<TokenStream> {
+    let name = &compiled.model.name;
+    let parameters = format_ident!("{}Parameters", name);
+    let declared = &compiled.model.parameters;
+    let fields: Vec<_> = declared.iter().map(|it| &it.name).collect();
+    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
+    let phantom = quote!(scalar: ::core::marker::PhantomData);
+    let phantom = declared.is_empty().then_some(phantom);
+    compiled.iterations().next().is_none().then(|| {
+        quote! {
+            #[inline]
+            fn derivatives(
+                &self,
+                t: T::Stages,
+                x: &::mbg_runtime::__private::SVector<T::Stages, #n>,
+                u: &::mbg_runtime::__private::SVector<T::Stages, #m>,
+                memory: &mut (),
+            ) -> ::mbg_runtime::__private::SVector<T::Stages, #n> {
+                let whole = |value: T| <T::Stages as ::mbg_runtime::Columns<T>>::whole(value);
+                let stages = #name::<T::Stages> {
+                    parameters: #parameters { #(#fields: whole(self.parameters.#fields),)* #phantom },
+                    folded: self.folded.map(whole),
+                };
+                ::mbg_runtime::System::derivative(&stages, t, x, u, memory)
+            }
+        }
+    })
 }
 
 /// Makes what a function returns of the results of its routine.

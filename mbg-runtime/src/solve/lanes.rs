@@ -61,6 +61,7 @@ macro_rules! functions {
 
 impl Real for Pair {
     type Columns = Self;
+    type Stages = crate::Four<Self>;
 
     const SINGULAR: f64 = <f64 as Real>::SINGULAR;
     const EPSILON: f64 = <f64 as Real>::EPSILON;

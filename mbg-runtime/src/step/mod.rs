@@ -13,6 +13,7 @@ mod linear;
 mod method;
 #[cfg(test)]
 mod models;
+mod parallel;
 mod probes;
 mod problem;
 mod radau;
@@ -40,6 +41,7 @@ pub use gauss::{Gauss6, ImplicitMidpoint};
 pub use integrator::{Arrival, Integrator};
 pub use linear::{Complex, Element};
 pub use method::{Estimating, Method};
+pub use parallel::Pirk8;
 pub use radau::Radau5;
 pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
 

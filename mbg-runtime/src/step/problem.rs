@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::probes::Probes;
 use super::{Cause, Statistics, Stopped, check_result, seen};
-use crate::{Input, Real, System};
+use crate::{Columns, Input, Real, System};
 
 /// What a run carries from step to step besides the state.
 pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
@@ -43,6 +43,21 @@ where
         self.statistics.evaluations += 1;
         let u = self.input.value(t, self.since);
         self.system.derivative(t, x, &u, &mut self.memory)
+    }
+
+    /// The derivatives at four stages.
+    #[inline]
+    pub(super) fn slopes(
+        &mut self,
+        times: T::Stages,
+        x: &SVector<T::Stages, N>,
+    ) -> SVector<T::Stages, N> {
+        self.statistics.evaluations += 4;
+        let u = times.as_columns();
+        let u: [SVector<T, M>; 4] =
+            core::array::from_fn(|stage| self.input.value(u[stage], self.since));
+        let u = SVector::from_fn(|input, _| T::Stages::from_columns(|stage| u[stage][input]));
+        self.system.derivatives(times, x, &u, &mut self.memory)
     }
 
     /// `∂f/∂x`.

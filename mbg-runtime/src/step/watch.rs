@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use crate::step::method::Estimating;
     use crate::step::models::Oscillator;
-    use crate::{Adaptive, Dop853, Integrator, Smooth, Tsit5};
+    use crate::{Adaptive, Dop853, Integrator, Pirk8, Smooth, Tsit5};
 
     /// Three pushes on an oscillator at rest, this long and each of momentum 1; nobody tells of their jumps.
     fn pushed(method: impl Estimating, length: f64) -> f64 {
@@ -117,7 +117,13 @@ mod tests {
 
     #[test]
     fn jumps_that_are_not_declared_are_not_stepped_over() {
-        let errors = [0.1, 0.02].map(|length| [pushed(Tsit5, length), pushed(Dop853, length)]);
+        let errors = [0.1, 0.02].map(|length| {
+            [
+                pushed(Tsit5, length),
+                pushed(Dop853, length),
+                pushed(Pirk8, length),
+            ]
+        });
         // Stepped over, they would be missing altogether: an error of order one.
         assert!(
             errors.iter().flatten().all(|error| *error < 1e-4),

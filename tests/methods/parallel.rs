@@ -1,0 +1,72 @@
+//! All stages of a step at once: the same slopes, and errors that follow the tolerance.
+
+use mbg_runtime::{Adaptive, Dop853, Estimating, Integrator, Pirk8, Smooth};
+use nalgebra::SVector;
+
+use crate::problems::{Hunters, Law, Oscillator, Pendulum, RigidBody, Written};
+
+/// The state after ten seconds.
+fn end<L, S, const N: usize>(
+    law: L,
+    start: SVector<f64, N>,
+    method: S,
+    tolerance: f64,
+) -> SVector<f64, N>
+where
+    L: Law<N, 0> + Copy,
+    S: Estimating,
+{
+    let mut last = start;
+    Adaptive::new(method, tolerance, tolerance)
+        .integrate(&Written(law), &(), 0.0, 10.0, start, |step| {
+            last = *step.state()
+        })
+        .unwrap();
+    last
+}
+
+/// The largest error at tolerances from 1e-3 to 1e-10, in units of the tolerance.
+fn worst<L, S, const N: usize>(law: L, start: SVector<f64, N>, method: S) -> f64
+where
+    L: Law<N, 0> + Copy,
+    S: Estimating,
+{
+    let exact = end(law, start, Dop853, 1e-14);
+    (3..=10).fold(0.0, |worst: f64, digits| {
+        let tolerance = 10.0_f64.powi(-digits);
+        worst.max((end(law, start, method, tolerance) - exact).amax() / tolerance)
+    })
+}
+
+#[test]
+fn errors_are_as_many_tolerances_as_those_of_the_method_of_dormand_and_prince() {
+    fn compare<L: Law<N, 0> + Copy, const N: usize>(law: L, start: [f64; N]) {
+        let start = SVector::from(start);
+        let [ours, theirs] = [worst(law, start, Pirk8), worst(law, start, Dop853)];
+        println!("{ours:.1} and {theirs:.1} tolerances");
+        assert!(ours < 2.0 * theirs, "{ours} {theirs}");
+    }
+    compare(Pendulum, [1.5, 3.0]);
+    compare(Pendulum, [2.5, 0.0]);
+    compare(Hunters, [3.0, 2.0]);
+    compare(RigidBody, [1.0, 4.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
+}
+
+/// Where sweeps change nothing the estimate must see what the method misses: an input far faster than the system.
+#[test]
+fn a_fast_input_is_followed() {
+    let frequency = 60.0;
+    let input = Smooth(|t: f64| SVector::from([(frequency * t).cos()]));
+    let exact = |t: f64| ((frequency * t).cos() - t.cos()) / (1.0 - frequency * frequency);
+    for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
+        let mut last = SVector::from([0.0, 0.0]);
+        let statistics = Adaptive::new(Pirk8, tolerance, tolerance)
+            .integrate(&Written(Oscillator), &input, 0.0, 10.0, last, |step| {
+                last = *step.state()
+            })
+            .unwrap();
+        let error = (last[0] - exact(10.0)).abs();
+        println!("{tolerance:e}: {error:.1e} {statistics:?}");
+        assert!(error < 10.0 * tolerance, "{tolerance:e}: {error:e}");
+    }
+}

@@ -72,7 +72,7 @@ const PAIR: [f64; 2] = [2.681_082_873_627_752_3, 3.050_430_199_247_411];
 /// Weights of the stages in the estimate of the error.
 const ERROR: [f64; 3] = [-(13.0 + 7.0 * Q) / 3.0, (-13.0 + 7.0 * Q) / 3.0, -1.0 / 3.0];
 /// Most sweeps in a step that is controlled by its error.
-const SWEEPS: i32 = 8;
+const SWEEPS: i32 = 10;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
 /// A sweep that reduces the error so much keeps the Jacobian.
@@ -83,8 +83,6 @@ pub struct Stages<T, const N: usize> {
     jacobian: SMatrix<T, N, N>,
     /// Whether the Jacobian may serve for another step.
     keeps: bool,
-    /// Whether the Jacobian is that of the present start.
-    fresh: bool,
     factors: Option<(T, Shifted<T, N>, Shifted<Complex<T>, N>)>,
     /// Last step: its length and the coefficients of its polynomial; none at the start and behind a jump.
     last: Option<(T, [SVector<T, N>; 3])>,
@@ -103,7 +101,6 @@ impl<T: Real, const N: usize> Stepper<Radau5, T, N> for Stages<T, N> {
         Self {
             jacobian: SMatrix::from_element(zero),
             keeps: false,
-            fresh: false,
             factors: None,
             last: None,
             tried: (zero, [SVector::from_element(zero); 3]),
@@ -125,12 +122,11 @@ impl<T: Real, const N: usize> Stepper<Radau5, T, N> for Stages<T, N> {
         let length = start.span.length;
         if !start.again {
             self.last = (self.tried.0 != T::from_f64(0.0)).then_some(self.tried);
-            self.fresh = false;
         }
-        self.factorise(problem, start);
         let mut stages = self.predict(length);
+        self.factorise(problem, start, &stages);
         let Some((_, real, pair)) = &self.factors else {
-            return failed(&stages);
+            return failed(&stages, f64::INFINITY);
         };
         let mut newton = Newton {
             problem,
@@ -140,11 +136,14 @@ impl<T: Real, const N: usize> Stepper<Radau5, T, N> for Stages<T, N> {
         };
         let found = match tolerance {
             Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
-            None => newton.settled(&mut stages).then_some(f64::INFINITY),
+            None => newton.settled(&mut stages),
         };
-        let Some(theta) = found else {
-            (self.keeps, self.rejected, self.rate) = (false, true, 1.0);
-            return failed(&stages);
+        let theta = match found {
+            Ok(theta) => theta,
+            Err(left) => {
+                (self.keeps, self.rejected, self.rate) = (false, true, 1.0);
+                return failed(&stages, left);
+            }
         };
         self.keeps = theta <= FAST;
         let error = tolerance.map_or(0.0, |tolerance| {
@@ -178,19 +177,25 @@ impl<T: Real, const N: usize> Stepper<Radau5, T, N> for Stages<T, N> {
 
 impl<T: Real, const N: usize> Stages<T, N> {
     /// A Jacobian and factors that serve for this step.
+    ///
+    /// The Jacobian is taken at the predicted second stage, a little behind the middle: over the step it is wrong by
+    /// half of what one at the start would be, and sweeps converge faster.
     fn factorise<Y, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         start: &Start<T, N>,
+        [_, middle, _]: &Three<T, N>,
     ) where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        if !self.keeps && !self.fresh {
-            self.jacobian = problem.jacobian(start.span.start, &start.x);
-            (self.fresh, self.factors) = (true, None);
+        let Start { span, x, .. } = start;
+        if !self.keeps {
+            let t = span.at(T::from_f64(NODES[1]));
+            self.jacobian = problem.jacobian(t, &(x + middle));
+            self.factors = None;
         }
-        let length = start.span.length;
+        let length = span.length;
         if self
             .factors
             .as_ref()
@@ -225,12 +230,12 @@ impl<T: Real, const N: usize> Stages<T, N> {
     }
 }
 
-/// A step that did not come off.
-fn failed<T: Real, const N: usize>(stages: &Three<T, N>) -> Trial<T, N> {
+/// A step whose sweeps would leave so many times what is enough.
+fn failed<T: Real, const N: usize>(stages: &Three<T, N>, left: f64) -> Trial<T, N> {
     Trial {
         change: stages[2],
         slope: None,
-        error: f64::INFINITY,
+        error: left,
     }
 }
 
@@ -313,14 +318,14 @@ where
         changes
     }
 
-    /// Sweeps until what is left is small beside the tolerance; gives the last rate of convergence, or nothing when
-    /// the bound on sweeps is not going to suffice.
+    /// Sweeps until what is left is small beside the tolerance; gives the last rate of convergence, or how many times
+    /// what is enough would be left when the bound on sweeps is not going to suffice.
     fn controlled(
         &mut self,
         stages: &mut Three<T, N>,
         tolerance: &Tolerance<N>,
         rate: &mut f64,
-    ) -> Option<f64> {
+    ) -> Result<f64, f64> {
         let relative = tolerance.relative.max(1e-300);
         let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(0.03));
         let measure = tolerance.around(&self.start.x);
@@ -332,7 +337,7 @@ where
             let squares = changes.iter().map(|change| measure.square(change));
             let size = Real::sqrt(squares.sum::<f64>() / 3.0);
             if !size.is_finite() {
-                return None;
+                break;
             }
             if sweep > 1 {
                 let next = size / before;
@@ -343,32 +348,38 @@ where
                 };
                 quotient = next;
                 if theta >= 0.99 && size > 0.0 {
-                    return None;
+                    break;
                 }
                 *rate = theta / (1.0 - theta).max(0.01);
                 let ahead = (sweep..SWEEPS).fold(1.0, |ahead, _| ahead * theta);
-                if *rate * size * ahead > enough {
-                    return None;
+                let left = *rate * size * ahead / enough;
+                if left > 1.0 {
+                    return Err(left);
                 }
             }
             before = size.max(f64::MIN_POSITIVE);
             if *rate * size <= enough {
-                return Some(theta);
+                return Ok(theta);
             }
         }
-        None
+        Err(f64::INFINITY)
     }
 
-    /// Sweeps to rounding; whether it came to that.
-    fn settled(&mut self, stages: &mut Three<T, N>) -> bool {
+    /// Sweeps to rounding, or a failure where it does not come to that.
+    fn settled(&mut self, stages: &mut Three<T, N>) -> Result<f64, f64> {
         let mut inner = transformed(&INVERSE, stages);
-        settles::<T>(MOST, || {
+        let settles = settles::<T>(MOST, || {
             let old = *stages;
             self.sweep(stages, &mut inner);
             let changes = old.iter().zip(&*stages);
             let sizes = changes.map(|(old, new)| relative(&(new - old), &self.start.x, new));
             sizes.fold(0.0, larger)
-        })
+        });
+        if settles {
+            Ok(f64::INFINITY)
+        } else {
+            Err(f64::INFINITY)
+        }
     }
 
     /// The filtered estimate; a second filter takes care of large ones where `doubtful`.

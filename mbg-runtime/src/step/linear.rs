@@ -135,7 +135,23 @@ pub struct Factors<E, const N: usize> {
 }
 
 impl<E: Element, const N: usize> Factors<E, N> {
-    pub(super) fn new(mut rows: [[E; N]; N]) -> Self {
+    #[inline(never)]
+    pub(super) fn new(rows: [[E; N]; N]) -> Self {
+        if N > INVERTED {
+            return Self::eliminated(rows);
+        }
+        match inverse(&rows) {
+            Some(rows) => Self {
+                rows,
+                order: core::array::from_fn(|row| row),
+            },
+            None => Self::eliminated(rows).inverted(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn eliminated(mut rows: [[E; N]; N]) -> Self {
         let mut order = core::array::from_fn(|row| row);
         for k in 0..N {
             let mut pivot = k;
@@ -159,17 +175,20 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 }
             }
         }
-        let factors = Self { rows, order };
-        if N > INVERTED {
-            return factors;
-        }
-        let columns: [[E; N]; N] = core::array::from_fn(|column| {
-            factors.substituted(core::array::from_fn(|row| {
+        Self { rows, order }
+    }
+
+    /// The columns of the inverse in the place of the factors.
+    fn inverted(self) -> Self {
+        let columns = core::array::from_fn(|column| {
+            self.substituted(core::array::from_fn(|row| {
                 E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
             }))
         });
-        let rows = core::array::from_fn(|row| core::array::from_fn(|column| columns[column][row]));
-        Self { rows, order }
+        Self {
+            rows: columns,
+            ..self
+        }
     }
 
     /// The `x` of `A x = right`.
@@ -178,9 +197,9 @@ impl<E: Element, const N: usize> Factors<E, N> {
         if N > INVERTED {
             return self.substituted(right);
         }
+        let product = |row: usize, column: usize| self.rows[column][row] * right[column];
         core::array::from_fn(|row| {
-            let products = self.rows[row].iter().zip(right);
-            products.fold(E::zero(), |sum, (factor, right)| sum + *factor * right)
+            (1..N).fold(product(row, 0), |sum, column| sum + product(row, column))
         })
     }
 
@@ -199,6 +218,37 @@ impl<E: Element, const N: usize> Factors<E, N> {
         }
         x
     }
+}
+
+/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing where products may leave
+/// the range of the numbers, or where the matrix is singular.
+#[inline]
+fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]> {
+    let cofactor = |row: usize, column: usize| match N {
+        1 => E::from_part(E::Part::from_f64(1.0)),
+        2 if row == column => rows[1 - row][1 - column],
+        2 => E::zero() - rows[1 - row][1 - column],
+        _ => {
+            let [below, above] = [1, 2].map(|step| &rows[(row + step) % N]);
+            let [right, left] = [1, 2].map(|step| (column + step) % N);
+            below[right] * above[left] - below[left] * above[right]
+        }
+    };
+    let mut inverse: [[E; N]; N] =
+        core::array::from_fn(|column| core::array::from_fn(|row| cofactor(column, row)));
+    let terms = (0..N).map(|column| rows[0][column] * inverse[0][column]);
+    let determinant = terms.fold(E::zero(), |sum, term| sum + term);
+    let far = 1.0 / (E::Part::SINGULAR * E::Part::SINGULAR);
+    let far = far * far;
+    let size = determinant.size();
+    if !(size > 1.0 / far && size < far) {
+        return None;
+    }
+    let reciprocal = determinant.reciprocal();
+    for element in inverse.iter_mut().flatten() {
+        *element = *element * reciprocal;
+    }
+    Some(inverse)
 }
 
 #[cfg(test)]

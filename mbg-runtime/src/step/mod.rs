@@ -38,7 +38,7 @@ pub use gauss::{Gauss6, ImplicitMidpoint};
 pub use integrator::{Arrival, Integrator};
 pub use linear::{Complex, Element};
 pub use method::{Estimating, Method};
-pub use radau::Radau5;
+pub use radau::{Radau5, Radau9};
 pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
 
 /// What a simulation took.

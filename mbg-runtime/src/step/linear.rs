@@ -126,8 +126,8 @@ const INVERTED: usize = 3;
 ///
 /// For steps of implicit methods, whose lanes share all decisions and so their pivots, and whose matrices may be complex;
 /// [`Regular`](crate::solve::Regular) is for loops in models, where each lane must give what it would give alone, in
-/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the inverse is
-/// kept instead: its products need not wait for each other.
+/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the columns of the
+/// inverse are kept instead: its products need not wait for each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<E, const N: usize> {
     rows: [[E; N]; N],
@@ -137,20 +137,16 @@ pub struct Factors<E, const N: usize> {
 impl<E: Element, const N: usize> Factors<E, N> {
     #[inline(never)]
     pub(super) fn new(rows: [[E; N]; N]) -> Self {
+        let order = core::array::from_fn(|row| row);
         if N > INVERTED {
             return Self::eliminated(rows);
         }
         match inverse(&rows) {
-            Some(rows) => Self {
-                rows,
-                order: core::array::from_fn(|row| row),
-            },
+            Some(rows) => Self { rows, order },
             None => Self::eliminated(rows).inverted(),
         }
     }
 
-    #[cold]
-    #[inline(never)]
     fn eliminated(mut rows: [[E; N]; N]) -> Self {
         let mut order = core::array::from_fn(|row| row);
         for k in 0..N {
@@ -220,8 +216,8 @@ impl<E: Element, const N: usize> Factors<E, N> {
     }
 }
 
-/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing where products may leave
-/// the range of the numbers, or where the matrix is singular.
+/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing of a
+/// singular matrix, and where products may leave the range of the numbers.
 #[inline]
 fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]> {
     let cofactor = |row: usize, column: usize| match N {
@@ -234,21 +230,21 @@ fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]
             below[right] * above[left] - below[left] * above[right]
         }
     };
-    let mut inverse: [[E; N]; N] =
+    let mut columns: [[E; N]; N] =
         core::array::from_fn(|column| core::array::from_fn(|row| cofactor(column, row)));
-    let terms = (0..N).map(|column| rows[0][column] * inverse[0][column]);
+    let terms = (0..N).map(|column| rows[0][column] * columns[0][column]);
     let determinant = terms.fold(E::zero(), |sum, term| sum + term);
-    let far = 1.0 / (E::Part::SINGULAR * E::Part::SINGULAR);
-    let far = far * far;
     let size = determinant.size();
-    if !(size > 1.0 / far && size < far) {
+    let small = E::Part::EPSILON * E::Part::EPSILON;
+    let small = small * small;
+    if size.is_nan() || size <= small || size >= 1.0 / small {
         return None;
     }
     let reciprocal = determinant.reciprocal();
-    for element in inverse.iter_mut().flatten() {
+    for element in columns.iter_mut().flatten() {
         *element = *element * reciprocal;
     }
-    Some(inverse)
+    Some(columns)
 }
 
 #[cfg(test)]

@@ -84,9 +84,11 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     /// Whether the Jacobian may serve for another step.
     keeps: bool,
     factors: Option<Factors<T, N, PAIRS>>,
-    /// Last step: its length and the coefficients of its polynomial; none at the start and behind a jump.
-    last: Option<(T, [SVector<T, N>; S])>,
-    tried: (T, [SVector<T, N>; S]),
+    /// Lengths of two steps and the coefficients of their polynomials, in turns the last one and that which is tried; no
+    /// length at the start and behind a jump.
+    steps: [(T, [SVector<T, N>; S]); 2],
+    /// Which of them is tried.
+    tried: usize,
     /// How fast sweeps converge, from step to step.
     rate: f64,
     rejected: bool,
@@ -113,8 +115,8 @@ where
             jacobian: SMatrix::from_element(zero),
             keeps: false,
             factors: None,
-            last: None,
-            tried: (zero, [SVector::from_element(zero); S]),
+            steps: [(zero, [SVector::from_element(zero); S]); 2],
+            tried: 0,
             rate: 1.0,
             rejected: false,
             method: PhantomData,
@@ -133,7 +135,7 @@ where
     {
         let length = start.span.length;
         if !start.again {
-            self.last = (self.tried.0 != T::from_f64(0.0)).then_some(self.tried);
+            self.tried = 1 - self.tried;
         }
         let mut stages = self.predict(length);
         self.factorise(problem, start, &stages);
@@ -154,10 +156,10 @@ where
         };
         self.keeps = theta <= FAST;
         let error = tolerance.map_or(0.0, |tolerance| {
-            newton.error(&stages, tolerance, self.rejected || self.last.is_none())
+            newton.error(&stages, tolerance, self.rejected || self.last().is_none())
         });
         self.rejected = error.is_nan() || error > 1.0;
-        self.tried = (length, transformed(const { &A::TABLEAU.dense }, &stages));
+        self.steps[self.tried] = (length, transformed(const { &A::TABLEAU.dense }, &stages));
         Trial {
             change: stages[S - 1],
             slope: None,
@@ -176,7 +178,7 @@ where
         I: Input<T, M>,
     {
         let mut polynomial = Polynomial::line(&start.x, end);
-        let found = self.tried.1.iter().skip(1);
+        let found = self.steps[self.tried].1.iter().skip(1);
         for (coefficient, found) in polynomial.coefficients.iter_mut().skip(1).zip(found) {
             *coefficient = *found;
         }
@@ -227,9 +229,14 @@ where
         });
     }
 
+    /// The last step.
+    fn last(&self) -> Option<&(T, [SVector<T, N>; S])> {
+        Some(&self.steps[1 - self.tried]).filter(|(length, _)| *length != T::from_f64(0.0))
+    }
+
     /// The stages as the last step continues.
     fn predict(&self, length: T) -> [SVector<T, N>; S] {
-        let Some((before, coefficients)) = &self.last else {
+        let Some((before, coefficients)) = self.last() else {
             return [SVector::from_element(T::from_f64(0.0)); S];
         };
         let ratio = length / *before;

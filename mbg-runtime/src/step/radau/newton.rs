@@ -5,7 +5,6 @@ use core::marker::PhantomData;
 use nalgebra::SVector;
 
 use super::{FAST, Factors, Tabulated, transformed};
-use crate::scalar::power;
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, larger, relative, settles};
 use crate::step::problem::Problem;
@@ -14,6 +13,8 @@ use crate::{Input, Real, System};
 
 /// Most sweeps in a step that is controlled by its error.
 const SWEEPS: i32 = 10;
+/// Sweeps may leave this part of the tolerance, and less where the tolerance is strict: then the error is far below it.
+const ENOUGH: f64 = 3e-3;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
@@ -124,11 +125,12 @@ where
         rate: &mut f64,
     ) -> Result<f64, f64> {
         let relative = tolerance.relative.max(1e-300);
-        let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(0.03));
+        let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(ENOUGH));
         let measure = tolerance.around(&self.start.x);
         let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
         let (mut before, mut quotient, mut theta) = (0.0, 0.0, FAST);
-        *rate = power(rate.max(T::EPSILON), 0.8);
+        let root = Real::sqrt(rate.max(T::EPSILON));
+        *rate = root * Real::sqrt(root);
         for sweep in 1..=SWEEPS {
             let changes = self.sweep(stages, &mut inner);
             let squares = changes.iter().map(|change| measure.square(change));
@@ -145,19 +147,19 @@ where
                 };
                 quotient = next;
                 if theta >= 0.99 && size > 0.0 {
-                    break;
+                    return Err(FAR);
                 }
                 *rate = theta / (1.0 - theta).max(0.01);
-                let ahead = (sweep..SWEEPS).fold(1.0, |ahead, _| ahead * theta);
-                let left = *rate * size * ahead / enough;
-                if left > 1.0 {
-                    return Err(left.min(FAR));
-                }
             }
-            before = size.max(f64::MIN_POSITIVE);
-            if *rate * size <= enough {
+            let left = *rate * size / enough;
+            if left <= 1.0 {
                 return Ok(theta);
             }
+            let ahead = (sweep..SWEEPS).fold(left, |left, _| left * theta);
+            if sweep > 1 && ahead > 1.0 {
+                return Err(ahead.min(FAR));
+            }
+            before = size;
         }
         Err(f64::INFINITY)
     }

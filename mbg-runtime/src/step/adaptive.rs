@@ -198,6 +198,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 return Ok(ControlFlow::Continue(next));
             }
             problem.probes.heed(seen(t), seen(span.length));
+            control.growth = work.growth();
             control.accept(seen(span.length), trial.error, Scheme::RULE);
             (t, x, slope, again) = (span.end, next, ahead, false);
         }

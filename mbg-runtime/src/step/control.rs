@@ -18,6 +18,8 @@ pub(super) enum Rule {
 /// Control of the length of steps.
 pub(super) struct Control {
     pub(super) length: f64,
+    /// How many times longer the next step may be, whatever the error allows.
+    pub(super) growth: f64,
     /// The error to this power is what the length is to be divided by.
     exponent: f64,
     /// Logarithm of the error of the step before.
@@ -34,6 +36,7 @@ impl Control {
         let exponent = 1.0 / f64::from(order);
         Self {
             length,
+            growth: f64::INFINITY,
             exponent,
             least: Real::exp(exponent * LEAST),
             before: LEAST,
@@ -53,7 +56,7 @@ impl Control {
             Rule::Trend => self.by_trend(length, power(error), power(error)),
             Rule::Steady => self.by_trend(length, power(error), proportional(self.before)),
         };
-        let proposal = length * (SAFETY / needed).clamp(0.2, 10.0);
+        let proposal = length * (SAFETY / needed).min(self.growth).clamp(0.2, 10.0);
         self.length = if self.after_rejection {
             proposal.min(length)
         } else if rule == Rule::Steady && (1.0..=1.2).contains(&(proposal / length)) {

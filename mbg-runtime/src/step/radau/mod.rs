@@ -77,12 +77,14 @@ pub trait Tabulated<const S: usize, const PAIRS: usize>: Copy {
 
 /// A sweep that reduces the error so much keeps the Jacobian.
 const FAST: f64 = 1e-3;
+/// Steps may become so long that a sweep reduces the error by this; the factor is about in proportion to the length.
+const SLOW: f64 = 0.2;
 
 /// What a step leaves for the next.
 pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     jacobian: SMatrix<T, N, N>,
-    /// Whether the Jacobian may serve for another step.
-    keeps: bool,
+    /// By how much the last sweeps reduced the error; infinite where that is not known.
+    theta: f64,
     factors: Option<Factors<T, N, PAIRS>>,
     /// Lengths of two steps and the coefficients of their polynomials, in turns the last one and that which is tried; no
     /// length at the start and behind a jump.
@@ -113,7 +115,7 @@ where
         let zero = T::from_f64(0.0);
         Self {
             jacobian: SMatrix::from_element(zero),
-            keeps: false,
+            theta: f64::INFINITY,
             factors: None,
             steps: [(zero, [SVector::from_element(zero); S]); 2],
             tried: 0,
@@ -147,14 +149,13 @@ where
             Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
             None => newton.settled(&mut stages),
         };
-        let theta = match found {
-            Ok(theta) => theta,
+        match found {
+            Ok(theta) => self.theta = theta,
             Err(left) => {
-                (self.keeps, self.rejected, self.rate) = (false, true, 1.0);
+                (self.theta, self.rejected, self.rate) = (f64::INFINITY, true, 1.0);
                 return failed(&stages, left);
             }
-        };
-        self.keeps = theta <= FAST;
+        }
         let error = tolerance.map_or(0.0, |tolerance| {
             newton.error(&stages, tolerance, self.rejected || self.last().is_none())
         });
@@ -184,6 +185,10 @@ where
         }
         polynomial
     }
+
+    fn growth(&self) -> f64 {
+        SLOW / self.theta
+    }
 }
 
 impl<A, T, const N: usize, const S: usize, const PAIRS: usize> Stages<A, T, N, S, PAIRS>
@@ -205,7 +210,7 @@ where
         I: Input<T, M>,
     {
         let Start { span, x, .. } = start;
-        if !self.keeps {
+        if self.theta > FAST {
             let t = span.at(T::from_f64(A::TABLEAU.nodes[S / 2]));
             self.jacobian = problem.jacobian(t, &(x + stages[S / 2]));
             self.factors = None;

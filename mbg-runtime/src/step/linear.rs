@@ -135,7 +135,7 @@ pub struct Factors<E, const N: usize> {
 }
 
 impl<E: Element, const N: usize> Factors<E, N> {
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn new(rows: [[E; N]; N]) -> Self {
         let order = core::array::from_fn(|row| row);
         if N > INVERTED {
@@ -147,6 +147,7 @@ impl<E: Element, const N: usize> Factors<E, N> {
         }
     }
 
+    #[inline(never)]
     fn eliminated(mut rows: [[E; N]; N]) -> Self {
         let mut order = core::array::from_fn(|row| row);
         for k in 0..N {
@@ -218,7 +219,7 @@ impl<E: Element, const N: usize> Factors<E, N> {
 
 /// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing of a
 /// singular matrix, and where products may leave the range of the numbers.
-#[inline]
+#[inline(always)]
 fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]> {
     let cofactor = |row: usize, column: usize| match N {
         1 => E::from_part(E::Part::from_f64(1.0)),

@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
-use super::linear::{Complex, Element};
+use super::linear::Complex;
 use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combination};
 use super::problem::Problem;
 use super::tolerance::Tolerance;

@@ -16,7 +16,7 @@ use super::tree::Tree;
 use crate::symbolic::field::Image;
 use crate::symbolic::{Expression, Pool};
 
-type Triple = [usize; 3];
+pub(super) type Triple = [usize; 3];
 
 /// Rates that are counted from accelerations in space.
 #[derive(Default)]
@@ -25,6 +25,21 @@ pub(super) struct Carried {
     pub(super) left: BTreeMap<usize, Expression>,
     /// Balances of which nothing is left, and the effort of the mass in each.
     pub(super) masses: Vec<(usize, Given)>,
+    /// Rates to which an arm adds.
+    pub(super) ends: BTreeMap<usize, End>,
+}
+
+/// A component of a vector to which an arm adds.
+#[derive(Clone, Copy)]
+pub(super) struct End {
+    /// The same of the vector at the arm's other end.
+    pub(super) from: usize,
+    /// The rate with which the arm turns.
+    pub(super) omega: Triple,
+    /// The arm.
+    pub(super) arm: [Expression; 3],
+    /// Which component it is.
+    pub(super) component: usize,
 }
 
 /// How the rate of a vector follows from that of another.
@@ -41,8 +56,12 @@ enum Origin {
 /// What an arm adds to a vector.
 #[derive(Clone, Copy)]
 struct Arm {
+    /// The rates with which the arm turns.
+    turning: Triple,
     /// The velocity with which the arm turns.
     omega: [Expression; 3],
+    /// Its length, if it is rigid.
+    length: Option<[Expression; 3]>,
     /// What its end has of velocity more.
     velocity: [Expression; 3],
 }
@@ -106,7 +125,33 @@ impl Carried {
                 None => !is_mass(row),
             })
         };
-        (!masses.is_empty() && !left.keys().any(moves_more)).then_some(Self { left, masses })
+        let mut ends = BTreeMap::new();
+        for (vector, origin) in &path {
+            let Origin::Moved {
+                from,
+                arm:
+                    Some(Arm {
+                        turning,
+                        length: Some(arm),
+                        ..
+                    }),
+            } = origin
+            else {
+                continue;
+            };
+            for component in 0..3 {
+                ends.insert(
+                    vector[component],
+                    End {
+                        from: from[component],
+                        omega: *turning,
+                        arm: *arm,
+                        component,
+                    },
+                );
+            }
+        }
+        (!masses.is_empty() && !left.keys().any(moves_more)).then_some(Self { left, masses, ends })
     }
 }
 
@@ -289,7 +334,8 @@ impl Carrier<'_> {
     fn arm(&self, pool: &mut Pool, vector: &Triple, from: &Triple) -> Option<Option<Arm>> {
         let mut causes = Vec::new();
         let mut velocity = [Expression::ZERO; 3];
-        for (rate, sum) in vector.iter().zip(&mut velocity) {
+        let mut matrix: [BTreeMap<usize, Expression>; 3] = Default::default();
+        for ((rate, sum), row) in vector.iter().zip(&mut velocity).zip(&mut matrix) {
             let terms = self.given[rate].terms.iter();
             for (column, coefficient) in terms.filter(|(column, _)| !from.contains(column)) {
                 causes.extend(
@@ -299,6 +345,11 @@ impl Carrier<'_> {
                         .iter()
                         .map(|(cause, _)| *cause),
                 );
+                for (cause, value) in &self.given[column].terms {
+                    let product = pool.multiply(*coefficient, *value);
+                    let entry = row.entry(*cause).or_insert(Expression::ZERO);
+                    *entry = pool.add(*entry, product);
+                }
                 let term = pool.multiply(*coefficient, (self.velocity)(*column));
                 *sum = pool.add(*sum, term);
             }
@@ -307,17 +358,33 @@ impl Carrier<'_> {
             return Some(None);
         }
         let holds_all = |other: &&Triple| causes.iter().all(|cause| other.contains(cause));
-        let omega = *self.vectors.iter().find(holds_all)?;
+        let turning = *self.vectors.iter().find(holds_all)?;
         Some(Some(Arm {
-            omega: omega.map(self.velocity),
+            turning,
+            omega: turning.map(self.velocity),
+            length: length(&matrix, &turning),
             velocity,
         }))
     }
 }
 
+/// The vector `r` of a matrix that gives `ω × r`.
+fn length(matrix: &[BTreeMap<usize, Expression>; 3], omega: &Triple) -> Option<[Expression; 3]> {
+    let entry = |row: usize, column: usize| {
+        let entry = matrix[row].get(&omega[column]).copied();
+        entry.unwrap_or(Expression::ZERO)
+    };
+    let is_skew = (0..3)
+        .all(|row| (0..=row).all(|column| entry(row, column) == entry(column, row).negated()));
+    is_skew.then(|| [entry(1, 2), entry(2, 0), entry(0, 1)])
+}
+
 /// `ω × ṙ`.
 fn convection(pool: &mut Pool, arm: Option<Arm>) -> [Expression; 3] {
-    let Some(Arm { omega, velocity }) = arm else {
+    let Some(Arm {
+        omega, velocity, ..
+    }) = arm
+    else {
         return [Expression::ZERO; 3];
     };
     [0, 1, 2].map(|k| {

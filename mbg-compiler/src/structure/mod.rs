@@ -14,6 +14,7 @@ mod eliminate;
 mod levels;
 pub mod matching;
 mod mesh;
+mod moments;
 mod nonlinear;
 mod reduction;
 mod resolve;
@@ -21,6 +22,7 @@ mod rest;
 mod selection;
 mod shift;
 mod solve;
+mod tensor;
 mod tree;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -6,8 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use super::carried::Carried;
+use super::carried::{Carried, End, Triple};
 use super::eliminate::System;
+use super::moments::Moment;
+use super::tensor::Tensor;
 use super::tree::Tree;
 use crate::symbolic::{Expression, Pool};
 
@@ -39,12 +41,47 @@ impl Given {
     }
 
     fn value(&self, pool: &mut Pool, values: &dyn Fn(usize) -> Expression) -> Expression {
-        self.terms
-            .iter()
-            .fold(self.constant, |sum, (other, coefficient)| {
-                let product = pool.multiply(*coefficient, values(*other));
-                pool.add(sum, product)
-            })
+        self.plus(pool, self.constant, values)
+    }
+
+    /// The value with another constant.
+    fn plus(
+        &self,
+        pool: &mut Pool,
+        constant: Expression,
+        values: &dyn Fn(usize) -> Expression,
+    ) -> Expression {
+        let terms = self.terms.iter();
+        terms.fold(constant, |sum, (other, coefficient)| {
+            let product = pool.multiply(*coefficient, values(*other));
+            pool.add(sum, product)
+        })
+    }
+}
+
+/// The motion that rates are counted from.
+struct Motion<'a> {
+    velocity: &'a dyn Fn(usize) -> Expression,
+    rates: BTreeMap<usize, Expression>,
+}
+
+impl Motion<'_> {
+    fn rate(&self, column: usize) -> Expression {
+        self.rates.get(&column).copied().unwrap_or(Expression::ZERO)
+    }
+
+    fn tensor(&self, omega: &Triple) -> Tensor {
+        Tensor {
+            omega: omega.map(self.velocity),
+            alpha: omega.map(|rate| self.rate(rate)),
+        }
+    }
+
+    /// What is at the end of an arm.
+    fn end(&self, pool: &mut Pool, end: &End) -> Expression {
+        let tensor = self.tensor(&end.omega);
+        let more = tensor.acceleration(pool, end.component, &end.arm);
+        pool.add(self.rate(end.from), more)
     }
 }
 
@@ -55,25 +92,28 @@ impl Shift {
         pool: &mut Pool,
         system: &mut System,
         tree: &Tree,
-        vectors: &[[usize; 3]],
+        vectors: &[Triple],
         velocity: &dyn Fn(usize) -> Expression,
     ) -> Option<Self> {
         let mut rows = tree.base_to_leaves(system)?;
         let carried = Carried::of(pool, system, tree, vectors, &rows, velocity).unwrap_or_default();
-        let mut motion: BTreeMap<usize, Expression> = BTreeMap::new();
-        let known = |motion: &BTreeMap<usize, Expression>, column: usize| {
-            motion.get(&column).copied().unwrap_or(Expression::ZERO)
+        let mut motion = Motion {
+            velocity,
+            rates: BTreeMap::new(),
         };
         for given in &rows {
-            let row = Given {
-                unknown: given.unknown,
-                terms: given.terms.clone(),
-                constant: *carried.left.get(&given.unknown).unwrap_or(&given.constant),
+            let value = match carried.ends.get(&given.unknown) {
+                Some(end) => motion.end(pool, end),
+                None => {
+                    let left = carried.left.get(&given.unknown);
+                    let constant = *left.unwrap_or(&given.constant);
+                    given.plus(pool, constant, &|column| motion.rate(column))
+                }
             };
-            let value = row.value(pool, &|column| known(&motion, column));
-            motion.insert(given.unknown, value);
+            motion.rates.insert(given.unknown, value);
             system.set_right(tree.conjugates[&given.unknown].row, Expression::ZERO);
         }
+        let moments = Moment::all(pool, system, tree, vectors, velocity);
         for row in system
             .open()
             .iter()
@@ -85,10 +125,14 @@ impl Shift {
             let right = entries
                 .iter()
                 .fold(system.right(row), |right, (column, value)| {
-                    let product = pool.multiply(*value, known(&motion, *column));
+                    let product = pool.multiply(*value, motion.rate(*column));
                     pool.subtract(right, product)
                 });
             system.set_right(row, right);
+        }
+        for moment in moments {
+            let tensor = motion.tensor(&moment.omega);
+            rows.extend(moment.shift(pool, system, &tensor));
         }
         for (balance, inertia) in carried.masses {
             system.set_right(balance, Expression::ZERO);

@@ -40,8 +40,8 @@ pub struct Radau5;
 /// |---|---|---|---|---|
 /// | 9 | 5, error of power 6 | 5 | five evaluations, a real and two complex solves a sweep, 3 to 5 sweeps; Jacobian and factorisations when needed | A and L, stiffly accurate |
 ///
-/// For stiff problems to small errors: the errors are far below the tolerance, which may be 1e-4 for errors of 1e-8. In
-/// small systems its stages are evaluated side by side, and it is the faster one from errors of about 1e-5 on.
+/// For stiff problems to errors of 1e-6 and less, where it is faster than [`Radau5`]. Errors are far below the
+/// tolerance, which follows the estimate: 1e-4 is enough for errors of about 1e-6.
 ///
 /// Works like [`Radau5`].
 ///

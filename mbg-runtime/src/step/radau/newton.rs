@@ -146,7 +146,7 @@ where
                     Real::sqrt(next * quotient)
                 };
                 quotient = next;
-                if theta >= 0.99 && size > 0.0 {
+                if theta >= 0.99 {
                     return Err(FAR);
                 }
                 *rate = theta / (1.0 - theta).max(0.01);

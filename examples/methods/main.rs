@@ -8,8 +8,8 @@ mod problems;
 use std::time::Instant;
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Estimating, Integrator, Radau5, Rodas4, Rodas5P, Statistics, Stopped,
-    Tsit5,
+    Adaptive, Auto, Dop853, Estimating, Integrator, Radau5, Radau9, Rodas4, Rodas5P, Statistics,
+    Stopped, Tsit5,
 };
 use nalgebra::SVector;
 use problems::{Law, Pendulum, RigidBody, Robertson, StiffPin, VanDerPol, Written};
@@ -139,6 +139,7 @@ impl<L: Law<N, 0> + Copy, const N: usize> Task<L, N> {
         self.lines(Rodas4)?;
         self.lines(Rodas5P)?;
         self.lines(Radau5)?;
+        self.lines(Radau9)?;
         self.auto()
     }
 }

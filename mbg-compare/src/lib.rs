@@ -27,7 +27,7 @@ mod picture;
 mod reference;
 mod table;
 
-use mbg_runtime::{Dop853, Input, Pirk8, Radau5, Rodas4, Rodas5P, System, Tsit5};
+use mbg_runtime::{Dop853, Input, Pirk8, Radau5, Radau9, Rodas4, Rodas5P, System, Tsit5};
 use nalgebra::SVector;
 
 pub use measure::{Comparison, Measured, Point};
@@ -134,6 +134,7 @@ where
         comparison.over_tolerances(Rodas4, &TOLERANCES);
         comparison.over_tolerances(Rodas5P, &TOLERANCES);
         comparison.over_tolerances(Radau5, &TOLERANCES);
+        comparison.over_tolerances(Radau9, &TOLERANCES);
     } else {
         comparison.over_tolerances(Tsit5, &TOLERANCES);
         comparison.over_tolerances(Dop853, &TOLERANCES);

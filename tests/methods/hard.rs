@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Adaptive, Auto, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Picked,
-    Radau5, Reason, Rodas4, Rodas5P, Ros2, Statistics, System,
+    Radau5, Radau9, Reason, Rodas4, Rodas5P, Ros2, Statistics, System,
 };
 use nalgebra::SVector;
 
@@ -50,6 +50,7 @@ fn stiff_pins_at_a_tolerance() {
     for pin in [0, 1] {
         for tolerance in [1e-4, 1e-6, 1e-8] {
             assert!(pin_error(Radau5, tolerance, pin) < 20.0 * tolerance);
+            assert!(pin_error(Radau9, tolerance, pin) < tolerance);
         }
         assert!(pin_error(Rodas5P, 1e-6, pin) < 1e-5);
         assert!(pin_error(Rodas4, 1e-5, pin) < 1e-4);
@@ -125,6 +126,7 @@ fn van_der_pol() {
     }
     for tolerance in [1e-4, 1e-6, 1e-8] {
         assert!(error(Radau5, tolerance) < 100.0 * tolerance);
+        assert!(error(Radau9, tolerance) < tolerance);
         assert!(error(Rodas5P, tolerance) < 100.0 * tolerance);
         assert!(error(Rodas4, tolerance) < 100.0 * tolerance);
     }
@@ -156,6 +158,7 @@ fn robertson() {
         })
     };
     assert!(apart(found(Radau5, 1e-8, 1e11), published) < 1e-5);
+    assert!(apart(found(Radau9, 1e-8, 1e11), published) < 1e-5);
     assert!(apart(found(Rodas5P, 1e-8, 1e11), published) < 1e-5);
     let reference = found(Radau5, 1e-10, 1e5);
     assert!(apart(found(Rodas5P, 1e-9, 1e5), reference) < 1e-7);

@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Differentiable, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Input, Integrator, Method,
-    Pirk8, Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Tsit5, Verner9,
+    Pirk8, Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Tsit5, Verner9,
 };
 use nalgebra::SVector;
 
@@ -186,6 +186,7 @@ fn orders_on_nonlinear_oscillations() {
     assert_order("pendulum", &task, Ros2, [64, 128, 256]);
     assert_order("pendulum", &task, Rodas5P, [16, 32, 64]);
     assert_order("pendulum", &task, Radau5, [16, 32, 64]);
+    assert_order("pendulum", &task, Radau9, [8, 12, 16]);
     let task = hunters();
     assert_order("hunters", &task, Dop853, [4, 8, 16]);
     assert_order("hunters", &task, Verner9, [4, 8, 16]);
@@ -210,6 +211,7 @@ fn orders_on_the_oscillator_with_an_input_over_time() {
     assert_order("oscillator", &task, Rodas4, [16, 32, 64]);
     assert_order("oscillator", &task, Rodas5P, [16, 32, 64]);
     assert_order("oscillator", &task, Radau5, [16, 32, 64]);
+    assert_order("oscillator", &task, Radau9, [4, 6, 8]);
 }
 
 #[test]
@@ -248,6 +250,7 @@ fn orders_of_methods_for_stiff_problems_on_stiff_ones() {
     assert_order("problem of Kaps", &task, Ros2, [64, 128, 256]);
     assert_order("problem of Kaps", &task, Rodas4, [16, 32, 64]);
     assert_order("problem of Kaps", &task, Radau5, [8, 16, 32]);
+    assert_order("problem of Kaps", &task, Radau9, [2, 3, 4]);
     let task = follower();
     assert_order("follower", &task, Rodas5P, [16, 32, 64]);
     assert_order("follower", &task, Radau5, [16, 32, 64]);
@@ -314,6 +317,7 @@ fn orders_in_between() {
     assert_dense_order(Rodas4, [32, 64]);
     assert_dense_order(Rodas5P, [32, 64]);
     assert_dense_order(Radau5, [32, 64]);
+    assert_dense_order(Radau9, [8, 16]);
 }
 
 /// With the same steps, compensated sums in single precision lose less.
@@ -365,6 +369,7 @@ fn every_method_runs_in_single_precision() {
         error(Gauss6 { sweeps: Some(3) }),
         error(Rodas4),
         error(Radau5),
+        error(Radau9),
     ];
     println!("{errors:?}");
     assert!(errors.iter().all(|error| *error < 2e-6), "{errors:?}");
@@ -400,6 +405,7 @@ fn every_family_runs_on_dual_numbers() {
         slope(Rodas5P),
         slope(Gauss6::default()),
         slope(Radau5),
+        slope(Radau9),
     ];
     for slope in slopes {
         assert!((slope - END.cos()).abs() < 1e-9, "{slopes:?}");

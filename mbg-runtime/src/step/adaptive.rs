@@ -19,8 +19,8 @@ use crate::{Input, Real, System};
 ///
 /// An error counts as small enough when the root of the mean square of
 /// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
-/// and lengths of the step and of the one before: for methods of Rosenbrock an error that has grown goes on growing, else
-/// by proportion and integral (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
+/// and lengths of the step and of the one before: by proportion and integral, and for methods of Rosenbrock and Radau
+/// an error that has grown goes on growing (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
 /// 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
 /// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
 /// numbers the values alone control the step.
@@ -198,6 +198,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 return Ok(ControlFlow::Continue(next));
             }
             problem.probes.heed(seen(t), seen(span.length));
+            control.growth = work.growth();
             control.accept(seen(span.length), trial.error, Scheme::RULE);
             (t, x, slope, again) = (span.end, next, ahead, false);
         }

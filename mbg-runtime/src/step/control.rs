@@ -8,7 +8,8 @@ use crate::scalar::power;
 pub(super) enum Rule {
     /// By proportion and integral.
     Proportional,
-    /// The same, but a step up to a fifth longer is not worth the work.
+    /// The same where the error falls; where it has grown it goes on growing as fast. A step up to a fifth longer is not
+    /// worth the work.
     Steady,
     /// By the error alone where it falls; where it has grown it goes on growing as fast.
     Trend,
@@ -17,6 +18,8 @@ pub(super) enum Rule {
 /// Control of the length of steps.
 pub(super) struct Control {
     pub(super) length: f64,
+    /// How many times longer the next step may be, whatever the error allows.
+    pub(super) growth: f64,
     /// The error to this power is what the length is to be divided by.
     exponent: f64,
     /// Logarithm of the error of the step before.
@@ -33,6 +36,7 @@ impl Control {
         let exponent = 1.0 / f64::from(order);
         Self {
             length,
+            growth: f64::INFINITY,
             exponent,
             least: Real::exp(exponent * LEAST),
             before: LEAST,
@@ -46,16 +50,13 @@ impl Control {
         // Single precision is enough for a length, and takes half the time.
         let error = f64::from(Real::ln(error as f32));
         let power = |error: f64| f64::from(Real::exp((self.exponent * error) as f32));
-        let needed = if rule != Rule::Trend {
-            power(PROPORTION * error - MEMORY * self.before)
-        } else {
-            let needed = power(error);
-            let (before, last) = self.last.unwrap_or((needed, length));
-            let trend = needed * last / (before * length);
-            self.last = Some((needed.max(self.least), length));
-            needed * if trend > 1.0 { trend } else { 1.0 }
+        let proportional = |before| power(PROPORTION * error - MEMORY * before);
+        let needed = match rule {
+            Rule::Proportional => proportional(self.before),
+            Rule::Trend => self.by_trend(length, power(error), power(error)),
+            Rule::Steady => self.by_trend(length, power(error), proportional(self.before)),
         };
-        let proposal = length * (SAFETY / needed).clamp(0.2, 10.0);
+        let proposal = length * (SAFETY / needed).min(self.growth).clamp(0.2, 10.0);
         self.length = if self.after_rejection {
             proposal.min(length)
         } else if rule == Rule::Steady && (1.0..=1.2).contains(&(proposal / length)) {
@@ -65,6 +66,18 @@ impl Control {
         };
         self.before = error.max(LEAST);
         self.after_rejection = false;
+    }
+
+    /// What the length is to be divided by: `otherwise`, or more where the error has grown and goes on growing as fast.
+    fn by_trend(&mut self, length: f64, needed: f64, otherwise: f64) -> f64 {
+        let (before, last) = self.last.unwrap_or((needed, length));
+        let trend = needed * last / (before * length);
+        self.last = Some((needed.max(self.least), length));
+        if trend > 1.0 {
+            otherwise.max(needed * trend)
+        } else {
+            otherwise
+        }
     }
 
     /// Takes back a step that does not see enough, for one of this length.

@@ -23,7 +23,7 @@ pub enum Shifted<E, const N: usize> {
 
 impl<E: Element, const N: usize> Shifted<E, N> {
     /// Of `diagonal · I − scale · matrix`, a matrix of the system's pattern.
-    #[inline]
+    #[inline(always)]
     pub fn new<S, const M: usize, const P: usize>(
         diagonal: E,
         scale: E::Part,

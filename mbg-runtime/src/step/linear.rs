@@ -126,8 +126,8 @@ const INVERTED: usize = 3;
 ///
 /// For steps of implicit methods, whose lanes share all decisions and so their pivots, and whose matrices may be complex;
 /// [`Regular`](crate::solve::Regular) is for loops in models, where each lane must give what it would give alone, in
-/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the inverse is
-/// kept instead: its products need not wait for each other.
+/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the columns of the
+/// inverse are kept instead: its products need not wait for each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<E, const N: usize> {
     rows: [[E; N]; N],
@@ -135,7 +135,20 @@ pub struct Factors<E, const N: usize> {
 }
 
 impl<E: Element, const N: usize> Factors<E, N> {
-    pub(super) fn new(mut rows: [[E; N]; N]) -> Self {
+    #[inline(always)]
+    pub(super) fn new(rows: [[E; N]; N]) -> Self {
+        let order = core::array::from_fn(|row| row);
+        if N > INVERTED {
+            return Self::eliminated(rows);
+        }
+        match inverse(&rows) {
+            Some(rows) => Self { rows, order },
+            None => Self::eliminated(rows).inverted(),
+        }
+    }
+
+    #[inline(never)]
+    fn eliminated(mut rows: [[E; N]; N]) -> Self {
         let mut order = core::array::from_fn(|row| row);
         for k in 0..N {
             let mut pivot = k;
@@ -159,17 +172,20 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 }
             }
         }
-        let factors = Self { rows, order };
-        if N > INVERTED {
-            return factors;
-        }
-        let columns: [[E; N]; N] = core::array::from_fn(|column| {
-            factors.substituted(core::array::from_fn(|row| {
+        Self { rows, order }
+    }
+
+    /// The columns of the inverse in the place of the factors.
+    fn inverted(self) -> Self {
+        let columns = core::array::from_fn(|column| {
+            self.substituted(core::array::from_fn(|row| {
                 E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
             }))
         });
-        let rows = core::array::from_fn(|row| core::array::from_fn(|column| columns[column][row]));
-        Self { rows, order }
+        Self {
+            rows: columns,
+            ..self
+        }
     }
 
     /// The `x` of `A x = right`.
@@ -178,9 +194,9 @@ impl<E: Element, const N: usize> Factors<E, N> {
         if N > INVERTED {
             return self.substituted(right);
         }
+        let product = |row: usize, column: usize| self.rows[column][row] * right[column];
         core::array::from_fn(|row| {
-            let products = self.rows[row].iter().zip(right);
-            products.fold(E::zero(), |sum, (factor, right)| sum + *factor * right)
+            (1..N).fold(product(row, 0), |sum, column| sum + product(row, column))
         })
     }
 
@@ -199,6 +215,37 @@ impl<E: Element, const N: usize> Factors<E, N> {
         }
         x
     }
+}
+
+/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing of a
+/// singular matrix, and where products may leave the range of the numbers.
+#[inline(always)]
+fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]> {
+    let cofactor = |row: usize, column: usize| match N {
+        1 => E::from_part(E::Part::from_f64(1.0)),
+        2 if row == column => rows[1 - row][1 - column],
+        2 => E::zero() - rows[1 - row][1 - column],
+        _ => {
+            let [below, above] = [1, 2].map(|step| &rows[(row + step) % N]);
+            let [right, left] = [1, 2].map(|step| (column + step) % N);
+            below[right] * above[left] - below[left] * above[right]
+        }
+    };
+    let mut columns: [[E; N]; N] =
+        core::array::from_fn(|column| core::array::from_fn(|row| cofactor(column, row)));
+    let terms = (0..N).map(|column| rows[0][column] * columns[0][column]);
+    let determinant = terms.fold(E::zero(), |sum, term| sum + term);
+    let size = determinant.size();
+    let small = E::Part::EPSILON * E::Part::EPSILON;
+    let small = small * small;
+    if size.is_nan() || size <= small || size >= 1.0 / small {
+        return None;
+    }
+    let reciprocal = determinant.reciprocal();
+    for element in columns.iter_mut().flatten() {
+        *element = *element * reciprocal;
+    }
+    Some(columns)
 }
 
 #[cfg(test)]

@@ -109,6 +109,11 @@ pub trait Stepper<A, T: Real, const N: usize> {
     where
         S: System<T, N, M, P>,
         I: Input<T, M>;
+
+    /// How many times longer the next step may be, whatever the error allows.
+    fn growth(&self) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// A call with the number of a stage as a constant, so that the stage's row of weights is written out.

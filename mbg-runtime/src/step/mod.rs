@@ -42,7 +42,7 @@ pub use integrator::{Arrival, Integrator};
 pub use linear::{Complex, Element};
 pub use method::{Estimating, Method};
 pub use parallel::Pirk8;
-pub use radau::Radau5;
+pub use radau::{Radau5, Radau9};
 pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
 
 /// What a simulation took.

@@ -1,0 +1,204 @@
+//! Newton's method for the stages of a step.
+
+use core::marker::PhantomData;
+
+use nalgebra::SVector;
+
+use super::{FAST, Factors, Tabulated, transformed};
+use crate::step::linear::{Complex, Element};
+use crate::step::method::{Start, combination, larger, relative, settles};
+use crate::step::problem::Problem;
+use crate::step::tolerance::Tolerance;
+use crate::{Input, Real, System};
+
+/// Most sweeps in a step that is controlled by its error.
+const SWEEPS: i32 = 10;
+/// Sweeps may leave this part of the tolerance, and less where the tolerance is strict: then the error is far below it.
+const ENOUGH: f64 = 3e-3;
+/// Most sweeps to rounding.
+const MOST: u32 = 20;
+/// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
+const FAR: f64 = 20.0;
+
+/// The search for the stages of one step.
+pub(super) struct Newton<
+    'a,
+    'b,
+    A,
+    T,
+    Y,
+    I,
+    const N: usize,
+    const M: usize,
+    const P: usize,
+    const S: usize,
+    const PAIRS: usize,
+> where
+    T: Real,
+    Y: System<T, N, M, P>,
+{
+    problem: &'a mut Problem<'b, T, Y, I, N, M, P>,
+    start: &'a Start<T, N>,
+    factors: &'a Factors<T, N, PAIRS>,
+    method: PhantomData<[A; S]>,
+}
+
+impl<
+    'a,
+    'b,
+    A,
+    T,
+    Y,
+    I,
+    const N: usize,
+    const M: usize,
+    const P: usize,
+    const S: usize,
+    const PAIRS: usize,
+> Newton<'a, 'b, A, T, Y, I, N, M, P, S, PAIRS>
+where
+    A: Tabulated<S, PAIRS>,
+    T: Real,
+    Y: System<T, N, M, P>,
+    I: Input<T, M>,
+{
+    pub(super) fn new(
+        problem: &'a mut Problem<'b, T, Y, I, N, M, P>,
+        start: &'a Start<T, N>,
+        factors: &'a Factors<T, N, PAIRS>,
+    ) -> Self {
+        Self {
+            problem,
+            start,
+            factors,
+            method: PhantomData,
+        }
+    }
+
+    /// One sweep; gives what it changed in the transformed stages.
+    #[inline]
+    fn sweep(
+        &mut self,
+        stages: &mut [SVector<T, N>; S],
+        inner: &mut [SVector<T, N>; S],
+    ) -> [SVector<T, N>; S] {
+        let Start { span, x, .. } = self.start;
+        let mut slopes = *stages;
+        for (slope, node) in slopes.iter_mut().zip(A::TABLEAU.nodes) {
+            *slope = self
+                .problem
+                .slope(span.at(T::from_f64(node)), &(x + *slope));
+        }
+        let mut changes = transformed(const { &A::TABLEAU.inverse }, &slopes);
+        let by = |number: f64| T::from_f64(number) / span.length;
+        let real = by(A::TABLEAU.real);
+        let right = changes[0].zip_map(&inner[0], |slope, a| slope - real * a);
+        changes[0] = self.factors.real.solved::<Y, M, P>(&right);
+        for (pair, factors) in self.factors.pairs.iter().enumerate() {
+            let [alpha, beta] = A::TABLEAU.pairs[pair].map(by);
+            let (first, second) = (1 + 2 * pair, 2 + 2 * pair);
+            let mut rights = [Complex::zero(); N];
+            for (row, right) in rights.iter_mut().enumerate() {
+                let (b, c) = (inner[first][row], inner[second][row]);
+                right.real = changes[first][row] - (alpha * b - beta * c);
+                right.imaginary = changes[second][row] - (alpha * c + beta * b);
+            }
+            let both = factors.solve::<Y, M, P>(rights);
+            for (row, both) in both.iter().enumerate() {
+                changes[first][row] = both.real;
+                changes[second][row] = both.imaginary;
+            }
+        }
+        for (inner, change) in inner.iter_mut().zip(&changes) {
+            *inner += change;
+        }
+        *stages = transformed(const { &A::TABLEAU.vectors }, inner);
+        changes
+    }
+
+    /// Sweeps until what is left is small beside the tolerance; gives the last rate of convergence, or how many times
+    /// what is enough would be left when the bound on sweeps is not going to suffice.
+    pub(super) fn controlled(
+        &mut self,
+        stages: &mut [SVector<T, N>; S],
+        tolerance: &Tolerance<N>,
+        rate: &mut f64,
+    ) -> Result<f64, f64> {
+        let relative = tolerance.relative.max(1e-300);
+        let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(ENOUGH));
+        let measure = tolerance.around(&self.start.x);
+        let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
+        let (mut before, mut quotient, mut theta) = (0.0, 0.0, FAST);
+        let root = Real::sqrt(rate.max(T::EPSILON));
+        *rate = root * Real::sqrt(root);
+        for sweep in 1..=SWEEPS {
+            let changes = self.sweep(stages, &mut inner);
+            let squares = changes.iter().map(|change| measure.square(change));
+            let size = Real::sqrt(squares.sum::<f64>() / S as f64);
+            if !size.is_finite() {
+                break;
+            }
+            if sweep > 1 {
+                let next = size / before;
+                theta = if sweep == 2 {
+                    next
+                } else {
+                    Real::sqrt(next * quotient)
+                };
+                quotient = next;
+                if theta >= 0.99 {
+                    return Err(FAR);
+                }
+                *rate = theta / (1.0 - theta).max(0.01);
+            }
+            let left = *rate * size / enough;
+            if left <= 1.0 {
+                return Ok(theta);
+            }
+            let ahead = (sweep..SWEEPS).fold(left, |left, _| left * theta);
+            if sweep > 1 && ahead > 1.0 {
+                return Err(ahead.min(FAR));
+            }
+            before = size;
+        }
+        Err(f64::INFINITY)
+    }
+
+    /// Sweeps to rounding, or a failure where it does not come to that.
+    pub(super) fn settled(&mut self, stages: &mut [SVector<T, N>; S]) -> Result<f64, f64> {
+        let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
+        let settles = settles::<T>(MOST, || {
+            let old = *stages;
+            self.sweep(stages, &mut inner);
+            let changes = old.iter().zip(&*stages);
+            let sizes = changes.map(|(old, new)| relative(&(new - old), &self.start.x, new));
+            sizes.fold(0.0, larger)
+        });
+        if settles {
+            Ok(f64::INFINITY)
+        } else {
+            Err(f64::INFINITY)
+        }
+    }
+
+    /// The filtered estimate; a second filter takes care of large ones where `doubtful`.
+    pub(super) fn error(
+        &mut self,
+        stages: &[SVector<T, N>; S],
+        tolerance: &Tolerance<N>,
+        doubtful: bool,
+    ) -> f64 {
+        let Start { span, x, slope, .. } = self.start;
+        let real = &self.factors.real;
+        let inverse = T::from_f64(1.0) / span.length;
+        let sum = combination(const { &A::TABLEAU.error }, stages).map(|sum| inverse * sum);
+        let estimate = real.solved::<Y, M, P>(&(sum + slope));
+        let measure = tolerance.between(x, &stages[S - 1]);
+        let size = measure.norm(&estimate);
+        if size <= 1.0 || !doubtful || size.is_nan() {
+            return size;
+        }
+        let slope = self.problem.slope(span.start, &(x + estimate));
+        measure.norm(&real.solved::<Y, M, P>(&(sum + slope)))
+    }
+}

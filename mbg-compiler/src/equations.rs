@@ -80,7 +80,7 @@ pub struct Closure {
 }
 
 /// When an unknown of a reduced system is eliminated: level by level, and in a level the deepest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Turn {
     /// Position, from the leaves to the base, of the independent rate to which the unknown belongs.
     pub level: usize,

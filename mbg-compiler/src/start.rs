@@ -27,9 +27,11 @@ pub fn check(
     diagnostics: &mut Diagnostics,
 ) {
     let start = Start::of(model, pool);
+    let unchanged = |symbol| start.symbol(symbol, &BTreeMap::new());
+    let mut evaluation = Evaluation::new(&unchanged);
     for divisor in conditioning {
         // One without a value depends on what only an iteration finds.
-        if start.value(pool, *divisor, &BTreeMap::new()).abs() < SINGULAR {
+        if evaluation.value(pool, *divisor).abs() < SINGULAR {
             report(model, scalars, &start, *divisor, pool, diagnostics);
         }
     }
@@ -43,27 +45,28 @@ struct Start<'a> {
 
 impl<'a> Start<'a> {
     fn of(model: &'a Elaborated, pool: &Pool) -> Self {
-        let mut start = Self {
+        let parameters = Self {
             model,
             states: Vec::new(),
         };
-        let values = model
-            .states
-            .iter()
-            .map(|state| start.value(pool, state.initial, &BTreeMap::new()));
-        start.states = values.collect();
-        start
+        let symbol = |symbol| parameters.symbol(symbol, &BTreeMap::new());
+        let mut evaluation = Evaluation::new(&symbol);
+        let states = model.states.iter();
+        let states = states.map(|state| evaluation.value(pool, state.initial));
+        Self {
+            model,
+            states: states.collect(),
+        }
     }
 
-    /// A value at the start, but with some states changed.
-    fn value(&self, pool: &Pool, expression: Expression, changed: &BTreeMap<usize, f64>) -> f64 {
-        let symbol = |symbol: Symbol| match symbol {
+    /// What a symbol is at the start, but with some states changed.
+    fn symbol(&self, symbol: Symbol, changed: &BTreeMap<usize, f64>) -> f64 {
+        match symbol {
             Symbol::Parameter(index) => self.model.parameters[index].default,
             Symbol::State(index) => *changed.get(&index).unwrap_or(&self.states[index]),
             Symbol::Input(_) | Symbol::Time => 0.0,
             Symbol::Signal(_) | Symbol::Unknown(_) | Symbol::Slope(_) => f64::NAN,
-        };
-        Evaluation::new(&symbol).value(pool, expression)
+        }
     }
 }
 
@@ -85,7 +88,8 @@ fn report(
     // The one that leads away, or else the first.
     let leads_away = |state: &&usize| {
         let changed = BTreeMap::from([(**state, start.states[**state] + PROPOSED)]);
-        start.value(pool, divisor, &changed).abs() > SINGULAR
+        let symbol = |symbol| start.symbol(symbol, &changed);
+        Evaluation::new(&symbol).value(pool, divisor).abs() > SINGULAR
     };
     let Some(state) = read.iter().find(leads_away).or(read.first()) else {
         return;

@@ -42,6 +42,8 @@ pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stro
 pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use sparsity::{Elimination, Sparsity};
+#[cfg(feature = "numeris")]
+pub use step::Verner9;
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
     ImplicitMidpoint, Integrator, Method, Picked, Radau5, Radau9, Reason, Rk4, Rodas4, Rodas5P,

@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Adaptive, Direction, Dop853, Estimating, Fixed, Gauss6, Integrator, Pulse, Radau5, Rk4, Rodas4,
-    Rodas5P, Ros2, Tsit5,
+    Rodas5P, Ros2, Tsit5, Verner9,
 };
 use nalgebra::SVector;
 
@@ -37,6 +37,8 @@ fn events_are_found_where_they_are() {
     assert!((first_time(solver, 0.5, Direction::Falling) - third).abs() < 1e-10);
     assert!((first_time(solver, 0.5, Direction::Rising) - 5.0 * third).abs() < 1e-10);
     assert!((first_time(solver, 0.0, Direction::Either) - half).abs() < 1e-10);
+    let solver = Adaptive::new(Verner9, 1e-12, 1e-12);
+    assert!((first_time(solver, 0.5, Direction::Falling) - third).abs() < 1e-10);
     let fixed = Fixed::new(Rk4, 1e-3);
     assert!((first_time(fixed, 0.5, Direction::Falling) - third).abs() < 1e-10);
     let fixed = Fixed::new(Gauss6::default(), 1e-3);
@@ -113,6 +115,7 @@ fn jumps_are_met_by_every_method() {
     }
     push(Tsit5);
     push(Dop853);
+    push(Verner9);
     push(Ros2);
     push(Rodas4);
     push(Rodas5P);

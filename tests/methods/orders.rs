@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Differentiable, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Input, Integrator, Method,
-    Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Tsit5,
+    Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Tsit5, Verner9,
 };
 use nalgebra::SVector;
 
@@ -147,6 +147,7 @@ fn orders_on_nonlinear_oscillations() {
     let task = pendulum();
     assert_order("pendulum", &task, Rk4, [32, 64, 128]);
     assert_order("pendulum", &task, Tsit5, [64, 128, 256]);
+    assert_order("pendulum", &task, Verner9, [6, 12, 24]);
     assert_order("pendulum", &task, Gauss6::default(), [8, 16, 32]);
     assert_order("pendulum", &task, Gauss6 { sweeps: Some(3) }, [32, 64, 128]);
     assert_order(
@@ -161,6 +162,7 @@ fn orders_on_nonlinear_oscillations() {
     assert_order("pendulum", &task, Radau9, [8, 12, 16]);
     let task = hunters();
     assert_order("hunters", &task, Dop853, [4, 8, 16]);
+    assert_order("hunters", &task, Verner9, [4, 8, 16]);
     assert_order("hunters", &task, Rodas4, [128, 256, 512]);
 }
 
@@ -319,6 +321,7 @@ fn every_method_runs_in_single_precision() {
         error(Rk4),
         error(Tsit5),
         error(Dop853),
+        error(Verner9),
         error(Gauss6::default()),
         error(Gauss6 { sweeps: Some(3) }),
         error(Rodas4),
@@ -354,6 +357,7 @@ fn every_family_runs_on_dual_numbers() {
     }
     let slopes = [
         slope(Dop853),
+        slope(Verner9),
         slope(Rodas5P),
         slope(Gauss6::default()),
         slope(Radau5),

@@ -28,7 +28,8 @@ use double_pendulum::DoublePendulum;
 use elimination::{Dense, RingModulator, RingModulatorParameters, ring_nominal};
 use mbg_compare::{Comparison, Measured, Problem, TOLERANCES, compare};
 use mbg_runtime::{
-    Adaptive, Estimating, Input, Integrator, Radau5, Radau9, Rodas4, Rodas5P, Statistics, System, mbg,
+    Adaptive, Estimating, Input, Integrator, Radau5, Radau9, Rodas4, Rodas5P, Statistics, System,
+    Verner9, mbg,
 };
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
@@ -76,6 +77,8 @@ impl Run {
                 absolute(&mut comparison, Radau5, small);
                 absolute(&mut comparison, Radau9, small);
             }
+        } else {
+            comparison.over_tolerances(Verner9, &TOLERANCES);
         }
         let ours = comparison.points().len();
         if stiff {

@@ -3,26 +3,24 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::routine::column_lines;
-use crate::compile::Compiled;
+use super::routine::{Writer, column_lines};
 use crate::program::{Columns, Operand, Routine, Source};
 use crate::symbolic::Symbol;
 
 /// Writes `jacobian`, column by column; the steps of the routine stand before it.
-pub(super) fn write(compiled: &Compiled, routine: &Routine) -> TokenStream {
-    let groups = routine.columns.iter();
-    let groups = groups.map(|it| group(compiled, routine, it));
+pub(super) fn write(writer: &Writer, routine: &Routine) -> TokenStream {
+    let groups = routine.columns.iter().map(|it| group(writer, it));
     quote!(#(#groups)*)
 }
 
 /// Some columns. Rows that hold one constant need no steps.
-fn group(compiled: &Compiled, routine: &Routine, columns: &Columns) -> TokenStream {
+fn group(writer: &Writer, columns: &Columns) -> TokenStream {
     let constant = columns.results.iter().enumerate();
     let constant = constant.filter_map(|(row, result)| only_entry(row, *result));
     let steps: Vec<usize> = (0..columns.results.len())
         .filter(|row| is_worked_out(columns.results[*row]))
         .collect();
-    let (lines, slopes) = column_lines(compiled, routine, columns, &steps);
+    let (lines, slopes) = column_lines(writer, columns, &steps);
     let variables = columns
         .variables
         .iter()

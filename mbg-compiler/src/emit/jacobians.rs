@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::columns;
-use super::routine::written_lines;
+use super::routine::{Writer, written_lines};
 use crate::compile::{Compiled, Routines};
 use crate::program::Source;
 
@@ -69,7 +69,8 @@ fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
         (result.source != Source::Constant(0.0)).then(|| quote!(jacobian[(#row, #column)]))
     });
     let places: Vec<_> = rates.chain(entries).collect();
-    let lines = written_lines(compiled, routine, &places);
-    let by_columns = columns::write(compiled, routine);
+    let writer = Writer::of(compiled, routine);
+    let lines = written_lines(&writer, routine, &places);
+    let by_columns = columns::write(&writer, routine);
     quote!(#lines #by_columns)
 }

@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::rc::Rc;
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream};
+use quote::{ToTokens, format_ident, quote};
 
 use crate::compile::Compiled;
 use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step};
@@ -35,7 +36,7 @@ pub(super) fn lines(
     let results = routine
         .results
         .iter()
-        .map(|result| writer.operand(*result))
+        .map(|result| writer.operand(*result).into_token_stream())
         .collect();
     (body, results)
 }
@@ -43,11 +44,15 @@ pub(super) fn lines(
 /// The bindings of a method, with each result written to its place, the left side of an assignment, as soon as it is known;
 /// what has no place is not written.
 pub(super) fn written_lines(
-    compiled: &Compiled,
+    writer: &Writer,
     routine: &Routine,
     places: &[Option<TokenStream>],
 ) -> TokenStream {
-    let mut writer = Writer::of(compiled, routine);
+    let mut writer = writer.clone();
+    for (value, place) in &*writer.kept {
+        let (name, place) = (&writer.names[*value], Literal::usize_suffixed(*place));
+        writer.written.insert(*value, quote!(kept[#place] = #name;));
+    }
     let mut known = TokenStream::new();
     for (result, place) in routine.results.iter().zip(places) {
         let Some(place) = place else { continue };
@@ -71,8 +76,7 @@ pub(super) fn written_lines(
 /// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
 /// for all columns, and `slopes` holds what changes.
 pub(super) fn column_lines(
-    compiled: &Compiled,
-    routine: &Routine,
+    writer: &Writer,
     columns: &Columns,
     rows: &[usize],
 ) -> (TokenStream, Vec<TokenStream>) {
@@ -82,11 +86,12 @@ pub(super) fn column_lines(
     });
     let writer = Writer {
         columns: Some((columns.first, solved.collect())),
-        ..Writer::of(compiled, routine)
+        ..writer.clone()
     };
     let behind = Made::read(&columns.results);
     let body = writer.lines(&columns.steps, columns.first, &behind);
     let results = rows.iter().map(|row| writer.operand(columns.results[*row]));
+    let results = results.map(|result| result.into_token_stream());
     (body, results.collect())
 }
 
@@ -105,6 +110,9 @@ fn names(routine: &Routine) -> Vec<Ident> {
         .iter()
         .enumerate()
         .map(|(value, name)| {
+            if name.is_empty() {
+                return Ident::new(&format!("v{value}"), Span::mixed_site());
+            }
             let word: String = name
                 .chars()
                 .map(|c| {
@@ -116,11 +124,8 @@ fn names(routine: &Routine) -> Vec<Ident> {
                 })
                 .collect();
             let word = format!("v_{word}");
-            let name = if name.is_empty() || !taken.insert(word.clone()) {
-                format!("v{value}")
-            } else {
-                word
-            };
+            let is_new = taken.insert(word.clone());
+            let name = if is_new { word } else { format!("v{value}") };
             Ident::new(&name, Span::mixed_site())
         })
         .collect()
@@ -180,12 +185,14 @@ fn last_parts(parts: &[&[Step]], behind: &[Made]) -> BTreeMap<Made, usize> {
     last
 }
 
-struct Writer<'a> {
+/// What writes the steps of a routine.
+#[derive(Clone)]
+pub(super) struct Writer<'a> {
     compiled: &'a Compiled,
-    names: Vec<Ident>,
+    names: Rc<[Ident]>,
     setting: Setting,
     /// The place of each value that is kept for columns of a Jacobian.
-    kept: BTreeMap<usize, usize>,
+    kept: Rc<BTreeMap<usize, usize>>,
     /// What is written as soon as a value is there.
     written: BTreeMap<usize, TokenStream>,
     /// In columns of a Jacobian, the first value that is theirs, and the numbers of their solves.
@@ -194,12 +201,12 @@ struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     /// For a method.
-    fn of(compiled: &'a Compiled, routine: &Routine) -> Self {
+    pub(super) fn of(compiled: &'a Compiled, routine: &Routine) -> Self {
         Self {
             compiled,
-            names: names(routine),
+            names: names(routine).into(),
             setting: Setting::Method,
-            kept: kept(routine),
+            kept: kept(routine).into(),
             written: BTreeMap::new(),
             columns: None,
         }
@@ -237,22 +244,17 @@ impl<'a> Writer<'a> {
                 .filter(|(made, _)| last_part.get(made).is_some_and(|last| *last > number))
                 .map(|(_, name)| name)
                 .collect();
-            body.extend(quote!(let (#(#live,)*) = { #lines (#(#live,)*) };));
+            lines.extend(quote!((#(#live,)*)));
+            let block = Group::new(Delimiter::Brace, lines);
+            body.extend(quote!(let (#(#live,)*) = #block;));
         }
         body
     }
 
     /// Puts values where they are wanted.
     fn store(&self, values: Range<usize>) -> TokenStream {
-        let kept = self.kept.range(values.clone());
-        let kept = kept.filter(|_| self.columns.is_none());
-        let kept = kept.map(|(value, place)| {
-            let (value, place) = (&self.names[*value], Literal::usize_suffixed(*place));
-            quote!(kept[#place] = #value;)
-        });
         let written = self.written.range(values);
-        kept.chain(written.map(|(_, lines)| lines.clone()))
-            .collect()
+        written.map(|(_, lines)| lines.clone()).collect()
     }
 
     /// The names that a step gives to what it makes.
@@ -270,36 +272,42 @@ impl<'a> Writer<'a> {
     }
 
     fn line(&self, step: &Step, value: usize) -> TokenStream {
-        let expression = match step {
+        let name = self.names.get(value);
+        match step {
             Step::Add(a, b) => {
                 let (first, second) = (self.operand(*a), self.operand(Operand::plain(b.source)));
                 if b.negative {
-                    quote!(#first - #second)
+                    quote!(let #name = #first - #second;)
                 } else {
-                    quote!(#first + #second)
+                    quote!(let #name = #first + #second;)
                 }
             }
             Step::Multiply(a, b) => {
                 let (a, b) = (self.operand(*a), self.operand(*b));
-                quote!(#a * #b)
+                quote!(let #name = #a * #b;)
             }
-            Step::MultiplyAdd(a, b, c) => self.call("multiply_add", &[*a, *b, *c]),
+            Step::MultiplyAdd(a, b, c) => {
+                let [a, b, c] = [*a, *b, *c].map(|it| self.operand(it));
+                if self.columns.is_some() {
+                    quote!(let #name = #a.multiply_add(#b, #c);)
+                } else {
+                    quote!(let #name = T::multiply_add(#a, #b, #c);)
+                }
+            }
             Step::Divide(a, b) => {
                 let (a, b) = (self.operand(*a), self.operand(*b));
-                quote!(#a / #b)
+                quote!(let #name = #a / #b;)
             }
             Step::SineCosine(a) => {
                 let (sine, cosine) = (&self.names[value], &self.names[value + 1]);
                 let a = self.operand(*a);
-                return quote!(let (#sine, #cosine) = T::sin_cos(#a););
+                quote!(let (#sine, #cosine) = T::sin_cos(#a);)
             }
-            Step::Sine(a) => self.call("sin", &[*a]),
-            Step::Cosine(a) => self.call("cos", &[*a]),
-            Step::Call(function, arguments) => self.call(function.name(), arguments),
-            Step::Solve(solve) => return self.solve(solve, value),
-        };
-        let name = &self.names[value];
-        quote!(let #name = #expression;)
+            Step::Sine(a) => self.call(name, "sin", &[*a]),
+            Step::Cosine(a) => self.call(name, "cos", &[*a]),
+            Step::Call(function, arguments) => self.call(name, function.name(), arguments),
+            Step::Solve(solve) => self.solve(solve, value),
+        }
     }
 
     /// Sines and cosines of several angles, side by side.
@@ -323,7 +331,7 @@ impl<'a> Writer<'a> {
         let [number, first, size] =
             [number, self.compiled.first(number), solve.size].map(Literal::usize_suffixed);
         let body = self.lines(&solve.steps, value, &Made::read(&solve.results));
-        let operands = |list: &[Operand]| -> Vec<TokenStream> {
+        let operands = |list: &[Operand]| -> Vec<Term<'_>> {
             list.iter().map(|operand| self.operand(*operand)).collect()
         };
         let (residuals, jacobian) = solve.results.split_at(solve.size);
@@ -386,22 +394,20 @@ impl<'a> Writer<'a> {
         quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#operands),*]))
     }
 
-    fn call(&self, function: &str, arguments: &[Operand]) -> TokenStream {
+    fn call(&self, name: Option<&Ident>, function: &str, arguments: &[Operand]) -> TokenStream {
         let function = format_ident!("{}", function);
         let mut arguments = arguments.iter().map(|argument| self.operand(*argument));
         if self.columns.is_some() {
             let first = arguments.next();
-            return quote!(#first.#function(#(#arguments),*));
+            return quote!(let #name = #first.#function(#(#arguments),*););
         }
-        quote!(T::#function(#(#arguments),*))
+        quote!(let #name = T::#function(#(#arguments),*);)
     }
 
-    fn operand(&self, operand: Operand) -> TokenStream {
-        let scalar = self.scalar(operand);
-        if self.is_whole(operand.source) {
-            quote!(whole(#scalar))
-        } else {
-            scalar
+    fn operand(&self, operand: Operand) -> Term<'_> {
+        Term {
+            writer: self,
+            operand,
         }
     }
 
@@ -418,8 +424,9 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn scalar(&self, operand: Operand) -> TokenStream {
-        let value = match operand.source {
+    /// A scalar without its sign.
+    fn scalar(&self, source: Source) -> TokenStream {
+        match source {
             Source::Constant(value) => {
                 let literal = Literal::f64_suffixed(value);
                 quote!(T::from_f64(#literal))
@@ -448,18 +455,31 @@ impl<'a> Writer<'a> {
                     quote!(folded[#index])
                 }
             }
-            Source::Value(index) => match (&self.columns, self.kept.get(&index)) {
-                (Some(_), Some(place)) => element(quote!(kept), *place),
-                _ => {
-                    let name = &self.names[index];
-                    quote!(#name)
-                }
+            Source::Value(index) => match self.columns.as_ref().and_then(|_| self.kept.get(&index))
+            {
+                Some(place) => element(quote!(kept), *place),
+                None => self.names[index].to_token_stream(),
             },
-        };
-        if operand.negative {
-            quote!((-#value))
-        } else {
-            value
+        }
+    }
+}
+
+/// An operand as it is read. It is written where it belongs at once: tokens that go through several streams are copied
+/// as often.
+struct Term<'a> {
+    writer: &'a Writer<'a>,
+    operand: Operand,
+}
+
+impl ToTokens for Term<'_> {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        let Operand { source, negative } = self.operand;
+        let scalar = self.writer.scalar(source);
+        match (self.writer.is_whole(source), negative) {
+            (false, false) => tokens.extend(scalar),
+            (false, true) => tokens.extend(quote!((-#scalar))),
+            (true, false) => tokens.extend(quote!(whole(#scalar))),
+            (true, true) => tokens.extend(quote!(whole((-#scalar)))),
         }
     }
 }

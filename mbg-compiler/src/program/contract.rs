@@ -124,11 +124,13 @@ impl Contraction {
     }
 
     fn latest(&self, operands: &[Operand]) -> u32 {
-        let ready = |operand: &Operand| match operand.source {
-            Source::Value(value) => self.ready[value],
-            _ => 0,
-        };
-        operands.iter().map(ready).max().unwrap_or(0)
+        let mut latest = 0;
+        for operand in operands {
+            if let Source::Value(value) = operand.source {
+                latest = latest.max(self.ready[value]);
+            }
+        }
+        latest
     }
 }
 

@@ -13,6 +13,7 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
         uses: vec![0; values],
         ready: vec![0; values],
         parts: vec![None; values],
+        first: 0,
         gone: vec![false; values],
     };
     order.count(routine);
@@ -59,8 +60,10 @@ struct Order {
     uses: Vec<usize>,
     /// When each value is ready.
     ready: Vec<u32>,
-    /// The sums and products of the list at hand.
+    /// The sums and products.
     parts: Vec<Option<Parts>>,
+    /// The first value of the list at hand: those before it are not taken apart.
+    first: usize,
     /// Partial results in whose place others came.
     gone: Vec<bool>,
 }
@@ -77,7 +80,7 @@ impl Order {
 
     /// The steps of a list whose values begin with number `value`.
     fn list(&mut self, steps: &[Step], mut value: usize) -> Vec<Numbered> {
-        self.parts.fill(None);
+        self.first = value;
         let mut list = Vec::with_capacity(steps.len());
         for step in steps {
             match *step {
@@ -199,7 +202,7 @@ impl Order {
     /// The parts of a sum, or of a product, that nothing else needs.
     fn inner(&self, operand: Operand, is_sum: bool) -> Option<Parts> {
         match operand.source {
-            Source::Value(value) if self.uses[value] == 1 => {
+            Source::Value(value) if value >= self.first && self.uses[value] == 1 => {
                 self.parts[value].filter(|parts| parts.is_sum == is_sum)
             }
             _ => None,
@@ -229,11 +232,13 @@ impl Order {
     }
 
     fn latest(&self, operands: &[Operand]) -> u32 {
-        let ready = |operand: &Operand| match operand.source {
-            Source::Value(value) => self.ready[value],
-            _ => 0,
-        };
-        operands.iter().map(ready).max().unwrap_or(0)
+        let mut latest = 0;
+        for operand in operands {
+            if let Source::Value(value) = operand.source {
+                latest = latest.max(self.ready[value]);
+            }
+        }
+        latest
     }
 }
 

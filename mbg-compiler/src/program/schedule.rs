@@ -15,17 +15,16 @@ pub fn build(
     names: &BTreeMap<usize, String>,
 ) -> Program {
     let folded_nodes = folded_nodes(pool, requests);
-    let numbers: BTreeMap<usize, usize> = folded_nodes
-        .iter()
-        .enumerate()
-        .map(|(number, node)| (node.node(), number))
-        .collect();
+    let mut folded = vec![None; pool.len()];
+    for (number, node) in folded_nodes.iter().enumerate() {
+        folded[node.node()] = Some(number);
+    }
     let context = Context {
         pool,
         captured: (0..pool.implicit().len())
             .map(|number| captured(pool, number))
             .collect(),
-        folded: &numbers,
+        folded,
         state,
         names,
     };
@@ -120,7 +119,8 @@ struct Context<'a> {
     pool: &'a Pool,
     /// What each iteration needs before it begins.
     captured: Vec<Vec<Expression>>,
-    folded: &'a BTreeMap<usize, usize>,
+    /// The number of what is folded, by node.
+    folded: Vec<Option<usize>>,
     state: &'a dyn Fn(usize) -> usize,
     names: &'a BTreeMap<usize, String>,
 }
@@ -128,7 +128,8 @@ struct Context<'a> {
 /// A routine in the making.
 struct Draft {
     routine: Routine,
-    values: BTreeMap<usize, usize>,
+    /// The number of what there is, by node.
+    values: Vec<Option<usize>>,
     /// Reciprocals by the node of the divisor.
     reciprocals: BTreeMap<usize, usize>,
     /// Iterations that have been run, and the one that is being written.
@@ -185,7 +186,7 @@ impl Context<'_> {
         let roots = &request.results;
         let mut draft = Draft {
             routine: Routine::default(),
-            values: BTreeMap::new(),
+            values: vec![None; self.pool.len()],
             reciprocals: BTreeMap::new(),
             solved: BTreeSet::new(),
         };
@@ -344,7 +345,7 @@ impl Context<'_> {
         match self.pool.operation(expression) {
             Operation::Constant(_) => true,
             Operation::Symbol(symbol) => self.pool.place(*symbol).is_none(),
-            _ => !folding && self.folded.contains_key(&expression.node()),
+            _ => !folding && self.folded[expression.node()].is_some(),
         }
     }
 
@@ -356,8 +357,7 @@ impl Context<'_> {
         let mut seen = vec![false; self.pool.len()];
         let mut pending: Vec<Expression> = roots.to_vec();
         while let Some(current) = pending.pop() {
-            let known =
-                self.is_leaf(current, folding) || draft.values.contains_key(&current.node());
+            let known = self.is_leaf(current, folding) || draft.values[current.node()].is_some();
             if std::mem::replace(&mut seen[current.node()], true) || known {
                 continue;
             }
@@ -391,7 +391,7 @@ impl Context<'_> {
     fn visit(&self, draft: &mut Draft, root: Expression, folding: bool, common: &Common) {
         let mut pending = vec![(root, false)];
         while let Some((current, ready)) = pending.pop() {
-            if draft.values.contains_key(&current.node()) || self.is_leaf(current, folding) {
+            if draft.values[current.node()].is_some() || self.is_leaf(current, folding) {
                 continue;
             }
             let operation = self.pool.operation(current);
@@ -485,7 +485,7 @@ impl Context<'_> {
                 let (dividend, divisor) = (operand(a), operand(b));
                 let reciprocal = draft.reciprocal(b.node(), divisor);
                 if *a == Expression::ONE {
-                    draft.values.insert(current.node(), reciprocal);
+                    draft.values[current.node()] = Some(reciprocal);
                     return;
                 }
                 Step::Multiply(dividend, Operand::plain(Source::Value(reciprocal)))
@@ -498,8 +498,8 @@ impl Context<'_> {
                         Step::SineCosine(angle),
                         &[self.name(*sine), self.name(*cosine)],
                     );
-                    draft.values.insert(*sine, first);
-                    draft.values.insert(*cosine, first + 1);
+                    draft.values[*sine] = Some(first);
+                    draft.values[*cosine] = Some(first + 1);
                     return;
                 }
                 if matches!(operation, Operation::Sine(_)) {
@@ -513,7 +513,7 @@ impl Context<'_> {
             }
         };
         let value = draft.push(step, &[self.name(current.node())]);
-        draft.values.insert(current.node(), value);
+        draft.values[current.node()] = Some(value);
     }
 
     fn name(&self, node: usize) -> String {
@@ -531,9 +531,9 @@ impl Context<'_> {
                 Some(place) => Source::Solved(place),
                 None => Source::Symbol(*symbol),
             },
-            _ => match (draft.values.get(&node), self.folded.get(&node)) {
-                (_, Some(number)) if !folding => Source::Folded(*number),
-                (Some(value), _) => Source::Value(*value),
+            _ => match (draft.values[node], self.folded[node]) {
+                (_, Some(number)) if !folding => Source::Folded(number),
+                (Some(value), _) => Source::Value(value),
                 // No node is read before it is made; if one were, the check for finite numbers would refuse the program.
                 _ => Source::Constant(f64::NAN),
             },

@@ -8,7 +8,7 @@
 //! A shift by anything known is right. It is made if what it leaves in the rows is nothing or a product that is known,
 //! and therefore passed on as a bare value ([`Image`]).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::System;
 use super::shift::Given;
@@ -71,6 +71,8 @@ struct Carrier<'a> {
     tree: &'a Tree,
     given: BTreeMap<usize, &'a Given>,
     vectors: &'a [Triple],
+    /// The vectors of which each rate is a component.
+    holding: BTreeMap<usize, Vec<Triple>>,
     velocity: &'a dyn Fn(usize) -> Expression,
     /// Value that each rate is counted from.
     values: BTreeMap<usize, Image>,
@@ -92,6 +94,7 @@ impl Carried {
             tree,
             given: rows.iter().map(|given| (given.unknown, given)).collect(),
             vectors,
+            holding: holding(vectors),
             velocity,
             values: BTreeMap::new(),
             left: BTreeMap::new(),
@@ -210,11 +213,12 @@ impl Carrier<'_> {
         for rate in vector {
             causes.extend(self.given[rate].terms.iter().map(|(column, _)| *column));
         }
-        let mut origins = self.vectors.iter().filter_map(|other| {
+        let candidates = self.candidates(vector);
+        let mut origins = candidates.into_iter().filter_map(|other| {
             let is_whole = causes.iter().all(|cause| other.contains(cause));
-            match is_orthonormal(&self.images(pool, vector, other))? {
-                true if self.is_moved_itself(pool, other) => Some((*other, true)),
-                false if is_whole => Some((*other, false)),
+            match is_orthonormal(&self.images(pool, vector, &other))? {
+                true if self.is_moved_itself(pool, &other) => Some((other, true)),
+                false if is_whole => Some((other, false)),
                 _ => None,
             }
         });
@@ -235,9 +239,17 @@ impl Carrier<'_> {
     /// Whether a vector is at the base, or follows from another with its length.
     fn is_moved_itself(&self, pool: &Pool, vector: &Triple) -> bool {
         let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
-        let mut others = self.vectors.iter().filter(|other| *other != vector);
+        let others = self.candidates(vector);
+        let mut others = others.iter().filter(|other| *other != vector);
         terms().next().is_none()
             || others.any(|other| is_orthonormal(&self.images(pool, vector, other)).is_some())
+    }
+
+    /// Vectors that the first component of a vector follows from.
+    fn candidates(&self, vector: &Triple) -> BTreeSet<Triple> {
+        let terms = self.given[&vector[0]].terms.iter();
+        let holding = terms.filter_map(|(cause, _)| self.holding.get(cause));
+        holding.flatten().copied().collect()
     }
 
     /// Coefficients of one vector in the rows of another.
@@ -366,6 +378,17 @@ impl Carrier<'_> {
             velocity,
         }))
     }
+}
+
+/// The vectors of which each rate is a component.
+fn holding(vectors: &[Triple]) -> BTreeMap<usize, Vec<Triple>> {
+    let mut holding: BTreeMap<usize, Vec<Triple>> = BTreeMap::new();
+    for vector in vectors {
+        for rate in vector {
+            holding.entry(*rate).or_default().push(*vector);
+        }
+    }
+    holding
 }
 
 /// The vector `r` of a matrix that gives `ω × r`.

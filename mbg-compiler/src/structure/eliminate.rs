@@ -60,33 +60,42 @@ impl System {
         columns: &BTreeSet<usize>,
         admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Result<(), Vanished> {
-        let constant = |rate, row, column| {
-            rate == Rate::Constant && columns.contains(&column) && admitted(row, column)
+        let mut is_wanted = vec![false; self.size()];
+        // An elimination puts no column into a row that held none of them.
+        let mut holding = BTreeSet::new();
+        for column in columns {
+            is_wanted[*column] = true;
+            holding.extend(self.rows_with(*column).filter(|row| rows.contains(row)));
+        }
+        let constant = |rate, row, column: usize| {
+            rate == Rate::Constant && is_wanted[column] && admitted(row, column)
         };
-        while let Some((row, column)) = self.pivot(pool, rows, &constant) {
+        while let Some((row, column)) = self.pivot(pool, holding.iter().copied(), &constant) {
             self.eliminate(pool, row, column)?;
+            holding.remove(&row);
         }
         Ok(())
     }
 
-    /// A pivot in one of the rows given: constants before parameters before what varies, then the one that fills in least.
+    /// A pivot in one of the rows given, which are open: constants before parameters before what varies, then the one that
+    /// fills in least.
     pub(super) fn pivot(
         &self,
         pool: &Pool,
-        rows: &BTreeSet<usize>,
+        rows: impl Iterator<Item = usize>,
         admitted: &dyn Fn(Rate, usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
         let mut best = None;
-        for row in rows.intersection(&self.open_rows) {
-            for (column, value) in &self.rows[*row] {
+        for row in rows {
+            for (column, value) in &self.rows[row] {
                 let rate = pool.rate(*value);
-                if !admitted(rate, *row, *column) {
+                if !admitted(rate, row, *column) {
                     continue;
                 }
-                let found = (rate, self.fill(*row, *column), *row, *column);
+                let found = (rate, self.fill(row, *column), row, *column);
                 // None is better, and what comes later stands behind it.
                 if found.0 == Rate::Constant && found.1 == 0 {
-                    return Some((*row, *column));
+                    return Some((row, *column));
                 }
                 if best.is_none_or(|best| found < best) {
                     best = Some(found);

@@ -8,7 +8,7 @@ use super::solve::{Solver, places};
 use super::tree::Tree;
 use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::{
-    Expression, Implicit, Kind, Linear, Matrix, Method, Rate, Rest, RestSolver, Symbol,
+    Expression, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest, RestSolver, Symbol,
 };
 
 /// Up to this size a determinant is expanded by minors, which divides by nothing.
@@ -65,10 +65,10 @@ impl Solver<'_> {
         allowed: &dyn Fn(usize, usize) -> bool,
         divisor: &mut Expression,
     ) -> Result<(Rest, Vec<Expression>), Failure> {
-        let all = system.open().clone();
         let steady = |rate, row, column| rate < Rate::Varying && allowed(row, column);
         while system.open().len() > ADJUGATE
-            && let Some((row, column)) = system.pivot(self.pool, &all, &steady)
+            && let Some((row, column)) =
+                system.pivot(self.pool, system.open().iter().copied(), &steady)
         {
             *divisor = self.pool.multiply(*divisor, system.entry(row, column));
             system.eliminate(self.pool, row, column)?;
@@ -141,9 +141,12 @@ impl Solver<'_> {
             .collect();
         let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
         let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
-        let others: BTreeSet<usize> = system.open().difference(&rows).copied().collect();
         let outside = |_, _, column| !columns.contains(&column);
-        while let Some((row, column)) = system.pivot(self.pool, &others, &outside) {
+        let pivot = |pool: &Pool, system: &System| {
+            let others = system.open().difference(&rows).copied();
+            system.pivot(pool, others, &outside)
+        };
+        while let Some((row, column)) = pivot(self.pool, system) {
             self.note(system.entry(row, column), &[]);
             system.eliminate(self.pool, row, column)?;
         }

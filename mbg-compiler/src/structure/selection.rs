@@ -6,8 +6,8 @@
 //! other, they are chosen once more: flows of `coordinate` junctions come first, and what is fixed for almost every
 //! state, but not at the nominal one, comes last.
 
-use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use super::mesh;
 use crate::codes;
@@ -47,12 +47,20 @@ pub fn select(
 ) -> Option<Selection> {
     let mut first = Selector::new(model, scalars, pool);
     let mut order: Vec<usize> = (0..scalars.equations.len()).collect();
-    order.sort_by_key(|row| (first.priority(scalars.equations[*row].owner), *row));
-    for row in order {
+    let priority = |row: usize| first.priority(scalars.equations[row].owner);
+    order.sort_by_key(|row| (priority(*row), *row));
+    let (storages, others): (Vec<usize>, Vec<usize>) = order
+        .into_iter()
+        .partition(|row| priority(*row) >= STORAGES);
+    for row in others {
         first.take(&scalars.equations[row], row, false);
     }
+    let second = first.clone();
+    for row in &storages {
+        first.take(&scalars.equations[*row], *row, false);
+    }
     match first.report(diagnostics) {
-        Verdict::Accepted => Some(again(model, scalars, pool, first)),
+        Verdict::Accepted => Some(again(scalars, &storages, &first, second)),
         Verdict::Refused => None,
         Verdict::Undetermined => {
             mesh::report(model, scalars, pool, diagnostics);
@@ -71,8 +79,14 @@ enum Verdict {
     Undetermined,
 }
 
-/// The second choice, among the storages that take part in a dependence.
-fn again(model: &Elaborated, scalars: &Scalars, pool: &Pool, first: Selector) -> Selection {
+/// The second choice, among the storages that take part in a dependence; the rows of all else are taken.
+fn again(
+    scalars: &Scalars,
+    storages: &[usize],
+    first: &Selector,
+    mut second: Selector,
+) -> Selection {
+    let model = first.model;
     let involved: BTreeSet<ElementId> = first
         .lost
         .iter()
@@ -90,12 +104,9 @@ fn again(model: &Elaborated, scalars: &Scalars, pool: &Pool, first: Selector) ->
         .map(|coordinate| coordinate_row(*coordinate))
         .filter(|row| first.follows(row))
         .collect();
-    let mut second = Selector::new(model, scalars, pool);
-    let mut order: Vec<usize> = (0..scalars.equations.len()).collect();
-    order.sort_by_key(|row| (second.priority(scalars.equations[*row].owner), *row));
-    let (involved, free): (Vec<usize>, Vec<usize>) = order
-        .into_iter()
-        .partition(|row| is_involved(scalars.equations[*row].owner));
+    let (involved, free): (Vec<usize>, Vec<usize>) = storages
+        .iter()
+        .partition(|row| is_involved(scalars.equations[**row].owner));
     for row in free {
         second.take(&scalars.equations[row], row, false);
     }
@@ -149,12 +160,17 @@ fn storage(model: &Elaborated, owner: Owner) -> Option<ElementId> {
     }
 }
 
+/// The priority at which storages begin.
+const STORAGES: usize = 2;
+
+#[derive(Clone)]
 struct Selector<'a> {
     model: &'a Elaborated,
     pool: &'a Pool,
     exact: Echelon,
     nominal: NominalEchelon,
-    nominal_values: BTreeMap<usize, f64>,
+    /// Coefficients at the nominal state by node.
+    nominal_values: Rc<[f64]>,
     lost: Vec<Lost>,
     sources: Vec<(ElementId, BTreeSet<Owner>)>,
     coordinates: BTreeSet<(JunctionId, usize)>,
@@ -182,48 +198,40 @@ impl<'a> Selector<'a> {
         };
         let element = &self.model.graph.elements[id.0];
         match element.law {
-            Law::Storage(_) => 2 + usize::from(element.derivative),
+            Law::Storage(_) => STORAGES + usize::from(element.derivative),
             Law::Source(_) => 1,
             _ => 0,
         }
     }
 
-    fn images(&self, equation: &Equation) -> BTreeMap<usize, u64> {
-        equation
-            .terms
-            .iter()
-            .map(|(unknown, c)| (*unknown, self.pool.image(*c).0[0]))
-            .collect()
+    fn images(&self, equation: &Equation) -> Row<u64> {
+        let terms = equation.terms.iter();
+        let images = terms.map(|(unknown, c)| (*unknown, self.pool.image(*c).0[0]));
+        images.filter(|(_, image)| *image != 0).collect()
     }
 
     /// Whether the row is a combination of those taken.
     fn follows(&self, equation: &Equation) -> bool {
-        self.exact.vanishes(&self.images(equation))
+        self.exact.vanishes(self.images(equation))
     }
 
     /// Takes a row. With `cautious`, a row that says something new in general but not at the nominal state is left,
     /// and the answer is no.
     fn take(&mut self, equation: &Equation, row: usize, cautious: bool) -> bool {
-        let values = equation
-            .terms
-            .iter()
-            .map(|(unknown, c)| {
-                let value = self
-                    .nominal_values
-                    .get(&c.node())
-                    .copied()
-                    .unwrap_or(f64::NAN);
-                (*unknown, if c.is_negative() { -value } else { value })
-            })
-            .collect();
+        let value = |c: &Expression| {
+            let value = self.nominal_values[c.node()];
+            if c.is_negative() { -value } else { value }
+        };
+        let values = equation.terms.iter();
+        let values = values.map(|(unknown, c)| (*unknown, value(c))).collect();
         let reduced = self.nominal.reduced(values);
         let own = match equation.owner {
-            Owner::Element(id, _) if !is_cause(self.model, id) => BTreeSet::new(),
-            Owner::Structure => BTreeSet::new(),
-            owner => BTreeSet::from([owner]),
+            Owner::Element(id, _) if !is_cause(self.model, id) => None,
+            Owner::Structure => None,
+            owner => Some(owner),
         };
         let images = self.images(equation);
-        if cautious && reduced.is_none() && !self.exact.vanishes(&images) {
+        if cautious && reduced.is_none() && !self.exact.vanishes(images.clone()) {
             return false;
         }
         match (self.exact.reduce(images, own), equation.owner) {
@@ -366,8 +374,8 @@ fn is_cause(model: &Elaborated, id: ElementId) -> bool {
     )
 }
 
-/// Coefficients at the nominal state: initial values, default parameters, inputs zero.
-fn nominal_values(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> BTreeMap<usize, f64> {
+/// Coefficients by node at the nominal state: initial values, default parameters, inputs zero.
+fn nominal_values(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> Rc<[f64]> {
     let parameter = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => model.parameters[index].default,
         _ => 0.0,
@@ -383,75 +391,123 @@ fn nominal_values(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> BTreeMa
         other => parameter(other),
     };
     let mut evaluation = Evaluation::new(&symbol);
-    scalars
-        .equations
-        .iter()
-        .flat_map(|equation| equation.terms.values())
-        .chain([&Expression::ONE])
-        .map(|c| (c.node(), evaluation.value(pool, c.magnitude())))
-        .collect()
+    let mut values = vec![f64::NAN; pool.len()];
+    let coefficients = scalars.equations.iter();
+    let coefficients = coefficients.flat_map(|equation| equation.terms.values());
+    for coefficient in coefficients.chain([&Expression::ONE]) {
+        values[coefficient.node()] = evaluation.value(pool, coefficient.magnitude());
+    }
+    values.into()
 }
 
-/// Rows in echelon form over the field, each with the rows it came from.
-#[derive(Default)]
+/// Coefficients by unknown, which ascend.
+type Row<T> = Vec<(usize, T)>;
+
+/// Rows in echelon form over the field, without zeros, each with the rows it came from.
+#[derive(Clone, Default)]
 struct Echelon {
-    rows: BTreeMap<usize, (BTreeMap<usize, u64>, BTreeSet<Owner>)>,
+    /// By the unknown that leads, with coefficient one.
+    rows: Vec<Option<(Row<u64>, Origin)>>,
+}
+
+/// What a row was made of.
+#[derive(Clone)]
+struct Origin {
+    /// What the equation belongs to, if that is a cause.
+    owner: Option<Owner>,
+    /// Leads of the rows that were taken from it.
+    taken: Vec<usize>,
 }
 
 impl Echelon {
     /// Adds a row; if it vanishes, gives the rows it is a combination of.
-    fn reduce(
-        &mut self,
-        row: BTreeMap<usize, u64>,
-        mut causes: BTreeSet<Owner>,
-    ) -> Option<BTreeSet<Owner>> {
-        let mut rest = self.rest(row, &mut causes);
-        let Some((&lead, &value)) = rest.first_key_value() else {
-            return Some(causes);
+    fn reduce(&mut self, row: Row<u64>, owner: Option<Owner>) -> Option<BTreeSet<Owner>> {
+        let (mut rest, taken) = self.rest(row);
+        let origin = Origin { owner, taken };
+        let Some(&(lead, value)) = rest.first() else {
+            return Some(self.causes(&origin));
         };
         let inverse = field::invert(value).unwrap_or(0);
-        rest.values_mut()
-            .for_each(|entry| *entry = field::multiply(*entry, inverse));
-        self.rows.insert(lead, (rest, causes));
+        for (_, entry) in &mut rest {
+            *entry = field::multiply(*entry, inverse);
+        }
+        let known = self.rows.len().max(lead + 1);
+        self.rows.resize(known, None);
+        self.rows[lead] = Some((rest, origin));
         None
     }
 
     /// Whether a row vanishes.
-    fn vanishes(&self, row: &BTreeMap<usize, u64>) -> bool {
-        self.rest(row.clone(), &mut BTreeSet::new()).is_empty()
+    fn vanishes(&self, row: Row<u64>) -> bool {
+        self.rest(row).0.is_empty()
     }
 
-    /// What remains of a row up to the first unknown that no earlier row leads with.
-    fn rest(
-        &self,
-        mut row: BTreeMap<usize, u64>,
-        causes: &mut BTreeSet<Owner>,
-    ) -> BTreeMap<usize, u64> {
-        row.retain(|_, value| *value != 0);
-        while let Some((&lead, &value)) = row.first_key_value() {
-            let Some((pivot, origin)) = self.rows.get(&lead) else {
+    /// All owners of what a row was made of.
+    fn causes(&self, origin: &Origin) -> BTreeSet<Owner> {
+        let mut causes = BTreeSet::from_iter(origin.owner);
+        let mut seen = vec![false; self.rows.len()];
+        let mut pending = origin.taken.clone();
+        while let Some(lead) = pending.pop() {
+            if !std::mem::replace(&mut seen[lead], true)
+                && let Some((_, origin)) = &self.rows[lead]
+            {
+                causes.extend(origin.owner);
+                pending.extend(&origin.taken);
+            }
+        }
+        causes
+    }
+
+    /// What remains of a row up to the first unknown that no earlier row leads with, and the leads of those that were taken
+    /// from it.
+    fn rest(&self, mut row: Row<u64>) -> (Row<u64>, Vec<usize>) {
+        let mut taken = Vec::new();
+        while let Some(&(lead, value)) = row.first() {
+            let Some(Some((pivot, _))) = self.rows.get(lead) else {
                 break;
             };
-            for (unknown, entry) in pivot {
-                let product = field::multiply(value, *entry);
-                match row.entry(*unknown) {
-                    Entry::Vacant(place) => drop(place.insert(field::subtract(0, product))),
-                    Entry::Occupied(place) if *place.get() == product => drop(place.remove()),
-                    Entry::Occupied(mut place) => {
-                        *place.get_mut() = field::subtract(*place.get(), product);
-                    }
-                }
-            }
-            causes.extend(origin.iter().copied());
+            row = merged(&row, pivot, |own, entry| {
+                let rest = field::subtract(own.unwrap_or(0), field::multiply(value, entry));
+                (rest != 0).then_some(rest)
+            });
+            taken.push(lead);
         }
-        row
+        (row, taken)
     }
 }
 
+/// A row that has taken in another: `sum` is given the coefficient in it, if there is one, and that in the other.
+fn merged<T: Copy>(
+    row: &[(usize, T)],
+    other: &[(usize, T)],
+    sum: impl Fn(Option<T>, T) -> Option<T>,
+) -> Row<T> {
+    let mut merged = Vec::with_capacity(row.len() + other.len());
+    let mut rest = row;
+    for &(unknown, entry) in other {
+        while let [first, later @ ..] = rest
+            && first.0 < unknown
+        {
+            merged.push(*first);
+            rest = later;
+        }
+        let own = rest.first().filter(|first| first.0 == unknown);
+        if own.is_some() {
+            rest = &rest[1..];
+        }
+        if let Some(value) = sum(own.map(|own| own.1), entry) {
+            merged.push((unknown, value));
+        }
+    }
+    merged.extend_from_slice(rest);
+    merged
+}
+
 /// Rows at the nominal state, each reduced by those before it, with its largest entry as the lead.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct NominalEchelon {
-    rows: Vec<(usize, BTreeMap<usize, f64>)>,
+    /// The lead, its coefficient, and the others.
+    rows: Vec<(usize, f64, Row<f64>)>,
     /// The row that each unknown leads.
     leads: Vec<Option<usize>>,
 }
@@ -461,39 +517,49 @@ impl NominalEchelon {
     const VANISHED: f64 = 1e-9;
 
     /// The row reduced by all others; none if it vanishes. A coefficient without a value counts as one.
-    fn reduced(&self, mut row: BTreeMap<usize, f64>) -> Option<BTreeMap<usize, f64>> {
-        row.values_mut()
-            .filter(|value| !value.is_finite())
-            .for_each(|value| *value = 1.0);
-        let largest =
-            |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let size = largest(&row);
-        let position = |unknown: &usize| self.leads.get(*unknown).copied().flatten();
-        let mut pending: BTreeSet<usize> = row.keys().filter_map(position).collect();
+    fn reduced(&self, mut row: Row<f64>) -> Option<Row<f64>> {
+        let mut size = 0.0_f64;
+        for (_, value) in &mut row {
+            if !value.is_finite() {
+                *value = 1.0;
+            }
+            size = size.max(value.abs());
+        }
+        let position = |(unknown, _): &(usize, f64)| self.leads.get(*unknown).copied().flatten();
+        let mut pending: BTreeSet<usize> = row.iter().filter_map(position).collect();
         while let Some(next) = pending.pop_first() {
-            let (lead, pivot) = &self.rows[next];
-            let factor = row.remove(lead).unwrap_or(0.0) / pivot[lead];
+            let (lead, pivot, others) = &self.rows[next];
+            let Ok(place) = row.binary_search_by_key(lead, |(unknown, _)| *unknown) else {
+                continue;
+            };
+            let factor = row.remove(place).1 / pivot;
             if factor == 0.0 {
                 continue;
             }
-            for (unknown, entry) in pivot.iter().filter(|(unknown, _)| *unknown != lead) {
-                *row.entry(*unknown).or_default() -= factor * entry;
-                pending.extend(position(unknown).filter(|position| *position > next));
-            }
+            row = merged(&row, others, |own, entry| {
+                Some(own.unwrap_or(0.0) - factor * entry)
+            });
+            let later = others.iter().filter_map(position);
+            pending.extend(later.filter(|position| *position > next));
         }
-        row.retain(|_, value| value.abs() > Self::VANISHED * size);
+        row.retain(|(_, value)| value.abs() > Self::VANISHED * size);
         (!row.is_empty()).then_some(row)
     }
 
-    fn insert(&mut self, row: BTreeMap<usize, f64>) {
-        let lead = row
-            .iter()
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()).then(b.0.cmp(a.0)));
-        if let Some((&lead, _)) = lead {
-            let known = self.leads.len().max(lead + 1);
-            self.leads.resize(known, None);
-            self.leads[lead] = Some(self.rows.len());
-            self.rows.push((lead, row));
-        }
+    fn insert(&mut self, mut row: Row<f64>) {
+        let size = |place: usize| row[place].1.abs();
+        let larger = |best, place| {
+            if size(place) > size(best) {
+                place
+            } else {
+                best
+            }
+        };
+        let largest = (1..row.len()).fold(0, larger);
+        let (lead, pivot) = row.remove(largest);
+        let known = self.leads.len().max(lead + 1);
+        self.leads.resize(known, None);
+        self.leads[lead] = Some(self.rows.len());
+        self.rows.push((lead, pivot, row));
     }
 }

@@ -99,10 +99,9 @@ impl Solver<'_> {
             .iter()
             .map(|equation| &scalars.equations[*equation])
             .collect();
-        if rows
-            .iter()
-            .any(|row| row.signals.iter().any(|signal| unknowns.contains(signal)))
-        {
+        let place = places(unknowns);
+        let reads_itself = |row: &&Equation| row.signals.iter().any(|it| place.contains_key(it));
+        if rows.iter().any(reads_itself) {
             return self.by_tearing(equations, unknowns);
         }
         if unknowns
@@ -111,7 +110,6 @@ impl Solver<'_> {
         {
             return self.by_levels(equations, unknowns);
         }
-        let place = places(unknowns);
         let (mut matrix, mut right) = (Vec::new(), Vec::new());
         let mut norms = Vec::new();
         for row in &rows {

@@ -23,6 +23,8 @@ pub(super) struct Tree {
     /// Rates that no row gives.
     independent: Columns,
     turns: BTreeMap<usize, Turn>,
+    /// Rates that rows give, by their turn.
+    together: BTreeMap<Option<Turn>, Vec<usize>>,
     /// Rows that balance efforts at a junction, and the effort that each gives, if it is not known.
     balances: BTreeMap<usize, Option<usize>>,
     /// Efforts that these rows give.
@@ -80,6 +82,14 @@ impl Tree {
             }
         }
         let independent = scalars.independent.values();
+        let turns = place.iter();
+        let turns = turns.filter_map(|(unknown, column)| Some((*column, scalars.turns[*unknown]?)));
+        let turns: BTreeMap<usize, Turn> = turns.collect();
+        let mut together: BTreeMap<Option<Turn>, Vec<usize>> = BTreeMap::new();
+        for rate in conjugates.keys() {
+            let turn = turns.get(rate).copied();
+            together.entry(turn).or_default().push(*rate);
+        }
         Self {
             given: conjugates
                 .iter()
@@ -93,10 +103,8 @@ impl Tree {
                 .filter_map(|rate| place.get(&rate.unknown).copied())
                 .collect(),
             balanced: balances.values().flatten().copied().collect(),
-            turns: place
-                .iter()
-                .filter_map(|(unknown, column)| Some((*column, scalars.turns[*unknown]?)))
-                .collect(),
+            turns,
+            together,
             conjugates,
             balances,
         }
@@ -235,10 +243,10 @@ impl Tree {
     pub(super) fn frame(&self, pool: &Pool, system: &System, row: usize) -> Columns {
         let is_leaf = |rate: &usize| self.followers(system, *rate).next().is_none();
         let together = |rate: usize| {
-            let turn = self.turns.get(&rate);
+            let turn = self.turns.get(&rate).copied();
             let open = |other: &usize| system.rows_with(*other).next().is_some();
-            let group = self.conjugates.keys().copied();
-            group.filter(move |other| self.turns.get(other) == turn && open(other))
+            let group = self.together.get(&turn).into_iter().flatten().copied();
+            group.filter(open)
         };
         let mut frame = Columns::new();
         for (rate, _) in system.row(row) {

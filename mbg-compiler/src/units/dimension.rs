@@ -1,7 +1,5 @@
 //! Dimensions: products of powers of base units, and of units that are not known yet.
 
-use std::collections::BTreeMap;
-
 /// A fraction in lowest terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Ratio {
@@ -32,6 +30,13 @@ impl Ratio {
     /// A fraction; the denominator is not zero.
     #[must_use]
     pub(super) fn new(numerator: i64, denominator: i64) -> Self {
+        // Nearly all are whole.
+        if denominator == 1 {
+            return Self {
+                numerator: numerator.clamp(-LARGEST, LARGEST),
+                denominator,
+            };
+        }
         let sign = denominator.signum();
         let common = common_divisor(numerator.abs(), denominator.abs()).max(1);
         let held = |number: i64| (sign * number / common).clamp(-LARGEST, LARGEST);
@@ -84,9 +89,9 @@ enum Factor {
 /// The base units.
 pub(super) const BASES: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// A product of powers.
+/// A product of powers other than zero, by factors that ascend.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Dimension(BTreeMap<Factor, Ratio>);
+pub(super) struct Dimension(Vec<(Factor, Ratio)>);
 
 impl Dimension {
     /// Of a pure number.
@@ -110,23 +115,33 @@ impl Dimension {
     /// Of a unit that is not known yet.
     #[must_use]
     fn unknown(number: usize) -> Self {
-        Self(BTreeMap::from([(Factor::Unknown(number), Ratio::ONE)]))
+        Self(vec![(Factor::Unknown(number), Ratio::ONE)])
     }
 
     /// The product with a power of another.
     #[must_use]
     pub(super) fn times_power(&self, other: &Self, exponent: Ratio) -> Self {
-        let mut product = self.0.clone();
-        for (factor, power) in &other.0 {
-            let zero = Ratio::new(0, 1);
-            let sum = product.get(factor).copied().unwrap_or(zero);
-            let sum = sum.plus(power.times(exponent));
-            if sum.is_zero() {
-                product.remove(factor);
-            } else {
-                product.insert(*factor, sum);
+        let mut product = Vec::with_capacity(self.0.len() + other.0.len());
+        let mut rest = &self.0[..];
+        for &(factor, power) in &other.0 {
+            while let [first, later @ ..] = rest
+                && first.0 < factor
+            {
+                product.push(*first);
+                rest = later;
+            }
+            let mut sum = power.times(exponent);
+            if let [first, later @ ..] = rest
+                && first.0 == factor
+            {
+                sum = sum.plus(first.1);
+                rest = later;
+            }
+            if !sum.is_zero() {
+                product.push((factor, sum));
             }
         }
+        product.extend_from_slice(rest);
         Self(product)
     }
 
@@ -151,7 +166,7 @@ impl Dimension {
     /// Whether it has roots of base units.
     #[must_use]
     pub(super) fn has_roots(&self) -> bool {
-        self.0.values().any(|exponent| exponent.denominator != 1)
+        self.0.iter().any(|(_, exponent)| exponent.denominator != 1)
     }
 
     /// Whether no unknown unit is in it.
@@ -161,7 +176,7 @@ impl Dimension {
     }
 
     fn last_unknown(&self) -> Option<(usize, Ratio)> {
-        match self.0.last_key_value() {
+        match self.0.last() {
             Some((Factor::Unknown(number), exponent)) => Some((*number, *exponent)),
             _ => None,
         }
@@ -213,29 +228,24 @@ impl Unknowns {
     pub(super) fn reduce(&mut self, dimension: &Dimension) -> Dimension {
         let mut reduced = dimension.clone();
         loop {
-            let solved = reduced
-                .0
-                .iter()
-                .find_map(|(factor, exponent)| match factor {
-                    Factor::Unknown(number) => Some((*number, *exponent, self.0[*number].clone()?)),
-                    Factor::Base(_) => None,
-                });
-            let Some((number, exponent, value)) = solved else {
+            let solved = |(factor, _): &(Factor, Ratio)| match factor {
+                Factor::Unknown(number) => self.0[*number].is_some(),
+                Factor::Base(_) => false,
+            };
+            let Some(place) = reduced.0.iter().position(solved) else {
                 return reduced;
             };
-            let value = self.shortened(number, value);
-            reduced.0.remove(&Factor::Unknown(number));
-            reduced = reduced.times_power(&value, exponent);
+            let (factor, exponent) = reduced.0.remove(place);
+            if let Factor::Unknown(number) = factor {
+                reduced = reduced.times_power(&self.shortened(number), exponent);
+            }
         }
     }
 
     /// The value of a solved unknown; where it is another unknown that is solved itself, the way is kept short.
-    fn shortened(&mut self, number: usize, mut value: Dimension) -> Dimension {
-        while let Some((Factor::Unknown(next), Ratio::ONE)) = value
-            .0
-            .first_key_value()
-            .map(|(factor, power)| (*factor, *power))
-            && value.0.len() == 1
+    fn shortened(&mut self, number: usize) -> Dimension {
+        let mut value = self.0[number].clone().unwrap_or_default();
+        while let [(Factor::Unknown(next), Ratio::ONE)] = value.0[..]
             && let Some(further) = self.0[next].clone()
         {
             value = further;
@@ -251,7 +261,8 @@ impl Unknowns {
             return quotient.is_pure();
         };
         let mut rest = quotient;
-        rest.0.remove(&Factor::Unknown(number));
+        // The last factor is that unknown.
+        rest.0.pop();
         let value = Dimension::pure().times_power(&rest, exponent.negative_reciprocal());
         self.0[number] = Some(value);
         true

@@ -7,20 +7,20 @@ use super::{less, seen};
 use crate::Real;
 
 /// A polynomial over a step, in the form of Hairer's codes: with `s` from 0 to 1 and `r = 1 - s`,
-/// `x + s (c₀ + r (c₁ + s (c₂ + r (c₃ + s (c₄ + r (c₅ + s c₆))))))`.
+/// `x + s (c₀ + r (c₁ + s (c₂ + r (c₃ + s (c₄ + r (c₅ + s (c₆ + r c₇)))))))`.
 ///
 /// It gives the states at both ends exactly, whatever its degree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polynomial<T, const N: usize> {
     pub(super) start: SVector<T, N>,
-    pub(super) coefficients: [SVector<T, N>; 7],
+    pub(super) coefficients: [SVector<T, N>; 8],
 }
 
 impl<T: Real, const N: usize> Polynomial<T, N> {
     /// The straight line between two states.
     pub(super) fn line(start: &SVector<T, N>, end: &SVector<T, N>) -> Self {
         let zero = SVector::from_element(T::from_f64(0.0));
-        let mut coefficients = [zero; 7];
+        let mut coefficients = [zero; 8];
         coefficients[0] = end.zip_map(start, |end, start| end - start);
         Self {
             start: *start,

@@ -135,7 +135,12 @@ macro_rules! of_stage {
             12 => $work.$method::<12>($($argument),*),
             13 => $work.$method::<13>($($argument),*),
             14 => $work.$method::<14>($($argument),*),
-            _ => $work.$method::<15>($($argument),*),
+            15 => $work.$method::<15>($($argument),*),
+            16 => $work.$method::<16>($($argument),*),
+            17 => $work.$method::<17>($($argument),*),
+            18 => $work.$method::<18>($($argument),*),
+            19 => $work.$method::<19>($($argument),*),
+            _ => $work.$method::<20>($($argument),*),
         }
     };
 }

@@ -32,6 +32,8 @@ pub use adaptive::Adaptive;
 pub use auto::{Auto, Choice, Picked, Reason};
 pub use dense::{Direction, Step};
 pub use elimination::{Shifted, holds, largest};
+#[cfg(feature = "numeris")]
+pub use explicit::Verner9;
 pub use explicit::{Dop853, Rk4, Tsit5};
 pub use fixed::Fixed;
 pub use gauss::{Gauss6, ImplicitMidpoint};

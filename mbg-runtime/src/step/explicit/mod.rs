@@ -2,6 +2,8 @@
 
 mod dop853;
 mod tsit5;
+#[cfg(feature = "numeris")]
+mod verner;
 
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -18,6 +20,8 @@ use super::tolerance::Tolerance;
 use crate::{Input, Real, System};
 use dop853::DOP853;
 use tsit5::TSIT5;
+#[cfg(feature = "numeris")]
+use verner::VERNER9;
 
 /// The classical method of Runge and Kutta.
 ///
@@ -57,6 +61,40 @@ pub struct Tsit5;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dop853;
 
+/// The pair of Verner of order 9(8), of the crate `numeris`; only with the feature of that name.
+///
+/// | order | in between | estimate | evaluations a step | stable for real `hλ` from | for imaginary `hλ` up to |
+/// |---|---|---|---|---|---|
+/// | 9 | 8, error of power 9; 4 more evaluations | 8 | 16 | −4.47 | 2.75 |
+///
+/// For smooth problems to errors of about 1e-5 and less, where jumps are rare. `numeris` gives the coefficients; the steps
+/// are those of [`Adaptive`](super::Adaptive) or [`Fixed`](super::Fixed), with all that they look after.
+///
+/// Source: J. H. Verner, *Numerical Algorithms* 53 (2010), 383–396; the "most efficient" pair with an interpolant of
+/// order 8, <https://www.sfu.ca/~jverner/>.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Adaptive, Integrator, Stopped, System, Verner9};
+///
+/// /// The first state at two times.
+/// fn swing<const P: usize>(model: &impl System<f64, 4, 0, P>) -> Result<[f64; 2], Stopped> {
+///     let solver = Adaptive::new(Verner9, 1e-10, 1e-12);
+///     let mut samples = [0.0; 2];
+///     let mut slots = samples.iter_mut();
+///     solver.sample(model, &(), 0.0, model.initial_state(), &[1.0, 5.0], |_t, x| {
+///         if let Some(slot) = slots.next() {
+///             *slot = x[0];
+///         }
+///     })?;
+///     Ok(samples)
+/// }
+/// ```
+#[cfg(feature = "numeris")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Verner9;
+
 /// Coefficients of a method with `S` stages; `F` counts the slope at the end and stages for the dense output too.
 struct Tableau<const S: usize, const F: usize> {
     nodes: [f64; F],
@@ -65,7 +103,7 @@ struct Tableau<const S: usize, const F: usize> {
     /// Weights of the error; where there are two, the second keeps the first from being too good by chance.
     errors: [&'static [f64]; 2],
     /// Weights of the coefficients of the polynomial behind those of the cubic.
-    dense: [&'static [f64]; 4],
+    dense: [&'static [f64]; 5],
 }
 
 const RK4: Tableau<4, 5> = Tableau {
@@ -78,7 +116,7 @@ const RK4: Tableau<4, 5> = Tableau {
         &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
     ],
     errors: [&[], &[]],
-    dense: [&[], &[], &[], &[]],
+    dense: [&[], &[], &[], &[], &[]],
 };
 
 impl<const S: usize, const F: usize> Tableau<S, F> {
@@ -248,6 +286,8 @@ macro_rules! explicit {
 explicit!(Rk4, RK4: 4 of 5, "RK4", order 4, 4);
 explicit!(Tsit5, TSIT5: 6 of 7, "Tsit5", order 5, 5);
 explicit!(Dop853, DOP853: 12 of 16, "Dop853", order 8, 8);
+#[cfg(feature = "numeris")]
+explicit!(Verner9, VERNER9: 16 of 21, "Verner 9(8)", order 9, 9);
 
 impl Estimating for Tsit5 {
     const ESTIMATE_ORDER: u32 = 5;
@@ -255,6 +295,11 @@ impl Estimating for Tsit5 {
 
 impl Estimating for Dop853 {
     const ESTIMATE_ORDER: u32 = 8;
+}
+
+#[cfg(feature = "numeris")]
+impl Estimating for Verner9 {
+    const ESTIMATE_ORDER: u32 = 9;
 }
 
 #[cfg(test)]
@@ -315,6 +360,8 @@ mod tests {
         assert_orders("RK4", &RK4, [4, 3]);
         assert_orders("Tsit5", &TSIT5, [5, 4]);
         assert_orders("Dop853", &DOP853, [8, 7]);
+        #[cfg(feature = "numeris")]
+        assert_orders("Verner 9(8)", &VERNER9, [9, 8]);
     }
 
     #[test]
@@ -329,6 +376,11 @@ mod tests {
         for (error, order) in DOP853.errors.iter().zip([5, 3]) {
             let result = embedded(DOP853.rows[12], error, 16);
             scheme.assert_order("Dop853", &result, order, 1.0, 1e-12);
+        }
+        #[cfg(feature = "numeris")]
+        {
+            let result = embedded(VERNER9.rows[16], VERNER9.errors[0], 21);
+            self::scheme(&VERNER9).assert_order("Verner 9(8)", &result, 8, 1.0, 1e-12);
         }
     }
 }

@@ -64,5 +64,6 @@ pub(super) const TSIT5: Tableau<6, 7> = Tableau {
         &[],
         &[],
         &[],
+        &[],
     ],
 };

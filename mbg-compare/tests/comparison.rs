@@ -15,9 +15,9 @@ fn smooth_and_stiff_problems_get_their_methods_and_a_reference() {
     let start = SVector::from([2.0, 1.0]);
     let problem = Problem::new("pendulum", &Written(Pendulum), &(), (0.0, 10.0), start);
     let comparison = compare(problem).unwrap();
-    assert_eq!(comparison.methods(), ["Tsit5", "Dop853"]);
+    assert_eq!(comparison.methods(), ["Tsit5", "Dop853", "PIRK 8"]);
     assert!(comparison.reference().agreement < 1e-8);
-    for method in ["Tsit5", "Dop853"] {
+    for method in ["Tsit5", "Dop853", "PIRK 8"] {
         let series = comparison.series(method);
         assert!(series[0].error > 1e-5 && series[series.len() - 1].error < 1e-6);
         let [coarse, fine] = [1e-6, 1e-7].map(|error| comparison.time_to(method, error).unwrap());

@@ -1,5 +1,5 @@
 //! How long the macro takes, unoptimised as it runs inside `rustc`:
-//! `cargo run -p mbg-compiler --example expansion -- FILE…`, for instance `examples/ins/model.rs examples/arm/model.rs`.
+//! `cargo run -p mbg-compiler --example expansion -- FILE…`, for instance `examples/ins/models.rs examples/arm/model.rs`.
 
 mod source;
 

@@ -15,3 +15,5 @@ mod hard;
 mod orders;
 #[path = "methods/parallel.rs"]
 mod parallel;
+#[path = "methods/stability.rs"]
+mod stability;

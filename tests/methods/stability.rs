@@ -1,0 +1,58 @@
+//! Limits of stability of explicit methods, at steps of one length.
+
+use mbg_runtime::{Dop853, Fixed, Integrator, Method, Pirk8, Real, Rk4, Tsit5, Variable, Verner9};
+use nalgebra::SVector;
+
+use crate::problems::{Law, Written, state};
+
+const STEPS: f64 = 2000.0;
+
+/// `ẋ = λ x` in real numbers, with the real and the imaginary part of λ.
+#[derive(Clone, Copy)]
+struct Mode([f64; 2]);
+
+impl Law<2, 0> for Mode {
+    const STATES: &'static [Variable] = &[state("real"), state("imaginary")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let [real, imaginary] = self.0.map(T::from_f64);
+        SVector::from([
+            real * x[0] - imaginary * x[1],
+            imaginary * x[0] + real * x[1],
+        ])
+    }
+}
+
+/// How large a mode has become after many steps of length 1.
+fn grown(method: impl Method, mode: [f64; 2]) -> f64 {
+    let start = SVector::from([1.0, 0.0]);
+    let mut last = start;
+    let run = Fixed::new(method, 1.0);
+    run.integrate(&Written(Mode(mode)), &(), 0.0, STEPS, start, |step| {
+        last = *step.state()
+    })
+    .map_or(f64::INFINITY, |_| last.norm())
+}
+
+/// Along each axis a mode grows by less than 1e-6 a step up to the limit, and by more a hundredth beyond it.
+fn assert_limits<M: Method>(method: M, real: f64, imaginary: f64) {
+    let modes = [[real, 0.0], [0.0, imaginary]];
+    for mode in modes.into_iter().filter(|mode| *mode != [0.0; 2]) {
+        let rate = |part: f64| grown(method, mode.map(|it| part * it)).ln() / STEPS;
+        let beyond = rate(1.01);
+        assert!(beyond > 1e-6, "{} beyond {mode:?}: {beyond:e}", M::NAME);
+        for part in [0.1, 0.3, 0.5, 0.6, 0.8, 0.99] {
+            let within = rate(part);
+            assert!(within < 1e-6, "{} at {part} {mode:?}: {within:e}", M::NAME);
+        }
+    }
+}
+
+#[test]
+fn modes_grow_beyond_the_limits_of_stability_alone() {
+    assert_limits(Rk4, -2.79, 2.83);
+    assert_limits(Tsit5, -3.51, 0.0);
+    assert_limits(Dop853, -6.39, 5.96);
+    assert_limits(Verner9, -4.47, 2.75);
+    assert_limits(Pirk8, -1.69, 1.70);
+}

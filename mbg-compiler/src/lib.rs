@@ -28,6 +28,7 @@ pub mod diagnostics;
 pub mod drawing;
 pub mod elaborate;
 pub mod emit;
+mod entries;
 pub mod equations;
 pub mod explain;
 pub mod graph;

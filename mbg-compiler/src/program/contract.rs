@@ -124,13 +124,7 @@ impl Contraction {
     }
 
     fn latest(&self, operands: &[Operand]) -> u32 {
-        let mut latest = 0;
-        for operand in operands {
-            if let Source::Value(value) = operand.source {
-                latest = latest.max(self.ready[value]);
-            }
-        }
-        latest
+        latency::latest(&self.ready, operands)
     }
 }
 

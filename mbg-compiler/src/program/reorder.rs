@@ -232,13 +232,7 @@ impl Order {
     }
 
     fn latest(&self, operands: &[Operand]) -> u32 {
-        let mut latest = 0;
-        for operand in operands {
-            if let Source::Value(value) = operand.source {
-                latest = latest.max(self.ready[value]);
-            }
-        }
-        latest
+        latency::latest(&self.ready, operands)
     }
 }
 

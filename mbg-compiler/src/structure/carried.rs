@@ -128,33 +128,12 @@ impl Carried {
                 None => !is_mass(row),
             })
         };
-        let mut ends = BTreeMap::new();
-        for (vector, origin) in &path {
-            let Origin::Moved {
-                from,
-                arm:
-                    Some(Arm {
-                        turning,
-                        length: Some(arm),
-                        ..
-                    }),
-            } = origin
-            else {
-                continue;
-            };
-            for component in 0..3 {
-                ends.insert(
-                    vector[component],
-                    End {
-                        from: from[component],
-                        omega: *turning,
-                        arm: *arm,
-                        component,
-                    },
-                );
-            }
-        }
-        (!masses.is_empty() && !left.keys().any(moves_more)).then_some(Self { left, masses, ends })
+        let is_gain = !masses.is_empty() && !left.keys().any(moves_more);
+        is_gain.then(|| Self {
+            ends: path.iter().flat_map(ends).collect(),
+            left,
+            masses,
+        })
     }
 }
 
@@ -378,6 +357,28 @@ impl Carrier<'_> {
             velocity,
         }))
     }
+}
+
+/// The components of a vector to which a rigid arm adds.
+fn ends((vector, origin): &(Triple, Origin)) -> Vec<(usize, End)> {
+    let &Origin::Moved {
+        from,
+        arm: Some(arm),
+    } = origin
+    else {
+        return Vec::new();
+    };
+    let end = |component: usize, length| End {
+        from: from[component],
+        omega: arm.turning,
+        arm: length,
+        component,
+    };
+    let components = arm.length.into_iter().flat_map(|length| {
+        let component = |component: usize| (vector[component], end(component, length));
+        [0, 1, 2].map(component)
+    });
+    components.collect()
 }
 
 /// The vectors of which each rate is a component.

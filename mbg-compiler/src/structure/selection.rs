@@ -13,6 +13,7 @@ use super::mesh;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
+use crate::entries::merged;
 use crate::equations::{Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, JunctionId, Law};
 use crate::symbolic::{Evaluation, Expression, Pool, Symbol, field};
@@ -474,33 +475,6 @@ impl Echelon {
         }
         (row, taken)
     }
-}
-
-/// A row that has taken in another: `sum` is given the coefficient in it, if there is one, and that in the other.
-fn merged<T: Copy>(
-    row: &[(usize, T)],
-    other: &[(usize, T)],
-    sum: impl Fn(Option<T>, T) -> Option<T>,
-) -> Row<T> {
-    let mut merged = Vec::with_capacity(row.len() + other.len());
-    let mut rest = row;
-    for &(unknown, entry) in other {
-        while let [first, later @ ..] = rest
-            && first.0 < unknown
-        {
-            merged.push(*first);
-            rest = later;
-        }
-        let own = rest.first().filter(|first| first.0 == unknown);
-        if own.is_some() {
-            rest = &rest[1..];
-        }
-        if let Some(value) = sum(own.map(|own| own.1), entry) {
-            merged.push((unknown, value));
-        }
-    }
-    merged.extend_from_slice(rest);
-    merged
 }
 
 /// Rows at the nominal state, each reduced by those before it, with its largest entry as the lead.

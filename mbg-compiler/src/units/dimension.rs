@@ -1,5 +1,7 @@
 //! Dimensions: products of powers of base units, and of units that are not known yet.
 
+use crate::entries::merged;
+
 /// A fraction in lowest terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Ratio {
@@ -121,27 +123,11 @@ impl Dimension {
     /// The product with a power of another.
     #[must_use]
     pub(super) fn times_power(&self, other: &Self, exponent: Ratio) -> Self {
-        let mut product = Vec::with_capacity(self.0.len() + other.0.len());
-        let mut rest = &self.0[..];
-        for &(factor, power) in &other.0 {
-            while let [first, later @ ..] = rest
-                && first.0 < factor
-            {
-                product.push(*first);
-                rest = later;
-            }
-            let mut sum = power.times(exponent);
-            if let [first, later @ ..] = rest
-                && first.0 == factor
-            {
-                sum = sum.plus(first.1);
-                rest = later;
-            }
-            if !sum.is_zero() {
-                product.push((factor, sum));
-            }
-        }
-        product.extend_from_slice(rest);
+        let product = merged(&self.0, &other.0, |own, power| {
+            let more = power.times(exponent);
+            let sum = own.map_or(more, |own| own.plus(more));
+            (!sum.is_zero()).then_some(sum)
+        });
         Self(product)
     }
 

@@ -146,6 +146,21 @@ mod tests {
     }
 
     #[test]
+    fn steady_steps_heed_an_error_that_grows() {
+        let errors = [1e-2, 0.5];
+        assert_eq!(next(Rule::Steady, errors), next(Rule::Trend, errors));
+        assert!(next(Rule::Steady, errors) < 0.7 * next(Rule::Proportional, errors));
+    }
+
+    #[test]
+    fn no_step_grows_beyond_what_the_method_allows() {
+        let mut control = Control::new(4, 1.0);
+        control.growth = 1.5;
+        control.accept(1.0, 1e-6, Rule::Steady);
+        assert_eq!(control.length, 1.5);
+    }
+
+    #[test]
     fn no_step_grows_behind_a_rejection() {
         let mut control = Control::new(4, 1.0);
         control.reject(1.0, f64::NAN);

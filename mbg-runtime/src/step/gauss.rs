@@ -7,7 +7,8 @@ use nalgebra::SVector;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{
-    Family, Method, Start, Stepper, Trial, along, combination, larger, relative, settles,
+    Family, Method, Start, Stepper, Trial, along, combination, lagrange, larger, leading, relative,
+    settles,
 };
 use super::problem::Problem;
 use super::seen;
@@ -219,7 +220,8 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
         let ratio = seen(start.span.length / before);
         let known = self.slopes;
         for (node, slope) in A::TABLEAU.nodes.iter().zip(&mut self.slopes) {
-            let weights = lagrange(&A::TABLEAU.nodes, 1.0 + node * ratio);
+            let distances = A::TABLEAU.nodes.map(|other| 1.0 + node * ratio - other);
+            let weights = lagrange(const { &leading(&A::TABLEAU.nodes) }, &distances);
             *slope = combination(&weights, &known);
         }
     }
@@ -270,16 +272,6 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
         }
         largest
     }
-}
-
-/// Weights of the values at the nodes in the polynomial through them, at `s`.
-fn lagrange<const S: usize>(nodes: &[f64; S], s: f64) -> [f64; S] {
-    core::array::from_fn(|own| {
-        let others = (0..S).filter(|other| *other != own);
-        others.fold(1.0, |product, other| {
-            product * (s - nodes[other]) / (nodes[own] - nodes[other])
-        })
-    })
 }
 
 /// A method of this family.

@@ -154,6 +154,39 @@ pub(super) const fn row<const K: usize>(
     if number < K { rows[number] } else { &[] }
 }
 
+/// Reciprocals of `Π (cⱼ − cᵢ)`, for each node the product over all others.
+pub(super) const fn leading<const S: usize>(nodes: &[f64; S]) -> [f64; S] {
+    let mut reciprocals = [1.0; S];
+    let mut own = 0;
+    while own < S {
+        let mut other = 0;
+        while other < S {
+            if other != own {
+                reciprocals[own] /= nodes[own] - nodes[other];
+            }
+            other += 1;
+        }
+        own += 1;
+    }
+    reciprocals
+}
+
+/// Weights of the values at nodes in the polynomial through them, from the distances to the nodes and what [`leading`] gives.
+#[inline]
+pub(super) fn lagrange<T: Real, const S: usize>(leading: &[f64; S], distances: &[T; S]) -> [T; S] {
+    let mut weights = leading.map(T::from_f64);
+    let mut before = T::from_f64(1.0);
+    let mut behind = T::from_f64(1.0);
+    for node in 0..S {
+        let last = S - 1 - node;
+        weights[node] = weights[node] * before;
+        before = before * distances[node];
+        weights[last] = weights[last] * behind;
+        behind = behind * distances[last];
+    }
+    weights
+}
+
 /// `Σ weight · vector`; vectors of weight zero are left out. Weights that are constants are written out.
 #[inline(always)]
 pub(super) fn combination<T: Real, const N: usize>(

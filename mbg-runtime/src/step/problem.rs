@@ -106,3 +106,18 @@ where
             .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::models::Oscillator;
+
+    #[test]
+    fn an_autonomous_model_is_not_asked_what_time_changes() {
+        let mut problem = Problem::<f64, _, _, 2, 1, 0>::new(&Oscillator, &(), 0.0);
+        // Any evaluation there would give what is no number.
+        let nowhere = SVector::from([f64::NAN; 2]);
+        let change = problem.slope_by_time(0.0, &nowhere, 0.1);
+        assert_eq!(change, SVector::from([0.0; 2]));
+    }
+}

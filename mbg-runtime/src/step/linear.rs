@@ -129,27 +129,41 @@ const INVERTED: usize = 3;
 /// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the columns of the
 /// inverse are kept instead: its products need not wait for each other.
 #[derive(Clone, Copy, Debug)]
-pub struct Factors<E, const N: usize> {
-    rows: [[E; N]; N],
+pub(super) struct Factors<E, const N: usize> {
+    pub(super) rows: [[E; N]; N],
     order: [usize; N],
 }
 
 impl<E: Element, const N: usize> Factors<E, N> {
+    /// Nothing yet.
     #[inline(always)]
-    pub(super) fn new(rows: [[E; N]; N]) -> Self {
-        let order = core::array::from_fn(|row| row);
-        if N > INVERTED {
-            return Self::eliminated(rows);
+    pub(super) fn empty() -> Self {
+        Self {
+            rows: [[E::zero(); N]; N],
+            order: [0; N],
         }
-        match inverse(&rows) {
-            Some(rows) => Self { rows, order },
-            None => Self::eliminated(rows).inverted(),
+    }
+
+    /// Factors of the matrix of these entries.
+    #[inline(always)]
+    pub(super) fn factorise(&mut self, entry: impl Fn(usize, usize) -> E) {
+        if N > INVERTED {
+            fill(&mut self.rows, entry);
+            return self.eliminate();
+        }
+        let mut rows = [[E::zero(); N]; N];
+        fill(&mut rows, entry);
+        if !invert(&rows, &mut self.rows) {
+            self.rows = rows;
+            self.eliminate();
+            self.invert();
         }
     }
 
     #[inline(never)]
-    fn eliminated(mut rows: [[E; N]; N]) -> Self {
-        let mut order = core::array::from_fn(|row| row);
+    fn eliminate(&mut self) {
+        let Self { rows, order } = self;
+        *order = core::array::from_fn(|row| row);
         for k in 0..N {
             let mut pivot = k;
             let mut largest = rows[k][k].size();
@@ -172,20 +186,16 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 }
             }
         }
-        Self { rows, order }
     }
 
     /// The columns of the inverse in the place of the factors.
-    fn inverted(self) -> Self {
-        let columns = core::array::from_fn(|column| {
+    #[cold]
+    fn invert(&mut self) {
+        self.rows = core::array::from_fn(|column| {
             self.substituted(core::array::from_fn(|row| {
                 E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
             }))
         });
-        Self {
-            rows: columns,
-            ..self
-        }
     }
 
     /// The `x` of `A x = right`.
@@ -217,10 +227,20 @@ impl<E: Element, const N: usize> Factors<E, N> {
     }
 }
 
-/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing of a
-/// singular matrix, and where products may leave the range of the numbers.
+/// Writes entries to a matrix, without a copy of it.
 #[inline(always)]
-fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]> {
+fn fill<E: Element, const N: usize>(rows: &mut [[E; N]; N], entry: impl Fn(usize, usize) -> E) {
+    for (i, row) in rows.iter_mut().enumerate() {
+        for (j, element) in row.iter_mut().enumerate() {
+            *element = entry(i, j);
+        }
+    }
+}
+
+/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; not of a singular
+/// matrix, nor where products may leave the range of the numbers. Whether it came to that.
+#[inline(always)]
+fn invert<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[E; N]; N]) -> bool {
     let cofactor = |row: usize, column: usize| match N {
         1 => E::from_part(E::Part::from_f64(1.0)),
         2 if row == column => rows[1 - row][1 - column],
@@ -231,21 +251,19 @@ fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]
             below[right] * above[left] - below[left] * above[right]
         }
     };
-    let mut columns: [[E; N]; N] =
-        core::array::from_fn(|column| core::array::from_fn(|row| cofactor(column, row)));
-    let terms = (0..N).map(|column| rows[0][column] * columns[0][column]);
+    let mut cofactors = [[E::zero(); N]; N];
+    fill(&mut cofactors, cofactor);
+    let terms = (0..N).map(|column| rows[0][column] * cofactors[0][column]);
     let determinant = terms.fold(E::zero(), |sum, term| sum + term);
     let size = determinant.size();
     let small = E::Part::EPSILON * E::Part::EPSILON;
     let small = small * small;
     if size.is_nan() || size <= small || size >= 1.0 / small {
-        return None;
+        return false;
     }
     let reciprocal = determinant.reciprocal();
-    for element in columns.iter_mut().flatten() {
-        *element = *element * reciprocal;
-    }
-    Some(columns)
+    fill(columns, |row, column| cofactors[row][column] * reciprocal);
+    true
 }
 
 #[cfg(test)]
@@ -253,12 +271,18 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
+    fn factors<E: Element, const N: usize>(rows: [[E; N]; N]) -> Factors<E, N> {
+        let mut factors = Factors::empty();
+        factors.factorise(|row, column| rows[row][column]);
+        factors
+    }
+
     #[test]
     fn solves_what_needs_pivots() {
         let rows = [[0.0, 1e-20, 3.0], [2.0, 1.0, 0.0], [1e20, 0.0, 1e20]];
         let x = [1.0, -2.0, 3.0];
         let right = rows.map(|row: [f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum());
-        let found = Factors::new(rows).solve(right);
+        let found = factors(rows).solve(right);
         for (found, x) in found.iter().zip(x) {
             assert!((found - x).abs() < 1e-14, "{found}");
         }
@@ -266,7 +290,7 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_gives_nothing_finite() {
-        let x = Factors::new([[1.0, 2.0], [2.0, 4.0]]).solve([1.0, 1.0]);
+        let x = factors([[1.0, 2.0], [2.0, 4.0]]).solve([1.0, 1.0]);
         assert!(x.iter().all(|x: &f64| !x.is_finite()), "{x:?}");
     }
 
@@ -286,7 +310,7 @@ mod tests {
                 terms.fold(number(0.0, 0.0), |sum, term| sum + term)
             })
             .collect();
-        let found = Factors::new(rows).solve([right[0], right[1], right[2]]);
+        let found = factors(rows).solve([right[0], right[1], right[2]]);
         for (found, x) in found.iter().zip(x) {
             assert!((*found - x).size() < 1e-14, "{found:?}");
         }

@@ -85,7 +85,7 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     jacobian: SMatrix<T, N, N>,
     /// By how much the last sweeps reduced the error; infinite where that is not known.
     theta: f64,
-    factors: Option<Factors<T, N, PAIRS>>,
+    factors: Factors<T, N, PAIRS>,
     /// Lengths of two steps and the coefficients of their polynomials, in turns the last one and that which is tried; no
     /// length at the start and behind a jump.
     steps: [(T, [SVector<T, N>; S]); 2],
@@ -99,7 +99,8 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
 
 /// Factors of `λ/h I − ∂f/∂x` for the eigenvalues, at a length `h`.
 struct Factors<T, const N: usize, const PAIRS: usize> {
-    length: T,
+    /// None where there are no factors of the present Jacobian.
+    length: Option<T>,
     real: Shifted<T, N>,
     pairs: [Shifted<Complex<T>, N>; PAIRS],
 }
@@ -116,7 +117,11 @@ where
         Self {
             jacobian: SMatrix::from_element(zero),
             theta: f64::INFINITY,
-            factors: None,
+            factors: Factors {
+                length: None,
+                real: Shifted::empty(),
+                pairs: core::array::from_fn(|_| Shifted::empty()),
+            },
             steps: [(zero, [SVector::from_element(zero); S]); 2],
             tried: 0,
             rate: 1.0,
@@ -141,10 +146,8 @@ where
         }
         let mut stages = self.predict(length);
         self.factorise(problem, start, &stages);
-        let Some(factors) = &self.factors else {
-            return failed(&stages, f64::INFINITY);
-        };
-        let mut newton = Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, factors);
+        let mut newton =
+            Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, &self.factors);
         let found = match tolerance {
             Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
             None => newton.settled(&mut stages),
@@ -213,25 +216,22 @@ where
         if self.theta > FAST {
             let t = span.at(T::from_f64(A::TABLEAU.nodes[S / 2]));
             self.jacobian = problem.jacobian(t, &(x + stages[S / 2]));
-            self.factors = None;
+            self.factors.length = None;
         }
         let length = span.length;
-        if self.factors.as_ref().is_some_and(|it| it.length == length) {
+        if self.factors.length == Some(length) {
             return;
         }
+        self.factors.length = Some(length);
         problem.statistics.factorisations += 1 + PAIRS as u64;
         let by = |number: f64| T::from_f64(number) / length;
         let one = T::from_f64(1.0);
-        let pairs = A::TABLEAU.pairs.map(|pair| {
+        for (pair, factors) in A::TABLEAU.pairs.iter().zip(&mut self.factors.pairs) {
             let [real, imaginary] = pair.map(by);
-            Shifted::new::<Y, M, P>(Complex { real, imaginary }, one, &self.jacobian)
-        });
-        let real = Shifted::new::<Y, M, P>(by(A::TABLEAU.real), one, &self.jacobian);
-        self.factors = Some(Factors {
-            length,
-            real,
-            pairs,
-        });
+            factors.factorise::<Y, M, P>(Complex { real, imaginary }, one, &self.jacobian);
+        }
+        let real = &mut self.factors.real;
+        real.factorise::<Y, M, P>(by(A::TABLEAU.real), one, &self.jacobian);
     }
 
     /// The last step.

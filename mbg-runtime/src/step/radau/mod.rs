@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
-use super::linear::Complex;
+use super::linear::{Complex, Element};
 use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combination};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -101,8 +101,20 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
 struct Factors<T, const N: usize, const PAIRS: usize> {
     /// None where there are no factors of the present Jacobian.
     length: Option<T>,
-    real: Shifted<T, N>,
-    pairs: [Shifted<Complex<T>, N>; PAIRS],
+    /// The real `λ/h` with its factors.
+    real: (T, Shifted<T, N>),
+    /// One of each pair of others.
+    pairs: [(Complex<T>, Shifted<Complex<T>, N>); PAIRS],
+}
+
+impl<T: Real, const N: usize, const PAIRS: usize> Factors<T, N, PAIRS> {
+    fn empty() -> Self {
+        Self {
+            length: None,
+            real: (T::from_f64(0.0), Shifted::empty()),
+            pairs: core::array::from_fn(|_| (Complex::zero(), Shifted::empty())),
+        }
+    }
 }
 
 #[allow(private_interfaces, reason = "no method is written outside")]
@@ -117,11 +129,7 @@ where
         Self {
             jacobian: SMatrix::from_element(zero),
             theta: f64::INFINITY,
-            factors: Factors {
-                length: None,
-                real: Shifted::empty(),
-                pairs: core::array::from_fn(|_| Shifted::empty()),
-            },
+            factors: Factors::empty(),
             steps: [(zero, [SVector::from_element(zero); S]); 2],
             tried: 0,
             rate: 1.0,
@@ -224,14 +232,17 @@ where
         }
         self.factors.length = Some(length);
         problem.statistics.factorisations += 1 + PAIRS as u64;
-        let by = |number: f64| T::from_f64(number) / length;
         let one = T::from_f64(1.0);
-        for (pair, factors) in A::TABLEAU.pairs.iter().zip(&mut self.factors.pairs) {
+        let inverse = one / length;
+        let by = |number: f64| inverse * T::from_f64(number);
+        for ((shift, factors), pair) in self.factors.pairs.iter_mut().zip(&A::TABLEAU.pairs) {
             let [real, imaginary] = pair.map(by);
-            factors.factorise::<Y, M, P>(Complex { real, imaginary }, one, &self.jacobian);
+            *shift = Complex { real, imaginary };
+            factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
         }
-        let real = &mut self.factors.real;
-        real.factorise::<Y, M, P>(by(A::TABLEAU.real), one, &self.jacobian);
+        let (shift, factors) = &mut self.factors.real;
+        *shift = by(A::TABLEAU.real);
+        factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
     }
 
     /// The last step.
@@ -297,6 +308,23 @@ fn transformed<T: Real, const N: usize, const S: usize>(
         *product = combination(row, vectors);
     }
     products
+}
+
+/// `sum + Σ weight · vector`.
+#[inline(always)]
+fn increased<T: Real, const N: usize, const S: usize>(
+    sum: SVector<T, N>,
+    weights: &[f64; S],
+    vectors: &[SVector<T, N>; S],
+) -> SVector<T, N> {
+    let mut sum = sum;
+    for (weight, vector) in weights.iter().zip(vectors) {
+        let weight = T::from_f64(*weight);
+        sum.zip_apply(vector, |sum, component| {
+            *sum = weight.multiply_add(component, *sum);
+        });
+    }
+    sum
 }
 
 /// A method of this family.

@@ -15,8 +15,25 @@ pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
         Self::from_part(Self::Part::from_f64(0.0))
     }
     /// Less the product of two others.
+    #[inline]
     fn less(self, a: Self, b: Self) -> Self {
         self - a * b
+    }
+    /// `Σ column · factor`.
+    #[inline(always)]
+    fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N] {
+        let mut sums = [Self::zero(); N];
+        for (column, factor) in columns.iter().zip(factors) {
+            for (sum, element) in sums.iter_mut().zip(column) {
+                *sum = sum.plus(*element, *factor);
+            }
+        }
+        sums
+    }
+    /// With the product of two others added.
+    #[inline]
+    fn plus(self, a: Self, b: Self) -> Self {
+        self + a * b
     }
     /// Its reciprocal.
     fn reciprocal(self) -> Self;
@@ -31,8 +48,14 @@ impl<T: Real> Element for T {
         part
     }
 
+    #[inline]
     fn less(self, a: T, b: T) -> T {
         (-a).multiply_add(b, self)
+    }
+
+    #[inline]
+    fn plus(self, a: T, b: T) -> T {
+        a.multiply_add(b, self)
     }
 
     fn reciprocal(self) -> Self {
@@ -94,6 +117,48 @@ impl<T: Real> Element for Complex<T> {
         Self { real, imaginary }
     }
 
+    #[inline]
+    fn less(self, a: Self, b: Self) -> Self {
+        let Self { real, imaginary } = self;
+        Self {
+            real: (-a.real).multiply_add(b.real, a.imaginary.multiply_add(b.imaginary, real)),
+            imaginary: (-a.real)
+                .multiply_add(b.imaginary, (-a.imaginary).multiply_add(b.real, imaginary)),
+        }
+    }
+
+    #[inline]
+    fn plus(self, a: Self, b: Self) -> Self {
+        self.less(
+            Self {
+                real: -a.real,
+                imaginary: -a.imaginary,
+            },
+            b,
+        )
+    }
+
+    /// By sums of the columns times real and imaginary parts, which need not be taken apart.
+    #[inline(always)]
+    fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N] {
+        let mut sums = [[Self::zero(); N]; 2];
+        for (column, factor) in columns.iter().zip(factors) {
+            for (sums, factor) in sums.iter_mut().zip([factor.real, factor.imaginary]) {
+                for (sum, element) in sums.iter_mut().zip(column) {
+                    sum.real = element.real.multiply_add(factor, sum.real);
+                    sum.imaginary = element.imaginary.multiply_add(factor, sum.imaginary);
+                }
+            }
+        }
+        let [real, imaginary] = sums;
+        let mut product = real;
+        for (product, turned) in product.iter_mut().zip(&imaginary) {
+            product.real = product.real - turned.imaginary;
+            product.imaginary += turned.real;
+        }
+        product
+    }
+
     /// Divides by the larger part first, so that no square overflows.
     fn reciprocal(self) -> Self {
         let one = T::from_f64(1.0);
@@ -119,15 +184,18 @@ impl<T: Real> Element for Complex<T> {
     }
 }
 
-/// So many equations are solved by the inverse.
-const INVERTED: usize = 3;
+/// So many equations are solved by the inverse: with more it takes longer than it saves in a step of several solutions.
+const INVERTED: usize = 8;
+
+/// So many have an inverse by cofactors.
+const SMALL: usize = 3;
 
 /// `P A = L U` with partial pivoting; the pivots' reciprocals are kept in their place.
 ///
 /// For steps of implicit methods, whose lanes share all decisions and so their pivots, and whose matrices may be complex;
 /// [`Regular`](crate::solve::Regular) is for loops in models, where each lane must give what it would give alone, in
-/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the columns of the
-/// inverse are kept instead: its products need not wait for each other.
+/// whatever units. Of a singular matrix the solutions are not finite. Of up to eight equations the columns of the
+/// inverse are kept instead: its products need not wait for each other, and a step takes several.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Factors<E, const N: usize> {
     pub(super) rows: [[E; N]; N],
@@ -151,30 +219,24 @@ impl<E: Element, const N: usize> Factors<E, N> {
             fill(&mut self.rows, entry);
             return self.eliminate();
         }
-        let mut rows = [[E::zero(); N]; N];
-        fill(&mut rows, entry);
-        if !invert(&rows, &mut self.rows) {
-            self.rows = rows;
-            self.eliminate();
-            self.invert();
+        if N <= SMALL {
+            let mut rows = [[E::zero(); N]; N];
+            fill(&mut rows, &entry);
+            if by_cofactors(&rows, &mut self.rows) {
+                return;
+            }
         }
+        // The rows of the inverse of the transpose are the columns of the inverse.
+        fill(&mut self.rows, |row, column| entry(column, row));
+        self.invert();
     }
 
     #[inline(never)]
     fn eliminate(&mut self) {
         let Self { rows, order } = self;
-        *order = core::array::from_fn(|row| row);
         for k in 0..N {
-            let mut pivot = k;
-            let mut largest = rows[k][k].size();
-            for (i, row) in rows.iter().enumerate().skip(k + 1) {
-                let size = row[k].size();
-                if size > largest {
-                    (pivot, largest) = (i, size);
-                }
-            }
-            rows.swap(k, pivot);
-            order.swap(k, pivot);
+            let pivot = exchange(rows, k);
+            order[k] = pivot;
             let (above, below) = rows.split_at_mut(k + 1);
             let pivot_row = &mut above[k];
             pivot_row[k] = pivot_row[k].reciprocal();
@@ -182,20 +244,42 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 let factor = row[k] * pivot_row[k];
                 row[k] = factor;
                 for (element, pivot) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
-                    *element = *element - factor * *pivot;
+                    *element = element.less(factor, *pivot);
                 }
             }
         }
     }
 
-    /// The columns of the inverse in the place of the factors.
-    #[cold]
+    /// The inverse in the place of the matrix, by Gauss and Jordan with a search for pivots.
+    #[inline(never)]
     fn invert(&mut self) {
-        self.rows = core::array::from_fn(|column| {
-            self.substituted(core::array::from_fn(|row| {
-                E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
-            }))
-        });
+        let Self { rows, order } = self;
+        let one = E::from_part(E::Part::from_f64(1.0));
+        for k in 0..N {
+            order[k] = exchange(rows, k);
+            let mut above = rows[k];
+            let reciprocal = above[k].reciprocal();
+            above[k] = one;
+            above = above.map(|element| element * reciprocal);
+            for (i, row) in rows.iter_mut().enumerate() {
+                if i == k {
+                    *row = above;
+                    continue;
+                }
+                let factor = row[k];
+                for (element, above) in row.iter_mut().zip(&above) {
+                    *element = element.less(factor, *above);
+                }
+                row[k] = E::zero().less(factor, reciprocal);
+            }
+        }
+        for k in (0..N).rev() {
+            if order[k] != k {
+                for row in rows.iter_mut() {
+                    row.swap(k, order[k]);
+                }
+            }
+        }
     }
 
     /// The `x` of `A x = right`.
@@ -204,6 +288,9 @@ impl<E: Element, const N: usize> Factors<E, N> {
         if N > INVERTED {
             return self.substituted(right);
         }
+        if N > SMALL {
+            return E::product(&self.rows, &right);
+        }
         let product = |row: usize, column: usize| self.rows[column][row] * right[column];
         core::array::from_fn(|row| {
             (1..N).fold(product(row, 0), |sum, column| sum + product(row, column))
@@ -211,20 +298,40 @@ impl<E: Element, const N: usize> Factors<E, N> {
     }
 
     fn substituted(&self, right: [E; N]) -> [E; N] {
-        let mut x = self.order.map(|row| right[row]);
+        let mut x = right;
+        for (k, pivot) in self.order.iter().enumerate() {
+            x.swap(k, *pivot);
+        }
         for i in 1..N {
             for j in 0..i {
-                x[i] = x[i] - self.rows[i][j] * x[j];
+                x[i] = x[i].less(self.rows[i][j], x[j]);
             }
         }
         for i in (0..N).rev() {
             for j in i + 1..N {
-                x[i] = x[i] - self.rows[i][j] * x[j];
+                x[i] = x[i].less(self.rows[i][j], x[j]);
             }
             x[i] = x[i] * self.rows[i][i];
         }
         x
     }
+}
+
+/// Brings the largest element of a column, from the diagonal on, to the diagonal; gives its row.
+#[inline(always)]
+fn exchange<E: Element, const N: usize>(rows: &mut [[E; N]; N], column: usize) -> usize {
+    let mut pivot = column;
+    let mut largest = rows[column][column].size();
+    for (i, row) in rows.iter().enumerate().skip(column + 1) {
+        let size = row[column].size();
+        if size > largest {
+            (pivot, largest) = (i, size);
+        }
+    }
+    if pivot != column {
+        rows.swap(column, pivot);
+    }
+    pivot
 }
 
 /// Writes entries to a matrix, without a copy of it.
@@ -240,7 +347,7 @@ fn fill<E: Element, const N: usize>(rows: &mut [[E; N]; N], entry: impl Fn(usize
 /// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; not of a singular
 /// matrix, nor where products may leave the range of the numbers. Whether it came to that.
 #[inline(always)]
-fn invert<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[E; N]; N]) -> bool {
+fn by_cofactors<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[E; N]; N]) -> bool {
     let cofactor = |row: usize, column: usize| match N {
         1 => E::from_part(E::Part::from_f64(1.0)),
         2 if row == column => rows[1 - row][1 - column],
@@ -269,6 +376,7 @@ fn invert<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[E; N];
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::lanes::random;
     use std::vec::Vec;
 
     fn factors<E: Element, const N: usize>(rows: [[E; N]; N]) -> Factors<E, N> {
@@ -292,6 +400,46 @@ mod tests {
     fn a_singular_matrix_gives_nothing_finite() {
         let x = factors([[1.0, 2.0], [2.0, 4.0]]).solve([1.0, 1.0]);
         assert!(x.iter().all(|x: &f64| !x.is_finite()), "{x:?}");
+        let x = factors([[1.0; 5]; 5]).solve([1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert!(x.iter().all(|x: &f64| !x.is_finite()), "{x:?}");
+    }
+
+    /// Of random matrices, most without a diagonal to rely on, in random units.
+    fn assert_solves<const N: usize>() {
+        let mut random = random();
+        for _ in 0..100 {
+            let units: [f64; N] = core::array::from_fn(|_| 10.0_f64.powf(6.0 * random()));
+            let mut number = |size: f64| Complex {
+                real: size * random(),
+                imaginary: size * random(),
+            };
+            let x: [Complex<f64>; N] = core::array::from_fn(|row| number(1.0 / units[row]));
+            let rows: [[Complex<f64>; N]; N] = core::array::from_fn(|row| {
+                core::array::from_fn(|column| {
+                    let size = units[row] * units[column];
+                    number(if row == column { 1e-9 * size } else { size })
+                })
+            });
+            let right = rows.map(|row| {
+                let terms = row.iter().zip(x).map(|(a, x)| *a * x);
+                terms.fold(Complex::zero(), |sum, term| sum + term)
+            });
+            let found = factors(rows).solve(right);
+            for ((found, x), unit) in found.iter().zip(x).zip(units) {
+                assert!((*found - x).size() * unit < 1e-9, "{N}: {found:?}, {x:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_number_of_equations_is_solved_whatever_the_units() {
+        assert_solves::<2>();
+        assert_solves::<3>();
+        assert_solves::<4>();
+        assert_solves::<6>();
+        assert_solves::<8>();
+        assert_solves::<9>();
+        assert_solves::<12>();
     }
 
     #[test]

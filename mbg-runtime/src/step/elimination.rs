@@ -29,7 +29,7 @@ impl<E: Element, const N: usize> Shifted<E, N> {
     }
 
     /// Of `diagonal · I − scale · matrix`, a matrix of the system's pattern.
-    #[inline(always)]
+    #[inline(never)]
     pub fn new<S, const M: usize, const P: usize>(
         diagonal: E,
         scale: E::Part,

@@ -62,7 +62,12 @@ impl<const N: usize> Measure<N> {
     /// The mean square of an error in units of the tolerances.
     #[inline]
     pub(super) fn square<T: Real>(&self, error: &SVector<T, N>) -> f64 {
-        self.squares(core::array::from_ref(error))
+        let components = error.iter().zip(&self.factors);
+        let sum = components.fold(0.0, |sum, (component, factor)| {
+            let quotient = component.magnitude() * factor;
+            sum + quotient * quotient
+        });
+        sum / N.max(1) as f64
     }
 
     /// The mean square of several errors in units of the tolerances.

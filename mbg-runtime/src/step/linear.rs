@@ -20,21 +20,7 @@ pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
         self - a * b
     }
     /// `Σ column · factor`.
-    #[inline(always)]
-    fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N] {
-        let mut sums = [Self::zero(); N];
-        for (column, factor) in columns.iter().zip(factors) {
-            for (sum, element) in sums.iter_mut().zip(column) {
-                *sum = sum.plus(*element, *factor);
-            }
-        }
-        sums
-    }
-    /// With the product of two others added.
-    #[inline]
-    fn plus(self, a: Self, b: Self) -> Self {
-        self + a * b
-    }
+    fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N];
     /// Its reciprocal.
     fn reciprocal(self) -> Self;
     /// A size to choose pivots by; of several lanes the largest.
@@ -53,9 +39,15 @@ impl<T: Real> Element for T {
         (-a).multiply_add(b, self)
     }
 
-    #[inline]
-    fn plus(self, a: T, b: T) -> T {
-        a.multiply_add(b, self)
+    #[inline(always)]
+    fn product<const N: usize>(columns: &[[T; N]; N], factors: &[T; N]) -> [T; N] {
+        let mut sums = [T::from_f64(0.0); N];
+        for (column, factor) in columns.iter().zip(factors) {
+            for (sum, element) in sums.iter_mut().zip(column) {
+                *sum = element.multiply_add(*factor, *sum);
+            }
+        }
+        sums
     }
 
     fn reciprocal(self) -> Self {
@@ -125,17 +117,6 @@ impl<T: Real> Element for Complex<T> {
             imaginary: (-a.real)
                 .multiply_add(b.imaginary, (-a.imaginary).multiply_add(b.real, imaginary)),
         }
-    }
-
-    #[inline]
-    fn plus(self, a: Self, b: Self) -> Self {
-        self.less(
-            Self {
-                real: -a.real,
-                imaginary: -a.imaginary,
-            },
-            b,
-        )
     }
 
     /// By sums of the columns times real and imaginary parts, which need not be taken apart.

@@ -113,13 +113,13 @@ where
             let Complex { real, imaginary } = *shift;
             let [first, second] = [1, 2].map(|place| place + 2 * pair);
             let [b, c] = [&inner[first], &inner[second]];
-            let kept = b.zip_map(c, |b, c| imaginary * c - real * b);
-            let rights = increased(kept, &weights[first], slopes);
-            let kept = b.zip_map(c, |b, c| -(imaginary * b) - real * c);
-            let others = increased(kept, &weights[second], slopes);
+            let reals = b.zip_map(c, |b, c| imaginary * c - real * b);
+            let reals = increased(reals, &weights[first], slopes);
+            let imaginaries = b.zip_map(c, |b, c| -(imaginary * b) - real * c);
+            let imaginaries = increased(imaginaries, &weights[second], slopes);
             let mut right = [Complex::zero(); N];
-            for (right, (real, imaginary)) in right.iter_mut().zip(rights.iter().zip(&others)) {
-                (right.real, right.imaginary) = (*real, *imaginary);
+            for (row, right) in right.iter_mut().enumerate() {
+                (right.real, right.imaginary) = (reals[row], imaginaries[row]);
             }
             for (row, both) in factors.solve::<Y, M, P>(right).iter().enumerate() {
                 (changes[first][row], changes[second][row]) = (both.real, both.imaginary);
@@ -156,6 +156,7 @@ where
                     return Ok(FAST);
                 }
             } else {
+                // By how much a sweep reduces the change, in the mean of the last two.
                 let theta = Real::sqrt(if sweep == 2 {
                     square * last
                 } else {

@@ -134,7 +134,7 @@ impl<T: Real> Element for Complex<T> {
         let [real, imaginary] = sums;
         let mut product = real;
         for (product, turned) in product.iter_mut().zip(&imaginary) {
-            product.real = product.real - turned.imaginary;
+            product.real -= turned.imaginary;
             product.imaginary += turned.real;
         }
         product

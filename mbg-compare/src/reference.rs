@@ -77,7 +77,7 @@ impl<const N: usize> Reference<N> {
             .choose(problem.system, problem.input, start, end, problem.state)
             .map(|choice| choice.method);
         match picked {
-            Ok(Picked::Rodas5P | Picked::Radau5) => Self::stiff(problem),
+            Ok(Picked::Rodas5P | Picked::Radau5 | Picked::Radau9) => Self::stiff(problem),
             // Some problems become stiff on their way.
             _ => Self::agreed(problem, (Dop853, Tsit5), false).or_else(|_| Self::stiff(problem)),
         }

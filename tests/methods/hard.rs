@@ -202,7 +202,13 @@ fn auto_tells_what_it_picks_and_meets_the_tolerance() {
         .choose(&Written(pin), &(), 0.0, 5.0, StiffPin::level())
         .unwrap();
     println!("{choice}");
-    assert_eq!(choice.method, Picked::Radau5);
+    assert_eq!(
+        (choice.method, choice.reason),
+        (Picked::Radau9, Reason::StiffTight)
+    );
+    let moderate = Auto::new(1e-4, 1e-4);
+    let choice = moderate.choose(&Written(pin), &(), 0.0, 5.0, StiffPin::level());
+    assert_eq!(choice.unwrap().method, Picked::Radau5);
     assert!((end(pin, auto, 5.0, StiffPin::level()).0[2] - strict[2]).abs() < 1e-5);
 
     let start = SVector::from([2.0, 0.0]);
@@ -210,7 +216,9 @@ fn auto_tells_what_it_picks_and_meets_the_tolerance() {
         .choose(&Written(VanDerPol), &(), 0.0, 2.0, start)
         .unwrap();
     println!("{choice}");
-    assert_eq!(choice.method, Picked::Rodas5P);
+    assert_eq!(choice.method, Picked::Radau9);
+    let choice = moderate.choose(&Written(VanDerPol), &(), 0.0, 2.0, start);
+    assert_eq!(choice.unwrap().method, Picked::Rodas5P);
     assert!((end(VanDerPol, auto, 2.0, start).0[0] - VanDerPol::AFTER_2_S[0]).abs() < 1e-4);
 
     let start = SVector::from([1e-4, 10.0, 6e-4, 1.0, 0.0, 0.0, 0.0]);

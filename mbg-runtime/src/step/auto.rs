@@ -11,7 +11,7 @@ use super::explicit::{Dop853, Tsit5};
 use super::integrator::{Integrator, begin};
 use super::method::Method;
 use super::problem::Problem;
-use super::radau::Radau5;
+use super::radau::{Radau5, Radau9};
 use super::rosenbrock::Rodas5P;
 use super::{Stopped, piece_end, seen};
 use crate::{Input, Real, System};
@@ -20,7 +20,8 @@ use crate::{Input, Real, System};
 ///
 /// | what is known at the start of the piece | method |
 /// |---|---|
-/// | the fastest mode moves more than 10 000 rad within the piece; it is an oscillation | [`Radau5`] |
+/// | the fastest mode moves more than 10 000 rad within the piece; a relative tolerance of at most 1e-5 | [`Radau9`] |
+/// | the same to a larger tolerance; the mode is an oscillation | [`Radau5`] |
 /// | the same, and it decays | [`Rodas5P`] |
 /// | closed loops, a relative tolerance above 3e-6, or less than 20 rad within the piece | [`Tsit5`] |
 /// | else | [`Dop853`] |
@@ -60,11 +61,14 @@ pub enum Picked {
     Dop853,
     Rodas5P,
     Radau5,
+    Radau9,
 }
 
 /// Why [`Auto`] picked a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
+    /// Stiff, to a tight tolerance.
+    StiffTight,
     /// Stiff, the fastest mode oscillates.
     StiffOscillation,
     /// Stiff, the fastest mode decays.
@@ -86,8 +90,10 @@ impl fmt::Display for Choice {
             Picked::Dop853 => Dop853::NAME,
             Picked::Rodas5P => Rodas5P::NAME,
             Picked::Radau5 => Radau5::NAME,
+            Picked::Radau9 => Radau9::NAME,
         };
         let reason = match self.reason {
+            Reason::StiffTight => "stiff, and the tolerance is tight",
             Reason::StiffOscillation => "stiff, and the fastest mode oscillates",
             Reason::StiffDecay => "stiff, and the fastest mode decays",
             Reason::ClosedLoops => "not stiff, with closed loops that may pass singular positions",
@@ -153,10 +159,8 @@ impl Auto<'_> {
         let (fastest, oscillates) = fastest(&jacobian.map(seen));
         let horizon = seen(end - start);
         let angle = fastest * horizon;
-        let (method, reason) = if angle > STIFF && oscillates {
-            (Picked::Radau5, Reason::StiffOscillation)
-        } else if angle > STIFF {
-            (Picked::Rodas5P, Reason::StiffDecay)
+        let (method, reason) = if angle > STIFF {
+            self.stiff(oscillates)
         } else if !S::META.closures.is_empty() {
             (Picked::Tsit5, Reason::ClosedLoops)
         } else if angle < SHORT {
@@ -174,6 +178,17 @@ impl Auto<'_> {
         }
     }
 
+    /// The method for a stiff problem whose fastest mode oscillates or decays.
+    fn stiff(&self, oscillates: bool) -> (Picked, Reason) {
+        if self.relative <= STIFF_TIGHT {
+            (Picked::Radau9, Reason::StiffTight)
+        } else if oscillates {
+            (Picked::Radau5, Reason::StiffOscillation)
+        } else {
+            (Picked::Rodas5P, Reason::StiffDecay)
+        }
+    }
+
     fn with<M>(&self, method: M) -> Adaptive<'_, M> {
         Adaptive {
             nominal: self.nominal,
@@ -184,6 +199,8 @@ impl Auto<'_> {
 
 /// An angle that the fastest mode moves through, in rad, above which an explicit method takes thousands of steps.
 const STIFF: f64 = 1e4;
+/// Up to this relative tolerance the method of high order pays where a problem is stiff.
+const STIFF_TIGHT: f64 = 1e-5;
 /// An angle within which long steps do not pay.
 const SHORT: f64 = 20.0;
 /// Above this relative tolerance the method of low order pays.
@@ -208,11 +225,6 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         I: Input<T, M>,
     {
         let picked = self.pick(problem, ends, &x).method;
-        match picked {
-            Picked::Rodas5P => return self.with(Rodas5P).piece(problem, ends, x, observer),
-            Picked::Radau5 => return self.with(Radau5).piece(problem, ends, x, observer),
-            Picked::Tsit5 | Picked::Dop853 => (),
-        }
         let (system, input, since) = (problem.system, problem.input, problem.since);
         let mut stiff = None;
         let mut steps = 0_u32;
@@ -235,12 +247,19 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         };
         let ended = match picked {
             Picked::Tsit5 => self.with(Tsit5).piece(problem, ends, x, &mut watch),
-            _ => self.with(Dop853).piece(problem, ends, x, &mut watch),
+            Picked::Dop853 => self.with(Dop853).piece(problem, ends, x, &mut watch),
+            Picked::Rodas5P => return self.with(Rodas5P).piece(problem, ends, x, observer),
+            Picked::Radau5 => return self.with(Radau5).piece(problem, ends, x, observer),
+            Picked::Radau9 => return self.with(Radau9).piece(problem, ends, x, observer),
         };
-        match stiff {
-            None => ended,
-            Some((t, x, true)) => self.with(Radau5).piece(problem, (t, ends.1), x, observer),
-            Some((t, x, false)) => self.with(Rodas5P).piece(problem, (t, ends.1), x, observer),
+        let Some((t, x, oscillates)) = stiff else {
+            return ended;
+        };
+        let ends = (t, ends.1);
+        match self.stiff(oscillates).0 {
+            Picked::Radau9 => self.with(Radau9).piece(problem, ends, x, observer),
+            Picked::Radau5 => self.with(Radau5).piece(problem, ends, x, observer),
+            _ => self.with(Rodas5P).piece(problem, ends, x, observer),
         }
     }
 }

@@ -270,3 +270,6 @@ macro_rules! registers {
 
 registers!(Doubles, f64x8, f64, f64s, double, 64);
 registers!(Singles, f32x16, f32, f32s, single, 32);
+
+#[cfg(test)]
+mod tests;

@@ -62,8 +62,9 @@ use registers::{Proven, Registers, vectorised};
 use crate::lanes::{Lanes, f32x16, f64x8};
 use crate::{Convertible, Real, System};
 
-/// Operations of the largest derivative that instructions are chosen for: one function of more takes minutes to compile.
-pub const LARGEST: usize = 4000;
+/// Operations of the largest derivative that instructions are chosen for. Each set of them is a function that holds the whole
+/// derivative, and functions of more operations take long to compile.
+pub const LARGEST: usize = 2000;
 
 /// Lanes that fill the widest registers there are, 64 bytes.
 pub trait Block: Lanes {

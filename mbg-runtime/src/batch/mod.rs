@@ -41,7 +41,7 @@
 //!
 //! # Rounding
 //!
-//! AVX2 and AVX-512 round once where a model multiplies and adds, as [`Real::multiply_add`](crate::Real::multiply_add) does
+//! AVX2 and AVX-512 round once where a model multiplies and adds, as [`Real::multiply_add`] does
 //! in a program that is compiled for them ([`FUSED`](crate::FUSED)); so results may differ in their last digits from one
 //! processor to another. With the feature `reproducible` they never do.
 

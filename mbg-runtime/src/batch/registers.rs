@@ -192,7 +192,11 @@ macro_rules! registers {
 
             #[inline(always)]
             fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
-                sine::sines_cosines(angles)
+                sine::sines_cosines(
+                    angles,
+                    #[inline(always)]
+                    |angles| sine::moderate(angles),
+                )
             }
 
             one_by_one!(tan, asin, acos, exp, ln, tanh);

@@ -23,6 +23,7 @@ mod models {
     mod amplifier;
     mod arm;
     mod audit;
+    mod batches;
     mod behaviour;
     mod closed;
     mod columns;

@@ -3,7 +3,7 @@
 //! The types are those of the crate `wide`. Lanes may differ in states, inputs and parameters; each gives bit for bit what
 //! the model gives for its numbers alone. Which instructions are used is settled when the program is compiled:
 //! with `-C target-cpu=x86-64-v3` or `native` four `f64` or eight `f32` are one register, without such a flag two are
-//! needed and the gain is half as large.
+//! needed and the gain is half as large. With the feature `dispatch` the module `batch` chooses them when the program runs.
 //!
 //! A batch is a slice of states of lanes: of each state variable the numbers of some runs lie side by side.
 //!
@@ -218,12 +218,12 @@ lanes!(f32x8, f32, 8, single, u32x8, 32);
 lanes!(f32x16, f32, 16, single, u32x16, 32);
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::solve::lanes::random;
 
     /// What is computed of two numbers: every function and every operation.
-    fn everything<T: Real>(a: T, b: T) -> [T; 21] {
+    pub(crate) fn everything<T: Real>(a: T, b: T) -> [T; 21] {
         let mut sum = a;
         sum += b;
         sum -= a;
@@ -253,11 +253,8 @@ mod tests {
         ]
     }
 
-    /// Lanes of numbers of all sizes, some of them special, against each alone.
-    fn assert_lanes<L: Lanes>()
-    where
-        L::Lane: Into<f64>,
-    {
+    /// Numbers of all sizes, some of them special.
+    pub(crate) fn numbers() -> impl FnMut() -> f64 {
         let special = [
             0.0,
             -0.0,
@@ -271,11 +268,19 @@ mod tests {
             1e30,
         ];
         let mut random = random();
-        let mut number = || {
+        move || {
             let place = ((random() + 1.0) * 20.0) as usize;
             let scale = 10.0_f64.powf(3.0 * random());
             special.get(place).copied().unwrap_or(scale * random())
-        };
+        }
+    }
+
+    /// Lanes against each of their numbers alone.
+    fn assert_lanes<L: Lanes>()
+    where
+        L::Lane: Into<f64>,
+    {
+        let mut number = numbers();
         for _ in 0..2000 {
             let [a, b] = [0, 1].map(|_| L::from_lanes(|_| L::Lane::from_f64(number())));
             let together = everything(a, b);

@@ -7,6 +7,7 @@
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; or [`Auto`], which picks them; [`Input`] |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
+//! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 #![no_std]
 #[cfg(any(test, feature = "std"))]
@@ -15,7 +16,10 @@ extern crate std;
 #[doc(hidden)]
 pub mod __private;
 pub mod attitude;
+#[cfg(feature = "dispatch")]
+pub mod batch;
 mod columns;
+mod convertible;
 mod dual;
 mod four;
 mod input;
@@ -37,6 +41,7 @@ mod step;
 mod system;
 
 pub use columns::Columns;
+pub use convertible::Convertible;
 pub use dual::Dual;
 pub use four::Four;
 pub use input::{Constant, Differentiable, Input, Pulse, Smooth, Sum};

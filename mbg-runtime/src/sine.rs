@@ -86,47 +86,72 @@ where
 /// One operation after the other on all angles: each constant is loaded once, and several angles share a register.
 #[inline(always)]
 pub(crate) fn moderate<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
-    let every = |number: f64| [T::from_f64(number); K];
     let turns = every(core::f64::consts::FRAC_2_PI);
     let shifted = multiply_add(angles, turns, every(T::SHIFT));
-    let quadrants = shifted.map(|it| it - T::from_f64(T::SHIFT));
+    let mut quadrants = shifted;
+    for quadrants in &mut quadrants {
+        *quadrants -= T::from_f64(T::SHIFT);
+    }
     // Powers do without the last part, which is below their rounding, and need not wait for it.
     let mut y = angles;
     for part in T::PARTS {
         y = multiply_add(quadrants, every(-part), y);
     }
-    let z = y.map(|y| y * y);
-    let cubes: [T; K] = core::array::from_fn(|k| y[k] * z[k]);
+    let z = multiply(y, y);
+    let cubes = multiply(y, z);
     let y = multiply_add(quadrants, every(-T::LAST_PART), y);
     let (sines, cosines) = T::polynomials(z);
-    let sines = multiply_add(cubes, sines, y);
+    let mut sines = multiply_add(cubes, sines, y);
     let parabolas = multiply_add(z, every(-0.5), every(1.0));
-    let cosines = multiply_add(z.map(|z| z * z), cosines, parabolas);
-    let turned: [(T, T); K] = core::array::from_fn(|k| T::turned(shifted[k], sines[k], cosines[k]));
-    (turned.map(|it| it.0), turned.map(|it| it.1))
+    let mut cosines = multiply_add(multiply(z, z), cosines, parabolas);
+    for k in 0..K {
+        (sines[k], cosines[k]) = T::turned(shifted[k], sines[k], cosines[k]);
+    }
+    (sines, cosines)
+}
+
+// No function of `core` with a closure: it is inlined where compilers like it, and elsewhere lacks the instructions that are
+// chosen when the program runs.
+
+#[inline(always)]
+fn every<T: Real, const K: usize>(number: f64) -> [T; K] {
+    [T::from_f64(number); K]
 }
 
 #[inline(always)]
-fn multiply_add<T: Real, const K: usize>(a: [T; K], b: [T; K], c: [T; K]) -> [T; K] {
-    core::array::from_fn(|k| a[k].multiply_add(b[k], c[k]))
+fn multiply<T: Real, const K: usize>(mut a: [T; K], b: [T; K]) -> [T; K] {
+    for k in 0..K {
+        a[k] = a[k] * b[k];
+    }
+    a
+}
+
+#[inline(always)]
+fn multiply_add<T: Real, const K: usize>(mut a: [T; K], b: [T; K], c: [T; K]) -> [T; K] {
+    for k in 0..K {
+        a[k] = a[k].multiply_add(b[k], c[k]);
+    }
+    a
 }
 
 /// Polynomial of degree 5 in z, in three independent pairs.
 #[inline(always)]
 pub(crate) fn quintic<T: Real, const K: usize>([a, b, c, d, e, f]: [f64; 6], z: [T; K]) -> [T; K] {
-    let every = |number: f64| [T::from_f64(number); K];
-    let pair = |low: f64, high: f64| multiply_add(z, every(high), every(low));
-    let squares = z.map(|z| z * z);
-    let upper = multiply_add(squares, pair(e, f), pair(c, d));
-    multiply_add(squares, upper, pair(a, b))
+    let squares = multiply(z, z);
+    let upper = multiply_add(squares, linear(e, f, z), linear(c, d, z));
+    multiply_add(squares, upper, linear(a, b, z))
 }
 
 /// Polynomial of degree 2 in z.
 #[inline(always)]
 pub(crate) fn quadratic<T: Real, const K: usize>([a, b, c]: [f64; 3], z: [T; K]) -> [T; K] {
-    let every = |number: f64| [T::from_f64(number); K];
-    let upper = multiply_add(z, every(c), every(b));
-    multiply_add(z, upper, every(a))
+    multiply_add(z, linear(b, c, z), every(a))
+}
+
+/// Polynomial of degree 1 in z.
+#[inline(always)]
+fn linear<T: Real, const K: usize>(a: f64, b: f64, z: [T; K]) -> [T; K] {
+    multiply_add(z, every(b), every(a))
 }
 
 /// The constants of double precision, for `f64` and its lanes.

@@ -46,6 +46,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SVector<T, N>;
 
+    /// The derivative, inlined wherever it is called. In batches it takes the instructions of its caller.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn derivative_inlined(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut Self::Memory,
+    ) -> SVector<T, N> {
+        self.derivative(t, x, u, memory)
+    }
+
     /// [`derivative`](Self::derivative) at four stages of a step, each with its time, state and input.
     ///
     /// Generated models without nonlinear loops evaluate all four at once where the scalar has lanes. Unless it is

@@ -8,6 +8,7 @@ use super::routine::{Setting, lines};
 use super::{jacobians, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
+use crate::program::Step;
 use crate::symbolic::Symbol;
 
 /// The type, its constructor and its behaviour.
@@ -15,7 +16,8 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     let structure = structure(compiled);
     let constructor = constructor(compiled);
     let system = system(compiled);
-    quote!(#structure #constructor #system)
+    let convertible = convertible(compiled);
+    quote!(#structure #constructor #system #convertible)
 }
 
 fn structure(compiled: &Compiled) -> TokenStream {
@@ -136,6 +138,10 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn initial_state(&self) -> ::mbg_runtime::__private::SVector<T, #n> { #initial }
             #[inline]
             fn derivative(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
+                ::mbg_runtime::System::derivative_inlined(self, t, x, u, memory)
+            }
+            #[inline(always)]
+            fn derivative_inlined(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
                 #derivative
             }
             #derivatives
@@ -160,13 +166,7 @@ fn system(compiled: &Compiled) -> TokenStream {
 
 /// The derivative at four stages at once, by the model with its numbers four times side by side; none where it remembers.
 fn derivatives(compiled: &Compiled) -> Option<TokenStream> {
-    let name = &compiled.model.name;
-    let parameters = format_ident!("{}Parameters", name);
-    let declared = &compiled.model.parameters;
-    let fields: Vec<_> = declared.iter().map(|it| &it.name).collect();
     let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
-    let phantom = quote!(scalar: ::core::marker::PhantomData);
-    let phantom = declared.is_empty().then_some(phantom);
     compiled.iterations().next().is_none().then(|| {
         quote! {
             #[inline]
@@ -178,11 +178,45 @@ fn derivatives(compiled: &Compiled) -> Option<TokenStream> {
                 memory: &mut (),
             ) -> ::mbg_runtime::__private::SVector<T::Stages, #n> {
                 let whole = |value: T| <T::Stages as ::mbg_runtime::Columns<T>>::whole(value);
-                let stages = #name::<T::Stages> {
-                    parameters: #parameters { #(#fields: whole(self.parameters.#fields),)* #phantom },
-                    folded: self.folded.map(whole),
-                };
+                let stages = ::mbg_runtime::Convertible::converted(self, whole);
                 ::mbg_runtime::System::derivative(&stages, t, x, u, memory)
+            }
+        }
+    })
+}
+
+/// The model with its numbers in another scalar; none where it remembers.
+fn convertible(compiled: &Compiled) -> Option<TokenStream> {
+    let name = &compiled.model.name;
+    let parameters = format_ident!("{}Parameters", name);
+    let declared = &compiled.model.parameters;
+    let fields: Vec<_> = declared.iter().map(|it| &it.name).collect();
+    let [n, m, p] = [
+        compiled.states.len(),
+        compiled.model.inputs.len(),
+        compiled.model.outputs.len(),
+    ]
+    .map(Literal::usize_suffixed);
+    let phantom = quote!(scalar: ::core::marker::PhantomData);
+    let phantom = declared.is_empty().then_some(phantom);
+    let steps = &compiled.program.routines[Routines::DERIVATIVE].steps;
+    let straight = !steps.iter().any(|step| matches!(step, Step::Solve(_)));
+    compiled.iterations().next().is_none().then(|| {
+        quote! {
+            #[automatically_derived]
+            impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
+                type With<L: ::mbg_runtime::Real> = #name<L>;
+                const STRAIGHT: bool = #straight;
+                #[inline]
+                fn converted<L: ::mbg_runtime::Real>(
+                    &self,
+                    convert: impl ::core::ops::Fn(T) -> L,
+                ) -> #name<L> {
+                    #name {
+                        parameters: #parameters { #(#fields: convert(self.parameters.#fields),)* #phantom },
+                        folded: self.folded.map(convert),
+                    }
+                }
             }
         }
     })

@@ -96,10 +96,10 @@ where
         &repeat(|| black_box(&pivoted_pair).solve::<Dense<S>, M, P>(black_box(rights))),
     ]);
     let times = times.map(|time| time * 1e9 / TIMES as f64);
-    let planned = match sparse {
-        Shifted::Unrolled(_) => "written out",
-        Shifted::Planned(_) => "loop",
-        Shifted::Pivoted(_) => "dense",
+    let planned = match sparse.is_planned() {
+        true if S::UNROLLED => "written out",
+        true => "loop",
+        false => "dense",
     };
     println!(
         "{name:<16}{N:>4}{entries:>8}{factors:>8}{:>8}{solution:>8}{:>8}  {}  {planned}",

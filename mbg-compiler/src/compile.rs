@@ -18,7 +18,7 @@ use crate::sparsity::{self, Pattern};
 use crate::start;
 use crate::structure::{self, Failure, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
-use crate::symbolic::{Expression, Pool, Symbol, jacobian, share};
+use crate::symbolic::{Expression, Pool, Symbol, jacobian, products, share};
 use crate::syntax::ast;
 use crate::units;
 
@@ -179,6 +179,7 @@ fn finish(
         jacobian(&mut pool, rates, &[Symbol::Time]).entries.into(),
     ];
     share(&mut pool, rates);
+    shorten(&mut pool, &requests);
     let program = build(&pool, scalars, solution, &answers, &requests);
     if !program.is_finite() {
         let message = "numbers of the model multiply to one that is not finite";
@@ -209,6 +210,20 @@ fn finish(
         states: answers.states,
         model,
     })
+}
+
+/// Shortens a Jacobian that is written out.
+fn shorten(pool: &mut Pool, requests: &[Request]) {
+    let roots = |request: &Request| request.results.clone();
+    let (before, rest) = requests.split_at(Routines::DERIVATIVE_AND_JACOBIAN);
+    let Some((jacobian, behind)) = rest.split_first() else {
+        return;
+    };
+    if jacobian.columns.is_empty() {
+        let others = before.iter().chain(behind).flat_map(roots);
+        let others: Vec<Expression> = others.collect();
+        products(pool, &others, &jacobian.results);
+    }
 }
 
 /// Where the states of each attitude went, by row.

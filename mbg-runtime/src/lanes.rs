@@ -143,7 +143,7 @@ macro_rules! lanes {
 
             #[inline]
             fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
-                sine::sines_cosines(angles)
+                sine::sines_cosines(angles, sine::moderate)
             }
 
             lane_by_lane!($scalar: tan, asin, acos, exp, ln, tanh; atan2);

@@ -1,7 +1,5 @@
 //! `f64` and `f32` as [`Real`].
 
-use core::array;
-
 use crate::Real;
 
 /// Functions of one argument: from the standard library where there is one and its last digits may differ from one
@@ -20,7 +18,7 @@ macro_rules! elementary {
 
 /// What `f64` and `f32` have in common.
 macro_rules! ordered {
-    ($scalar:ident) => {
+    ($scalar:ident, $lanes:ident) => {
         const EPSILON: f64 = $scalar::EPSILON as f64;
 
         #[inline]
@@ -57,11 +55,11 @@ macro_rules! ordered {
         #[cfg_attr(target_feature = "avx", inline(always))]
         #[cfg_attr(not(target_feature = "avx"), inline)]
         fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
-            if K == 3 && cfg!(target_feature = "avx") {
-                let (sines, cosines) = crate::sine::of_three(array::from_fn(|k| angles[k]));
-                return (array::from_fn(|k| sines[k]), array::from_fn(|k| cosines[k]));
-            }
-            crate::sine::sines_cosines(angles)
+            #[cfg(all(feature = "lanes", target_feature = "avx"))]
+            let moderate = crate::sine::moderate_in::<crate::lanes::$lanes, _, K>;
+            #[cfg(not(all(feature = "lanes", target_feature = "avx")))]
+            let moderate = crate::sine::moderate;
+            crate::sine::sines_cosines(angles, moderate)
         }
 
         #[inline]
@@ -118,7 +116,7 @@ impl Real for f64 {
     type Stages = crate::Four<Self>;
     const SINGULAR: f64 = 1.490_116_119_384_765_6e-8;
 
-    ordered!(f64);
+    ordered!(f64, f64x4);
     elementary!(f64: tan = tan, asin = asin, acos = acos, exp = exp, ln = log, sqrt = sqrt, tanh = tanh);
 
     #[inline]
@@ -138,7 +136,7 @@ impl Real for f32 {
     type Stages = crate::Four<Self>;
     const SINGULAR: f64 = 3.452_669_830_012_439_4e-4;
 
-    ordered!(f32);
+    ordered!(f32, f32x8);
     elementary!(f32: tan = tanf, asin = asinf, acos = acosf, exp = expf, ln = logf, sqrt = sqrtf, tanh = tanhf);
 
     #[inline]

@@ -16,8 +16,10 @@ pub(crate) trait Angle: Real {
     const LARGEST: f64;
     /// 1.5 · 2ᵐ with m the bits of the fraction: what is added to it loses its own fraction.
     const SHIFT: f64;
-    /// π/2 in parts.
+    /// π/2 in parts, but for the last one.
     const PARTS: &'static [f64];
+    /// The last part of π/2.
+    const LAST_PART: f64;
 
     /// Whether no lane is beyond [`Self::LARGEST`], or NaN.
     fn is_moderate(self) -> bool;
@@ -40,35 +42,18 @@ pub(crate) fn sin_cos<T: Angle>(angle: T) -> (T, T) {
     }
 }
 
-/// Sines and cosines of several angles in rad.
+/// Sines and cosines of several angles in rad, by `evaluate` where none is far.
 #[inline(always)]
-pub(crate) fn sines_cosines<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
+pub(crate) fn sines_cosines<T: Angle, const K: usize>(
+    angles: [T; K],
+    evaluate: impl FnOnce([T; K]) -> ([T; K], [T; K]),
+) -> ([T; K], [T; K]) {
     let is_moderate = |all: bool, angle: &T| all & angle.is_moderate();
     if angles.iter().fold(true, is_moderate) {
-        moderate(angles)
+        evaluate(angles)
     } else {
         some_far(angles)
     }
-}
-
-/// Sines and cosines of three angles of a scalar that is no vector, as those of four.
-///
-/// Where registers hold four numbers that saves the exchanges which compilers make of three; and in a call of its own,
-/// whose arguments lie in registers, no number waits until it is in memory.
-#[inline(always)]
-pub(crate) fn of_three<T: Angle>([a, b, c]: [T; 3]) -> ([T; 3], [T; 3]) {
-    if a.is_moderate() & b.is_moderate() & c.is_moderate() {
-        let ([sine_a, sine_b, sine_c, _], [cosine_a, cosine_b, cosine_c, _]) =
-            moderate_four(a, b, c, c);
-        ([sine_a, sine_b, sine_c], [cosine_a, cosine_b, cosine_c])
-    } else {
-        some_far([a, b, c])
-    }
-}
-
-#[inline(never)]
-fn moderate_four<T: Angle>(a: T, b: T, c: T, d: T) -> ([T; 4], [T; 4]) {
-    moderate([a, b, c, d])
 }
 
 #[cold]
@@ -78,19 +63,41 @@ fn some_far<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
     (both.map(|it| it.0), both.map(|it| it.1))
 }
 
+/// As many angles at once as `L` has lanes. Left to itself, a compiler finds some vectors in [`moderate`] of single numbers,
+/// and many exchanges between them.
+#[cfg(all(feature = "lanes", target_feature = "avx"))]
+#[inline(always)]
+pub(crate) fn moderate_in<L, T, const K: usize>(angles: [T; K]) -> ([T; K], [T; K])
+where
+    L: Angle + crate::lanes::Lanes<Lane = T>,
+    T: Real,
+{
+    let (mut sines, mut cosines) = (angles, angles);
+    for first in (0..K).step_by(L::COUNT) {
+        let together = L::from_lanes(|lane| angles[(first + lane).min(K - 1)]);
+        let ([sine], [cosine]) = moderate([together]);
+        for (lane, place) in (first..K.min(first + L::COUNT)).enumerate() {
+            (sines[place], cosines[place]) = (sine.lane(lane), cosine.lane(lane));
+        }
+    }
+    (sines, cosines)
+}
+
 /// One operation after the other on all angles: each constant is loaded once, and several angles share a register.
 #[inline(always)]
-fn moderate<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
+pub(crate) fn moderate<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
     let every = |number: f64| [T::from_f64(number); K];
     let turns = every(core::f64::consts::FRAC_2_PI);
     let shifted = multiply_add(angles, turns, every(T::SHIFT));
     let quadrants = shifted.map(|it| it - T::from_f64(T::SHIFT));
+    // Powers do without the last part, which is below their rounding, and need not wait for it.
     let mut y = angles;
     for part in T::PARTS {
         y = multiply_add(quadrants, every(-part), y);
     }
     let z = y.map(|y| y * y);
     let cubes: [T; K] = core::array::from_fn(|k| y[k] * z[k]);
+    let y = multiply_add(quadrants, every(-T::LAST_PART), y);
     let (sines, cosines) = T::polynomials(z);
     let sines = multiply_add(cubes, sines, y);
     let parabolas = multiply_add(z, every(-0.5), every(1.0));
@@ -127,11 +134,8 @@ macro_rules! double {
     () => {
         const LARGEST: f64 = 51_000.0;
         const SHIFT: f64 = 6_755_399_441_055_744.0;
-        const PARTS: &'static [f64] = &[
-            1.570_796_326_792_333_3,
-            2.563_344_151_597_190_7e-12,
-            -2.671_890_733_861_015_5e-24,
-        ];
+        const PARTS: &'static [f64] = &[1.570_796_326_792_333_3, 2.563_344_151_597_190_7e-12];
+        const LAST_PART: f64 = -2.671_890_733_861_015_5e-24;
 
         #[inline(always)]
         fn polynomials<const K: usize>(z: [Self; K]) -> ([Self; K], [Self; K]) {
@@ -164,12 +168,8 @@ macro_rules! single {
     () => {
         const LARGEST: f64 = 1600.0;
         const SHIFT: f64 = 12_582_912.0;
-        const PARTS: &'static [f64] = &[
-            1.570_800_78,
-            -4.454_515_87e-6,
-            6.077_272_02e-11,
-            -1.715_124_51e-15,
-        ];
+        const PARTS: &'static [f64] = &[1.570_800_78, -4.454_515_87e-6, 6.077_272_02e-11];
+        const LAST_PART: f64 = -1.715_124_51e-15;
 
         #[inline(always)]
         fn polynomials<const K: usize>(z: [Self; K]) -> ([Self; K], [Self; K]) {

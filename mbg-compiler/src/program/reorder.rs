@@ -2,9 +2,13 @@
 //!
 //! A sum of several terms of which one comes late, as everywhere where links depend on each other in a row, waits for it
 //! only once if it is added last. Terms are added in the order in which they are ready, where nothing else needs a partial
-//! sum, and factors are multiplied likewise. The number of operations stays.
+//! sum, and factors are multiplied likewise. Two of them may come to the same partial result, which then is made once; else
+//! the number of operations stays.
+
+use rustc_hash::FxHashMap;
 
 use super::{Columns, Operand, Routine, Source, Step, latency};
+use crate::symbolic::Symbol;
 
 /// The routine with sums and products reordered.
 pub(super) fn reorder(routine: &Routine) -> Routine {
@@ -26,10 +30,13 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
     let mut numbers = Numbers {
         new: vec![0; order.uses.len()],
         names: Vec::new(),
+        made: FxHashMap::default(),
     };
     let steps = numbers.steps(steps, &order, &routine.names);
+    let common = numbers.made.clone();
     let columns = routine.columns.iter().zip(columns).map(|(columns, steps)| {
         let first = numbers.names.len();
+        numbers.made.clone_from(&common);
         Columns {
             first,
             steps: numbers.steps(steps, &order, &routine.names),
@@ -244,10 +251,15 @@ fn step(is_sum: bool, [a, b]: [Operand; 2]) -> Step {
     }
 }
 
+/// What a sum or product is made of, to be looked up: whether it is a sum, and its parts in any order.
+type Made = (bool, [(u8, u64, bool); 2]);
+
 /// The new numbers of values.
 struct Numbers {
     new: Vec<usize>,
     names: Vec<String>,
+    /// The sums and products that there are.
+    made: FxHashMap<Made, usize>,
 }
 
 impl Numbers {
@@ -255,17 +267,51 @@ impl Numbers {
         let kept = steps
             .into_iter()
             .filter(|(value, step)| step.results() == 0 || !order.gone[*value]);
-        kept.map(|(value, step)| self.step(value, step, names))
+        kept.filter_map(|(value, step)| self.step(value, &step, names))
             .collect()
     }
 
-    fn step(&mut self, value: usize, step: Step, names: &[String]) -> Step {
+    /// The step with new numbers; none if its value is there.
+    fn step(&mut self, value: usize, step: &Step, names: &[String]) -> Option<Step> {
+        let name = |value: usize| names.get(value).cloned().unwrap_or_default();
+        let made = self.made_of(step);
+        if let Some(number) = made.and_then(|it| self.made.get(&it).copied()) {
+            self.new[value] = number;
+            if self.names[number].is_empty() {
+                self.names[number] = name(value);
+            }
+            return None;
+        }
+        if let Some(made) = made {
+            self.made.insert(made, self.names.len());
+        }
         for value in value..value + step.results() {
             self.new[value] = self.names.len();
-            self.names
-                .push(names.get(value).cloned().unwrap_or_default());
+            self.names.push(name(value));
         }
-        step.with(&|operand| self.operand(operand))
+        Some(step.with(&|operand| self.operand(operand)))
+    }
+
+    /// What a sum or product is made of, if that can be looked up.
+    fn made_of(&self, step: &Step) -> Option<Made> {
+        let part = |operand: &Operand| {
+            let (kind, number) = match self.operand(*operand).source {
+                Source::Constant(value) => (0, value.to_bits()),
+                Source::Folded(number) => (1, number as u64),
+                Source::Value(number) => (2, number as u64),
+                Source::Symbol(Symbol::State(number)) => (3, number as u64),
+                Source::Symbol(Symbol::Input(number)) => (4, number as u64),
+                Source::Symbol(Symbol::Parameter(number)) => (5, number as u64),
+                Source::Symbol(_) | Source::Solved(_) => return None,
+            };
+            Some((kind, number, operand.negative))
+        };
+        let (is_sum, a, b) = match step {
+            Step::Add(a, b) => (true, part(a)?, part(b)?),
+            Step::Multiply(a, b) => (false, part(a)?, part(b)?),
+            _ => return None,
+        };
+        Some((is_sum, if a <= b { [a, b] } else { [b, a] }))
     }
 
     fn operands(&self, operands: &[Operand]) -> Vec<Operand> {
@@ -333,6 +379,22 @@ mod tests {
         ]);
         let product = Step::Multiply(state(1), state(2));
         assert_eq!(found, [late, product, Step::Multiply(value(1), value(0))]);
+    }
+
+    #[test]
+    fn what_two_products_come_to_alike_is_made_once() {
+        let late = Step::Sine(state(0));
+        let found = ordered(&[
+            late.clone(),
+            Step::Multiply(state(1), value(0)),
+            Step::Multiply(value(1), state(2)),
+            Step::Cosine(value(2)),
+            Step::Multiply(state(2), value(0)),
+            Step::Multiply(value(4), state(1)),
+        ]);
+        let product = Step::Multiply(state(1), state(2));
+        let whole = Step::Multiply(value(1), value(0));
+        assert_eq!(found, [late, product, whole, Step::Cosine(value(2))]);
     }
 
     #[test]

@@ -100,7 +100,7 @@ fn free_of_unknowns(
     found
 }
 
-/// Whether each node depends on the unknowns; operands come before what uses them.
+/// Whether each node depends on the unknowns; operands come before what uses them unless they are constants.
 fn dependent(pool: &Pool, implicit: &Implicit) -> Vec<bool> {
     let mut depends = Vec::with_capacity(pool.len());
     for operation in pool.operations() {
@@ -108,7 +108,7 @@ fn dependent(pool: &Pool, implicit: &Implicit) -> Vec<bool> {
             Operation::Symbol(Symbol::Unknown(unknown)) => implicit.unknowns.contains(unknown),
             _ => {
                 let mut operands = operation.operands().into_iter();
-                operands.any(|operand| depends[operand.node()])
+                operands.any(|operand| depends.get(operand.node()).copied().unwrap_or(false))
             }
         });
     }

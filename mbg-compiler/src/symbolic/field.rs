@@ -78,6 +78,37 @@ pub fn invert(a: u64) -> Option<u64> {
     (r0 == 1).then(|| t0.rem_euclid(i128::from(PRIME)) as u64)
 }
 
+/// Reciprocals of several that are not zero, by one inversion (Montgomery 1987).
+#[must_use]
+pub fn reciprocals(elements: &[u64]) -> Vec<u64> {
+    let mut products = vec![1];
+    for element in elements {
+        products.push(multiply(products[products.len() - 1], *element));
+    }
+    let mut reciprocal = products.pop().and_then(invert).unwrap_or(0);
+    let mut reciprocals = Vec::with_capacity(elements.len());
+    for (element, before) in elements.iter().zip(products).rev() {
+        reciprocals.push(multiply(reciprocal, before));
+        reciprocal = multiply(reciprocal, *element);
+    }
+    reciprocals.reverse();
+    reciprocals
+}
+
+/// The fraction that an element stands for, if numerator and denominator are at most `largest` (Wang 1981).
+#[must_use]
+pub fn fraction(element: u64, largest: u64) -> Option<(i64, i64)> {
+    let largest = i128::from(largest);
+    let (mut r0, mut r1) = (i128::from(PRIME), i128::from(element));
+    let (mut t0, mut t1) = (0i128, 1i128);
+    while r1 > largest {
+        let quotient = r0 / r1;
+        (r0, r1) = (r1, r0 - quotient * r1);
+        (t0, t1) = (t1, t0 - quotient * t1);
+    }
+    (t1.abs() <= largest).then(|| ((r1 * t1.signum()) as i64, t1.abs() as i64))
+}
+
 /// A fixed pseudo-random element that depends on the words given (splitmix64).
 #[must_use]
 pub fn scatter(words: &[u64]) -> u64 {
@@ -253,6 +284,18 @@ mod tests {
         let tenth = Image::decimal("1", -1);
         assert_eq!(tenth.times(Image::integer(10)), Image::ONE);
         assert_eq!(multiply(PRIME - 1, PRIME - 1), 1);
+    }
+
+    #[test]
+    fn reciprocals_are_inverses_and_fractions_are_found_again() {
+        let elements = [2, 3, PRIME - 7, 1 << 40];
+        for (element, reciprocal) in elements.iter().zip(reciprocals(&elements)) {
+            assert_eq!(multiply(*element, reciprocal), 1);
+        }
+        let [third, tenth] = [3, 10].map(|it| invert(it).unwrap());
+        assert_eq!(fraction(multiply(334, third), 1000), Some((334, 3)));
+        assert_eq!(fraction(negate(tenth), 1000), Some((-1, 10)));
+        assert_eq!(fraction(scatter(&[1]), 1000), None);
     }
 
     #[test]

@@ -16,8 +16,10 @@ pub mod matrix;
 pub mod orientation;
 pub mod pool;
 pub mod print;
+mod products;
 mod share;
 pub mod substitute;
+mod uses;
 mod walk;
 
 pub use affine::affine;
@@ -29,5 +31,6 @@ pub use implicit::{Implicit, Kind, Method, Place};
 pub use linear::{Elimination, Linear, Rest, RestSolver};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::Pool;
+pub use products::products;
 pub use share::share;
 pub use substitute::Substitution;

@@ -91,7 +91,7 @@ impl Pool {
         &self.nodes[expression.node()].operation
     }
 
-    /// How the values of all nodes come about, operands before what uses them.
+    /// How the values of all nodes come about, operands before what uses them unless they are constants.
     pub fn operations(&self) -> impl Iterator<Item = &Operation> {
         self.nodes.iter().map(|node| &node.operation)
     }
@@ -101,18 +101,9 @@ impl Pool {
         (0..self.nodes.len()).map(|node| Expression::new(node, false))
     }
 
-    /// Makes a sum or product one of two other parts with the same value, if it can be written so.
-    pub fn reform(&mut self, expression: Expression, a: Expression, b: Expression) -> bool {
-        let operation = match self.operation(expression) {
-            Operation::Add(..) if !a.is_negative() => Operation::Add(a, b),
-            Operation::Add(..) if !b.is_negative() => Operation::Add(b, a),
-            Operation::Multiply(..) if !a.is_negative() && !b.is_negative() => {
-                Operation::Multiply(a, b)
-            }
-            _ => return false,
-        };
+    /// Gives a node another form with the same value.
+    pub(super) fn reform(&mut self, expression: Expression, operation: Operation) {
         self.nodes[expression.node()].operation = operation;
-        true
     }
 
     /// How often it changes.

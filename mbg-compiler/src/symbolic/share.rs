@@ -5,6 +5,7 @@
 
 use super::expression::{Expression, Operation, Rate};
 use super::pool::Pool;
+use super::uses::Uses;
 
 /// Reorders, again and again, whatever is computed for the roots.
 pub fn share(pool: &mut Pool, roots: &[Expression]) {
@@ -13,42 +14,8 @@ pub fn share(pool: &mut Pool, roots: &[Expression]) {
     while changed {
         changed = false;
         for node in pool.nodes() {
-            let is_needed = uses.counts[node.node()] > 0;
+            let is_needed = uses.count(node) > 0;
             changed |= is_needed && reorder(pool, &mut uses, node);
-        }
-    }
-}
-
-/// How many nodes and roots need each node.
-struct Uses {
-    counts: Vec<usize>,
-}
-
-impl Uses {
-    fn of(pool: &Pool, roots: &[Expression]) -> Self {
-        let counts = vec![0; pool.len()];
-        let mut uses = Self { counts };
-        roots.iter().for_each(|root| uses.add(pool, *root));
-        uses
-    }
-
-    fn add(&mut self, pool: &Pool, expression: Expression) {
-        let mut pending = vec![expression];
-        while let Some(current) = pending.pop() {
-            self.counts[current.node()] += 1;
-            if self.counts[current.node()] == 1 {
-                pending.extend(pool.causes(current));
-            }
-        }
-    }
-
-    fn remove(&mut self, pool: &Pool, expression: Expression) {
-        let mut pending = vec![expression];
-        while let Some(current) = pending.pop() {
-            self.counts[current.node()] -= 1;
-            if self.counts[current.node()] == 0 {
-                pending.extend(pool.causes(current));
-            }
         }
     }
 }
@@ -56,14 +23,14 @@ impl Uses {
 /// Whether a sum or product of three was put together in another order.
 fn reorder(pool: &mut Pool, uses: &mut Uses, node: Expression) -> bool {
     for (inner, last) in ends(pool, node) {
-        if uses.counts[inner.node()] != 1 || pool.rate(inner) != Rate::Varying {
+        if uses.count(inner) != 1 || pool.rate(inner) != Rate::Varying {
             continue;
         }
         for (rest, first) in ends(pool, inner) {
             // Operands come before what uses them, so nothing comes to depend on itself.
             let is_there = |known: &Expression| {
                 let is_earlier = known.node() < node.node() && known.node() != inner.node();
-                is_earlier && uses.counts[known.node()] > 0
+                is_earlier && uses.count(*known) > 0
             };
             let is_sum = matches!(pool.operation(node), Operation::Add(..));
             let is_same = is_sum == matches!(pool.operation(inner), Operation::Add(..));
@@ -74,8 +41,9 @@ fn reorder(pool: &mut Pool, uses: &mut Uses, node: Expression) -> bool {
                 pool.find(images[0].times(images[1]))
             };
             if let Some(known) = known.filter(is_there).filter(|_| is_same)
-                && pool.reform(node, known, rest)
+                && let Some(form) = form(pool.operation(node), known, rest)
             {
+                pool.reform(node, form);
                 uses.add(pool, known);
                 uses.add(pool, rest);
                 uses.remove(pool, inner);
@@ -85,6 +53,18 @@ fn reorder(pool: &mut Pool, uses: &mut Uses, node: Expression) -> bool {
         }
     }
     false
+}
+
+/// A sum or product of two other parts, if it can be written so.
+fn form(operation: &Operation, a: Expression, b: Expression) -> Option<Operation> {
+    match operation {
+        Operation::Add(..) if !a.is_negative() => Some(Operation::Add(a, b)),
+        Operation::Add(..) if !b.is_negative() => Some(Operation::Add(b, a)),
+        Operation::Multiply(..) if !a.is_negative() && !b.is_negative() => {
+            Some(Operation::Multiply(a, b))
+        }
+        _ => None,
+    }
 }
 
 /// Both ways in which a sum or product has two parts.

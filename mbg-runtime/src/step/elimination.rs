@@ -12,24 +12,45 @@ use crate::sparsity::Elimination;
 use crate::{Real, System};
 
 /// Factors of `d I − s ∂f/∂x` of a system.
-pub enum Shifted<E, const N: usize> {
-    /// By a plan, written out.
-    Unrolled([[E; N]; N]),
-    /// By a plan.
-    Planned(Planned<E, N>),
-    /// With a search for pivots.
-    Pivoted(Factors<E, N>),
+pub struct Shifted<E, const N: usize> {
+    /// In its rows also those by a plan.
+    factors: Factors<E, N>,
+    planned: bool,
 }
 
 impl<E: Element, const N: usize> Shifted<E, N> {
-    /// Of `diagonal · I − scale · matrix`, a matrix of the system's pattern.
+    /// Nothing yet.
     #[inline(always)]
+    pub fn empty() -> Self {
+        Self {
+            factors: Factors::empty(),
+            planned: false,
+        }
+    }
+
+    /// Of `diagonal · I − scale · matrix`, a matrix of the system's pattern.
+    #[inline(never)]
     pub fn new<S, const M: usize, const P: usize>(
         diagonal: E,
         scale: E::Part,
         matrix: &SMatrix<E::Part, N, N>,
     ) -> Self
     where
+        S: System<E::Part, N, M, P>,
+    {
+        let mut shifted = Self::empty();
+        shifted.factorise::<S, M, P>(diagonal, scale, matrix);
+        shifted
+    }
+
+    /// The same in the place of what has been before: nothing is copied.
+    #[inline(always)]
+    pub fn factorise<S, const M: usize, const P: usize>(
+        &mut self,
+        diagonal: E,
+        scale: E::Part,
+        matrix: &SMatrix<E::Part, N, N>,
+    ) where
         S: System<E::Part, N, M, P>,
     {
         let entry = |row: usize, column: usize| {
@@ -40,19 +61,20 @@ impl<E: Element, const N: usize> Shifted<E, N> {
                 element
             }
         };
-        if S::UNROLLED {
-            let mut rows = [[E::zero(); N]; N];
-            if S::eliminate(entry, &mut rows) {
-                return Self::Unrolled(rows);
-            }
-        } else if let Some(plan) = S::SPARSITY.and_then(|sparsity| sparsity.elimination.as_ref())
-            && let Some(factors) = Planned::new(plan, entry)
-        {
-            return Self::Planned(factors);
+        let rows = &mut self.factors.rows;
+        self.planned = match plan::<S, E::Part, N, M, P>() {
+            Some(_) if S::UNROLLED => S::eliminate(entry, rows),
+            Some(plan) => eliminate(plan, entry, rows),
+            None => false,
+        };
+        if !self.planned {
+            self.factors.factorise(entry);
         }
-        Self::Pivoted(Factors::new(core::array::from_fn(|row| {
-            core::array::from_fn(|column| entry(row, column))
-        })))
+    }
+
+    /// Whether they are by the system's plan.
+    pub fn is_planned(&self) -> bool {
+        self.planned
     }
 
     /// The `x` of `A x = right`.
@@ -61,14 +83,33 @@ impl<E: Element, const N: usize> Shifted<E, N> {
     where
         S: System<E::Part, N, M, P>,
     {
-        match self {
-            Self::Unrolled(rows) => {
+        // Asked first for the plan, so that of a model without one nothing is asked.
+        match plan::<S, E::Part, N, M, P>() {
+            Some(plan) if self.planned => {
                 let mut x = right;
-                S::substitute(rows, &mut x);
+                if S::UNROLLED {
+                    S::substitute(&self.factors.rows, &mut x);
+                } else {
+                    substitute(plan, &self.factors.rows, &mut x);
+                }
                 x
             }
-            Self::Planned(factors) => factors.solve(right),
-            Self::Pivoted(factors) => factors.solve(right),
+            _ => self.factors.solve(right),
+        }
+    }
+}
+
+/// The system's plan of elimination.
+#[inline(always)]
+fn plan<S, T, const N: usize, const M: usize, const P: usize>() -> Option<&'static Elimination>
+where
+    S: System<T, N, M, P>,
+    T: Real,
+{
+    const {
+        match S::SPARSITY {
+            Some(sparsity) => sparsity.elimination.as_ref(),
+            None => None,
         }
     }
 }
@@ -101,54 +142,48 @@ pub fn holds<E: Element>(factor: E, pivot_row: f64, row: f64) -> bool {
     factor.size() * pivot_row * Real::sqrt(<E::Part as Real>::SINGULAR) <= row
 }
 
-/// `A = L U` by a plan, rows and columns as in `A`; the pivots' reciprocals are kept in their place.
-pub struct Planned<E, const N: usize> {
-    rows: [[E; N]; N],
-    plan: &'static Elimination,
+/// `A = L U` by a plan, rows and columns as in `A`; the pivots' reciprocals are kept in their place. Whether all pivots
+/// hold.
+fn eliminate<E: Element, const N: usize>(
+    plan: &Elimination,
+    entry: impl Fn(usize, usize) -> E,
+    rows: &mut [[E; N]; N],
+) -> bool {
+    let mut sizes = [0.0; N];
+    let mut sound = true;
+    for i in places(plan.order) {
+        let (lower, upper) = (plan.lower[i], plan.upper[i]);
+        let mut row = [E::zero(); N];
+        row[i] = entry(i, i);
+        let mut size = row[i].size();
+        for j in places(lower).chain(places(upper)) {
+            row[j] = entry(i, j);
+            size = size.max(row[j].size());
+        }
+        for k in places(lower) {
+            let above = &rows[k];
+            let factor = row[k] * above[k];
+            row[k] = factor;
+            sound &= holds(factor, sizes[k], size);
+            for j in places(plan.upper[k]) {
+                row[j] = row[j].less(factor, above[j]);
+            }
+        }
+        row[i] = row[i].reciprocal();
+        (rows[i], sizes[i]) = (row, size);
+    }
+    sound
 }
 
-impl<E: Element, const N: usize> Planned<E, N> {
-    /// Nothing where a pivot does not hold.
-    fn new(plan: &'static Elimination, entry: impl Fn(usize, usize) -> E) -> Option<Self> {
-        let mut rows = [[E::zero(); N]; N];
-        let mut sizes = [0.0; N];
-        let mut sound = true;
-        for i in places(plan.order) {
-            let (lower, upper) = (plan.lower[i], plan.upper[i]);
-            let mut row = [E::zero(); N];
-            row[i] = entry(i, i);
-            let mut size = row[i].size();
-            for j in places(lower).chain(places(upper)) {
-                row[j] = entry(i, j);
-                size = size.max(row[j].size());
-            }
-            for k in places(lower) {
-                let above = &rows[k];
-                let factor = row[k] * above[k];
-                row[k] = factor;
-                sound &= holds(factor, sizes[k], size);
-                for j in places(plan.upper[k]) {
-                    row[j] = row[j].less(factor, above[j]);
-                }
-            }
-            row[i] = row[i].reciprocal();
-            (rows[i], sizes[i]) = (row, size);
-        }
-        sound.then_some(Self { rows, plan })
+/// A solution by the factors of a plan.
+fn substitute<E: Element, const N: usize>(plan: &Elimination, rows: &[[E; N]; N], x: &mut [E; N]) {
+    for i in places(plan.order) {
+        let terms = places(plan.lower[i]);
+        x[i] = terms.fold(x[i], |rest, j| rest.less(rows[i][j], x[j]));
     }
-
-    fn solve(&self, right: [E; N]) -> [E; N] {
-        let Self { rows, plan } = self;
-        let mut x = right;
-        for i in places(plan.order) {
-            let terms = places(plan.lower[i]);
-            x[i] = terms.fold(x[i], |rest, j| rest.less(rows[i][j], x[j]));
-        }
-        for i in places(plan.order).rev() {
-            let terms = places(plan.upper[i]);
-            x[i] = terms.fold(x[i], |rest, j| rest.less(rows[i][j], x[j])) * rows[i][i];
-        }
-        x
+    for i in places(plan.order).rev() {
+        let terms = places(plan.upper[i]);
+        x[i] = terms.fold(x[i], |rest, j| rest.less(rows[i][j], x[j])) * rows[i][i];
     }
 }
 
@@ -206,9 +241,15 @@ mod tests {
                 }
             }
             let right: [f64; N] = core::array::from_fn(|_| random());
-            let found = Planned::new(plan(filled), |row, column| matrix[row][column]);
-            let found = found.unwrap().solve(right);
-            for (found, dense) in found.iter().zip(Factors::new(matrix).solve(right)) {
+            let entry = |row: usize, column: usize| matrix[row][column];
+            let plan = plan(filled);
+            let mut rows = [[0.0; N]; N];
+            assert!(eliminate(plan, entry, &mut rows));
+            let mut found = right;
+            substitute(plan, &rows, &mut found);
+            let mut factors = Factors::empty();
+            factors.factorise(entry);
+            for (found, dense) in found.iter().zip(factors.solve(right)) {
                 assert!((found - dense).abs() < 1e-13, "{found} {dense}");
             }
         }
@@ -226,9 +267,10 @@ mod tests {
                     _ => 1.0,
                 }
             };
-            assert!(Planned::<f64, N>::new(plan(filled), entry(1.0)).is_some());
-            assert!(Planned::<f64, N>::new(plan(filled), entry(1e-6)).is_none());
-            assert!(Planned::<f64, N>::new(plan(filled), entry(0.0)).is_none());
+            let holds = |pivot: f64| eliminate(plan(filled), entry(pivot), &mut [[0.0; N]; N]);
+            assert!(holds(1.0));
+            assert!(!holds(1e-6));
+            assert!(!holds(0.0));
         }
     }
 }

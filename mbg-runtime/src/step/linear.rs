@@ -15,9 +15,12 @@ pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
         Self::from_part(Self::Part::from_f64(0.0))
     }
     /// Less the product of two others.
+    #[inline]
     fn less(self, a: Self, b: Self) -> Self {
         self - a * b
     }
+    /// `Σ column · factor`.
+    fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N];
     /// Its reciprocal.
     fn reciprocal(self) -> Self;
     /// A size to choose pivots by; of several lanes the largest.
@@ -31,8 +34,20 @@ impl<T: Real> Element for T {
         part
     }
 
+    #[inline]
     fn less(self, a: T, b: T) -> T {
         (-a).multiply_add(b, self)
+    }
+
+    #[inline(always)]
+    fn product<const N: usize>(columns: &[[T; N]; N], factors: &[T; N]) -> [T; N] {
+        let mut sums = [T::from_f64(0.0); N];
+        for (column, factor) in columns.iter().zip(factors) {
+            for (sum, element) in sums.iter_mut().zip(column) {
+                *sum = element.multiply_add(*factor, *sum);
+            }
+        }
+        sums
     }
 
     fn reciprocal(self) -> Self {
@@ -94,6 +109,37 @@ impl<T: Real> Element for Complex<T> {
         Self { real, imaginary }
     }
 
+    #[inline]
+    fn less(self, a: Self, b: Self) -> Self {
+        let Self { real, imaginary } = self;
+        Self {
+            real: (-a.real).multiply_add(b.real, a.imaginary.multiply_add(b.imaginary, real)),
+            imaginary: (-a.real)
+                .multiply_add(b.imaginary, (-a.imaginary).multiply_add(b.real, imaginary)),
+        }
+    }
+
+    /// By sums of the columns times real and imaginary parts, which need not be taken apart.
+    #[inline(always)]
+    fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N] {
+        let mut sums = [[Self::zero(); N]; 2];
+        for (column, factor) in columns.iter().zip(factors) {
+            for (sums, factor) in sums.iter_mut().zip([factor.real, factor.imaginary]) {
+                for (sum, element) in sums.iter_mut().zip(column) {
+                    sum.real = element.real.multiply_add(factor, sum.real);
+                    sum.imaginary = element.imaginary.multiply_add(factor, sum.imaginary);
+                }
+            }
+        }
+        let [real, imaginary] = sums;
+        let mut product = real;
+        for (product, turned) in product.iter_mut().zip(&imaginary) {
+            product.real -= turned.imaginary;
+            product.imaginary += turned.real;
+        }
+        product
+    }
+
     /// Divides by the larger part first, so that no square overflows.
     fn reciprocal(self) -> Self {
         let one = T::from_f64(1.0);
@@ -119,48 +165,60 @@ impl<T: Real> Element for Complex<T> {
     }
 }
 
-/// So many equations are solved by the inverse.
-const INVERTED: usize = 3;
+/// So many equations are solved by the inverse: of eight it takes at most twice as long as factors, and a solution a
+/// seventh.
+const INVERTED: usize = 8;
+
+/// So many have an inverse by cofactors.
+const SMALL: usize = 3;
 
 /// `P A = L U` with partial pivoting; the pivots' reciprocals are kept in their place.
 ///
 /// For steps of implicit methods, whose lanes share all decisions and so their pivots, and whose matrices may be complex;
 /// [`Regular`](crate::solve::Regular) is for loops in models, where each lane must give what it would give alone, in
-/// whatever units. Of a singular matrix the solutions are not finite. Of up to three equations the columns of the
-/// inverse are kept instead: its products need not wait for each other.
+/// whatever units. Of a singular matrix the solutions are not finite. Of up to eight equations the columns of the
+/// inverse are kept instead: its products need not wait for each other, and a step takes several.
 #[derive(Clone, Copy, Debug)]
-pub struct Factors<E, const N: usize> {
-    rows: [[E; N]; N],
+pub(super) struct Factors<E, const N: usize> {
+    pub(super) rows: [[E; N]; N],
     order: [usize; N],
 }
 
 impl<E: Element, const N: usize> Factors<E, N> {
+    /// Nothing yet.
     #[inline(always)]
-    pub(super) fn new(rows: [[E; N]; N]) -> Self {
-        let order = core::array::from_fn(|row| row);
-        if N > INVERTED {
-            return Self::eliminated(rows);
-        }
-        match inverse(&rows) {
-            Some(rows) => Self { rows, order },
-            None => Self::eliminated(rows).inverted(),
+    pub(super) fn empty() -> Self {
+        Self {
+            rows: [[E::zero(); N]; N],
+            order: [0; N],
         }
     }
 
-    #[inline(never)]
-    fn eliminated(mut rows: [[E; N]; N]) -> Self {
-        let mut order = core::array::from_fn(|row| row);
-        for k in 0..N {
-            let mut pivot = k;
-            let mut largest = rows[k][k].size();
-            for (i, row) in rows.iter().enumerate().skip(k + 1) {
-                let size = row[k].size();
-                if size > largest {
-                    (pivot, largest) = (i, size);
-                }
+    /// Factors of the matrix of these entries.
+    #[inline(always)]
+    pub(super) fn factorise(&mut self, entry: impl Fn(usize, usize) -> E) {
+        if N > INVERTED {
+            fill(&mut self.rows, entry);
+            return self.eliminate();
+        }
+        if N <= SMALL {
+            let mut rows = [[E::zero(); N]; N];
+            fill(&mut rows, &entry);
+            if by_cofactors(&rows, &mut self.rows) {
+                return;
             }
-            rows.swap(k, pivot);
-            order.swap(k, pivot);
+        }
+        // The rows of the inverse of the transpose are the columns of the inverse.
+        fill(&mut self.rows, |row, column| entry(column, row));
+        self.invert();
+    }
+
+    #[inline(never)]
+    fn eliminate(&mut self) {
+        let Self { rows, order } = self;
+        for k in 0..N {
+            let pivot = exchange(rows, k);
+            order[k] = pivot;
             let (above, below) = rows.split_at_mut(k + 1);
             let pivot_row = &mut above[k];
             pivot_row[k] = pivot_row[k].reciprocal();
@@ -168,23 +226,45 @@ impl<E: Element, const N: usize> Factors<E, N> {
                 let factor = row[k] * pivot_row[k];
                 row[k] = factor;
                 for (element, pivot) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
-                    *element = *element - factor * *pivot;
+                    *element = element.less(factor, *pivot);
                 }
             }
         }
-        Self { rows, order }
     }
 
-    /// The columns of the inverse in the place of the factors.
-    fn inverted(self) -> Self {
-        let columns = core::array::from_fn(|column| {
-            self.substituted(core::array::from_fn(|row| {
-                E::from_part(E::Part::from_f64(if row == column { 1.0 } else { 0.0 }))
-            }))
-        });
-        Self {
-            rows: columns,
-            ..self
+    /// The inverse in the place of the matrix, by Gauss and Jordan with a search for pivots.
+    #[inline(never)]
+    fn invert(&mut self) {
+        let Self { rows, order } = self;
+        for k in 0..N {
+            order[k] = exchange(rows, k);
+            let reciprocal = rows[k][k].reciprocal();
+            let mut above = rows[k];
+            for (j, element) in above.iter_mut().enumerate() {
+                *element = if j == k {
+                    reciprocal
+                } else {
+                    *element * reciprocal
+                };
+            }
+            for (i, row) in rows.iter_mut().enumerate() {
+                if i == k {
+                    *row = above;
+                    continue;
+                }
+                let factor = row[k];
+                for (j, (element, above)) in row.iter_mut().zip(&above).enumerate() {
+                    let kept = if j == k { E::zero() } else { *element };
+                    *element = kept.less(factor, *above);
+                }
+            }
+        }
+        for k in (0..N).rev() {
+            if order[k] != k {
+                for row in rows.iter_mut() {
+                    row.swap(k, order[k]);
+                }
+            }
         }
     }
 
@@ -194,6 +274,9 @@ impl<E: Element, const N: usize> Factors<E, N> {
         if N > INVERTED {
             return self.substituted(right);
         }
+        if N > SMALL {
+            return E::product(&self.rows, &right);
+        }
         let product = |row: usize, column: usize| self.rows[column][row] * right[column];
         core::array::from_fn(|row| {
             (1..N).fold(product(row, 0), |sum, column| sum + product(row, column))
@@ -201,15 +284,18 @@ impl<E: Element, const N: usize> Factors<E, N> {
     }
 
     fn substituted(&self, right: [E; N]) -> [E; N] {
-        let mut x = self.order.map(|row| right[row]);
+        let mut x = right;
+        for (k, pivot) in self.order.iter().enumerate() {
+            x.swap(k, *pivot);
+        }
         for i in 1..N {
             for j in 0..i {
-                x[i] = x[i] - self.rows[i][j] * x[j];
+                x[i] = x[i].less(self.rows[i][j], x[j]);
             }
         }
         for i in (0..N).rev() {
             for j in i + 1..N {
-                x[i] = x[i] - self.rows[i][j] * x[j];
+                x[i] = x[i].less(self.rows[i][j], x[j]);
             }
             x[i] = x[i] * self.rows[i][i];
         }
@@ -217,10 +303,37 @@ impl<E: Element, const N: usize> Factors<E, N> {
     }
 }
 
-/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; nothing of a
-/// singular matrix, and where products may leave the range of the numbers.
+/// Brings the largest element of a column, from the diagonal on, to the diagonal; gives its row.
 #[inline(always)]
-fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]> {
+fn exchange<E: Element, const N: usize>(rows: &mut [[E; N]; N], column: usize) -> usize {
+    let mut pivot = column;
+    let mut largest = rows[column][column].size();
+    for (i, row) in rows.iter().enumerate().skip(column + 1) {
+        let size = row[column].size();
+        if size > largest {
+            (pivot, largest) = (i, size);
+        }
+    }
+    if pivot != column {
+        rows.swap(column, pivot);
+    }
+    pivot
+}
+
+/// Writes entries to a matrix, without a copy of it.
+#[inline(always)]
+fn fill<E: Element, const N: usize>(rows: &mut [[E; N]; N], entry: impl Fn(usize, usize) -> E) {
+    for (i, row) in rows.iter_mut().enumerate() {
+        for (j, element) in row.iter_mut().enumerate() {
+            *element = entry(i, j);
+        }
+    }
+}
+
+/// The columns of the inverse of at most three rows by cofactors, which need not wait for each other; not of a singular
+/// matrix, nor where products may leave the range of the numbers. Whether it came to that.
+#[inline(always)]
+fn by_cofactors<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[E; N]; N]) -> bool {
     let cofactor = |row: usize, column: usize| match N {
         1 => E::from_part(E::Part::from_f64(1.0)),
         2 if row == column => rows[1 - row][1 - column],
@@ -231,34 +344,39 @@ fn inverse<E: Element, const N: usize>(rows: &[[E; N]; N]) -> Option<[[E; N]; N]
             below[right] * above[left] - below[left] * above[right]
         }
     };
-    let mut columns: [[E; N]; N] =
-        core::array::from_fn(|column| core::array::from_fn(|row| cofactor(column, row)));
-    let terms = (0..N).map(|column| rows[0][column] * columns[0][column]);
+    let mut cofactors = [[E::zero(); N]; N];
+    fill(&mut cofactors, cofactor);
+    let terms = (0..N).map(|column| rows[0][column] * cofactors[0][column]);
     let determinant = terms.fold(E::zero(), |sum, term| sum + term);
     let size = determinant.size();
     let small = E::Part::EPSILON * E::Part::EPSILON;
     let small = small * small;
     if size.is_nan() || size <= small || size >= 1.0 / small {
-        return None;
+        return false;
     }
     let reciprocal = determinant.reciprocal();
-    for element in columns.iter_mut().flatten() {
-        *element = *element * reciprocal;
-    }
-    Some(columns)
+    fill(columns, |row, column| cofactors[row][column] * reciprocal);
+    true
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::lanes::random;
     use std::vec::Vec;
+
+    fn factors<E: Element, const N: usize>(rows: [[E; N]; N]) -> Factors<E, N> {
+        let mut factors = Factors::empty();
+        factors.factorise(|row, column| rows[row][column]);
+        factors
+    }
 
     #[test]
     fn solves_what_needs_pivots() {
         let rows = [[0.0, 1e-20, 3.0], [2.0, 1.0, 0.0], [1e20, 0.0, 1e20]];
         let x = [1.0, -2.0, 3.0];
         let right = rows.map(|row: [f64; 3]| row.iter().zip(x).map(|(a, x)| a * x).sum());
-        let found = Factors::new(rows).solve(right);
+        let found = factors(rows).solve(right);
         for (found, x) in found.iter().zip(x) {
             assert!((found - x).abs() < 1e-14, "{found}");
         }
@@ -266,8 +384,48 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_gives_nothing_finite() {
-        let x = Factors::new([[1.0, 2.0], [2.0, 4.0]]).solve([1.0, 1.0]);
+        let x = factors([[1.0, 2.0], [2.0, 4.0]]).solve([1.0, 1.0]);
         assert!(x.iter().all(|x: &f64| !x.is_finite()), "{x:?}");
+        let x = factors([[1.0; 5]; 5]).solve([1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert!(x.iter().all(|x: &f64| !x.is_finite()), "{x:?}");
+    }
+
+    /// Of random matrices, most without a diagonal to rely on, in random units.
+    fn assert_solves<const N: usize>() {
+        let mut random = random();
+        for _ in 0..100 {
+            let units: [f64; N] = core::array::from_fn(|_| 10.0_f64.powf(6.0 * random()));
+            let mut number = |size: f64| Complex {
+                real: size * random(),
+                imaginary: size * random(),
+            };
+            let x: [Complex<f64>; N] = core::array::from_fn(|row| number(1.0 / units[row]));
+            let rows: [[Complex<f64>; N]; N] = core::array::from_fn(|row| {
+                core::array::from_fn(|column| {
+                    let size = units[row] * units[column];
+                    number(if row == column { 1e-9 * size } else { size })
+                })
+            });
+            let right = rows.map(|row| {
+                let terms = row.iter().zip(x).map(|(a, x)| *a * x);
+                terms.fold(Complex::zero(), |sum, term| sum + term)
+            });
+            let found = factors(rows).solve(right);
+            for ((found, x), unit) in found.iter().zip(x).zip(units) {
+                assert!((*found - x).size() * unit < 1e-9, "{N}: {found:?}, {x:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_number_of_equations_is_solved_whatever_the_units() {
+        assert_solves::<2>();
+        assert_solves::<3>();
+        assert_solves::<4>();
+        assert_solves::<6>();
+        assert_solves::<8>();
+        assert_solves::<9>();
+        assert_solves::<12>();
     }
 
     #[test]
@@ -286,7 +444,7 @@ mod tests {
                 terms.fold(number(0.0, 0.0), |sum, term| sum + term)
             })
             .collect();
-        let found = Factors::new(rows).solve([right[0], right[1], right[2]]);
+        let found = factors(rows).solve([right[0], right[1], right[2]]);
         for (found, x) in found.iter().zip(x) {
             assert!((*found - x).size() < 1e-14, "{found:?}");
         }

@@ -69,4 +69,18 @@ impl<const N: usize> Measure<N> {
         });
         sum * (1.0 / N.max(1) as f64)
     }
+
+    /// The mean square of several errors in units of the tolerances.
+    #[inline]
+    pub(super) fn squares<T: Real, const S: usize>(&self, errors: &[SVector<T, N>; S]) -> f64 {
+        let mut sums = [0.0; N];
+        for error in errors {
+            let components = error.iter().zip(&self.factors);
+            for (sum, (component, factor)) in sums.iter_mut().zip(components) {
+                let quotient = component.magnitude() * factor;
+                *sum = quotient.multiply_add(quotient, *sum);
+            }
+        }
+        sums.iter().sum::<f64>() * const { 1.0 / (if N * S > 0 { N * S } else { 1 }) as f64 }
+    }
 }

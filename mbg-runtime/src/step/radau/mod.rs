@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
-use super::linear::Complex;
+use super::linear::{Complex, Element};
 use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combination};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -85,7 +85,7 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     jacobian: SMatrix<T, N, N>,
     /// By how much the last sweeps reduced the error; infinite where that is not known.
     theta: f64,
-    factors: Option<Factors<T, N, PAIRS>>,
+    factors: Factors<T, N, PAIRS>,
     /// Lengths of two steps and the coefficients of their polynomials, in turns the last one and that which is tried; no
     /// length at the start and behind a jump.
     steps: [(T, [SVector<T, N>; S]); 2],
@@ -99,9 +99,22 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
 
 /// Factors of `λ/h I − ∂f/∂x` for the eigenvalues, at a length `h`.
 struct Factors<T, const N: usize, const PAIRS: usize> {
-    length: T,
-    real: Shifted<T, N>,
-    pairs: [Shifted<Complex<T>, N>; PAIRS],
+    /// None where there are no factors of the present Jacobian.
+    length: Option<T>,
+    /// The real `λ/h` with its factors.
+    real: (T, Shifted<T, N>),
+    /// One of each pair of others.
+    pairs: [(Complex<T>, Shifted<Complex<T>, N>); PAIRS],
+}
+
+impl<T: Real, const N: usize, const PAIRS: usize> Factors<T, N, PAIRS> {
+    fn empty() -> Self {
+        Self {
+            length: None,
+            real: (T::from_f64(0.0), Shifted::empty()),
+            pairs: core::array::from_fn(|_| (Complex::zero(), Shifted::empty())),
+        }
+    }
 }
 
 #[allow(private_interfaces, reason = "no method is written outside")]
@@ -116,7 +129,7 @@ where
         Self {
             jacobian: SMatrix::from_element(zero),
             theta: f64::INFINITY,
-            factors: None,
+            factors: Factors::empty(),
             steps: [(zero, [SVector::from_element(zero); S]); 2],
             tried: 0,
             rate: 1.0,
@@ -141,10 +154,8 @@ where
         }
         let mut stages = self.predict(length);
         self.factorise(problem, start, &stages);
-        let Some(factors) = &self.factors else {
-            return failed(&stages, f64::INFINITY);
-        };
-        let mut newton = Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, factors);
+        let mut newton =
+            Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, &self.factors);
         let found = match tolerance {
             Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
             None => newton.settled(&mut stages),
@@ -213,25 +224,25 @@ where
         if self.theta > FAST {
             let t = span.at(T::from_f64(A::TABLEAU.nodes[S / 2]));
             self.jacobian = problem.jacobian(t, &(x + stages[S / 2]));
-            self.factors = None;
+            self.factors.length = None;
         }
         let length = span.length;
-        if self.factors.as_ref().is_some_and(|it| it.length == length) {
+        if self.factors.length == Some(length) {
             return;
         }
+        self.factors.length = Some(length);
         problem.statistics.factorisations += 1 + PAIRS as u64;
-        let by = |number: f64| T::from_f64(number) / length;
         let one = T::from_f64(1.0);
-        let pairs = A::TABLEAU.pairs.map(|pair| {
+        let inverse = one / length;
+        let by = |number: f64| inverse * T::from_f64(number);
+        for ((shift, factors), pair) in self.factors.pairs.iter_mut().zip(&A::TABLEAU.pairs) {
             let [real, imaginary] = pair.map(by);
-            Shifted::new::<Y, M, P>(Complex { real, imaginary }, one, &self.jacobian)
-        });
-        let real = Shifted::new::<Y, M, P>(by(A::TABLEAU.real), one, &self.jacobian);
-        self.factors = Some(Factors {
-            length,
-            real,
-            pairs,
-        });
+            *shift = Complex { real, imaginary };
+            factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
+        }
+        let (shift, factors) = &mut self.factors.real;
+        *shift = by(A::TABLEAU.real);
+        factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
     }
 
     /// The last step.
@@ -297,6 +308,23 @@ fn transformed<T: Real, const N: usize, const S: usize>(
         *product = combination(row, vectors);
     }
     products
+}
+
+/// `sum + Σ weight · vector`.
+#[inline(always)]
+fn increased<T: Real, const N: usize, const S: usize>(
+    sum: SVector<T, N>,
+    weights: &[f64; S],
+    vectors: &[SVector<T, N>; S],
+) -> SVector<T, N> {
+    let mut sum = sum;
+    for (weight, vector) in weights.iter().zip(vectors) {
+        let weight = T::from_f64(*weight);
+        sum.zip_apply(vector, |sum, component| {
+            *sum = weight.multiply_add(component, *sum);
+        });
+    }
+    sum
 }
 
 /// A method of this family.

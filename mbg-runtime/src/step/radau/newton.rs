@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 
 use nalgebra::SVector;
 
-use super::{FAST, Factors, Tabulated, transformed};
+use super::{FAST, Factors, Tabulated, increased, transformed};
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, larger, relative, settles};
 use crate::step::problem::Problem;
@@ -89,30 +89,42 @@ where
                 .problem
                 .slope(span.at(T::from_f64(node)), &(x + *slope));
         }
-        let mut changes = transformed(const { &A::TABLEAU.inverse }, &slopes);
-        let by = |number: f64| T::from_f64(number) / span.length;
-        let real = by(A::TABLEAU.real);
-        let right = changes[0].zip_map(&inner[0], |slope, a| slope - real * a);
-        changes[0] = self.factors.real.solved::<Y, M, P>(&right);
-        for (pair, factors) in self.factors.pairs.iter().enumerate() {
-            let [alpha, beta] = A::TABLEAU.pairs[pair].map(by);
-            let (first, second) = (1 + 2 * pair, 2 + 2 * pair);
-            let mut rights = [Complex::zero(); N];
-            for (row, right) in rights.iter_mut().enumerate() {
-                let (b, c) = (inner[first][row], inner[second][row]);
-                right.real = changes[first][row] - (alpha * b - beta * c);
-                right.imaginary = changes[second][row] - (alpha * c + beta * b);
-            }
-            let both = factors.solve::<Y, M, P>(rights);
-            for (row, both) in both.iter().enumerate() {
-                changes[first][row] = both.real;
-                changes[second][row] = both.imaginary;
-            }
-        }
+        let changes = self.changes(inner, &slopes);
         for (inner, change) in inner.iter_mut().zip(&changes) {
             *inner += change;
         }
         *stages = transformed(const { &A::TABLEAU.vectors }, inner);
+        changes
+    }
+
+    /// What `λ/h I − ∂f/∂x` takes to the transformed slopes less `λ/h` times the transformed stages.
+    #[inline(always)]
+    fn changes(
+        &self,
+        inner: &[SVector<T, N>; S],
+        slopes: &[SVector<T, N>; S],
+    ) -> [SVector<T, N>; S] {
+        let weights = const { &A::TABLEAU.inverse };
+        let mut changes = *inner;
+        let (shift, factors) = &self.factors.real;
+        let right = increased(inner[0].map(|a| -*shift * a), &weights[0], slopes);
+        changes[0] = factors.solved::<Y, M, P>(&right);
+        for (pair, (shift, factors)) in self.factors.pairs.iter().enumerate() {
+            let Complex { real, imaginary } = *shift;
+            let [first, second] = [1, 2].map(|place| place + 2 * pair);
+            let [b, c] = [&inner[first], &inner[second]];
+            let reals = b.zip_map(c, |b, c| imaginary * c - real * b);
+            let reals = increased(reals, &weights[first], slopes);
+            let imaginaries = b.zip_map(c, |b, c| -(imaginary * b) - real * c);
+            let imaginaries = increased(imaginaries, &weights[second], slopes);
+            let mut right = [Complex::zero(); N];
+            for (row, right) in right.iter_mut().enumerate() {
+                (right.real, right.imaginary) = (reals[row], imaginaries[row]);
+            }
+            for (row, both) in factors.solve::<Y, M, P>(right).iter().enumerate() {
+                (changes[first][row], changes[second][row]) = (both.real, both.imaginary);
+            }
+        }
         changes
     }
 
@@ -128,38 +140,43 @@ where
         let enough = (10.0 * T::EPSILON / relative).max(Real::sqrt(relative).min(ENOUGH));
         let measure = tolerance.around(&self.start.x);
         let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
-        let (mut before, mut quotient, mut theta) = (0.0, 0.0, FAST);
         let root = Real::sqrt(rate.max(T::EPSILON));
         *rate = root * Real::sqrt(root);
+        // Reciprocals of the squares of the last two changes, so that nothing waits for a division.
+        let (mut before, mut last) = (0.0, 0.0);
         for sweep in 1..=SWEEPS {
             let changes = self.sweep(stages, &mut inner);
-            let squares = changes.iter().map(|change| measure.square(change));
-            let size = Real::sqrt(squares.sum::<f64>() / S as f64);
+            let square = measure.squares(&changes);
+            let size = Real::sqrt(square);
             if !size.is_finite() {
                 break;
             }
-            if sweep > 1 {
-                let next = size / before;
-                theta = if sweep == 2 {
-                    next
+            if sweep == 1 {
+                if *rate * size <= enough {
+                    return Ok(FAST);
+                }
+            } else {
+                // By how much a sweep reduces the change, in the mean of the last two.
+                let theta = Real::sqrt(if sweep == 2 {
+                    square * last
                 } else {
-                    Real::sqrt(next * quotient)
-                };
-                quotient = next;
+                    Real::sqrt(square * before)
+                });
                 if theta >= 0.99 {
                     return Err(FAR);
                 }
-                *rate = theta / (1.0 - theta).max(0.01);
+                let rest = (1.0 - theta).max(0.01);
+                if theta * size <= enough * rest {
+                    *rate = theta / rest;
+                    return Ok(theta);
+                }
+                let left = theta * size / (enough * rest);
+                let ahead = (sweep..SWEEPS).fold(left, |left, _| left * theta);
+                if ahead > 1.0 {
+                    return Err(ahead.min(FAR));
+                }
             }
-            let left = *rate * size / enough;
-            if left <= 1.0 {
-                return Ok(theta);
-            }
-            let ahead = (sweep..SWEEPS).fold(left, |left, _| left * theta);
-            if sweep > 1 && ahead > 1.0 {
-                return Err(ahead.min(FAR));
-            }
-            before = size;
+            (before, last) = (last, 1.0 / square);
         }
         Err(f64::INFINITY)
     }
@@ -189,7 +206,7 @@ where
         doubtful: bool,
     ) -> f64 {
         let Start { span, x, slope, .. } = self.start;
-        let real = &self.factors.real;
+        let (_, real) = &self.factors.real;
         let inverse = T::from_f64(1.0) / span.length;
         let sum = combination(const { &A::TABLEAU.error }, stages).map(|sum| inverse * sum);
         let estimate = real.solved::<Y, M, P>(&(sum + slope));

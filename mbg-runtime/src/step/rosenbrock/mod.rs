@@ -155,7 +155,8 @@ where
         let inverse = one / length;
         problem.statistics.factorisations += 1;
         let diagonal = inverse / T::from_f64(A::TABLEAU.diagonal);
-        let factors = Shifted::new::<Y, M, P>(diagonal, one, &self.jacobian);
+        let mut factors = Shifted::empty();
+        factors.factorise::<Y, M, P>(diagonal, one, &self.jacobian);
         let mut last = SVector::from_element(T::from_f64(0.0));
         for stage in 0..S {
             let [ahead, coupling] = of_stage!(stage, self.ahead(&last));

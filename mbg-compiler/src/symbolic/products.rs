@@ -1,0 +1,265 @@
+//! Sums and products that are one product of what is computed anyway.
+//!
+//! Derivatives come out term by term, and what they come to is often shorter: with `sin² + cos² = 1` the sum
+//! `c x + s (s x / c)` is `x / c`, and since what dissipates is symmetric, entries of a Jacobian on both sides of its
+//! diagonal are multiples of each other. No rule of algebra is needed to see it, only values at random points (see
+//! [`super::field`]): `e` is a product with the factor `a` where `e / a` is the value of something that is there.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+
+use super::expression::{Expression, Operation, Rate};
+use super::field::{self, Image};
+use super::pool::Pool;
+use super::uses::Uses;
+
+/// Largest numerator and denominator of a number by which what is there is multiplied.
+const LARGEST: u64 = 10_000;
+
+/// How many ends of values are told apart.
+const ENDS: usize = 1 << 14;
+
+/// Makes products of what only the roots need, where that saves operations; what the `others` need stays as it is.
+pub fn products(pool: &mut Pool, others: &[Expression], roots: &[Expression]) {
+    let kept = Uses::of(pool, others);
+    let mut uses = Uses::of(pool, &[others, roots].concat());
+    let Some(known) = Known::of(pool, &uses) else {
+        return;
+    };
+    for node in known.nodes.iter().rev() {
+        if kept.count(*node) == 0 && is_long(pool, &uses, *node) {
+            shorten(pool, &mut uses, &known, *node);
+        }
+    }
+}
+
+/// Whether it is a sum or product with a part that nothing else needs.
+fn is_long(pool: &Pool, uses: &Uses, node: Expression) -> bool {
+    let operation = pool.operation(node);
+    let mut parts = operation.operands().into_iter();
+    matches!(operation, Operation::Add(..) | Operation::Multiply(..))
+        && uses.count(node) > 0
+        && parts.any(|part| uses.count(part) == 1 && !pool.operation(part).operands().is_empty())
+}
+
+/// Takes the shortest form of a node.
+fn shorten(pool: &mut Pool, uses: &mut Uses, known: &Known, node: Expression) {
+    let mut best = (0, None);
+    for form in known.forms(pool, uses, node) {
+        let saved = exchange(pool, uses, node, &form);
+        let old = pool.operation(node).clone();
+        if saved > best.0 {
+            best = (saved, Some(form.clone()));
+        }
+        pool.reform(node, form);
+        exchange(pool, uses, node, &old);
+        pool.reform(node, old);
+    }
+    if let (_, Some(form)) = best {
+        exchange(pool, uses, node, &form);
+        pool.reform(node, form);
+    }
+}
+
+/// Counts a node's parts as those of another form; gives how many nodes that saves.
+fn exchange(pool: &Pool, uses: &mut Uses, node: Expression, form: &Operation) -> usize {
+    let added = form.operands().into_iter().map(|part| uses.add(pool, part));
+    let added: usize = added.sum();
+    let old = pool.operation(node).operands().into_iter();
+    let removed: usize = old.map(|part| uses.remove(pool, part)).sum();
+    removed.saturating_sub(added)
+}
+
+/// What is computed anyway.
+struct Known {
+    /// All that varies, operands before what uses them.
+    nodes: Vec<Expression>,
+    /// Reciprocals of the nodes' values at the first point.
+    reciprocals: Vec<u64>,
+    /// Nodes and their negatives by the value at the first point.
+    values: FxHashMap<u64, Expression>,
+    /// Which last bits the values end with: most others are told from them by these alone.
+    ends: Vec<bool>,
+    /// Nodes by the ratio of the values at two points, in which multiples of each other agree.
+    multiples: FxHashMap<u64, Vec<Expression>>,
+    /// Divisors with a bit each.
+    divisors: BTreeMap<Expression, u128>,
+    /// The divisors that each node depends on.
+    divided: Vec<u128>,
+}
+
+impl Known {
+    /// Of what is needed; none where there are too many divisors.
+    fn of(pool: &Pool, uses: &Uses) -> Option<Self> {
+        let is_zero = |node: &Expression| pool.image(*node).0[0] == 0;
+        let nodes = pool.nodes().filter(|node| uses.count(*node) > 0);
+        let nodes = nodes.filter(|node| pool.rate(*node) == Rate::Varying && !is_zero(node));
+        let nodes: Vec<Expression> = nodes.collect();
+        let (divisors, divided) = divisors(pool, &nodes)?;
+        let firsts: Vec<u64> = nodes.iter().map(|node| pool.image(*node).0[0]).collect();
+        let reciprocals = field::reciprocals(&firsts);
+        let mut values = FxHashMap::default();
+        let mut ends = vec![false; ENDS];
+        let mut multiples: FxHashMap<u64, Vec<Expression>> = FxHashMap::default();
+        for (node, reciprocal) in nodes.iter().zip(&reciprocals) {
+            let [first, second, _] = pool.image(*node).0;
+            for (value, node) in [(first, *node), (field::negate(first), node.negated())] {
+                values.entry(value).or_insert(node);
+                ends[value as usize % ENDS] = true;
+            }
+            let ratio = field::multiply(second, *reciprocal);
+            multiples.entry(ratio).or_default().push(*node);
+        }
+        Some(Self {
+            nodes,
+            reciprocals,
+            values,
+            ends,
+            multiples,
+            divisors,
+            divided,
+        })
+    }
+
+    /// Other forms of a node, of what is there before it and by nothing that it is not divided by as it is.
+    fn forms(&self, pool: &mut Pool, uses: &Uses, node: Expression) -> Vec<Operation> {
+        let divided = self.divided[node.node()];
+        let is_there = |it: Expression| {
+            let is_divided = self.divided[it.node()] & !divided != 0;
+            it.node() < node.node() && uses.count(it) > 0 && !is_divided
+        };
+        let mut forms = Vec::new();
+        let image = pool.image(node);
+        for (factor, reciprocal) in self.nodes.iter().zip(&self.reciprocals) {
+            if factor.node() >= node.node() {
+                break;
+            }
+            let other = field::multiply(image.0[0], *reciprocal);
+            if !self.ends[other as usize % ENDS] {
+                continue;
+            }
+            let other = self.values.get(&other);
+            let Some(other) = other.filter(|it| is_there(**it) && is_there(*factor)) else {
+                continue;
+            };
+            if pool.image(*factor).times(pool.image(*other)) == image {
+                forms.push(Operation::Multiply(*factor, *other));
+            }
+        }
+        for (divisor, bit) in &self.divisors {
+            let dividend = image.times(pool.image(*divisor));
+            let other = self.values.get(&dividend.0[0]);
+            let Some(other) = other.filter(|it| is_there(**it) && bit & !divided == 0) else {
+                continue;
+            };
+            if pool.image(*other) == dividend && uses.count(*divisor) > 0 {
+                forms.push(Operation::Divide(*other, *divisor));
+            }
+        }
+        let other = self.multiple(pool, image, &is_there);
+        forms.extend(other.map(|(factor, other)| Operation::Multiply(factor, other)));
+        forms
+    }
+
+    /// A number and what is there, of which a value is the product.
+    fn multiple(
+        &self,
+        pool: &mut Pool,
+        image: Image,
+        is_there: &dyn Fn(Expression) -> bool,
+    ) -> Option<(Expression, Expression)> {
+        let [first, second, _] = image.0;
+        let ratio = field::multiply(second, field::invert(first)?);
+        let others = self.multiples.get(&ratio)?.iter();
+        let other = others.copied().find(|it| is_there(*it))?;
+        let ratio = image.times(pool.image(other).inverted()?);
+        let is_constant = ratio.0.iter().all(|it| *it == ratio.0[0]);
+        let (numerator, denominator) = field::fraction(ratio.0[0], LARGEST)?;
+        let number = numerator as f64 / denominator as f64;
+        is_constant.then(|| (pool.constant(number, ratio), other))
+    }
+}
+
+/// Divisors with a bit each, and those that each node of the pool depends on; none if there are more than bits.
+fn divisors(pool: &Pool, nodes: &[Expression]) -> Option<(BTreeMap<Expression, u128>, Vec<u128>)> {
+    let mut divisors = BTreeMap::new();
+    let mut divided = vec![0; pool.len()];
+    for node in nodes {
+        let mut bits = 0;
+        for part in pool.causes(*node) {
+            bits |= divided[part.node()];
+        }
+        if let Operation::Divide(_, divisor) = pool.operation(*node) {
+            let next = divisors.len();
+            let bit = match divisors.get(&divisor.magnitude()) {
+                Some(bit) => *bit,
+                None => 1u128.checked_shl(next as u32).filter(|bit| *bit != 0)?,
+            };
+            divisors.insert(divisor.magnitude(), bit);
+            bits |= bit;
+        }
+        divided[node.node()] = bits;
+    }
+    Some((divisors, divided))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symbolic::Symbol;
+
+    fn states<const N: usize>(pool: &mut Pool) -> [Expression; N] {
+        std::array::from_fn(|number| pool.symbol(Symbol::State(number)))
+    }
+
+    #[test]
+    fn the_sum_of_the_squares_of_sine_and_cosine_is_seen() {
+        let mut pool = Pool::new();
+        let [x, angle] = states(&mut pool);
+        let (sine, cosine) = (pool.sine(angle), pool.cosine(angle));
+        let along = pool.multiply(sine, x);
+        let along = pool.divide(along, cosine).unwrap();
+        let (first, second) = (pool.multiply(cosine, x), pool.multiply(sine, along));
+        let sum = pool.add(first, second);
+        products(&mut pool, &[], &[along, sum]);
+        assert_eq!(*pool.operation(sum), Operation::Divide(x, cosine));
+    }
+
+    #[test]
+    fn what_is_a_multiple_of_another_is_made_of_it() {
+        let mut pool = Pool::new();
+        let [x, y] = states(&mut pool);
+        let scaled = |pool: &mut Pool, number: i64, a, b| {
+            let number = pool.integer(number);
+            let product = pool.multiply(a, b);
+            pool.multiply(number, product)
+        };
+        // (x + y) (2 x - 3 y), and ten times that term by term.
+        let (two, three) = (pool.integer(2), pool.integer(3));
+        let (sum, twice) = (pool.add(x, y), pool.multiply(two, x));
+        let thrice = pool.multiply(three, y);
+        let difference = pool.subtract(twice, thrice);
+        let short = pool.multiply(sum, difference);
+        let terms = [(20, x, x), (-10, x, y), (-30, y, y)];
+        let terms = terms.map(|(number, a, b)| scaled(&mut pool, number, a, b));
+        let long = pool.sum(&terms);
+        products(&mut pool, &[], &[short, long]);
+        let ten = pool.integer(10);
+        assert_eq!(*pool.operation(long), Operation::Multiply(ten, short));
+    }
+
+    #[test]
+    fn what_others_need_stays() {
+        let mut pool = Pool::new();
+        let [x] = states(&mut pool);
+        let (sine, cosine) = (pool.sine(x), pool.cosine(x));
+        let rest = pool.multiply(cosine, cosine);
+        let rest = pool.subtract(Expression::ONE, rest);
+        let form = pool.operation(rest).clone();
+        products(&mut pool, &[rest], &[rest, sine]);
+        assert_eq!(*pool.operation(rest), form);
+        products(&mut pool, &[], &[rest, sine]);
+        assert_eq!(*pool.operation(rest), Operation::Multiply(sine, sine));
+    }
+}

@@ -6,7 +6,7 @@ use super::control::Rule;
 use super::dense::Polynomial;
 use super::problem::Problem;
 use super::tolerance::Tolerance;
-use crate::{Input, Real, System};
+use crate::{Columns, Input, Real, System};
 
 /// A method that computes one step from the state alone.
 ///
@@ -146,6 +146,22 @@ macro_rules! of_stage {
 }
 pub(super) use of_stage;
 
+/// A loop over stages that is written out, with the number of each as a constant.
+macro_rules! each_stage {
+    ($stage:ident in $stages:expr => $body:block) => {
+        each_stage!($stage, $stages, $body, 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20)
+    };
+    ($stage:ident, $stages:expr, $body:block, $($number:literal)*) => {
+        $(
+            if $stages.contains(&$number) {
+                const $stage: usize = $number;
+                $body
+            }
+        )*
+    };
+}
+pub(super) use each_stage;
+
 /// The row of a table, empty behind the last.
 pub(super) const fn row<const K: usize>(
     rows: &[&'static [f64]; K],
@@ -194,12 +210,40 @@ pub(super) fn combination<T: Real, const N: usize>(
     vectors: &[SVector<T, N>],
 ) -> SVector<T, N> {
     let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
+    if N >= 4 && <T::Columns as Columns<T>>::COUNT > 1 {
+        for block in 0..N.div_ceil(4) {
+            // The last four overlap with those before where states are left over.
+            let first = (4 * block).min(N - 4);
+            let four = four_of(weights, vectors, first);
+            for (place, component) in four.as_columns().iter().enumerate() {
+                sum[first + place] = *component;
+            }
+        }
+        return sum;
+    }
     for (weight, vector) in weights.iter().zip(vectors) {
         if *weight != 0.0 {
             let weight = T::from_f64(*weight);
             sum.zip_apply(vector, |sum, component| {
                 *sum = weight.multiply_add(component, *sum);
             });
+        }
+    }
+    sum
+}
+
+/// Four components of `Σ weight · vector`, from this one on.
+#[inline(always)]
+fn four_of<T: Real, const N: usize>(
+    weights: &[f64],
+    vectors: &[SVector<T, N>],
+    first: usize,
+) -> T::Stages {
+    let mut sum = T::Stages::from_f64(0.0);
+    for (weight, vector) in weights.iter().zip(vectors) {
+        if *weight != 0.0 {
+            let four = T::Stages::from_columns(|place| vector[first + place]);
+            sum = T::Stages::from_f64(*weight).multiply_add(four, sum);
         }
     }
     sum
@@ -218,7 +262,17 @@ pub(super) fn continued<T: Real, const N: usize>(
     }
 }
 
-/// `x + factor · direction`.
+/// `x + factor · direction`, rounded once where [`FUSED`](crate::FUSED) holds.
+#[inline(always)]
+pub(super) fn ahead<T: Real, const N: usize>(
+    x: &SVector<T, N>,
+    factor: T,
+    direction: &SVector<T, N>,
+) -> SVector<T, N> {
+    x.zip_map(direction, |x, direction| factor.multiply_add(direction, x))
+}
+
+/// `x + factor · direction`, rounded twice.
 #[inline]
 pub(super) fn along<T: Real, const N: usize>(
     x: &SVector<T, N>,
@@ -277,4 +331,37 @@ pub(super) fn relative<T: Real, const N: usize>(
         }
         larger(largest, change / (x.magnitude() + y.magnitude()))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a sum has the bits of the sums of its components.
+    fn assert_by_components<const N: usize>() {
+        let weights = [0.3, 0.0, -1.7, 1.0 / 3.0];
+        let vectors: [SVector<f64, N>; 5] = core::array::from_fn(|vector| {
+            SVector::from_fn(|state, _| 1.0 / (1.0 + (7 * vector + 3 * state) as f64))
+        });
+        let sum = combination(&weights, &vectors);
+        for state in 0..N {
+            let component = weights.iter().zip(&vectors);
+            let component = component.fold(0.0, |sum: f64, (weight, vector)| {
+                weight.multiply_add(vector[state], sum)
+            });
+            assert_eq!(sum[state].to_bits(), component.to_bits(), "{state} of {N}");
+        }
+    }
+
+    #[test]
+    fn a_sum_is_that_of_the_components_whatever_their_number() {
+        assert_eq!(combination(&[1.0], &[SVector::<f64, 0>::zeros()]).len(), 0);
+        assert_by_components::<1>();
+        assert_by_components::<3>();
+        assert_by_components::<4>();
+        assert_by_components::<5>();
+        assert_by_components::<7>();
+        assert_by_components::<8>();
+        assert_by_components::<13>();
+    }
 }

@@ -176,6 +176,7 @@ fn check_times<T: Real>(start: T, end: T) -> Result<(), Stopped> {
 }
 
 /// Refuses a state, or a derivative, that is infinite or NaN in some lane.
+#[inline]
 fn check_finite<T, S, const N: usize, const M: usize, const P: usize>(
     _system: &S,
     time: T,
@@ -186,22 +187,37 @@ where
     S: System<T, N, M, P>,
 {
     // Without a branch per state, since nearly always all are finite.
-    let finite = |component: &T| component.magnitude().is_finite();
     if x.iter()
-        .fold(true, |all, component| all & finite(component))
+        .fold(true, |all, component| all & is_finite(component))
     {
         return Ok(());
     }
-    match x.iter().position(|component| !finite(component)) {
-        Some(index) => {
-            let state = S::META.states.get(index).map_or("?", |state| state.name);
-            Err(Stopped::new(time, Cause::NotFinite { state }))
-        }
-        None => Ok(()),
-    }
+    let state = first_not_finite::<T, S, N, M, P>(x);
+    Err(Stopped::new(time, Cause::NotFinite { state }))
+}
+
+/// The name of the first state that is not finite.
+#[cold]
+#[inline(never)]
+fn first_not_finite<T, S, const N: usize, const M: usize, const P: usize>(
+    x: &SVector<T, N>,
+) -> &'static str
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    let index = x.iter().position(|component| !is_finite(component));
+    let state = index.and_then(|index| S::META.states.get(index));
+    state.map_or("?", |state| state.name)
+}
+
+#[inline]
+fn is_finite<T: Real>(component: &T) -> bool {
+    component.magnitude().is_finite()
 }
 
 /// Refuses a vector that is not finite; where an algebraic loop was not solved on the way to it, that is the cause.
+#[inline]
 fn check_result<T, S, const N: usize, const M: usize, const P: usize>(
     system: &S,
     time: T,

@@ -84,6 +84,7 @@ where
     }
 
     /// Refuses a point where the state, the derivative or the model is in trouble.
+    #[inline(always)]
     pub(super) fn check(
         &self,
         t: T,

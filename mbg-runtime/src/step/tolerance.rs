@@ -67,7 +67,7 @@ impl<const N: usize> Measure<N> {
             let quotient = component.magnitude() * factor;
             sum + quotient * quotient
         });
-        sum / N.max(1) as f64
+        sum * (1.0 / N.max(1) as f64)
     }
 
     /// The mean square of several errors in units of the tolerances.

@@ -12,7 +12,7 @@ use nalgebra::SVector;
 
 use super::dense::Polynomial;
 use super::method::{
-    Estimating, Family, Method, Start, Stepper, Trial, along, combination, continued, of_stage, row,
+    Estimating, Family, Method, Start, Stepper, Trial, ahead, combination, each_stage, row,
 };
 use super::problem::Problem;
 use super::seen;
@@ -144,14 +144,22 @@ where
     A: Tabulated<S, F>,
     T: Real,
 {
-    /// The mean slope from the start to a stage.
+    /// The state of a stage but for the slope before it, and how far that one leads.
     #[inline(always)]
-    fn direction<const STAGE: usize>(&self, last: &SVector<T, N>) -> SVector<T, N> {
-        let weights = const { row(&A::TABLEAU.rows, STAGE) };
-        continued(weights, &self.slopes, last)
+    fn base<const STAGE: usize>(&self, start: &Start<T, N>) -> (SVector<T, N>, T) {
+        let length = start.span.length;
+        match const { row(&A::TABLEAU.rows, STAGE) } {
+            [earlier @ .., weight] => (
+                ahead(&start.x, length, &combination(earlier, &self.slopes)),
+                length * T::from_f64(*weight),
+            ),
+            [] => (start.x, T::from_f64(0.0)),
+        }
     }
 
     /// Evaluates stages.
+    ///
+    /// The slope before a stage is added last and by one operation: while it is evaluated, all others are summed.
     #[inline(always)]
     fn evaluate<Y, I, const M: usize, const P: usize>(
         &mut self,
@@ -163,13 +171,13 @@ where
         I: Input<T, M>,
     {
         let mut last = self.slopes[stages.start - 1];
-        for stage in stages {
-            let direction = of_stage!(stage, self.direction(&last));
-            let x = along(&start.x, start.span.length, &direction);
-            let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
+        each_stage!(STAGE in stages => {
+            let (base, factor) = self.base::<STAGE>(start);
+            let x = ahead(&base, factor, &last);
+            let t = start.span.at(T::from_f64(A::TABLEAU.nodes[STAGE]));
             last = problem.slope(t, &x);
-            self.slopes[stage] = last;
-        }
+            self.slopes[STAGE] = last;
+        });
     }
 }
 
@@ -187,6 +195,8 @@ where
         }
     }
 
+    // A call would pass state and slopes through memory, which takes longer than a stage.
+    #[inline(always)]
     fn attempt<Y, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
@@ -211,13 +221,13 @@ where
         let error = match tolerance {
             Some(tolerance) if !fine.is_empty() => {
                 let measure = tolerance.between(&start.x, &change);
-                let norm =
-                    |weights| seen(length) * measure.norm(&combination(weights, &self.slopes));
-                if coarse.is_empty() {
-                    norm(fine)
-                } else {
-                    both(norm(fine), norm(coarse))
-                }
+                let square = |weights| measure.square(&combination(weights, &self.slopes));
+                seen(length)
+                    * if coarse.is_empty() {
+                        Real::sqrt(square(fine))
+                    } else {
+                        both(square(fine), square(coarse))
+                    }
             }
             _ => 0.0,
         };
@@ -253,12 +263,12 @@ where
     }
 }
 
-/// One error from a fine and a coarse estimate, as `dop853` does it.
+/// One error from the squares of a fine and a coarse estimate, as `dop853` does it.
 fn both(fine: f64, coarse: f64) -> f64 {
     if fine == 0.0 {
         return 0.0;
     }
-    fine * fine / Real::sqrt(fine * fine + 0.01 * coarse * coarse)
+    fine / Real::sqrt(fine + 0.01 * coarse)
 }
 
 /// A method of this family.

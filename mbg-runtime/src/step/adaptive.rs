@@ -19,9 +19,10 @@ use crate::{Input, Real, System};
 ///
 /// An error counts as small enough when the root of the mean square of
 /// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
-/// and lengths of the step and of the one before: by proportion and integral, and for methods of Rosenbrock and Radau
-/// an error that has grown goes on growing (both in Gustafsson, *ACM Transactions on Mathematical Software* 20 (1994),
-/// 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
+/// and lengths of the step and of the one before: by proportion and integral, for methods of Rosenbrock by proportion
+/// alone. An error that has grown goes on growing, for explicit methods only where nothing but its state drives the model,
+/// so that no pulse is stepped over (all in Gustafsson, *ACM Transactions on Mathematical Software* 20
+/// (1994), 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
 /// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
 /// numbers the values alone control the step.
 ///
@@ -133,7 +134,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             Some(first) => first,
             None => self.starting_step(problem, (start, end), (&x, &slope), &tolerance),
         };
-        let mut control = Control::new(Scheme::ESTIMATE_ORDER, first);
+        let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
@@ -229,8 +230,7 @@ impl<M: Estimating> Adaptive<'_, M> {
         }
         .min(longest);
         // Over rest a step may be as long as the piece, unless input or model may do something in between.
-        let rests =
-            first * longest <= 1e-5 && problem.input.is_constant_between_jumps() && S::AUTONOMOUS;
+        let rests = first * longest <= 1e-5 && problem.is_left_alone();
         let most = if rests { longest } else { 100.0 * trial };
         let h = T::from_f64(trial);
         let memory = problem.memory;

@@ -6,10 +6,9 @@ use crate::scalar::power;
 /// How the length of the next step follows the errors of this one and of the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
-    /// By proportion and integral.
+    /// By proportion and integral. Where nothing drives the model, an error that has grown goes on growing as fast.
     Proportional,
-    /// The same where the error falls; where it has grown it goes on growing as fast. A step up to a fifth longer is not
-    /// worth the work.
+    /// The same, whatever drives the model. A step up to a fifth longer is not worth the work.
     Steady,
     /// By the error alone where it falls; where it has grown it goes on growing as fast.
     Trend,
@@ -24,23 +23,22 @@ pub(super) struct Control {
     exponent: f64,
     /// Logarithm of the error of the step before.
     before: f64,
-    /// The smallest error that is remembered, to that power.
-    least: f64,
-    /// What the length of the step before was to be divided by, and that length; none at the start.
-    last: Option<(f64, f64)>,
+    /// The length of the step before; zero at the start.
+    last: f64,
+    /// Whether nothing but the state drives the model.
+    left_alone: bool,
     after_rejection: bool,
 }
 
 impl Control {
-    pub(super) fn new(order: u32, length: f64) -> Self {
-        let exponent = 1.0 / f64::from(order);
+    pub(super) fn new(order: u32, length: f64, left_alone: bool) -> Self {
         Self {
             length,
             growth: f64::INFINITY,
-            exponent,
-            least: Real::exp(exponent * LEAST),
+            exponent: 1.0 / f64::from(order),
             before: LEAST,
-            last: None,
+            last: 0.0,
+            left_alone,
             after_rejection: false,
         }
     }
@@ -48,14 +46,20 @@ impl Control {
     #[inline]
     pub(super) fn accept(&mut self, length: f64, error: f64, rule: Rule) {
         // Single precision is enough for a length, and takes half the time.
-        let error = f64::from(Real::ln(error as f32));
-        let power = |error: f64| f64::from(Real::exp((self.exponent * error) as f32));
-        let proportional = |before| power(PROPORTION * error - MEMORY * before);
-        let needed = match rule {
-            Rule::Proportional => proportional(self.before),
-            Rule::Trend => self.by_trend(length, power(error), power(error)),
-            Rule::Steady => self.by_trend(length, power(error), proportional(self.before)),
+        let ln = |number: f64| f64::from(Real::ln(number as f32));
+        let last = core::mem::replace(&mut self.last, length);
+        let error = ln(error);
+        let falling = match rule {
+            Rule::Proportional | Rule::Steady => PROPORTION * error - MEMORY * self.before,
+            Rule::Trend => error,
         };
+        let mut needed = self.exponent * falling;
+        if rule != Rule::Proportional || self.left_alone {
+            // As much more again as from the step before to this one, apart from what its length explains.
+            let growing = 2.0 * error - self.before;
+            needed = needed.max(self.exponent * growing + ln(last / length));
+        }
+        let needed = f64::from(Real::exp(needed as f32));
         let proposal = length * (SAFETY / needed).min(self.growth).clamp(0.2, 10.0);
         self.length = if self.after_rejection {
             proposal.min(length)
@@ -66,18 +70,6 @@ impl Control {
         };
         self.before = error.max(LEAST);
         self.after_rejection = false;
-    }
-
-    /// What the length is to be divided by: `otherwise`, or more where the error has grown and goes on growing as fast.
-    fn by_trend(&mut self, length: f64, needed: f64, otherwise: f64) -> f64 {
-        let (before, last) = self.last.unwrap_or((needed, length));
-        let trend = needed * last / (before * length);
-        self.last = Some((needed.max(self.least), length));
-        if trend > 1.0 {
-            otherwise.max(needed * trend)
-        } else {
-            otherwise
-        }
     }
 
     /// Takes back a step that does not see enough, for one of this length.
@@ -109,9 +101,12 @@ const LEAST: f64 = -9.210_340_371_976_182;
 mod tests {
     use super::*;
 
-    /// The length behind two steps of length 1 with these errors, at order 4.
+    /// The length behind two steps of length 1 with these errors, at order 4, of a model that is driven.
     fn next(rule: Rule, errors: [f64; 2]) -> f64 {
-        let mut control = Control::new(4, 1.0);
+        behind(Control::new(4, 1.0, false), rule, errors)
+    }
+
+    fn behind(mut control: Control, rule: Rule, errors: [f64; 2]) -> f64 {
         for error in errors {
             control.accept(1.0, error, rule);
         }
@@ -146,15 +141,19 @@ mod tests {
     }
 
     #[test]
-    fn steady_steps_heed_an_error_that_grows() {
+    fn steps_heed_an_error_that_grows_unless_something_drives_the_model() {
         let errors = [1e-2, 0.5];
-        assert_eq!(next(Rule::Steady, errors), next(Rule::Trend, errors));
-        assert!(next(Rule::Steady, errors) < 0.7 * next(Rule::Proportional, errors));
+        let trend = next(Rule::Trend, errors);
+        assert!(trend < 0.7 * SAFETY / power(errors[1], 0.25));
+        assert_eq!(next(Rule::Steady, errors), trend);
+        assert!(next(Rule::Proportional, errors) > 1.4 * trend);
+        let alone = Control::new(4, 1.0, true);
+        assert_eq!(behind(alone, Rule::Proportional, errors), trend);
     }
 
     #[test]
     fn no_step_grows_beyond_what_the_method_allows() {
-        let mut control = Control::new(4, 1.0);
+        let mut control = Control::new(4, 1.0, false);
         control.growth = 1.5;
         control.accept(1.0, 1e-6, Rule::Steady);
         assert_eq!(control.length, 1.5);
@@ -162,7 +161,7 @@ mod tests {
 
     #[test]
     fn no_step_grows_behind_a_rejection() {
-        let mut control = Control::new(4, 1.0);
+        let mut control = Control::new(4, 1.0, false);
         control.reject(1.0, f64::NAN);
         assert_eq!(control.length, 0.2);
         control.accept(0.2, 1e-6, Rule::Trend);

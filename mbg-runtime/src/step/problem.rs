@@ -99,6 +99,11 @@ where
         check_result(self.system, t, slope, &self.memory)
     }
 
+    /// Whether nothing but its state drives the model, until the input jumps.
+    pub(super) fn is_left_alone(&self) -> bool {
+        self.input.is_constant_between_jumps() && S::AUTONOMOUS
+    }
+
     /// The state on the closed loops next to `x`.
     pub(super) fn close(&self, t: T, x: SVector<T, N>) -> Result<SVector<T, N>, Stopped> {
         let u = self.input.value(t, self.since);

@@ -426,7 +426,11 @@ mod tests {
             compensated =
                 Rk4::compensated_step(model, 0.0, &compensated, &u, h, &mut lost, &mut ());
         }
-        assert_eq!([plain, compensated], ends);
+        // Runs multiply and add in one rounding where the processor does, single steps in two everywhere.
+        let rounding = if crate::FUSED { f32::EPSILON } else { 0.0 };
+        for (step, end) in [plain, compensated].iter().zip(&ends) {
+            assert!((step - end).amax() <= rounding, "{step} {end}");
+        }
         assert_ne!(plain, compensated);
     }
 

@@ -85,8 +85,8 @@ struct Known {
     multiples: FxHashMap<u64, Vec<Expression>>,
     /// Divisors with a bit each.
     divisors: BTreeMap<Expression, u128>,
-    /// The divisors that each node depends on.
-    divided: Vec<u128>,
+    /// The divisors and unknowns that each node depends on.
+    depends: Vec<u128>,
 }
 
 impl Known {
@@ -96,7 +96,7 @@ impl Known {
         let nodes = pool.nodes().filter(|node| uses.count(*node) > 0);
         let nodes = nodes.filter(|node| pool.rate(*node) == Rate::Varying && !is_zero(node));
         let nodes: Vec<Expression> = nodes.collect();
-        let (divisors, divided) = divisors(pool, &nodes)?;
+        let (divisors, depends) = divisors(pool, &nodes)?;
         let firsts: Vec<u64> = nodes.iter().map(|node| pool.image(*node).0[0]).collect();
         let reciprocals = field::reciprocals(&firsts);
         let mut values = FxHashMap::default();
@@ -118,16 +118,17 @@ impl Known {
             ends,
             multiples,
             divisors,
-            divided,
+            depends,
         })
     }
 
-    /// Other forms of a node, of what is there before it and by nothing that it is not divided by as it is.
+    /// Other forms of a node, of what is there before it. No divisor comes to it that it does not depend on as it is, and
+    /// no unknown either: the equations that give one may need the node.
     fn forms(&self, pool: &mut Pool, uses: &Uses, node: Expression) -> Vec<Operation> {
-        let divided = self.divided[node.node()];
+        let depends = self.depends[node.node()];
         let is_there = |it: Expression| {
-            let is_divided = self.divided[it.node()] & !divided != 0;
-            it.node() < node.node() && uses.count(it) > 0 && !is_divided
+            let is_new = self.depends[it.node()] & !depends != 0;
+            it.node() < node.node() && uses.count(it) > 0 && !is_new
         };
         let mut forms = Vec::new();
         let image = pool.image(node);
@@ -150,7 +151,7 @@ impl Known {
         for (divisor, bit) in &self.divisors {
             let dividend = image.times(pool.image(*divisor));
             let other = self.values.get(&dividend.0[0]);
-            let Some(other) = other.filter(|it| is_there(**it) && bit & !divided == 0) else {
+            let Some(other) = other.filter(|it| is_there(**it) && bit & !depends == 0) else {
                 continue;
             };
             if pool.image(*other) == dividend && uses.count(*divisor) > 0 {
@@ -176,32 +177,41 @@ impl Known {
         let ratio = image.times(pool.image(other).inverted()?);
         let is_constant = ratio.0.iter().all(|it| *it == ratio.0[0]);
         let (numerator, denominator) = field::fraction(ratio.0[0], LARGEST)?;
-        let number = numerator as f64 / denominator as f64;
-        is_constant.then(|| (pool.constant(number, ratio), other))
+        if !is_constant {
+            return None;
+        }
+        let number = pool.constant(numerator as f64 / denominator as f64, ratio);
+        // Something may always have this value and still be no number to the pool.
+        pool.constant_value(number).map(|_| (number, other))
     }
 }
 
-/// Divisors with a bit each, and those that each node of the pool depends on; none if there are more than bits.
+/// Divisors with a bit each, and the bits of what each node of the pool depends on: divisors, and unknowns that equations
+/// give. None if there are more than bits.
 fn divisors(pool: &Pool, nodes: &[Expression]) -> Option<(BTreeMap<Expression, u128>, Vec<u128>)> {
     let mut divisors = BTreeMap::new();
-    let mut divided = vec![0; pool.len()];
+    let mut depends = vec![0; pool.len()];
+    let mut free = (0..u128::BITS).map(|place| 1 << place);
     for node in nodes {
         let mut bits = 0;
         for part in pool.causes(*node) {
-            bits |= divided[part.node()];
+            bits |= depends[part.node()];
         }
-        if let Operation::Divide(_, divisor) = pool.operation(*node) {
-            let next = divisors.len();
-            let bit = match divisors.get(&divisor.magnitude()) {
+        bits |= match *pool.operation(*node) {
+            Operation::Divide(_, divisor) => match divisors.get(&divisor.magnitude()) {
                 Some(bit) => *bit,
-                None => 1u128.checked_shl(next as u32).filter(|bit| *bit != 0)?,
-            };
-            divisors.insert(divisor.magnitude(), bit);
-            bits |= bit;
-        }
-        divided[node.node()] = bits;
+                None => {
+                    let bit = free.next()?;
+                    divisors.insert(divisor.magnitude(), bit);
+                    bit
+                }
+            },
+            Operation::Symbol(symbol) if pool.place(symbol).is_some() => free.next()?,
+            _ => 0,
+        };
+        depends[node.node()] = bits;
     }
-    Some((divisors, divided))
+    Some((divisors, depends))
 }
 
 #[cfg(test)]

@@ -260,6 +260,32 @@ mod tests {
     }
 
     #[test]
+    fn what_always_has_one_value_is_not_taken_for_a_number() {
+        let mut pool = Pool::new();
+        let [x, y] = states(&mut pool);
+        let (sum, difference) = (pool.add(x, y), pool.subtract(x, y));
+        let short = pool.multiply(sum, difference);
+        let seven = pool.integer(7);
+        let sines = [x, y].map(|angle| pool.sine(angle));
+        let long = {
+            // A seventh of the product, by a detour.
+            let terms = [(x, sines[0]), (y, sines[1])].map(|(side, sine)| {
+                let product = pool.multiply(side, sine);
+                let squares = pool.multiply(side, product);
+                let scaled = pool.multiply(seven, sine);
+                pool.divide(squares, scaled).unwrap()
+            });
+            pool.subtract(terms[0], terms[1])
+        };
+        let seven_x = pool.multiply(seven, x);
+        let seventh = pool.divide(x, seven_x).unwrap();
+        assert_eq!(pool.constant_value(seventh), None);
+        let form = pool.operation(long).clone();
+        products(&mut pool, &[], &[short, long, seventh]);
+        assert_eq!(*pool.operation(long), form);
+    }
+
+    #[test]
     fn what_others_need_stays() {
         let mut pool = Pool::new();
         let [x] = states(&mut pool);

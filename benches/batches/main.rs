@@ -9,32 +9,21 @@ use std::time::Instant;
 
 use mbg_runtime::batch::{Block, Instructions};
 use mbg_runtime::lanes::{Lanes, f32x16, f64x4, f64x8};
-use mbg_runtime::{Convertible, ParameterError, Real, System, mbg};
+use mbg_runtime::{Convertible, ParameterError, Real, System};
 use nalgebra::SVector;
 
+#[path = "../../examples/arm/model.rs"]
+#[allow(unreachable_pub)]
+mod arm;
 #[path = "../../examples/ins/models.rs"]
 #[allow(dead_code)]
 mod models;
 #[path = "../../tests/references/noise.rs"]
 mod noise;
 
+use arm::{Arm, ArmParameters};
 use models::{Ins, InsParameters};
 use noise::noise;
-
-mbg! {
-    include "examples/arm/panda.mbg";
-
-    /// The 7-axis arm on its stand.
-    model Arm {
-        causality componentwise;
-        gravity [0.0, 0.0, -9.81];
-        input torque[7]: N*m;
-        1 base[6];
-        Sf ground[6] { flow: 0.0 } -> base;
-        arm: Panda { effort: torque } (base);
-        output hand[3]: m = arm.panda_link7_position;
-    }
-}
 
 /// States of a batch.
 const STATES: usize = 4096;
@@ -195,12 +184,12 @@ fn navigation() -> Result<Vec<Contestant>, ParameterError> {
     Ok(contestants!(Ins, InsParameters, scales))
 }
 
-fn arm() -> Result<Vec<Contestant>, ParameterError> {
+fn seven_axes() -> Result<Vec<Contestant>, ParameterError> {
     Ok(contestants!(Arm, ArmParameters, [1.0; 14]))
 }
 
 fn main() -> Result<(), ParameterError> {
     compare("INS", navigation()?);
-    compare("7-axis arm", arm()?);
+    compare("7-axis arm", seven_axes()?);
     Ok(())
 }

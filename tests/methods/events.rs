@@ -1,8 +1,8 @@
 //! Events, and jumps of inputs.
 
 use mbg_runtime::{
-    Adaptive, Direction, Dop853, Estimating, Fixed, Gauss6, Integrator, Pirk8, Pulse, Radau5, Rk4,
-    Rodas4, Rodas5P, Ros2, Tsit5, Verner9,
+    Adaptive, Direction, Dop853, Estimating, Fixed, Gauss6, Integrator, Pirk8, Pirk16, Pulse,
+    Radau5, Rk4, Rodas4, Rodas5P, Ros2, Tsit5, Verner9,
 };
 use nalgebra::SVector;
 
@@ -117,6 +117,7 @@ fn jumps_are_met_by_every_method() {
     push(Dop853);
     push(Verner9);
     push(Pirk8);
+    push(Pirk16);
     push(Ros2);
     push(Rodas4);
     push(Rodas5P);

@@ -1,6 +1,8 @@
 //! Limits of stability of explicit methods, at steps of one length.
 
-use mbg_runtime::{Dop853, Fixed, Integrator, Method, Pirk8, Real, Rk4, Tsit5, Variable, Verner9};
+use mbg_runtime::{
+    Dop853, Fixed, Integrator, Method, Pirk8, Pirk16, Real, Rk4, Tsit5, Variable, Verner9,
+};
 use nalgebra::SVector;
 
 use crate::problems::{Law, Written, state};
@@ -55,4 +57,5 @@ fn modes_grow_beyond_the_limits_of_stability_alone() {
     assert_limits(Dop853, -6.39, 5.96);
     assert_limits(Verner9, -4.47, 2.75);
     assert_limits(Pirk8, -1.69, 1.70);
+    assert_limits(Pirk16, -3.50, 3.47);
 }

@@ -6,21 +6,24 @@ use super::method::Span;
 use super::{less, seen};
 use crate::Real;
 
+/// The highest degree of a polynomial over a step.
+pub(super) const DEGREE: usize = 9;
+
 /// A polynomial over a step, in the form of Hairer's codes: with `s` from 0 to 1 and `r = 1 - s`,
-/// `x + s (c₀ + r (c₁ + s (c₂ + r (c₃ + s (c₄ + r (c₅ + s (c₆ + r c₇)))))))`.
+/// `x + s (c₀ + r (c₁ + s (c₂ + r (c₃ + s (c₄ + r (c₅ + s (c₆ + r (c₇ + s c₈))))))))`.
 ///
 /// It gives the states at both ends exactly, whatever its degree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polynomial<T, const N: usize> {
     pub(super) start: SVector<T, N>,
-    pub(super) coefficients: [SVector<T, N>; 8],
+    pub(super) coefficients: [SVector<T, N>; DEGREE],
 }
 
 impl<T: Real, const N: usize> Polynomial<T, N> {
     /// The straight line between two states.
     pub(super) fn line(start: &SVector<T, N>, end: &SVector<T, N>) -> Self {
         let zero = SVector::from_element(T::from_f64(0.0));
-        let mut coefficients = [zero; 8];
+        let mut coefficients = [zero; DEGREE];
         coefficients[0] = end.zip_map(start, |end, start| end - start);
         Self {
             start: *start,
@@ -69,6 +72,50 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
         }
         (self.start + sum, slope)
     }
+}
+
+/// A polynomial without a constant part, from powers of `s` into the form of [`Polynomial`]: the remainders of divisions by
+/// `s` and by `1 - s` in turns.
+pub(super) const fn in_turns(powers: [f64; DEGREE]) -> [f64; DEGREE] {
+    // The powers begin with the first: one division by `s` is done.
+    let mut rest = powers;
+    let mut coefficients = [0.0; DEGREE];
+    let mut place = 0;
+    while place < DEGREE {
+        let left = DEGREE - place;
+        coefficients[place] = if place % 2 == 0 {
+            remainder_at_end(&mut rest, left)
+        } else {
+            remainder_at_start(&mut rest, left)
+        };
+        place += 1;
+    }
+    coefficients
+}
+
+/// Divides a polynomial of so many coefficients by `1 - s`; gives the remainder, its value at 1.
+const fn remainder_at_end(polynomial: &mut [f64; DEGREE], count: usize) -> f64 {
+    let mut value = 0.0;
+    let mut power = count;
+    while power > 0 {
+        power -= 1;
+        // The quotient's coefficient of this power is minus the sum of those above it.
+        let above = value;
+        value += polynomial[power];
+        polynomial[power] = -above;
+    }
+    value
+}
+
+/// Divides a polynomial of so many coefficients by `s`; gives the remainder, its value at 0.
+const fn remainder_at_start(polynomial: &mut [f64; DEGREE], count: usize) -> f64 {
+    let value = polynomial[0];
+    let mut power = 1;
+    while power < count {
+        polynomial[power - 1] = polynomial[power];
+        power += 1;
+    }
+    value
 }
 
 /// A step with its dense output.

@@ -41,7 +41,7 @@ pub use gauss::{Gauss6, ImplicitMidpoint};
 pub use integrator::{Arrival, Integrator};
 pub use linear::{Complex, Element};
 pub use method::{Estimating, Method};
-pub use parallel::Pirk8;
+pub use parallel::{Pirk8, Pirk16};
 pub use radau::{Radau5, Radau9};
 pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
 

@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use crate::step::method::Estimating;
     use crate::step::models::Oscillator;
-    use crate::{Adaptive, Dop853, Integrator, Pirk8, Smooth, Tsit5};
+    use crate::{Adaptive, Dop853, Integrator, Pirk8, Pirk16, Smooth, Tsit5};
 
     /// Three pushes on an oscillator at rest, this long and each of momentum 1; nobody tells of their jumps.
     fn pushed(method: impl Estimating, length: f64) -> f64 {
@@ -124,6 +124,9 @@ mod tests {
                 pushed(Pirk8, length),
             ]
         });
+        // Its steps become so long that shorter ones are beyond what the watch promises.
+        let of_longer_steps = pushed(Pirk16, 0.1);
+        assert!(of_longer_steps < 1e-4, "{of_longer_steps}");
         // Stepped over, they would be missing altogether: an error of order one.
         assert!(
             errors.iter().flatten().all(|error| *error < 1e-4),

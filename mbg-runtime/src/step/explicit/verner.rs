@@ -3,11 +3,11 @@
 use numeris::ode::{RKAdaptive, RKV98};
 
 use super::Tableau;
+use crate::step::dense::{DEGREE, in_turns};
 
 const STAGES: usize = 16;
 /// With the slope at the end, and stages for the dense output.
 const ALL: usize = 21;
-const DEGREE: usize = 8;
 
 const ROWS: &[[f64; ALL]; ALL] = &RKV98::A;
 const ERROR: &[f64; ALL] = &RKV98::BERR;
@@ -32,51 +32,25 @@ const fn rows() -> [&'static [f64]; ALL] {
     rows
 }
 
-/// The polynomials over a step by which the stages count, from powers into the form of
-/// [`Polynomial`](super::Polynomial): the remainders of divisions by `s` and by `1 - s` in turns.
+/// The polynomials over a step by which the stages count, in the form of [`Polynomial`](super::Polynomial).
 const fn dense() -> [[f64; ALL]; DEGREE] {
     let powers = RKV98::BI;
     let mut dense = [[0.0; ALL]; DEGREE];
     let mut stage = 0;
     while stage < ALL {
-        // The powers begin with the first: one division by `s` is done.
-        let mut rest = powers[stage];
+        let mut of_stage = [0.0; DEGREE];
+        let mut power = 0;
+        while power < powers[stage].len() {
+            of_stage[power] = powers[stage][power];
+            power += 1;
+        }
+        let coefficients = in_turns(of_stage);
         let mut place = 0;
         while place < DEGREE {
-            let left = DEGREE - place;
-            dense[place][stage] = if place % 2 == 0 {
-                remainder_at_end(&mut rest, left)
-            } else {
-                remainder_at_start(&mut rest, left)
-            };
+            dense[place][stage] = coefficients[place];
             place += 1;
         }
         stage += 1;
     }
     dense
-}
-
-/// Divides a polynomial of so many coefficients by `1 - s`; gives the remainder, its value at 1.
-const fn remainder_at_end(polynomial: &mut [f64; DEGREE], count: usize) -> f64 {
-    let mut value = 0.0;
-    let mut power = count;
-    while power > 0 {
-        power -= 1;
-        // The quotient's coefficient of this power is minus the sum of those above it.
-        let above = value;
-        value += polynomial[power];
-        polynomial[power] = -above;
-    }
-    value
-}
-
-/// Divides a polynomial of so many coefficients by `s`; gives the remainder, its value at 0.
-const fn remainder_at_start(polynomial: &mut [f64; DEGREE], count: usize) -> f64 {
-    let value = polynomial[0];
-    let mut power = 1;
-    while power < count {
-        polynomial[power - 1] = polynomial[power];
-        power += 1;
-    }
-    value
 }

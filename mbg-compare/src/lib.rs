@@ -27,7 +27,7 @@ mod picture;
 mod reference;
 mod table;
 
-use mbg_runtime::{Dop853, Input, Pirk8, Pirk16, Radau5, Radau9, Rodas4, Rodas5P, System, Tsit5};
+use mbg_runtime::{Dop853, Input, Pirk8, Radau5, Radau9, Rodas4, Rodas5P, System, Tsit5};
 use nalgebra::SVector;
 
 pub use measure::{Comparison, Measured, Point};
@@ -139,7 +139,6 @@ where
         comparison.over_tolerances(Tsit5, &TOLERANCES);
         comparison.over_tolerances(Dop853, &TOLERANCES);
         comparison.over_tolerances(Pirk8, &TOLERANCES);
-        comparison.over_tolerances(Pirk16, &TOLERANCES);
     }
     Ok(comparison)
 }

@@ -28,8 +28,8 @@ use double_pendulum::DoublePendulum;
 use elimination::{Dense, RingModulator, RingModulatorParameters, ring_nominal};
 use mbg_compare::{Comparison, Measured, Problem, TOLERANCES, compare};
 use mbg_runtime::{
-    Adaptive, Estimating, Input, Integrator, Radau5, Radau9, Rodas4, Rodas5P, Statistics, System,
-    Verner9, mbg,
+    Adaptive, Estimating, Input, Integrator, Pirk16, Radau5, Radau9, Rodas4, Rodas5P, Statistics,
+    System, Verner9, mbg,
 };
 use models::{Ins, InsParameters, gust};
 use nalgebra::SVector;
@@ -78,6 +78,7 @@ impl Run {
                 absolute(&mut comparison, Radau9, small);
             }
         } else {
+            comparison.over_tolerances(Pirk16, &TOLERANCES);
             comparison.over_tolerances(Verner9, &TOLERANCES);
         }
         let ours = comparison.points().len();

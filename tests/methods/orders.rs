@@ -224,7 +224,7 @@ fn orders_of_methods_for_smooth_problems_on_the_rigid_body() {
     assert_order("body", &task, Gauss6 { sweeps: Some(3) }, [32, 64, 128]);
 }
 
-/// What the sweeps leave falls with the power 9, or 18. What the method misses, of order 8, or 16, is so small that it shows alone where
+/// What the sweeps leave falls with the power 9. What the method misses, of order 8, is so small that it shows alone where
 /// an input is much faster than the system.
 #[test]
 fn the_order_of_sweeps_hides_that_of_the_method_but_for_fast_inputs() {

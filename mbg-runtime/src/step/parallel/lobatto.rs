@@ -105,7 +105,7 @@ const INTEGRALS: [[f64; DEGREE]; DEGREE] = {
     let mut integrals = [[0.0; DEGREE]; DEGREE];
     let mut degree = 1;
     while degree < DEGREE {
-        // Of the next polynomial but one and of this the difference is the integral, and all of its coefficients are integers.
+        // The integral is a multiple of what the next polynomial is more than the one before. All coefficients are integers.
         let (next, before) = (powers(degree + 1), powers(degree - 1));
         let mut difference = [0.0; DEGREE];
         let mut place = 0;

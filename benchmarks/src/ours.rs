@@ -42,7 +42,7 @@ fn derivative<T: Real, S: System<T, N, M, P>, const N: usize, const M: usize, co
     (x, u): &Scene<T, N, M>,
     result: &mut SVector<T, N>,
 ) {
-    *result = model.derivative(T::from_f64(0.0), x, u, &mut S::Memory::default());
+    model.derivative_into(T::from_f64(0.0), x, u, &mut S::Memory::default(), result);
 }
 
 #[inline(never)]

@@ -56,10 +56,9 @@ macro_rules! ordered {
         #[cfg_attr(not(target_feature = "avx"), inline)]
         fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
             #[cfg(all(feature = "lanes", target_feature = "avx"))]
-            let moderate = crate::sine::moderate_in::<crate::lanes::$lanes, _, K>;
+            return crate::sine::sines_cosines_in::<crate::lanes::$lanes, _, K>(angles);
             #[cfg(not(all(feature = "lanes", target_feature = "avx")))]
-            let moderate = crate::sine::moderate;
-            crate::sine::sines_cosines(angles, moderate)
+            crate::sine::sines_cosines(angles, crate::sine::moderate)
         }
 
         #[inline]

@@ -63,18 +63,21 @@ fn some_far<T: Angle, const K: usize>(angles: [T; K]) -> ([T; K], [T; K]) {
     (both.map(|it| it.0), both.map(|it| it.1))
 }
 
-/// As many angles at once as `L` has lanes. Left to itself, a compiler finds some vectors in [`moderate`] of single numbers,
-/// and many exchanges between them.
+/// As many angles at once as `L` has lanes, with one branch for all of them. Left to itself, a compiler finds some vectors in
+/// [`moderate`] of single numbers, and many exchanges between them.
 #[cfg(all(feature = "lanes", target_feature = "avx"))]
 #[inline(always)]
-pub(crate) fn moderate_in<L, T, const K: usize>(angles: [T; K]) -> ([T; K], [T; K])
+pub(crate) fn sines_cosines_in<L, T, const K: usize>(angles: [T; K]) -> ([T; K], [T; K])
 where
     L: Angle + crate::lanes::Lanes<Lane = T>,
-    T: Real,
+    T: Angle,
 {
     let (mut sines, mut cosines) = (angles, angles);
     for first in (0..K).step_by(L::COUNT) {
         let together = L::from_lanes(|lane| angles[(first + lane).min(K - 1)]);
+        if !together.is_moderate() {
+            return some_far(angles);
+        }
         let ([sine], [cosine]) = moderate([together]);
         for (lane, place) in (first..K.min(first + L::COUNT)).enumerate() {
             (sines[place], cosines[place]) = (sine.lane(lane), cosine.lane(lane));

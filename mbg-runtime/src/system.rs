@@ -46,17 +46,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SVector<T, N>;
 
-    /// The derivative, inlined wherever it is called. In batches it takes the instructions of its caller.
-    #[doc(hidden)]
+    /// The same written to where it is wanted: a generated model writes each entry as soon as it is known, so that those of a
+    /// large one wait in no register. It is inlined wherever it is called, and in batches takes the instructions of its
+    /// caller.
     #[inline(always)]
-    fn derivative_inlined(
+    fn derivative_into(
         &self,
         t: T,
         x: &SVector<T, N>,
         u: &SVector<T, M>,
         memory: &mut Self::Memory,
-    ) -> SVector<T, N> {
-        self.derivative(t, x, u, memory)
+        derivative: &mut SVector<T, N>,
+    ) {
+        *derivative = self.derivative(t, x, u, memory);
     }
 
     /// [`derivative`](Self::derivative) at four stages of a step, each with its time, state and input.

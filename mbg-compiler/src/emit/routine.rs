@@ -8,7 +8,7 @@ use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
 use crate::compile::Compiled;
-use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step};
+use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step, angles};
 use crate::symbolic::{Kind, Symbol};
 
 /// Where a routine finds what it reads.
@@ -53,13 +53,14 @@ pub(super) fn written_lines(
         let (name, place) = (&writer.names[*value], Literal::usize_suffixed(*place));
         writer.written.insert(*value, quote!(kept[#place] = #name;));
     }
-    let mut known = TokenStream::new();
+    let (mut known, mut solved) = (TokenStream::new(), TokenStream::new());
     for (result, place) in routine.results.iter().zip(places) {
         let Some(place) = place else { continue };
         let value = writer.operand(*result);
         let line = quote!(#place = #value;);
         match result.source {
             Source::Value(value) => writer.written.entry(value).or_default().extend(line),
+            Source::Solved(_) => solved.extend(line),
             _ => known.extend(line),
         }
     }
@@ -70,7 +71,7 @@ pub(super) fn written_lines(
     let lines = writer.lines(&routine.steps, 0, &behind);
     let kept = Literal::usize_suffixed(writer.kept.len());
     let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));
-    quote!(#kept #lines #known)
+    quote!(#kept #known #lines #solved)
 }
 
 /// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
@@ -482,21 +483,6 @@ impl ToTokens for Term<'_> {
             (true, true) => tokens.extend(quote!(whole((-#scalar)))),
         }
     }
-}
-
-/// Most angles side by side: four `f64` fill a register of AVX, and more at once would not be kept in registers.
-const ANGLES: usize = 4;
-
-/// The angles of the steps at the front that take sine and cosine of what was there before them.
-fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
-    let angle = |step: &Step| match step {
-        Step::SineCosine(angle) => match angle.source {
-            Source::Value(earlier) if earlier >= value => None,
-            _ => Some(*angle),
-        },
-        _ => None,
-    };
-    steps.iter().map_while(angle).take(ANGLES).collect()
 }
 
 /// What holds the unknowns of an iteration.

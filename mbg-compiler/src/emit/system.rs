@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::close;
-use super::routine::{Setting, lines};
+use super::routine::{Setting, Writer, lines, written_lines};
 use super::{jacobians, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
@@ -104,10 +104,13 @@ fn system(compiled: &Compiled) -> TokenStream {
     let meta = meta::constant(compiled);
     let sparsity = sparsity::items(&compiled.pattern);
     let body = |routine: usize, build: Build| body(compiled, routine, build);
-    let initial = body(Routines::INITIAL, &vector);
-    let derivative = body(Routines::DERIVATIVE, &vector);
-    let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
-    let output = body(Routines::OUTPUT, &vector);
+    let derivative = entries(compiled, Routines::DERIVATIVE, &quote!(derivative));
+    let [initial, derivative_time, output] = [
+        Routines::INITIAL,
+        Routines::DERIVATIVE_TIME,
+        Routines::OUTPUT,
+    ]
+    .map(|routine| vector(compiled, routine));
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -138,10 +141,15 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn initial_state(&self) -> ::mbg_runtime::__private::SVector<T, #n> { #initial }
             #[inline]
             fn derivative(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
-                ::mbg_runtime::System::derivative_inlined(self, t, x, u, memory)
+                let mut derivative = ::mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0));
+                ::mbg_runtime::System::derivative_into(self, t, x, u, memory, &mut derivative);
+                derivative
             }
             #[inline(always)]
-            fn derivative_inlined(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
+            fn derivative_into(
+                &self, #arguments, memory: &mut #memory,
+                derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
+            ) {
                 #derivative
             }
             #derivatives
@@ -233,10 +241,24 @@ fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
     quote!(#steps #result)
 }
 
-/// A vector of results.
-fn vector(results: &[TokenStream]) -> TokenStream {
-    let size = Literal::usize_suffixed(results.len());
-    quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
+/// A body that writes each entry of a vector of this name.
+fn entries(compiled: &Compiled, routine: usize, vector: &TokenStream) -> TokenStream {
+    let routine = &compiled.program.routines[routine];
+    let rows = (0..routine.results.len()).map(Literal::usize_suffixed);
+    let places: Vec<_> = rows.map(|row| Some(quote!(#vector[#row]))).collect();
+    written_lines(&Writer::of(compiled, routine), routine, &places)
+}
+
+/// The body of a method that returns a vector.
+fn vector(compiled: &Compiled, routine: usize) -> TokenStream {
+    let name = quote!(vector);
+    let lines = entries(compiled, routine, &name);
+    let size = Literal::usize_suffixed(compiled.program.routines[routine].results.len());
+    quote! {
+        let mut #name = ::mbg_runtime::__private::SVector::<T, #size>::from_element(T::from_f64(0.0));
+        #lines
+        #name
+    }
 }
 
 /// The type of what is remembered: nothing, or the unknowns of all iterations.

@@ -3,6 +3,7 @@
 //! Input: expressions for everything a model is asked. Output: a [`Program`]: one list of steps per function, each
 //! with only what it needs, and one list that is worked out once, when a model is built. No error is reported here.
 
+mod arrange;
 mod contract;
 mod dump;
 mod interpret;
@@ -10,6 +11,7 @@ mod iterate;
 mod latency;
 mod reorder;
 mod schedule;
+mod signs;
 
 use std::collections::BTreeSet;
 
@@ -159,6 +161,23 @@ impl Step {
             _ => 0,
         }
     }
+}
+
+/// Most angles side by side: four `f64` fill a register of AVX, and more at once would not be kept in registers.
+const ANGLES: usize = 4;
+
+/// The angles of the first steps, whose sines and cosines are evaluated side by side: those of what was there before. The
+/// steps' values begin with number `value`.
+#[must_use]
+pub fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
+    let angle = |step: &Step| match step {
+        Step::SineCosine(angle) => match angle.source {
+            Source::Value(earlier) if earlier >= value => None,
+            _ => Some(*angle),
+        },
+        _ => None,
+    };
+    steps.iter().map_while(angle).take(ANGLES).collect()
 }
 
 /// What a function is asked for.

@@ -135,10 +135,8 @@ impl Order {
             return None;
         }
         terms.sort_by_key(|term| self.ready_as(*term, is_sum));
-        if is_sum && let Some(positive) = terms.iter().position(|term| !term.negative) {
-            // A sum of two begins with a term that carries no sign.
-            let positive = terms.remove(positive);
-            terms.insert(0, positive);
+        if is_sum && terms.iter().all(|term| term.negative) {
+            return None;
         }
         let (ready, before) = (self.ready_of(is_sum, parts), self.uses.len());
         let chain = self.chain(value, is_sum, &terms);
@@ -160,7 +158,7 @@ impl Order {
         let mut chain = Vec::new();
         let mut so_far = terms[0];
         for (place, term) in terms.iter().enumerate().skip(1) {
-            let parts = [so_far, *term];
+            let (parts, negative) = with_signs(is_sum, [so_far, *term]);
             let number = if place + 1 == terms.len() {
                 value
             } else {
@@ -168,7 +166,10 @@ impl Order {
             };
             self.enter(number, is_sum, parts);
             chain.push((number, step(is_sum, parts)));
-            so_far = Operand::plain(Source::Value(number));
+            so_far = Operand {
+                source: Source::Value(number),
+                negative,
+            };
         }
         chain
     }
@@ -240,6 +241,15 @@ impl Order {
 
     fn latest(&self, operands: &[Operand]) -> u32 {
         latency::latest(&self.ready, operands)
+    }
+}
+
+/// The parts as a sum is written, beginning with one that carries no sign, and whether the sum carries one.
+fn with_signs(is_sum: bool, [a, b]: [Operand; 2]) -> ([Operand; 2], bool) {
+    match (is_sum && a.negative, b.negative) {
+        (true, true) => ([a, b].map(|it| Operand::plain(it.source)), true),
+        (true, false) => ([b, a], false),
+        (false, _) => ([a, b], false),
     }
 }
 
@@ -395,6 +405,22 @@ mod tests {
         let product = Step::Multiply(state(1), state(2));
         let whole = Step::Multiply(value(1), value(0));
         assert_eq!(found, [late, product, whole, Step::Cosine(value(2))]);
+    }
+
+    #[test]
+    fn what_is_late_is_added_last_though_all_else_is_subtracted() {
+        let late = Step::Sine(state(0));
+        let negative = |operand: Operand| Operand {
+            negative: true,
+            ..operand
+        };
+        let found = ordered(&[
+            late.clone(),
+            Step::Add(value(0), negative(state(1))),
+            Step::Add(value(1), negative(state(2))),
+        ]);
+        let sum = Step::Add(state(1), state(2));
+        assert_eq!(found, [late, sum, Step::Add(value(0), negative(value(1)))]);
     }
 
     #[test]

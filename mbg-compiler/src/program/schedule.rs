@@ -2,7 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::arrange::arrange;
 use super::contract::contract;
+use super::reorder::reorder;
+use super::signs::signs;
 use super::{Columns, Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step};
 use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
@@ -207,7 +210,7 @@ impl Context<'_> {
         if folding {
             return contract(&draft.routine);
         }
-        contract(&super::reorder::reorder(&draft.routine))
+        arrange(&signs(&contract(&reorder(&draft.routine))))
     }
 
     /// Whether each node changes along a direction; operands come before what uses them.

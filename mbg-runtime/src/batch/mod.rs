@@ -171,7 +171,7 @@ impl Instructions {
         for (number, (x, rates)) in states.iter().zip(rates).enumerate() {
             let zero = SVector::from_element(L::from_f64(0.0));
             let u = inputs.get(number).or(inputs.last()).unwrap_or(&zero);
-            *rates = model.derivative_inlined(t, x, u, &mut ());
+            model.derivative_into(t, x, u, &mut (), rates);
         }
     }
 }
@@ -223,7 +223,8 @@ fn chosen<L, S, X, const N: usize, const M: usize, const P: usize>(
                             Some(input) => L::Part::<X>::part(&input[row], part),
                             None => L::Part::<X>::from_f64(0.0),
                         });
-                        let found = model.derivative_inlined(t, &x, &u, &mut ());
+                        let mut found = SVector::from_element(L::Part::<X>::from_f64(0.0));
+                        model.derivative_into(t, &x, &u, &mut (), &mut found);
                         for (rate, found) in rates.iter_mut().zip(&found) {
                             found.put(rate, part);
                         }

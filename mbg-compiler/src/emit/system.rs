@@ -104,13 +104,10 @@ fn system(compiled: &Compiled) -> TokenStream {
     let meta = meta::constant(compiled);
     let sparsity = sparsity::items(&compiled.pattern);
     let body = |routine: usize, build: Build| body(compiled, routine, build);
-    let derivative = entries(compiled, Routines::DERIVATIVE, &quote!(derivative));
-    let [initial, derivative_time, output] = [
-        Routines::INITIAL,
-        Routines::DERIVATIVE_TIME,
-        Routines::OUTPUT,
-    ]
-    .map(|routine| vector(compiled, routine));
+    let initial = body(Routines::INITIAL, &vector);
+    let derivative = derivative(compiled);
+    let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
+    let output = body(Routines::OUTPUT, &vector);
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
@@ -241,24 +238,18 @@ fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
     quote!(#steps #result)
 }
 
-/// A body that writes each entry of a vector of this name.
-fn entries(compiled: &Compiled, routine: usize, vector: &TokenStream) -> TokenStream {
-    let routine = &compiled.program.routines[routine];
-    let rows = (0..routine.results.len()).map(Literal::usize_suffixed);
-    let places: Vec<_> = rows.map(|row| Some(quote!(#vector[#row]))).collect();
-    written_lines(&Writer::of(compiled, routine), routine, &places)
+/// A vector of results.
+fn vector(results: &[TokenStream]) -> TokenStream {
+    let size = Literal::usize_suffixed(results.len());
+    quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
 }
 
-/// The body of a method that returns a vector.
-fn vector(compiled: &Compiled, routine: usize) -> TokenStream {
-    let name = quote!(vector);
-    let lines = entries(compiled, routine, &name);
-    let size = Literal::usize_suffixed(compiled.program.routines[routine].results.len());
-    quote! {
-        let mut #name = ::mbg_runtime::__private::SVector::<T, #size>::from_element(T::from_f64(0.0));
-        #lines
-        #name
-    }
+/// The lines that write each entry of the derivative.
+fn derivative(compiled: &Compiled) -> TokenStream {
+    let routine = &compiled.program.routines[Routines::DERIVATIVE];
+    let rows = (0..routine.results.len()).map(Literal::usize_suffixed);
+    let places: Vec<_> = rows.map(|row| Some(quote!(derivative[#row]))).collect();
+    written_lines(&Writer::of(compiled, routine), routine, &places)
 }
 
 /// The type of what is remembered: nothing, or the unknowns of all iterations.

@@ -212,3 +212,77 @@ fn product(a: Operand, b: Operand) -> (Operand, Operand) {
     }
     (a, b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symbolic::Symbol;
+
+    fn value(number: usize) -> Operand {
+        Operand::plain(Source::Value(number))
+    }
+
+    fn state(number: usize) -> Operand {
+        Operand::plain(Source::Symbol(Symbol::State(number)))
+    }
+
+    fn negative(operand: Operand) -> Operand {
+        Operand {
+            negative: true,
+            ..operand
+        }
+    }
+
+    fn routine(steps: &[Step], results: &[Operand]) -> Routine {
+        let values: usize = steps.iter().map(Step::results).sum();
+        Routine {
+            steps: steps.to_vec(),
+            names: vec![String::new(); values],
+            results: results.to_vec(),
+            columns: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_multiply_add_takes_the_sign_of_what_is_returned() {
+        let before = routine(
+            &[
+                Step::MultiplyAdd(state(0), state(1), negative(state(2))),
+                Step::Add(value(0), state(3)),
+            ],
+            &[negative(value(0)), value(1)],
+        );
+        let after = signs(&before);
+        let first = Step::MultiplyAdd(negative(state(0)), state(1), state(2));
+        assert_eq!(
+            after.steps,
+            [first, Step::Add(state(3), negative(value(0)))]
+        );
+        assert_eq!(after.results, [value(0), value(1)]);
+    }
+
+    #[test]
+    fn a_number_takes_the_sign_of_its_product() {
+        let number = Operand::plain(Source::Constant(0.5));
+        let product = routine(&[Step::Multiply(state(0), number)], &[negative(value(0))]);
+        let after = signs(&product);
+        assert_eq!(after.steps, [Step::Multiply(state(0), negative(number))]);
+        assert_eq!(after.results, [value(0)]);
+    }
+
+    #[test]
+    fn what_would_only_move_a_sign_stays() {
+        let product = routine(&[Step::Multiply(state(0), state(1))], &[negative(value(0))]);
+        assert_eq!(signs(&product), product);
+    }
+
+    #[test]
+    fn what_has_a_name_stays() {
+        let mut difference = routine(
+            &[Step::Add(state(0), negative(state(1)))],
+            &[negative(value(0))],
+        );
+        difference.names[0] = "spring.e".to_owned();
+        assert_eq!(signs(&difference), difference);
+    }
+}

@@ -5,7 +5,11 @@
 //! sum, and factors are multiplied likewise. Two of them may come to the same partial result, which then is made once; else
 //! the number of operations stays.
 
+mod distribute;
+
 use rustc_hash::FxHashMap;
+
+use self::distribute::{Factors, factors};
 
 use super::{Columns, Operand, Routine, Source, Step, latency};
 use crate::symbolic::Symbol;
@@ -19,6 +23,7 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
         parts: vec![None; values],
         first: 0,
         gone: vec![false; values],
+        products: FxHashMap::default(),
     };
     order.count(routine);
     let steps = order.list(&routine.steps, 0);
@@ -73,6 +78,8 @@ struct Order {
     first: usize,
     /// Partial results in whose place others came.
     gone: Vec<bool>,
+    /// The products that there are by their factors, and whether they carry a sign.
+    products: FxHashMap<Factors, (usize, bool)>,
 }
 
 impl Order {
@@ -112,12 +119,19 @@ impl Order {
         is_sum: bool,
         parts: [Operand; 2],
     ) {
-        if let Some(chain) = self.improved(value, is_sum, parts) {
+        let chain = self.improved(value, is_sum, parts);
+        let chain = chain.or_else(|| (!is_sum).then(|| self.distributed(value, parts))?);
+        if let Some(chain) = chain {
             list.extend(chain);
             return;
         }
         self.enter(value, is_sum, parts);
         list.push((value, step(is_sum, parts)));
+        let [a, b] = parts;
+        if !is_sum && let Some(factors) = factors(a, b) {
+            let product = (value, a.negative ^ b.negative);
+            self.products.entry(factors).or_insert(product);
+        }
     }
 
     /// The same sum or product with its terms in the order in which they are ready, if it is ready earlier then.
@@ -261,6 +275,19 @@ fn step(is_sum: bool, [a, b]: [Operand; 2]) -> Step {
     }
 }
 
+/// A source to be looked up, if it can be.
+fn key(source: Source) -> Option<(u8, u64)> {
+    Some(match source {
+        Source::Constant(value) => (0, value.to_bits()),
+        Source::Folded(number) => (1, number as u64),
+        Source::Value(number) => (2, number as u64),
+        Source::Symbol(Symbol::State(number)) => (3, number as u64),
+        Source::Symbol(Symbol::Input(number)) => (4, number as u64),
+        Source::Symbol(Symbol::Parameter(number)) => (5, number as u64),
+        Source::Symbol(_) | Source::Solved(_) => return None,
+    })
+}
+
 /// What a sum or product is made of, to be looked up: whether it is a sum, and its parts in any order.
 type Made = (bool, [(u8, u64, bool); 2]);
 
@@ -305,15 +332,7 @@ impl Numbers {
     /// What a sum or product is made of, if that can be looked up.
     fn made_of(&self, step: &Step) -> Option<Made> {
         let part = |operand: &Operand| {
-            let (kind, number) = match self.operand(*operand).source {
-                Source::Constant(value) => (0, value.to_bits()),
-                Source::Folded(number) => (1, number as u64),
-                Source::Value(number) => (2, number as u64),
-                Source::Symbol(Symbol::State(number)) => (3, number as u64),
-                Source::Symbol(Symbol::Input(number)) => (4, number as u64),
-                Source::Symbol(Symbol::Parameter(number)) => (5, number as u64),
-                Source::Symbol(_) | Source::Solved(_) => return None,
-            };
+            let (kind, number) = key(self.operand(*operand).source)?;
             Some((kind, number, operand.negative))
         };
         let (is_sum, a, b) = match step {
@@ -421,6 +440,42 @@ mod tests {
         ]);
         let sum = Step::Add(state(1), state(2));
         assert_eq!(found, [late, sum, Step::Add(value(0), negative(value(1)))]);
+    }
+
+    #[test]
+    fn what_is_late_in_a_sum_is_multiplied_by_a_product_that_is_there() {
+        let late = Step::Sine(state(2));
+        let there = Step::Multiply(state(0), state(1));
+        let negative = Operand {
+            negative: true,
+            ..value(2)
+        };
+        let found = ordered(&[
+            there.clone(),
+            late.clone(),
+            Step::Multiply(state(0), value(1)),
+            Step::Add(state(3), negative),
+            Step::Multiply(value(3), state(1)),
+        ]);
+        let rest = Step::Multiply(state(3), state(1));
+        let product = Step::Multiply(value(0), value(1));
+        let negative = Operand {
+            negative: true,
+            ..value(3)
+        };
+        let sum = Step::Add(value(2), negative);
+        assert_eq!(found, [there, late, rest, product, sum]);
+    }
+
+    #[test]
+    fn a_sum_is_multiplied_as_a_whole_where_no_product_is_there() {
+        let steps = [
+            Step::Sine(state(2)),
+            Step::Multiply(state(0), value(0)),
+            Step::Add(state(3), value(1)),
+            Step::Multiply(value(2), state(1)),
+        ];
+        assert_eq!(ordered(&steps), steps);
     }
 
     #[test]

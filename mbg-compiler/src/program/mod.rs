@@ -9,6 +9,8 @@ mod dump;
 mod interpret;
 mod iterate;
 mod latency;
+#[cfg(test)]
+mod property;
 mod reorder;
 mod schedule;
 mod signs;

@@ -44,7 +44,8 @@ impl Order {
             late.push(product);
             terms.pop();
         }
-        if late.is_empty() {
+        let goes = |reused: usize| late.iter().any(|it| it.replaced == reused);
+        if late.is_empty() || late.iter().any(|it| goes(it.reused)) {
             return None;
         }
         let ready = self.ready_of(false, [sum, factor]);
@@ -52,17 +53,18 @@ impl Order {
         let (mut steps, rest) = self.rest(&mut terms);
         let mut products = vec![self.product(&mut steps, rest, factor)];
         for product in late.iter().rev() {
-            let [reused, other] = product.parts;
-            products.push(self.product(&mut steps, reused, other));
+            let reused = Operand {
+                source: Source::Value(product.reused),
+                negative: product.negative,
+            };
+            products.push(self.product(&mut steps, reused, product.other));
         }
         if products.iter().any(|it| !it.negative) {
             steps.extend(self.chain(value, true, &products));
             if self.ready[value] < ready {
                 for product in late {
                     partial.push(product.replaced);
-                    if let Source::Value(reused) = product.parts[0].source {
-                        self.uses[reused] += 1;
-                    }
+                    self.uses[product.reused] += 1;
                 }
                 partial.iter().for_each(|it| self.gone[*it] = true);
                 return Some(steps);
@@ -81,13 +83,11 @@ impl Order {
         [[x, y], [y, x]].into_iter().find_map(|[of, other]| {
             let (reused, negative) = *self.products.get(&factors(of, factor)?)?;
             let negative = negative ^ of.negative ^ factor.negative ^ term.negative;
-            let reused_product = Operand {
-                source: Source::Value(reused),
-                negative,
-            };
             (!self.gone[reused]).then_some(Multiplied {
                 replaced,
-                parts: [reused_product, other],
+                reused,
+                negative,
+                other,
             })
         })
     }
@@ -118,9 +118,10 @@ impl Order {
     }
 }
 
-/// A product in the place of a term.
+/// What comes in the place of a term: a product that is there, with a sign, times the term's other factor.
 struct Multiplied {
     replaced: usize,
-    /// First the product that is there.
-    parts: [Operand; 2],
+    reused: usize,
+    negative: bool,
+    other: Operand,
 }

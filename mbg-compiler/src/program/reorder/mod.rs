@@ -27,11 +27,12 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
     };
     order.count(routine);
     let steps = order.list(&routine.steps, 0);
-    let columns: Vec<Vec<Numbered>> = routine
-        .columns
-        .iter()
-        .map(|it| order.list(&it.steps, it.first))
-        .collect();
+    let there = order.products.clone();
+    let columns = routine.columns.iter().map(|columns| {
+        order.products.clone_from(&there);
+        order.list(&columns.steps, columns.first)
+    });
+    let columns: Vec<Vec<Numbered>> = columns.collect();
     let mut numbers = Numbers {
         new: vec![0; order.uses.len()],
         names: Vec::new(),

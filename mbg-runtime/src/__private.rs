@@ -67,7 +67,7 @@ pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
 }
 
 /// How far a projection goes: in units of precision and of what the states contribute to a residual, but at least one.
-const CLOSED: f64 = 32.0;
+const CLOSED: f64 = 16.0;
 
 /// Projects a state onto residuals, whose closures are numbered in `closures`.
 pub fn close<T: Real, const M: usize, const N: usize>(

@@ -204,7 +204,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `held` stay as they are, so that consistent
     /// initial values are found from a part of them, and so does an attitude of which one is held. Steppers ask at the
     /// start and after each step, with nothing held. What is left of each residual g is below
-    /// 32 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
+    /// 16 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
     ///
     /// # Errors
     ///

@@ -32,13 +32,7 @@ pub(super) fn arrange(routine: &Routine) -> Routine {
     for (new, old) in old.iter().enumerate() {
         numbers[*old] = new;
     }
-    let renumbered = |operand: Operand| match operand.source {
-        Source::Value(value) => Operand {
-            source: Source::Value(numbers[value]),
-            ..operand
-        },
-        _ => operand,
-    };
+    let renumbered = |operand: Operand| operand.renumbered(&numbers);
     let all = |operands: &[Operand]| operands.iter().copied().map(renumbered).collect();
     let columns = routine.columns.iter().map(|columns| Columns {
         steps: columns
@@ -243,15 +237,7 @@ impl Makers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symbolic::Symbol;
-
-    fn value(number: usize) -> Operand {
-        Operand::plain(Source::Value(number))
-    }
-
-    fn state(number: usize) -> Operand {
-        Operand::plain(Source::Symbol(Symbol::State(number)))
-    }
+    use crate::program::fixtures::{state, value};
 
     fn order(steps: &[Step]) -> Vec<usize> {
         Processor::of(steps).order()

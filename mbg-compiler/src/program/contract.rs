@@ -189,12 +189,6 @@ impl Rewrite<'_> {
     }
 
     fn operand(&self, operand: Operand) -> Operand {
-        match operand.source {
-            Source::Value(value) => Operand {
-                source: Source::Value(self.places[value]),
-                ..operand
-            },
-            _ => operand,
-        }
+        operand.renumbered(self.places)
     }
 }

@@ -10,6 +10,8 @@
 mod arrange;
 mod contract;
 mod dump;
+#[cfg(test)]
+mod fixtures;
 mod interpret;
 mod iterate;
 mod latency;
@@ -331,6 +333,17 @@ impl Operand {
         Self {
             source,
             negative: false,
+        }
+    }
+
+    /// The same with new numbers of values.
+    fn renumbered(self, numbers: &[usize]) -> Self {
+        match self.source {
+            Source::Value(value) => Self {
+                source: Source::Value(numbers[value]),
+                ..self
+            },
+            _ => self,
         }
     }
 }

@@ -216,22 +216,7 @@ fn product(a: Operand, b: Operand) -> (Operand, Operand) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symbolic::Symbol;
-
-    fn value(number: usize) -> Operand {
-        Operand::plain(Source::Value(number))
-    }
-
-    fn state(number: usize) -> Operand {
-        Operand::plain(Source::Symbol(Symbol::State(number)))
-    }
-
-    fn negative(operand: Operand) -> Operand {
-        Operand {
-            negative: true,
-            ..operand
-        }
-    }
+    use crate::program::fixtures::{negative, state, value};
 
     fn routine(steps: &[Step], results: &[Operand]) -> Routine {
         let values: usize = steps.iter().map(Step::results).sum();

@@ -349,28 +349,14 @@ impl Numbers {
     }
 
     fn operand(&self, operand: Operand) -> Operand {
-        match operand.source {
-            Source::Value(value) => Operand {
-                source: Source::Value(self.new[value]),
-                ..operand
-            },
-            _ => operand,
-        }
+        operand.renumbered(&self.new)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symbolic::Symbol;
-
-    fn value(number: usize) -> Operand {
-        Operand::plain(Source::Value(number))
-    }
-
-    fn state(number: usize) -> Operand {
-        Operand::plain(Source::Symbol(Symbol::State(number)))
-    }
+    use crate::program::fixtures::{negative, state, value};
 
     fn ordered(steps: &[Step]) -> Vec<Step> {
         let values: usize = steps.iter().map(Step::results).sum();
@@ -386,10 +372,7 @@ mod tests {
     #[test]
     fn what_is_late_is_added_last() {
         let late = Step::Sine(state(0));
-        let negated = Operand {
-            negative: true,
-            ..value(0)
-        };
+        let negated = negative(value(0));
         let found = ordered(&[
             late.clone(),
             Step::Add(state(1), negated),
@@ -430,10 +413,6 @@ mod tests {
     #[test]
     fn what_is_late_is_added_last_though_all_else_is_subtracted() {
         let late = Step::Sine(state(0));
-        let negative = |operand: Operand| Operand {
-            negative: true,
-            ..operand
-        };
         let found = ordered(&[
             late.clone(),
             Step::Add(value(0), negative(state(1))),
@@ -447,24 +426,16 @@ mod tests {
     fn what_is_late_in_a_sum_is_multiplied_by_a_product_that_is_there() {
         let late = Step::Sine(state(2));
         let there = Step::Multiply(state(0), state(1));
-        let negative = Operand {
-            negative: true,
-            ..value(2)
-        };
         let found = ordered(&[
             there.clone(),
             late.clone(),
             Step::Multiply(state(0), value(1)),
-            Step::Add(state(3), negative),
+            Step::Add(state(3), negative(value(2))),
             Step::Multiply(value(3), state(1)),
         ]);
         let rest = Step::Multiply(state(3), state(1));
         let product = Step::Multiply(value(0), value(1));
-        let negative = Operand {
-            negative: true,
-            ..value(3)
-        };
-        let sum = Step::Add(value(2), negative);
+        let sum = Step::Add(value(2), negative(value(3)));
         assert_eq!(found, [there, late, rest, product, sum]);
     }
 

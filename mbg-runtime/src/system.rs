@@ -46,9 +46,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SVector<T, N>;
 
-    /// The same written to where it is wanted: a generated model writes each entry as soon as it is known, so that those of a
-    /// large one wait in no register. It is inlined wherever it is called, and in batches takes the instructions of its
-    /// caller.
+    /// The same written to where it is wanted, every entry: a generated model writes each as soon as it is known, so that those
+    /// of a large one wait in no register. Unless it is given, it calls [`derivative`](Self::derivative). Who gives it marks
+    /// it `#[inline(always)]`, so that batches take the instructions of their caller.
     #[inline(always)]
     fn derivative_into(
         &self,

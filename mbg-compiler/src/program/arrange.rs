@@ -3,8 +3,8 @@
 //! A processor looks some hundred instructions ahead and begins what is ready there. Steps in the order of the expressions
 //! they come from keep it waiting: of what a long chain waits for, much lies further behind. So they come in the order in
 //! which a processor that sees [`WINDOW`] of them begins them, first what the longest chain behind it waits for. This is list
-//! scheduling: Cooper and Torczon, *Engineering a Compiler*, 2nd ed. (2012), 12.3. No step comes earlier by more than that, so
-//! that hardly more values are alive at once than before.
+//! scheduling: Cooper and Torczon, *Engineering a Compiler*, 2nd ed. (2012), 12.3. No step comes earlier by more than what it
+//! sees, so that not many more values are alive at once than before.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
@@ -15,7 +15,7 @@ use super::{Columns, Operand, Routine, Solver, Source, Step, angles, latency};
 /// How many steps the processor looks ahead: about as many as those of today do.
 const WINDOW: usize = 256;
 
-/// How many products, sums and other steps it begins in each cycle. The others are few.
+/// How many steps it begins in each cycle: others, as many as there are, for these are few; products; sums.
 const BEGUN: [usize; 3] = [usize::MAX, 2, 2];
 
 /// The routine with the steps before those of its columns in the new order.
@@ -237,7 +237,9 @@ impl Makers {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::program::Solve;
     use crate::program::fixtures::{state, value};
+    use crate::symbolic::{Kind, Place};
 
     fn order(steps: &[Step]) -> Vec<usize> {
         Processor::of(steps).order()
@@ -279,6 +281,28 @@ mod tests {
             Step::Add(value(1), value(2)),
         ];
         assert_eq!(order(&steps), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn solves_come_before_what_reads_them_and_behind_those_whose_matrix_they_use() {
+        let solve = |number: usize, solver: Solver, results: &[Operand]| {
+            Step::Solve(Solve {
+                number,
+                solver,
+                size: 1,
+                steps: Vec::new(),
+                results: results.to_vec(),
+            })
+        };
+        let solved = |number| Operand::plain(Source::Solved(Place { number, row: 0 }));
+        let steps = [
+            Step::Sine(state(0)),
+            solve(0, Solver::Linear(Kind::Regular), &[state(1), value(0)]),
+            Step::Multiply(solved(0), state(1)),
+            solve(1, Solver::Slope(0), &[state(2)]),
+            Step::Multiply(solved(1), state(1)),
+        ];
+        assert_eq!(order(&steps), [0, 1, 3, 2, 4]);
     }
 
     #[test]

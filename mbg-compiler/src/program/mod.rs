@@ -4,7 +4,7 @@
 //! with only what it needs, and one list that is worked out once, when a model is built. No error is reported here.
 //!
 //! `schedule` makes the steps out of expressions. Four passes follow, none of which changes what a function returns but for
-//! rounding: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes negatives where they
+//! rounding and the signs of zeros: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes negatives where they
 //! save an instruction, and `arrange` puts the steps in the order in which a processor begins them.
 
 mod arrange;

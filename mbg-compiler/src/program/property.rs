@@ -1,19 +1,20 @@
 //! Random routines give the same after each pass, in whole numbers modulo 2⁶⁴: sums and products are exact there, and sines
 //! some function of one number.
 
+use std::ops::Range;
+
 use proptest::prelude::*;
 
 use super::arrange::arrange;
 use super::contract::contract;
+use super::fixtures::{state, value};
 use super::reorder::reorder;
 use super::signs::signs;
 use super::{Columns, Operand, Routine, Source, Step};
 use crate::symbolic::Symbol;
 
-const STATES: usize = 2;
-
-/// How far back an operand may be; all others are states, so that many steps have some in common.
-const NEAR: usize = 6;
+/// How far back a value may be that a step reads.
+const NEAR: usize = 8;
 
 fn read(operand: Operand, values: &[u64]) -> u64 {
     let number = match operand.source {
@@ -41,6 +42,7 @@ fn run(steps: &[Step], values: &mut Vec<u64>) {
             Step::MultiplyAdd(a, b, c) => read(*a, values)
                 .wrapping_mul(read(*b, values))
                 .wrapping_add(read(*c, values)),
+            Step::Sine(a) => sine(read(*a, values)),
             Step::SineCosine(a) => {
                 values.push(sine(read(*a, values)));
                 sine(read(*a, values)).rotate_left(7)
@@ -69,38 +71,63 @@ fn results(routine: &Routine) -> Vec<u64> {
     found
 }
 
-/// A step in the making: its kind, and its operands among what is there, counted from behind.
-type Draft = (u8, [(usize, bool); 2]);
+/// An operand in the making: of what kind it is, its number, and whether it is negative.
+type DraftOperand = (usize, usize, bool);
+
+/// A step in the making: its kind and its operands.
+type Draft = (u8, [DraftOperand; 2]);
 
 fn drafts(most: usize) -> impl Strategy<Value = Vec<Draft>> {
-    let operand = (0..12_usize, any::<bool>());
-    prop::collection::vec((0..12_u8, [operand.clone(), operand]), 1..most)
+    let operand = (0..12_usize, 0..NEAR, any::<bool>());
+    prop::collection::vec((0..24_u8, [operand.clone(), operand]), 1..most)
 }
 
-/// Steps behind so many values, of which those in `hidden` are not to be read; how many values there are then.
-fn steps(
-    drafts: &[Draft],
-    mut count: usize,
-    hidden: &std::ops::Range<usize>,
-) -> (Vec<Step>, usize) {
-    let mut steps = Vec::new();
-    for (kind, operands) in drafts {
-        let [a, b] = operands.map(|(back, negative)| {
-            let value = count.checked_sub(back + 1);
-            let value = value.filter(|it| back < NEAR && !hidden.contains(it));
-            let state = Source::Symbol(Symbol::State(back % STATES));
-            let source = value.map_or(state, Source::Value);
-            Operand { source, negative }
-        });
-        let step = match kind {
-            0 => Step::SineCosine(a),
-            1..6 => Step::Add(a, b),
-            _ => Step::Multiply(a, b),
+/// How many states there are, and how many of twelve operands are states: few of them, read often, make many steps with
+/// something in common.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    states: usize,
+    of_twelve: usize,
+}
+
+fn shares() -> impl Strategy<Value = Share> {
+    (1..5_usize, 1..10_usize).prop_map(|(states, of_twelve)| Share { states, of_twelve })
+}
+
+impl Share {
+    fn operand(self, (kind, number, negative): DraftOperand, value: Option<usize>) -> Operand {
+        let source = match value {
+            _ if kind == 11 => Source::Constant(1.0 + (number % 3) as f64),
+            Some(value) if kind >= self.of_twelve => Source::Value(value),
+            _ => Source::Symbol(Symbol::State(number % self.states)),
         };
-        count += step.results();
-        steps.push(step);
+        Operand { source, negative }
     }
-    (steps, count)
+
+    /// Steps behind so many values, of which those in `hidden` are not to be read; how many values there are then.
+    fn steps(
+        self,
+        drafts: &[Draft],
+        mut count: usize,
+        hidden: &Range<usize>,
+    ) -> (Vec<Step>, usize) {
+        let mut steps = Vec::new();
+        for (kind, operands) in drafts {
+            let [a, b] = operands.map(|draft| {
+                let value = count.checked_sub(draft.1 + 1);
+                self.operand(draft, value.filter(|it| !hidden.contains(it)))
+            });
+            let step = match kind {
+                0..2 => Step::Sine(a),
+                2 => Step::SineCosine(a),
+                3..12 => Step::Add(a, b),
+                _ => Step::Multiply(a, b),
+            };
+            count += step.results();
+            steps.push(step);
+        }
+        (steps, count)
+    }
 }
 
 /// Some values have a name, which keeps their sign.
@@ -112,18 +139,22 @@ fn name(value: usize) -> String {
     }
 }
 
+/// The last values, every other one with a sign.
 fn last(count: usize) -> Vec<Operand> {
-    let value = |value| Operand::plain(Source::Value(value));
+    let value = |value| Operand {
+        source: Source::Value(value),
+        negative: value.is_multiple_of(2),
+    };
     (count.saturating_sub(3)..count).map(value).collect()
 }
 
-fn routine(main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
-    let (main, first) = steps(main, 0, &(0..0));
+fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
+    let (main, first) = share.steps(main, 0, &(0..0));
     let mut count = first;
     let mut columns = Vec::new();
     for drafts in of_columns {
         let begin = count;
-        let (steps, end) = steps(drafts, begin, &(first..begin));
+        let (steps, end) = share.steps(drafts, begin, &(first..begin));
         columns.push(Columns {
             variables: vec![0],
             first: begin,
@@ -145,10 +176,11 @@ proptest! {
 
     #[test]
     fn passes_keep_what_a_routine_returns(
+        share in shares(),
         main in drafts(40),
         columns in prop::collection::vec(drafts(12), 0..3),
     ) {
-        let before = routine(&main, &columns);
+        let before = routine(share, &main, &columns);
         let expected = results(&before);
         let reordered = reorder(&before);
         prop_assert_eq!(&results(&reordered), &expected, "reordered");
@@ -158,4 +190,44 @@ proptest! {
         prop_assert_eq!(&results(&signed), &expected, "with other signs");
         prop_assert_eq!(&results(&arrange(&signed)), &expected, "arranged");
     }
+}
+
+/// Steps give the same for their last values after they are reordered.
+fn assert_kept(steps: &[Step], last: &[usize]) {
+    let values: usize = steps.iter().map(Step::results).sum();
+    let before = Routine {
+        steps: steps.to_vec(),
+        names: vec![String::new(); values],
+        results: last.iter().copied().map(value).collect(),
+        columns: Vec::new(),
+    };
+    assert_eq!(results(&reorder(&before)), results(&before));
+}
+
+#[test]
+fn a_product_that_went_into_another_is_not_read() {
+    let steps = [
+        Step::Sine(state(2)),
+        Step::Multiply(state(0), value(0)),
+        Step::Multiply(value(1), state(1)),
+        Step::Sine(value(2)),
+        Step::Multiply(state(0), value(3)),
+        Step::Add(state(3), value(4)),
+        Step::Multiply(value(5), value(0)),
+    ];
+    assert_kept(&steps, &[6]);
+}
+
+#[test]
+fn a_product_that_is_read_goes_into_no_other() {
+    let steps = [
+        Step::Sine(state(2)),
+        Step::Multiply(state(0), state(1)),
+        Step::Multiply(state(0), value(0)),
+        Step::Add(state(3), value(2)),
+        Step::Multiply(value(3), state(1)),
+        Step::Multiply(value(1), value(0)),
+        Step::Multiply(value(5), state(4)),
+    ];
+    assert_kept(&steps, &[4, 6]);
 }

@@ -166,6 +166,10 @@ impl<'a> Signs<'a> {
                 let (a, b) = product(turn(a), b);
                 Step::MultiplyAdd(a, b, turn(c))
             }
+            Step::Divide(a, b) => {
+                let (a, b) = product(a, b);
+                Step::Divide(a, b)
+            }
             other => other,
         }
     }

@@ -217,3 +217,27 @@ fn no_angle_gives_no_number() {
         assert!(sine.is_nan() && cosine.is_nan());
     }
 }
+
+/// Side by side or alone, far or not: the same bits.
+fn assert_alone<const K: usize>(angles: [f64; K]) {
+    let (sines, cosines) = f64::sines_cosines(angles);
+    for (angle, found) in angles.into_iter().zip(sines.into_iter().zip(cosines)) {
+        let (sine, cosine) = sin_cos(angle);
+        let pairs = [(found.0, sine), (found.1, cosine)];
+        let same = |(a, b): &(f64, f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+        assert!(pairs.iter().all(same), "{angle} of {angles:?}");
+    }
+}
+
+#[test]
+fn several_are_what_each_is_alone() {
+    let odd = [1e22, f64::NAN, f64::INFINITY, -0.0, 51_001.0, 2.5, -7.0];
+    for (place, angle) in odd.into_iter().enumerate() {
+        let next = odd[(place + 1) % odd.len()];
+        assert_alone([angle]);
+        assert_alone([0.3, angle]);
+        assert_alone([angle, 0.3, 1.0]);
+        assert_alone([0.3, 1.0, next, angle]);
+        assert_alone([0.1, 0.2, 0.3, 0.4, angle]);
+    }
+}

@@ -2,7 +2,8 @@
 //!
 //! Where a sum waits for a late term and is then multiplied, as an acceleration by the reciprocal of an inertia, the product
 //! waits once more. If the product of the late term's other factor with the reciprocal is there, only the rest of the sum is
-//! multiplied, and what comes late goes straight into the result. The number of operations stays.
+//! multiplied, and what comes late goes straight into the result. The number of operations stays, though a product
+//! that is read twice goes into no sum by itself.
 
 use super::{Numbered, Operand, Order, Parts, Source, key, step};
 

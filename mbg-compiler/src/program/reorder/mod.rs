@@ -120,10 +120,12 @@ impl Order {
         is_sum: bool,
         parts: [Operand; 2],
     ) {
-        let chain = self.improved(value, is_sum, parts);
-        let chain = chain.or_else(|| (!is_sum).then(|| self.distributed(value, parts))?);
-        if let Some(chain) = chain {
-            list.extend(chain);
+        let mut better = self.improved(value, is_sum, parts);
+        if better.is_none() && !is_sum {
+            better = self.distributed(value, parts);
+        }
+        if let Some(better) = better {
+            list.extend(better);
             return;
         }
         self.enter(value, is_sum, parts);
@@ -448,6 +450,33 @@ mod tests {
             Step::Multiply(value(2), state(1)),
         ];
         assert_eq!(ordered(&steps), steps);
+    }
+
+    #[test]
+    fn columns_take_no_product_of_other_columns() {
+        let columns = |first: usize, steps: &[Step]| Columns {
+            variables: vec![0],
+            first,
+            steps: steps.to_vec(),
+            results: vec![value(first + steps.len() - 1)],
+        };
+        let first = [
+            Step::Multiply(state(0), state(1)),
+            Step::Multiply(value(1), value(0)),
+        ];
+        let second = [
+            Step::Sine(state(0)),
+            Step::Multiply(state(0), value(3)),
+            Step::Add(state(3), value(4)),
+            Step::Multiply(value(5), state(1)),
+        ];
+        let routine = Routine {
+            steps: vec![Step::Sine(state(2))],
+            names: vec![String::new(); 7],
+            results: vec![value(0)],
+            columns: vec![columns(1, &first), columns(3, &second)],
+        };
+        assert_eq!(reorder(&routine).columns[1].steps, second);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use std::ops::Range;
 
-use super::{Columns, Operand, Routine, Solver, Source, Step, angles, latency};
+use super::{Operand, Routine, Solver, Source, Step, angles, latency};
 
 /// How many steps the processor looks ahead: about as many as those of today do.
 const WINDOW: usize = 256;
@@ -33,24 +33,18 @@ pub(super) fn arrange(routine: &Routine) -> Routine {
         numbers[*old] = new;
     }
     let renumbered = |operand: Operand| operand.renumbered(&numbers);
-    let all = |operands: &[Operand]| operands.iter().copied().map(renumbered).collect();
-    let columns = routine.columns.iter().map(|columns| Columns {
-        steps: columns
-            .steps
-            .iter()
-            .map(|it| it.with(&renumbered))
-            .collect(),
-        results: all(&columns.results),
-        ..columns.clone()
-    });
+    let with_numbers = |step: &Step| step.with(&renumbered);
+    let columns = routine.columns.iter();
     Routine {
         steps: order
             .iter()
-            .map(|step| routine.steps[*step].with(&renumbered))
+            .map(|step| with_numbers(&routine.steps[*step]))
             .collect(),
         names: old.iter().map(|old| routine.names[*old].clone()).collect(),
-        results: all(&routine.results),
-        columns: columns.collect(),
+        results: routine.results.iter().copied().map(renumbered).collect(),
+        columns: columns
+            .map(|it| it.with(&with_numbers, &renumbered))
+            .collect(),
     }
 }
 

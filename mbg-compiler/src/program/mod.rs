@@ -229,6 +229,16 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// The same with other steps and results.
+    fn with(&self, step: &dyn Fn(&Step) -> Step, result: &dyn Fn(Operand) -> Operand) -> Self {
+        Self {
+            variables: self.variables.clone(),
+            first: self.first,
+            steps: self.steps.iter().map(step).collect(),
+            results: self.results.iter().copied().map(result).collect(),
+        }
+    }
+
     /// What they read or return.
     fn operands(&self) -> impl Iterator<Item = Operand> {
         let steps = self.steps.iter().flat_map(Step::operands);

@@ -4,7 +4,7 @@
 //! instruction more. Whoever reads a value whose negative was made reads it with the other sign. Values with a name stay,
 //! so that a line is what its name says.
 
-use super::{Columns, Operand, Routine, Solve, Source, Step};
+use super::{Operand, Routine, Solve, Source, Step};
 
 /// How often all values are looked at: each change may make room for another.
 const ROUNDS: usize = 4;
@@ -39,7 +39,7 @@ struct Signs<'a> {
     places: Vec<Place<'a>>,
     /// The places that read each value, and the one that makes it.
     touched: Vec<Vec<usize>>,
-    /// Whether it is a sum or product that may change its sign.
+    /// Whether each value may change its sign.
     is_free: Vec<bool>,
     /// The values whose negative is made.
     negative: Vec<bool>,
@@ -56,16 +56,12 @@ impl<'a> Signs<'a> {
         };
         let mut value = 0;
         for step in &routine.steps {
-            let is_sum_or_product = matches!(
-                step,
-                Step::Add(..) | Step::Multiply(..) | Step::MultiplyAdd(..)
-            );
-            let is_free = is_sum_or_product && routine.names[value].is_empty();
-            if is_free {
-                signs.is_free[value] = true;
-                signs.touched[value].push(signs.places.len());
+            let made = changeable(step, value, &routine.names);
+            if let Some(made) = made {
+                signs.is_free[made] = true;
+                signs.touched[made].push(signs.places.len());
             }
-            signs.read(step, is_free.then_some(value));
+            signs.read(step, made);
             value += step.results();
         }
         for columns in &routine.columns {
@@ -177,28 +173,29 @@ impl<'a> Signs<'a> {
     fn routine(&self, routine: &Routine) -> Routine {
         let mut value = 0;
         let steps = routine.steps.iter().map(|step| {
-            let made = self
-                .is_free
-                .get(value)
-                .is_some_and(|it| *it)
-                .then_some(value);
+            let made = changeable(step, value, &routine.names);
             value += step.results();
             self.step(step, made)
         });
         let steps = steps.collect();
-        let all = |operands: &[Operand]| operands.iter().map(|it| self.operand(*it)).collect();
-        let columns = routine.columns.iter().map(|columns| Columns {
-            steps: columns.steps.iter().map(|it| self.step(it, None)).collect(),
-            results: all(&columns.results),
-            ..columns.clone()
-        });
+        let columns = routine.columns.iter();
+        let columns = columns.map(|it| it.with(&|it| self.step(it, None), &|it| self.operand(it)));
         Routine {
             steps,
             names: routine.names.clone(),
-            results: all(&routine.results),
+            results: routine.results.iter().map(|it| self.operand(*it)).collect(),
             columns: columns.collect(),
         }
     }
+}
+
+/// The value that a step makes, if it may change its sign: that of a sum or a product without a name.
+fn changeable(step: &Step, value: usize, names: &[String]) -> Option<usize> {
+    let is_sum_or_product = matches!(
+        step,
+        Step::Add(..) | Step::Multiply(..) | Step::MultiplyAdd(..)
+    );
+    (is_sum_or_product && names[value].is_empty()).then_some(value)
 }
 
 fn is_number(operand: &Operand) -> bool {
@@ -248,6 +245,20 @@ mod tests {
             [first, Step::Add(state(3), negative(value(0)))]
         );
         assert_eq!(after.results, [value(0), value(1)]);
+    }
+
+    #[test]
+    fn a_multiply_add_has_one_sign_rather_than_two() {
+        let before = routine(
+            &[
+                Step::MultiplyAdd(negative(state(0)), state(1), negative(state(2))),
+                Step::Add(state(3), value(0)),
+            ],
+            &[value(1)],
+        );
+        let first = Step::MultiplyAdd(state(0), state(1), state(2));
+        let second = Step::Add(state(3), negative(value(0)));
+        assert_eq!(signs(&before).steps, [first, second]);
     }
 
     #[test]

@@ -38,17 +38,7 @@ impl Order {
         let (mut terms, mut partial) = (Vec::new(), Vec::new());
         self.flatten(sum, true, &mut terms, &mut partial);
         terms.sort_by_key(|term| self.ready_as(*term, true));
-        let mut late = Vec::new();
-        while terms.len() > 1
-            && let Some(product) = terms.last().and_then(|term| self.multiplied(*term, factor))
-        {
-            late.push(product);
-            terms.pop();
-        }
-        let goes = |reused: usize| late.iter().any(|it| it.replaced == reused);
-        if late.is_empty() || late.iter().any(|it| goes(it.reused)) {
-            return None;
-        }
+        let late = self.late(&mut terms, factor)?;
         let ready = self.ready_of(false, [sum, factor]);
         let before = self.uses.len();
         let (mut steps, rest) = self.rest(&mut terms);
@@ -73,6 +63,20 @@ impl Order {
         }
         self.forget(before);
         None
+    }
+
+    /// The last terms, taken off, as far as each can be multiplied by itself; all but the first at most.
+    fn late(&self, terms: &mut Vec<Operand>, factor: Operand) -> Option<Vec<Multiplied>> {
+        let mut late = Vec::new();
+        while terms.len() > 1
+            && let Some(product) = terms.last().and_then(|term| self.multiplied(*term, factor))
+        {
+            late.push(product);
+            terms.pop();
+        }
+        let is_replaced = |value: usize| late.iter().any(|it| it.replaced == value);
+        let is_there = !late.iter().any(|it| is_replaced(it.reused));
+        (is_there && !late.is_empty()).then_some(late)
     }
 
     /// A term times the factor, as a product of what is there, if the term is a product that nothing else needs.

@@ -10,7 +10,6 @@ mod distribute;
 use rustc_hash::FxHashMap;
 
 use self::distribute::{Factors, factors};
-
 use super::{Columns, Operand, Routine, Source, Step, latency};
 use crate::symbolic::Symbol;
 
@@ -450,6 +449,24 @@ mod tests {
             Step::Multiply(value(2), state(1)),
         ];
         assert_eq!(ordered(&steps), steps);
+    }
+
+    #[test]
+    fn a_sum_is_multiplied_as_a_whole_where_the_factor_comes_late() {
+        let steps = [
+            Step::Sine(state(2)),
+            Step::Multiply(state(0), value(0)),
+            Step::Multiply(state(0), state(1)),
+            Step::Add(state(3), value(2)),
+            Step::Multiply(value(3), value(0)),
+        ];
+        let routine = Routine {
+            steps: steps.to_vec(),
+            names: vec![String::new(); 5],
+            results: vec![value(1), value(4)],
+            columns: Vec::new(),
+        };
+        assert_eq!(reorder(&routine).steps, steps);
     }
 
     #[test]

@@ -28,12 +28,14 @@ fn place(time: f64) -> i32 {
     LEFT + (part.clamp(0.0, 1.0) * f64::from(RIGHT - LEFT)) as i32
 }
 
-/// The fastest variant of each, fastest first.
-fn best<'a>(report: &'a Report, scene: &str) -> Vec<&'a Row> {
-    let mut kept: Vec<&Row> = Vec::new();
+/// The fastest variant of each with its time, fastest first.
+fn best<'a>(report: &'a Report, scene: &str) -> Vec<(&'a Row, f64)> {
+    let mut kept: Vec<(&Row, f64)> = Vec::new();
     for row in report.of(scene) {
-        if kept.iter().all(|other| other.peer != row.peer) {
-            kept.push(row);
+        if let Some(time) = row.time
+            && kept.iter().all(|(other, _)| other.peer != row.peer)
+        {
+            kept.push((row, time));
         }
     }
     kept
@@ -71,14 +73,14 @@ pub(crate) fn draw(report: &Report, path: &Path) -> Result<(), Box<dyn Error>> {
             (LEFT - 78, middle),
             style(13, HPos::Right),
         ))?;
-        for row in rows {
+        for (row, time) in rows {
             let (colour, end) = (
                 if row.peer == OURS {
                     OUR_COLOUR
                 } else {
                     PEER_COLOUR
                 },
-                place(row.time),
+                place(*time),
             );
             area.draw(&Rectangle::new(
                 [(LEFT, y + 1), (end, y + BAR - 2)],
@@ -90,7 +92,7 @@ pub(crate) fn draw(report: &Report, path: &Path) -> Result<(), Box<dyn Error>> {
                 (LEFT - 6, centre),
                 style(12, HPos::Right),
             ))?;
-            let time = format!("{:.*}", usize::from(row.time < 100.0), row.time);
+            let time = format!("{time:.*}", usize::from(*time < 100.0));
             area.draw(&Text::new(time, (end + 4, centre), style(12, HPos::Left)))?;
             y += BAR;
         }

@@ -48,10 +48,10 @@ pub(crate) struct Row {
     pub(crate) scene: String,
     pub(crate) peer: String,
     pub(crate) variant: String,
-    /// In ns per state.
-    pub(crate) time: f64,
+    /// In ns per state; nothing if a neighbour disturbed in every round.
+    pub(crate) time: Option<f64>,
     /// Our scalar time divided by it, round by round.
-    ratio: f64,
+    ratio: Option<f64>,
     operations: Option<usize>,
     instructions: Option<u64>,
     difference: f64,
@@ -98,7 +98,8 @@ impl Report {
     /// Rows of a scene, fastest first.
     pub(crate) fn of(&self, scene: &str) -> Vec<&Row> {
         let mut rows: Vec<&Row> = self.rows.iter().filter(|row| row.scene == scene).collect();
-        rows.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let time = |row: &Row| row.time.unwrap_or(f64::INFINITY);
+        rows.sort_by(|a, b| time(a).total_cmp(&time(b)));
         rows
     }
 
@@ -146,7 +147,7 @@ impl Report {
             // In lanes there is no round to compare with: medians do.
             let ratio = match scalar {
                 Some(scalar) if std::ptr::eq(*scalar, *ours) => peer.ratio,
-                _ => ours.time / peer.time,
+                _ => quotient(ours.time, peer.time),
             };
             let fewest = rows
                 .iter()
@@ -158,26 +159,24 @@ impl Report {
                 .filter(|row| !row.is_ours)
                 .filter_map(|row| row.instructions)
                 .min();
-            let quotient = |a: Option<f64>, b: Option<f64>| {
-                shown(a.zip(b).map(|(a, b)| format!("{:.2}", a / b)))
-            };
+            let parts = |a: Option<f64>, b: Option<f64>| figure(quotient(a, b), 2);
             let _ = writeln!(
                 text,
-                "{:<38}{:>9.1}{:>11.1}  {:<22}{:>7.2}{:>6}{:>13}{:>8}{:>10}{:>14}{:>8}",
+                "{:<38}{:>9}{:>11}  {:<22}{:>7}{:>6}{:>13}{:>8}{:>10}{:>14}{:>8}",
                 scene.title,
-                ours.time,
-                peer.time,
+                figure(ours.time, 1),
+                figure(peer.time, 1),
                 format!("{} {}", peer.peer, peer.variant),
-                ratio,
-                shown(scene.bar.map(|bar| format!("{bar:.2}"))),
+                figure(ratio, 2),
+                figure(scene.bar, 2),
                 shown(ours.operations),
                 shown(fewest),
-                quotient(
+                parts(
                     ours.operations.map(|it| it as f64),
                     fewest.map(|it| it as f64)
                 ),
                 shown(ours.instructions),
-                quotient(
+                parts(
                     ours.instructions.map(|it| it as f64),
                     least.map(|it| it as f64)
                 ),
@@ -195,7 +194,8 @@ impl Report {
             let short = short.iter().find(|row| row.peer == long.peer);
             if let (Some(short), false) = (short, seen.contains(&long.peer.as_str())) {
                 seen.push(&long.peer);
-                let _ = write!(text, " {} {:.2}", long.peer, long.time / short.time / 8.0);
+                let growth = quotient(long.time, short.time).map(|it| it / 8.0);
+                let _ = write!(text, " {} {}", long.peer, figure(growth, 2));
             }
         }
         text + "\n"
@@ -210,12 +210,12 @@ impl Report {
             for row in self.of(scene.name) {
                 let _ = writeln!(
                     text,
-                    "{:<38}{:<12}{:<14}{:>11.1}{:>11.2}{:>12}{:>14}{:>12.1e}",
+                    "{:<38}{:<12}{:<14}{:>11}{:>11}{:>12}{:>14}{:>12.1e}",
                     scene.title,
                     row.peer,
                     row.variant,
-                    row.time,
-                    row.ratio,
+                    figure(row.time, 1),
+                    figure(row.ratio, 2),
                     shown(row.operations),
                     shown(row.instructions),
                     row.difference
@@ -231,12 +231,12 @@ impl Report {
             let whole = |count: Option<u64>| count.map(|it| it.to_string()).unwrap_or_default();
             let _ = writeln!(
                 text,
-                "{},{},{},{:.2},{:.3},{},{},{:.1e}",
+                "{},{},{},{},{},{},{},{:.1e}",
                 row.scene,
                 row.peer,
                 row.variant,
-                row.time,
-                row.ratio,
+                figure(row.time, 2),
+                figure(row.ratio, 3),
                 whole(row.operations.map(|it| it as u64)),
                 whole(row.instructions),
                 row.difference
@@ -251,6 +251,14 @@ fn kept(times: &Times) -> String {
         "{:.0} % of the samples ran undisturbed; only those count.\n",
         100.0 * times.kept()
     )
+}
+
+fn quotient(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    Some(a? / b?)
+}
+
+fn figure(value: Option<f64>, digits: usize) -> String {
+    shown(value.map(|it| format!("{it:.digits$}")))
 }
 
 fn shown(value: Option<impl ToString>) -> String {

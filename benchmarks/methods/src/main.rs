@@ -237,14 +237,17 @@ fn main() -> Result<()> {
     };
     if wants("ins") {
         let model = Ins::new(InsParameters::default())?;
-        let gust = gust(0.1);
-        let start = System::<f64, 9, 3, 3>::initial_state(&model);
-        let problem = |title: &str| Problem::new(title, &model, &gust, (0.0, 10.0), start);
-        let same = problem("INS in a gust of 0.1 s, 10 s");
-        run.against(same, &Ours::<_, 3>(&model), "ins", 1e-4)?;
         let navigation = navigation(&model)?;
-        let product = problem("the same, others by matrices");
-        run.against(product, &navigation, "ins_product", 1e-4)?;
+        let start = System::<f64, 9, 3, 3>::initial_state(&model);
+        for width in [0.1, 1.0] {
+            let gust = gust(width);
+            let problem = |title: &str| Problem::new(title, &model, &gust, (0.0, 10.0), start);
+            let same = problem(&format!("INS in a gust of {width} s, 10 s"));
+            let file = format!("ins_{width}");
+            run.against(same, &Ours::<_, 3>(&model), &file, 1e-4)?;
+            let product = problem("the same, others by matrices");
+            run.against(product, &navigation, &format!("{file}_product"), 1e-4)?;
+        }
     }
     if wants("body") {
         let body = Written(RigidBody);

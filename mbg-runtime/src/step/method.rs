@@ -209,17 +209,34 @@ pub(super) fn combination<T: Real, const N: usize>(
     weights: &[f64],
     vectors: &[SVector<T, N>],
 ) -> SVector<T, N> {
+    combined([], weights, vectors)
+}
+
+/// The same with terms in front whose weights are no constants.
+///
+/// Left to itself a compiler may gather the components of several vectors from all over the memory.
+#[inline(always)]
+pub(super) fn combined<T: Real, const N: usize, const K: usize>(
+    front: [(T, &SVector<T, N>); K],
+    weights: &[f64],
+    vectors: &[SVector<T, N>],
+) -> SVector<T, N> {
     let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
     if N >= 4 && <T::Columns as Columns<T>>::COUNT > 1 {
         for block in 0..N.div_ceil(4) {
             // The last four overlap with those before where states are left over.
             let first = (4 * block).min(N - 4);
-            let four = four_of(weights, vectors, first);
+            let four = four_of(front, weights, vectors, first);
             for (place, component) in four.as_columns().iter().enumerate() {
                 sum[first + place] = *component;
             }
         }
         return sum;
+    }
+    for (weight, vector) in front {
+        sum.zip_apply(vector, |sum, component| {
+            *sum = weight.multiply_add(component, *sum);
+        });
     }
     for (weight, vector) in weights.iter().zip(vectors) {
         if *weight != 0.0 {
@@ -232,18 +249,22 @@ pub(super) fn combination<T: Real, const N: usize>(
     sum
 }
 
-/// Four components of `Σ weight · vector`, from this one on.
+/// Four components of [`combined`], from this one on.
 #[inline(always)]
-fn four_of<T: Real, const N: usize>(
+fn four_of<T: Real, const N: usize, const K: usize>(
+    front: [(T, &SVector<T, N>); K],
     weights: &[f64],
     vectors: &[SVector<T, N>],
     first: usize,
 ) -> T::Stages {
+    let four = |vector: &SVector<T, N>| T::Stages::from_columns(|place| vector[first + place]);
     let mut sum = T::Stages::from_f64(0.0);
+    for (weight, vector) in front {
+        sum = T::Stages::whole(weight).multiply_add(four(vector), sum);
+    }
     for (weight, vector) in weights.iter().zip(vectors) {
         if *weight != 0.0 {
-            let four = T::Stages::from_columns(|place| vector[first + place]);
-            sum = T::Stages::from_f64(*weight).multiply_add(four, sum);
+            sum = T::Stages::from_f64(*weight).multiply_add(four(vector), sum);
         }
     }
     sum

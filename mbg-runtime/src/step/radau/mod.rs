@@ -310,23 +310,6 @@ fn transformed<T: Real, const N: usize, const S: usize>(
     products
 }
 
-/// `sum + Σ weight · vector`.
-#[inline(always)]
-fn increased<T: Real, const N: usize, const S: usize>(
-    sum: SVector<T, N>,
-    weights: &[f64; S],
-    vectors: &[SVector<T, N>; S],
-) -> SVector<T, N> {
-    let mut sum = sum;
-    for (weight, vector) in weights.iter().zip(vectors) {
-        let weight = T::from_f64(*weight);
-        sum.zip_apply(vector, |sum, component| {
-            *sum = weight.multiply_add(component, *sum);
-        });
-    }
-    sum
-}
-
 /// A method of this family.
 macro_rules! radau {
     ($name:ident, $tableau:ident: $stages:literal, $pairs:literal, $text:literal, order $order:literal, $dense:literal, $estimate:literal) => {

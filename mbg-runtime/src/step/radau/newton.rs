@@ -4,9 +4,9 @@ use core::marker::PhantomData;
 
 use nalgebra::SVector;
 
-use super::{FAST, Factors, Tabulated, increased, transformed};
+use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
-use crate::step::method::{Start, combination, larger, relative, settles};
+use crate::step::method::{Start, combination, combined, larger, relative, settles};
 use crate::step::problem::Problem;
 use crate::step::tolerance::Tolerance;
 use crate::{Input, Real, System};
@@ -107,16 +107,14 @@ where
         let weights = const { &A::TABLEAU.inverse };
         let mut changes = *inner;
         let (shift, factors) = &self.factors.real;
-        let right = increased(inner[0].map(|a| -*shift * a), &weights[0], slopes);
+        let right = combined([(-*shift, &inner[0])], &weights[0], slopes);
         changes[0] = factors.solved::<Y, M, P>(&right);
         for (pair, (shift, factors)) in self.factors.pairs.iter().enumerate() {
             let Complex { real, imaginary } = *shift;
             let [first, second] = [1, 2].map(|place| place + 2 * pair);
             let [b, c] = [&inner[first], &inner[second]];
-            let reals = b.zip_map(c, |b, c| imaginary * c - real * b);
-            let reals = increased(reals, &weights[first], slopes);
-            let imaginaries = b.zip_map(c, |b, c| -(imaginary * b) - real * c);
-            let imaginaries = increased(imaginaries, &weights[second], slopes);
+            let reals = combined([(-real, b), (imaginary, c)], &weights[first], slopes);
+            let imaginaries = combined([(-imaginary, b), (-real, c)], &weights[second], slopes);
             let mut right = [Complex::zero(); N];
             for (row, right) in right.iter_mut().enumerate() {
                 (right.real, right.imaginary) = (reals[row], imaginaries[row]);

@@ -16,7 +16,7 @@ use crate::network::Network;
 use crate::program::{self, Program, Request};
 use crate::sparsity::{self, Pattern};
 use crate::start;
-use crate::structure::{self, Failure, Loop, Solution, Solved};
+use crate::structure::{self, Failure, Formulation, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, products, share};
 use crate::syntax::ast;
@@ -119,7 +119,7 @@ pub fn compile(
     }
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
-    let first = structure::solve(&scalars, &mut pool);
+    let first = structure::solve(&scalars, Formulation::Articulated, &mut pool);
     let soluble = !matches!(first, Err(Failure::Singular));
     let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
     let solved = structure::resolve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;

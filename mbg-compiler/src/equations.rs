@@ -67,6 +67,8 @@ pub struct Scalars {
     pub closures: Vec<Closure>,
     /// The independent rate of each level of a reduced system.
     pub independent: BTreeMap<usize, Independent>,
+    /// Most independent rates from which one rate follows.
+    pub deepest: usize,
 }
 
 /// Two ends with one effort, the multiplier, and with flows that are to be equal. No equation says so: that of their
@@ -484,6 +486,7 @@ impl Former<'_> {
             rate_of: BTreeMap::new(),
             closures,
             independent: BTreeMap::new(),
+            deepest: 0,
         }
     }
 

@@ -11,7 +11,7 @@ use crate::diagnostics::Diagnostics;
 use crate::elaborate::{self, Elaborated};
 use crate::equations::{self, Scalars};
 use crate::network::Network;
-use crate::structure::{self, Solution};
+use crate::structure::{self, Formulation, Solution};
 use crate::symbolic::{Expression, Method, Pool};
 use crate::syntax::ast::{Component, Item, Model};
 use crate::{drawing, program, syntax};
@@ -59,7 +59,7 @@ fn stages(model: &Model, components: &BTreeMap<String, &Component>) -> String {
     let network = Network::of(&model.graph, &mut pool);
     let scalars = equations::form(&model, &network, &mut pool);
     text += &section("equations", &equation_lines(&model, &scalars, &pool));
-    if let Ok(solution) = structure::solve(&scalars, &mut pool) {
+    if let Ok(solution) = structure::solve(&scalars, Formulation::Articulated, &mut pool) {
         text += &section(
             "structure",
             &value_lines(&model, &scalars, &solution, &pool),

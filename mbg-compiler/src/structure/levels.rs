@@ -12,8 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::blocks;
 use crate::equations::{Owner, Scalars, Turn};
 
-/// The turn of every unknown; none for those that belong to the base. `moved` are the co-energy variables of the lost
-/// states.
+/// The turn of every unknown; none for those that belong to the base. And the most independent rates from which one rate
+/// follows. `moved` are the co-energy variables of the lost states.
 #[must_use]
 pub(super) fn assign(
     scalars: &Scalars,
@@ -21,7 +21,7 @@ pub(super) fn assign(
     rate_of: &BTreeMap<usize, usize>,
     moved: &[usize],
     is_state: &dyn Fn(Owner) -> bool,
-) -> Vec<Option<Turn>> {
+) -> (Vec<Option<Turn>>, usize) {
     let dependence = Dependence::of(scalars, matched, rate_of, moved, is_state);
     let mut turns = vec![None; scalars.unknowns];
     for (unknown, rate) in rate_of {
@@ -52,7 +52,7 @@ pub(super) fn assign(
             }
         }
     }
-    turns
+    (turns, dependence.deepest())
 }
 
 /// The lower level and the greater depth of both.
@@ -134,6 +134,11 @@ impl Dependence {
             sets: unknowns.into_iter().zip(sets).collect(),
             rank,
         }
+    }
+
+    fn deepest(&self) -> usize {
+        let sizes = self.sets.values().map(|(set, _)| members(set).count());
+        sizes.max().unwrap_or(0)
     }
 
     fn turn(&self, unknown: usize) -> Option<Turn> {

@@ -11,6 +11,7 @@ pub mod blocks;
 mod carried;
 mod congruence;
 mod eliminate;
+mod formulation;
 mod levels;
 pub mod matching;
 mod mesh;
@@ -31,6 +32,7 @@ use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Scalars};
 use crate::symbolic::{Expression, Matrix, Pool};
 
+pub use formulation::Formulation;
 pub use reduction::{Reduction, reduce};
 pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};
@@ -85,8 +87,12 @@ pub struct Undetermined {
     pub jacobian: Matrix,
 }
 
-/// Solves the equations.
-pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
+/// Solves the equations; the formulation says how a reduced system is.
+pub fn solve(
+    scalars: &Scalars,
+    formulation: Formulation,
+    pool: &mut Pool,
+) -> Result<Solution, Failure> {
     let multipliers: BTreeSet<usize> = scalars
         .closures
         .iter()
@@ -144,7 +150,7 @@ pub fn solve(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
         }
     }
     let order = blocks::ordered(&all, &matching);
-    solve::blocks(scalars, &matching, &order, pool)
+    solve::blocks(scalars, formulation, &matching, &order, pool)
 }
 
 /// The value of each signal, with its sign.

@@ -529,7 +529,8 @@ impl Reducer<'_> {
             .iter()
             .map(|lost| self.coenergy(model, lost.element, lost.component))
             .collect();
-        let mut turns = levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
+        let (mut turns, deepest) =
+            levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
         for unknown in self.known_beforehand(matched, &turns) {
             turns[unknown] = None;
         }
@@ -547,6 +548,7 @@ impl Reducer<'_> {
             .all(|inverse| is_definite(model, &inverse.matrix, pool));
         self.independent(model, lost, &turns, definite);
         self.scalars.turns = turns;
+        self.scalars.deepest = deepest;
         self.scalars.rate_of = self.rate_of.clone();
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use proc_macro2::Span;
 
-use super::{Failure, Solution, Undetermined, block_names, reduce, select, solve};
+use super::{Failure, Solution, Undetermined, block_names, formulation, reduce, select};
 use crate::codes;
 use crate::compile::text;
 use crate::diagnostics::{Diagnostics, error, listing};
@@ -48,7 +48,7 @@ pub fn resolve(
     let selection = select(model, &scalars, pool, diagnostics)?;
     let reduction = reduce(model, scalars, &selection, pool, diagnostics)?;
     let scalars = reduction.scalars;
-    match solve(&scalars, pool) {
+    match formulation::cheapest(&scalars, pool) {
         Ok(solution) => Some(Solved {
             scalars,
             solution,

@@ -7,7 +7,7 @@ use super::congruence;
 use super::eliminate::{System, Vanished};
 use super::shift::Shift;
 use super::tree::{Columns, Tree};
-use super::{Failure, Inverted, Loop, Solution};
+use super::{Failure, Formulation, Inverted, Loop, Solution};
 use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Owner, Scalars};
 use crate::symbolic::{
@@ -23,6 +23,7 @@ impl From<Vanished> for Failure {
 /// Solves blocks in the order given.
 pub(super) fn blocks(
     scalars: &Scalars,
+    formulation: Formulation,
     unknown_of: &[usize],
     order: &[Vec<usize>],
     pool: &mut Pool,
@@ -35,6 +36,7 @@ pub(super) fn blocks(
     };
     let mut solver = Solver {
         scalars,
+        formulation,
         pool,
         solution,
         known: vec![false; scalars.unknowns],
@@ -83,8 +85,16 @@ struct Level {
     last: Option<usize>,
 }
 
+/// An independent rate, the balance of efforts on it, and what is known of its inertia there.
+struct Joint {
+    row: usize,
+    column: usize,
+    sign: Sign,
+}
+
 pub(super) struct Solver<'a> {
     pub(super) scalars: &'a Scalars,
+    formulation: Formulation,
     pub(super) pool: &'a mut Pool,
     pub(super) solution: Solution,
     known: Vec<bool>,
@@ -171,6 +181,7 @@ impl Solver<'_> {
         let all: Columns = (0..equations.len()).collect();
         // The balance at a massless frame stays open until the level of the hinge that carries the frame.
         let mut passed = Columns::new();
+        let mut joints = Vec::new();
         for (number, level) in self.levels(equations, unknowns) {
             if !scalars.closures.is_empty() {
                 passed.clear();
@@ -199,17 +210,24 @@ impl Solver<'_> {
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {
-                if sign == Sign::NotNegative {
-                    self.note(system.entry(row, column), &[]);
-                }
                 delayed.extend(tree.frame(self.pool, &system, row));
-                system.eliminate(self.pool, row, column)?;
+                let joint = Joint { row, column, sign };
+                match self.formulation {
+                    Formulation::Articulated => self.release(&mut system, &joint)?,
+                    Formulation::Composite => {
+                        passed.remove(&row);
+                        joints.push(joint);
+                    }
+                }
             }
             let [first, turned, last] = tree.in_order(delayed);
             for columns in [first, turned, last] {
                 congruence::prepare(self.pool, &system, &tree, &columns);
                 system.eliminate_constants(self.pool, &all, &columns, &admitted)?;
             }
+        }
+        for joint in &joints {
+            self.release(&mut system, joint)?;
         }
         let (rest, values) = if scalars.closures.is_empty() {
             self.rest(&mut system, &tree, unknowns)?
@@ -228,6 +246,15 @@ impl Solver<'_> {
             shift.undo(self.pool, &mut values);
         }
         self.store(unknowns, values);
+        Ok(())
+    }
+
+    /// Eliminates an independent rate by its inertia.
+    fn release(&mut self, system: &mut System, joint: &Joint) -> Result<(), Failure> {
+        if joint.sign == Sign::NotNegative {
+            self.note(system.entry(joint.row, joint.column), &[]);
+        }
+        system.eliminate(self.pool, joint.row, joint.column)?;
         Ok(())
     }
 

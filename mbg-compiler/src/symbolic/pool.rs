@@ -15,6 +15,7 @@ use super::field::Image;
 use super::implicit::{Implicit, Place};
 use super::linear::Linear;
 
+#[derive(Clone)]
 struct Node {
     operation: Operation,
     image: Image,
@@ -34,6 +35,7 @@ pub(super) enum Definition {
 }
 
 /// All expressions of a model.
+#[derive(Clone)]
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.

@@ -177,7 +177,6 @@ impl Solver<'_> {
         let tree = Tree::of(scalars, equations, &place);
         let shift = self.shift(&mut system, &tree, unknowns, &place);
         let (matrix, right) = system.equations();
-        let admitted = |row, column| tree.admits(row, column);
         let all: Columns = (0..equations.len()).collect();
         // The balance at a massless frame stays open until the level of the hinge that carries the frame.
         let mut passed = Columns::new();
@@ -199,11 +198,7 @@ impl Solver<'_> {
                     })
                 });
                 delayed.extend(wait);
-                let [first, turned, last] = tree.in_order(now);
-                for columns in [first, turned, last] {
-                    congruence::prepare(self.pool, &system, &tree, &columns);
-                    system.eliminate_constants(self.pool, &level.rows, &columns, &admitted)?;
-                }
+                self.carry(&mut system, &tree, &level.rows, now)?;
             }
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &passed, column)
@@ -220,11 +215,7 @@ impl Solver<'_> {
                     }
                 }
             }
-            let [first, turned, last] = tree.in_order(delayed);
-            for columns in [first, turned, last] {
-                congruence::prepare(self.pool, &system, &tree, &columns);
-                system.eliminate_constants(self.pool, &all, &columns, &admitted)?;
-            }
+            self.carry(&mut system, &tree, &all, delayed)?;
         }
         for joint in &joints {
             self.release(&mut system, joint)?;
@@ -246,6 +237,22 @@ impl Solver<'_> {
             shift.undo(self.pool, &mut values);
         }
         self.store(unknowns, values);
+        Ok(())
+    }
+
+    /// Eliminates columns by constant pivots in the rows given.
+    fn carry(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+        rows: &Columns,
+        columns: Columns,
+    ) -> Result<(), Failure> {
+        let admitted = |row, column| tree.admits(row, column);
+        for columns in tree.in_order(columns) {
+            congruence::prepare(self.pool, system, tree, &columns);
+            system.eliminate_constants(self.pool, rows, &columns, &admitted)?;
+        }
         Ok(())
     }
 

@@ -21,6 +21,7 @@
 use nalgebra::SVector;
 pub use wide::{f32x8, f32x16, f64x4, f64x8};
 
+use crate::exponential::{self, Exponent};
 use crate::sine::{self, Angle};
 use crate::{Columns, FUSED, Real};
 
@@ -75,7 +76,7 @@ macro_rules! lane_by_lane {
 }
 
 macro_rules! lanes {
-    ($lanes:ident, $scalar:ident, $count:literal, $constants:ident, $unsigned:ident, $bits:literal) => {
+    ($lanes:ident, $scalar:ident, $count:literal, $constants:ident, $unsigned:ident, $bits:literal, $fraction:literal) => {
         impl Lanes for $lanes {
             type Lane = $scalar;
             const COUNT: usize = $count;
@@ -146,7 +147,12 @@ macro_rules! lanes {
                 sine::sines_cosines(angles, sine::moderate)
             }
 
-            lane_by_lane!($scalar: tan, asin, acos, exp, ln, tanh; atan2);
+            lane_by_lane!($scalar: tan, asin, acos, ln, tanh; atan2);
+
+            #[inline]
+            fn exp(self) -> Self {
+                exponential::exp(self)
+            }
 
             #[inline]
             fn sqrt(self) -> Self {
@@ -185,8 +191,8 @@ macro_rules! lanes {
             sine::$constants!();
 
             #[inline(always)]
-            fn is_moderate(self) -> bool {
-                $lanes::abs(self).simd_le(Self::splat(Self::LARGEST as $scalar)).all()
+            fn is_within(self, largest: f64) -> bool {
+                $lanes::abs(self).simd_le(Self::splat(largest as $scalar)).all()
             }
 
             #[cold]
@@ -209,13 +215,27 @@ macro_rules! lanes {
                 )
             }
         }
+
+        impl Exponent for $lanes {
+            exponential::$constants!();
+
+            #[cold]
+            fn extreme(self) -> Self {
+                Self::new(self.to_array().map(Real::exp))
+            }
+
+            #[inline(always)]
+            fn doubled(self, shifted: Self) -> Self {
+                Self::from_bits(self.to_bits() + (shifted.to_bits() << $fraction))
+            }
+        }
     };
 }
 
-lanes!(f64x4, f64, 4, double, u64x4, 64);
-lanes!(f64x8, f64, 8, double, u64x8, 64);
-lanes!(f32x8, f32, 8, single, u32x8, 32);
-lanes!(f32x16, f32, 16, single, u32x16, 32);
+lanes!(f64x4, f64, 4, double, u64x4, 64, 52);
+lanes!(f64x8, f64, 8, double, u64x8, 64, 52);
+lanes!(f32x8, f32, 8, single, u32x8, 32, 23);
+lanes!(f32x16, f32, 16, single, u32x16, 32, 23);
 
 #[cfg(test)]
 pub(crate) mod tests {

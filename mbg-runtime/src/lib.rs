@@ -21,6 +21,7 @@ pub mod batch;
 mod columns;
 mod convertible;
 mod dual;
+mod exponential;
 mod four;
 mod input;
 #[cfg(feature = "lanes")]
@@ -39,6 +40,8 @@ pub mod solve;
 mod sparsity;
 mod step;
 mod system;
+#[cfg(test)]
+mod twofold;
 
 pub use columns::Columns;
 pub use convertible::Convertible;

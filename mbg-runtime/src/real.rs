@@ -25,8 +25,8 @@ pub const FUSED: bool = cfg!(all(
 ///
 /// | type | elementary functions |
 /// |---|---|
-/// | `f64`, `f32` | sine and cosine of this crate; others of the standard library with `std` and without `reproducible`, else of the crate `libm` |
-/// | lanes, with the feature `lanes` | sine and cosine likewise, all lanes at once; others lane by lane |
+/// | `f64`, `f32` | sine, cosine and exponential of this crate; others of the standard library with `std` and without `reproducible`, else of the crate `libm` |
+/// | lanes, with the feature `lanes` | sine, cosine and exponential likewise, all lanes at once; others lane by lane |
 /// | [`Dual<T>`](crate::Dual) | those of `T`, with their slopes |
 pub trait Real:
     Copy
@@ -103,6 +103,9 @@ pub trait Real:
     /// Angle of the vector (`x`, `self`), in (−π, π].
     fn atan2(self, x: Self) -> Self;
     /// Exponential.
+    ///
+    /// The same without branches where the result is a normal number, up to exponents of 708 in double and 87 in single
+    /// precision, with an error below one unit of the last place. Larger ones take `libm`.
     fn exp(self) -> Self;
     /// Natural logarithm; NaN for negative numbers.
     fn ln(self) -> Self;

@@ -9,6 +9,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use fearless_simd::x86::{Avx2, Avx512};
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdMask};
 
+use crate::exponential::{self, Exponent};
 use crate::lanes::{f32x16, f64x8};
 use crate::sine::{self, Angle};
 use crate::{Four, Real};
@@ -94,7 +95,7 @@ macro_rules! one_by_one {
 }
 
 macro_rules! registers {
-    ($name:ident, $block:ident, $scalar:ident, $native:ident, $constants:ident, $bits:literal) => {
+    ($name:ident, $block:ident, $scalar:ident, $native:ident, $constants:ident, $bits:literal, $fraction:literal) => {
         /// As many numbers as a register holds.
         #[derive(Clone, Copy, Debug)]
         pub struct $name<S: Proven>(S::$native);
@@ -199,7 +200,7 @@ macro_rules! registers {
                 )
             }
 
-            one_by_one!(tan, asin, acos, exp, ln, tanh);
+            one_by_one!(tan, asin, acos, ln, tanh);
 
             #[inline(always)]
             fn atan2(mut self, x: Self) -> Self {
@@ -207,6 +208,11 @@ macro_rules! registers {
                     *y = Real::atan2(*y, *x);
                 }
                 self
+            }
+
+            #[inline(always)]
+            fn exp(self) -> Self {
+                exponential::exp(self)
             }
 
             #[inline(always)]
@@ -245,8 +251,8 @@ macro_rules! registers {
             sine::$constants!();
 
             #[inline(always)]
-            fn is_moderate(self) -> bool {
-                self.0.abs().simd_le(Self::LARGEST as $scalar).all_true()
+            fn is_within(self, largest: f64) -> bool {
+                self.0.abs().simd_le(largest as $scalar).all_true()
             }
 
             #[cold]
@@ -269,11 +275,27 @@ macro_rules! registers {
                 )
             }
         }
+
+        impl<S: Proven> Exponent for $name<S> {
+            exponential::$constants!();
+
+            #[cold]
+            #[inline(never)]
+            fn extreme(self) -> Self {
+                self.each(Real::exp)
+            }
+
+            #[inline(always)]
+            fn doubled(self, shifted: Self) -> Self {
+                let power = shifted.0.to_bits() << $fraction;
+                Self((self.0.to_bits() + power).bitcast())
+            }
+        }
     };
 }
 
-registers!(Doubles, f64x8, f64, f64s, double, 64);
-registers!(Singles, f32x16, f32, f32s, single, 32);
+registers!(Doubles, f64x8, f64, f64s, double, 64, 52_u32);
+registers!(Singles, f32x16, f32, f32s, single, 32, 23_u32);
 
 #[cfg(test)]
 mod tests;

@@ -147,11 +147,16 @@ macro_rules! lanes {
                 sine::sines_cosines(angles, sine::moderate)
             }
 
-            lane_by_lane!($scalar: tan, asin, acos, ln, tanh; atan2);
+            lane_by_lane!($scalar: tan, asin, acos, ln; atan2);
 
             #[inline]
             fn exp(self) -> Self {
                 exponential::exp(self)
+            }
+
+            #[inline]
+            fn tanh(self) -> Self {
+                exponential::tanh(self)
             }
 
             #[inline]

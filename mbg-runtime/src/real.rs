@@ -25,8 +25,8 @@ pub const FUSED: bool = cfg!(all(
 ///
 /// | type | elementary functions |
 /// |---|---|
-/// | `f64`, `f32` | sine, cosine and exponential of this crate; others of the standard library with `std` and without `reproducible`, else of the crate `libm` |
-/// | lanes, with the feature `lanes` | sine, cosine and exponential likewise, all lanes at once; others lane by lane |
+/// | `f64`, `f32` | sine, cosine, exponential and hyperbolic tangent of this crate; others of the standard library with `std` and without `reproducible`, else of the crate `libm` |
+/// | lanes, with the feature `lanes` | those of this crate likewise, all lanes at once; others lane by lane |
 /// | [`Dual<T>`](crate::Dual) | those of `T`, with their slopes |
 pub trait Real:
     Copy
@@ -111,7 +111,7 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Square root; NaN for negative numbers.
     fn sqrt(self) -> Self;
-    /// Hyperbolic tangent.
+    /// Hyperbolic tangent, within 2.7 units of the last place.
     fn tanh(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;

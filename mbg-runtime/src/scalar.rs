@@ -67,6 +67,11 @@ macro_rules! ordered {
         }
 
         #[inline]
+        fn tanh(self) -> Self {
+            crate::exponential::tanh(self)
+        }
+
+        #[inline]
         fn abs(self) -> Self {
             $scalar::abs(self)
         }
@@ -121,7 +126,7 @@ impl Real for f64 {
     const SINGULAR: f64 = 1.490_116_119_384_765_6e-8;
 
     ordered!(f64, f64x4);
-    elementary!(f64: tan = tan, asin = asin, acos = acos, ln = log, sqrt = sqrt, tanh = tanh);
+    elementary!(f64: tan = tan, asin = asin, acos = acos, ln = log, sqrt = sqrt);
 
     #[inline]
     fn atan2(self, x: Self) -> Self {
@@ -141,7 +146,7 @@ impl Real for f32 {
     const SINGULAR: f64 = 3.452_669_830_012_439_4e-4;
 
     ordered!(f32, f32x8);
-    elementary!(f32: tan = tanf, asin = asinf, acos = acosf, ln = logf, sqrt = sqrtf, tanh = tanhf);
+    elementary!(f32: tan = tanf, asin = asinf, acos = acosf, ln = logf, sqrt = sqrtf);
 
     #[inline]
     fn atan2(self, x: Self) -> Self {

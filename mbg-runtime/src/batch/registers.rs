@@ -200,7 +200,7 @@ macro_rules! registers {
                 )
             }
 
-            one_by_one!(tan, asin, acos, ln, tanh);
+            one_by_one!(tan, asin, acos, ln);
 
             #[inline(always)]
             fn atan2(mut self, x: Self) -> Self {
@@ -213,6 +213,11 @@ macro_rules! registers {
             #[inline(always)]
             fn exp(self) -> Self {
                 exponential::exp(self)
+            }
+
+            #[inline(always)]
+            fn tanh(self) -> Self {
+                exponential::tanh(self)
             }
 
             #[inline(always)]

@@ -31,6 +31,10 @@ const PARTS: f64 = 32.0;
 /// A difference of slopes over a whole step counts from so many times the tolerance on.
 const LARGE: f64 = 30.0;
 
+/// At least so many parts has a step behind a refused one: what was refused may begin within it, and an estimate of its
+/// error that falls from above may be small by chance.
+const AGAIN: u32 = 4;
+
 /// A difference of so many roundings is none.
 const ROUNDING: f64 = 64.0;
 
@@ -92,7 +96,10 @@ where
             return None;
         }
         let (time, length) = (seen(start.span.start), seen(start.span.length));
-        let parts = self.probes.parts(time, length);
+        let mut parts = self.probes.parts(time, length);
+        if start.again {
+            parts = parts.max(AGAIN);
+        }
         if parts == 1 {
             return None;
         }

@@ -17,12 +17,11 @@ pub(crate) trait Exponent: Angle {
     const GREATEST: f64;
     /// ln 2 in two parts.
     const LN_2: [f64; 2];
-
-    /// Lane by lane by `libm`.
-    fn extreme(self) -> Self;
     /// From here on a hyperbolic tangent is one.
     const STRAIGHT: f64;
 
+    /// Lane by lane by `libm`.
+    fn extreme(self) -> Self;
     /// (exp r − 1 − r) / r².
     fn rest<const K: usize>(r: [Self; K]) -> [Self; K];
     /// The number times two to the power that the lowest bits of `shifted` are.

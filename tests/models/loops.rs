@@ -1,11 +1,12 @@
 //! Nonlinear algebraic loops against closed forms, bisection, references and identities.
 
 use mbg_runtime::{
-    Adaptive, Cause, Constant, Dop853, Dual, Integrator, Loop, Rk4, Smooth, Solver, System,
-    Trouble, Tsit5, mbg,
+    Adaptive, Cause, Constant, Dop853, Dual, Estimating, Integrator, Loop, Radau5, Rk4, Rodas5P,
+    Smooth, Solver, System, Trouble, Tsit5, mbg,
 };
 use nalgebra::{SMatrix, SVector};
 
+use crate::references::errors::larger;
 use crate::references::rectifier;
 
 mbg! {
@@ -337,6 +338,47 @@ fn rectifier_meets_the_reference() {
         f64::abs(charge - 0.001_252_489_466_232_834_8) < 1e-14,
         "{charge}"
     );
+}
+
+/// Error of the voltage of a rectifier with its source outside, in tolerances.
+fn rectified(method: impl Estimating, tolerance: f64) -> f64 {
+    let model = Rectifier::<f64>::new(RectifierParameters::default()).unwrap();
+    let supply = Smooth(|t: f64| SVector::from([rectifier::source(t)]));
+    let solver = Adaptive {
+        nominal: &[1e-3],
+        ..Adaptive::new(method, tolerance, 0.1 * tolerance)
+    };
+    let times = rectifier::REFERENCE.map(|(time, _)| time);
+    let mut expected = rectifier::REFERENCE.iter();
+    let mut worst = 0.0;
+    let start = model.initial_state();
+    solver
+        .sample(&model, &supply, 0.0, start, &times, |t, x| {
+            let u = SVector::from([rectifier::source(t)]);
+            let found = model.output(t, x, &u, &mut Default::default())[0];
+            worst = larger(worst, (found - expected.next().unwrap().1).abs());
+        })
+        .unwrap();
+    worst / (10.0 * tolerance)
+}
+
+/// While its diode blocks nothing changes, however smooth the source is; each pulse must be found all the same.
+#[test]
+fn no_pulse_of_a_driven_rectifier_is_stepped_over() {
+    for step in 0..28 {
+        let tolerance = 1e-3 * f64::powf(10.0, -0.25 * f64::from(step));
+        let errors = [
+            rectified(Tsit5, tolerance),
+            rectified(Dop853, tolerance),
+            rectified(Rodas5P, tolerance),
+            rectified(Radau5, tolerance),
+        ];
+        // A missed pulse costs from a hundred to 1e10.
+        assert!(
+            errors.iter().all(|error| *error < 60.0),
+            "{tolerance:e}: {errors:.1?}"
+        );
+    }
 }
 
 #[test]

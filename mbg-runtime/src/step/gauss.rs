@@ -177,6 +177,7 @@ where
             change: combination(weights, &self.slopes).map(|sum| length * sum),
             slope: None,
             error: if found { 0.0 } else { f64::INFINITY },
+            coarse: 0.0,
         }
     }
 

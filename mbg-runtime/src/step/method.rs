@@ -66,6 +66,8 @@ pub struct Trial<T, const N: usize> {
     pub(super) slope: Option<SVector<T, N>>,
     /// Error in units of the tolerance; not finite when the step failed, zero when the method has no estimate.
     pub(super) error: f64,
+    /// The square of the coarsest estimate of the error in the same units, of the error itself where there is no other.
+    pub(super) coarse: f64,
 }
 
 /// What the implementation of a method works with.

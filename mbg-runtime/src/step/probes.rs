@@ -1,4 +1,4 @@
-//! What a model that depends on time does between the stages of a step.
+//! What a driven model does between the stages of a step.
 
 use nalgebra::SVector;
 
@@ -13,9 +13,12 @@ use crate::{Input, Real, System};
 /// Looks into steps for what their stages may miss: a pulse of a source, within a step over rest.
 ///
 /// At a probe the model's derivative is compared to that of the dense output; where they differ by far more than the
-/// tolerance allows, the step is refused. Steps become short where something happens; probes are half that length apart
-/// and a part of the time since. So a run at steps of much the same length needs none after a while, and what comes again
-/// is seen again.
+/// tolerance allows, the step is refused.
+///
+/// Steps become short where something happens; probes are half that length apart and a part of the time since. So a run at
+/// steps of much the same length needs none after a while, and what comes again is seen again. Estimates of the error
+/// presume that the solution is smooth: where something begins within a step they may be small by chance, so such steps are
+/// looked into as well. A model that nothing but its state drives is left alone.
 #[derive(Clone, Copy)]
 pub(super) struct Probes {
     /// Since when steps have not become short.
@@ -24,16 +27,20 @@ pub(super) struct Probes {
     shortest: f64,
     /// The longest step since then.
     longest: f64,
+    /// The length of the last step and the square of its coarsest estimate.
+    last: [f64; 2],
 }
 
 /// The part of the time since that probes may be apart.
-const PARTS: f64 = 32.0;
+const PARTS: f64 = 24.0;
 /// A difference of slopes over a whole step counts from so many times the tolerance on.
 const LARGE: f64 = 30.0;
 
-/// At least so many parts has a step behind a refused one: what was refused may begin within it, and an estimate of its
-/// error that falls from above may be small by chance.
-const AGAIN: u32 = 4;
+/// At least so many parts has a step in which something may begin that the estimate of its error shows too small by
+/// chance: one behind a refused step, and one whose coarsest estimate has grown out of the order of its method.
+const FEW: u32 = 4;
+/// The coarsest estimate grows by the fourth power of the length or more; out of that order if its square by so much.
+const SUDDEN: f64 = 25.0;
 
 /// A difference of so many roundings is none.
 const ROUNDING: f64 = 64.0;
@@ -45,19 +52,17 @@ impl Probes {
             since: start,
             shortest: 0.0,
             longest: 0.0,
+            last: [0.0; 2],
         }
     }
 
     /// Takes note of a step that has been taken, unless it had to end where it does.
-    pub(super) fn heed(&mut self, time: f64, length: f64) {
+    pub(super) fn heed(&mut self, time: f64, length: f64, coarse: f64) {
         if length < 0.5 * self.longest {
-            *self = Self {
-                since: time,
-                shortest: length,
-                longest: length,
-            };
+            self.begin(time, length, length);
         }
         self.longest = self.longest.max(length);
+        self.last = [length, coarse];
     }
 
     /// In how many parts probes are to divide a step.
@@ -67,14 +72,17 @@ impl Probes {
         1 + ((length / spacing).min(PARTS) - 1e-6) as u32
     }
 
-    /// Takes note that probes this far apart have found something behind a step that is `clear` long: what follows is
-    /// looked into twice as closely.
-    fn found(&mut self, time: f64, apart: f64, clear: f64) {
-        *self = Self {
-            since: time,
-            shortest: apart,
-            longest: clear,
-        };
+    /// Begins anew at a step so short, `longest` being the longest since.
+    fn begin(&mut self, time: f64, shortest: f64, longest: f64) {
+        (self.since, self.shortest, self.longest) = (time, shortest, longest);
+    }
+
+    /// Whether the coarsest estimate of a step has grown by more than its length explains.
+    fn is_sudden(&self, length: f64, coarse: f64) -> bool {
+        let [last, before] = self.last;
+        let longer = length / last;
+        let by_length = longer * longer * longer * longer;
+        coarse > SUDDEN * before * (by_length * by_length).max(1.0)
     }
 }
 
@@ -92,13 +100,13 @@ where
         tolerance: &Tolerance<N>,
         polynomial: impl FnOnce(&mut Self) -> Polynomial<T, N>,
     ) -> Option<f64> {
-        if S::AUTONOMOUS {
+        if self.is_left_alone() {
             return None;
         }
         let (time, length) = (seen(start.span.start), seen(start.span.length));
         let mut parts = self.probes.parts(time, length);
-        if start.again {
-            parts = parts.max(AGAIN);
+        if start.again || self.probes.is_sudden(length, trial.coarse) {
+            parts = parts.max(FEW);
         }
         if parts == 1 {
             return None;
@@ -114,7 +122,8 @@ where
         self.memory = memory;
         missed.map(|probe| {
             let clear = part * f64::from(probe.max(2) - 1);
-            self.probes.found(time, part, clear);
+            // What follows is looked into twice as closely.
+            self.probes.begin(time, part, clear);
             clear
         })
     }
@@ -160,14 +169,26 @@ mod tests {
     #[test]
     fn probes_are_a_part_of_the_past_apart() {
         let mut probes = Probes::new(0.0);
-        probes.heed(0.0, 1.0);
-        assert_eq!(probes.parts(0.0, 1.0), 32);
-        assert_eq!(probes.parts(1.0, 1.0), 16);
-        assert_eq!(probes.parts(31.0, 1.0), 1);
+        probes.heed(0.0, 1.0, 0.0);
+        assert_eq!(probes.parts(0.0, 1.0), 24);
+        assert_eq!(probes.parts(1.0, 1.0), 12);
+        assert_eq!(probes.parts(23.0, 1.0), 1);
         // A step less than half as long begins anew, and its like need hardly any.
-        probes.heed(100.0, 0.1);
+        probes.heed(100.0, 0.1, 0.0);
         assert_eq!(probes.parts(100.1, 0.1), 2);
         assert_eq!(probes.parts(102.0, 0.1), 1);
-        assert_eq!(probes.parts(100.1, 1.0), 12);
+        assert_eq!(probes.parts(100.1, 1.0), 11);
+    }
+
+    #[test]
+    fn an_estimate_is_sudden_where_its_length_does_not_explain_it() {
+        let mut probes = Probes::new(0.0);
+        probes.heed(0.0, 1.0, 1e-4);
+        assert!(!probes.is_sudden(1.0, 24e-4));
+        assert!(probes.is_sudden(1.0, 26e-4));
+        // Squared errors of order three grow by the eighth power of the length.
+        assert!(!probes.is_sudden(2.0, 256.0 * 24e-4));
+        assert!(probes.is_sudden(2.0, 256.0 * 26e-4));
+        assert!(probes.is_sudden(0.5, 26e-4));
     }
 }

@@ -218,23 +218,27 @@ where
             self.slopes[S] = problem.slope(start.span.end, &(start.x + change));
             self.slopes[S]
         });
-        let error = match tolerance {
+        let (error, coarse) = match tolerance {
             Some(tolerance) if !fine.is_empty() => {
                 let measure = tolerance.between(&start.x, &change);
                 let square = |weights| measure.square(&combination(weights, &self.slopes));
-                seen(length)
-                    * if coarse.is_empty() {
-                        Real::sqrt(square(fine))
-                    } else {
-                        both(square(fine), square(coarse))
-                    }
+                let fine = square(fine);
+                let (error, coarse) = if coarse.is_empty() {
+                    (Real::sqrt(fine), fine)
+                } else {
+                    let coarse = square(coarse);
+                    (both(fine, coarse), coarse)
+                };
+                let length = seen(length);
+                (length * error, length * length * coarse)
             }
-            _ => 0.0,
+            _ => (0.0, 0.0),
         };
         Trial {
             change,
             slope,
             error,
+            coarse,
         }
     }
 

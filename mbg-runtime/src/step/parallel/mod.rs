@@ -200,6 +200,7 @@ where
             change: last::<T, N, G>(&stages) - start.x,
             slope: Some(last::<T, N, G>(&slopes)),
             error,
+            coarse: error * error,
         }
     }
 

@@ -176,6 +176,7 @@ where
             change: stages[S - 1],
             slope: None,
             error,
+            coarse: error * error,
         }
     }
 
@@ -294,6 +295,7 @@ fn failed<T: Real, const N: usize, const S: usize>(
         change: stages[S - 1],
         slope: None,
         error: left,
+        coarse: left * left,
     }
 }
 

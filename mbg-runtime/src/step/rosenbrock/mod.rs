@@ -182,6 +182,7 @@ where
             change,
             slope: None,
             error,
+            coarse: error * error,
         }
     }
 

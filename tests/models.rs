@@ -31,6 +31,7 @@ mod models {
     mod energy;
     mod gimbals;
     mod lagrange;
+    mod linearised;
     mod loops;
     #[allow(dead_code, reason = "the example prints more of it")]
     mod mechanisms;

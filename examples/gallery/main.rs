@@ -22,6 +22,7 @@ mod quarter_car;
 mod rectifier;
 #[path = "../../tests/references/mod.rs"]
 mod references;
+mod ride;
 mod run;
 mod sleeping_top;
 mod slider_crank;
@@ -37,7 +38,7 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 19] = [
+const SCENES: [(&str, Draw); 20] = [
     ("gimbal_lock", gimbal_lock::draw),
     ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
@@ -52,6 +53,7 @@ const SCENES: [(&str, Draw); 19] = [
     ("governor", governor::draw),
     ("arm", arm::draw),
     ("quarter_car", quarter_car::draw),
+    ("ride", ride::draw),
     ("motor", motor::draw),
     ("rectifier", rectifier::draw),
     ("amplifier", amplifier::draw),

@@ -46,6 +46,11 @@ pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
             pub fn parameters(&self) -> &#parameters<T> { loop {} }
         }
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> { #behaviour }
+        impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
+            type With<L: ::mbg_runtime::Real> = #name<L>;
+            const STRAIGHT: bool = true;
+            fn converted<L: ::mbg_runtime::Real>(&self, _: impl ::core::ops::Fn(T) -> L) -> #name<L> { loop {} }
+        }
     }
 }
 

@@ -179,7 +179,7 @@ const SMALL: usize = 3;
 /// whatever units. Of a singular matrix the solutions are not finite. Of up to eight equations the columns of the
 /// inverse are kept instead: its products need not wait for each other, and a step takes several.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Factors<E, const N: usize> {
+pub(crate) struct Factors<E, const N: usize> {
     pub(super) rows: [[E; N]; N],
     order: [usize; N],
 }
@@ -187,7 +187,7 @@ pub(super) struct Factors<E, const N: usize> {
 impl<E: Element, const N: usize> Factors<E, N> {
     /// Nothing yet.
     #[inline(always)]
-    pub(super) fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             rows: [[E::zero(); N]; N],
             order: [0; N],
@@ -196,7 +196,7 @@ impl<E: Element, const N: usize> Factors<E, N> {
 
     /// Factors of the matrix of these entries.
     #[inline(always)]
-    pub(super) fn factorise(&mut self, entry: impl Fn(usize, usize) -> E) {
+    pub(crate) fn factorise(&mut self, entry: impl Fn(usize, usize) -> E) {
         if N > INVERTED {
             fill(&mut self.rows, entry);
             return self.eliminate();
@@ -270,7 +270,7 @@ impl<E: Element, const N: usize> Factors<E, N> {
 
     /// The `x` of `A x = right`.
     #[inline]
-    pub(super) fn solve(&self, right: [E; N]) -> [E; N] {
+    pub(crate) fn solve(&self, right: [E; N]) -> [E; N] {
         if N > INVERTED {
             return self.substituted(right);
         }

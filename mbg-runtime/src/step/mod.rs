@@ -39,6 +39,7 @@ pub use explicit::{Dop853, Rk4, Tsit5};
 pub use fixed::Fixed;
 pub use gauss::{Gauss6, ImplicitMidpoint};
 pub use integrator::{Arrival, Integrator};
+pub(crate) use linear::Factors;
 pub use linear::{Complex, Element};
 pub use method::{Estimating, Method};
 pub use parallel::{Pirk8, Pirk16};

@@ -1,0 +1,127 @@
+//! A model next to a state.
+
+use nalgebra::{Complex, SMatrix, SVector};
+
+use crate::step::{Complex as Number, Factors};
+use crate::{Convertible, Dual, Real, System, Trouble};
+
+/// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
+///
+/// Poles are the eigenvalues of `A`, `linearised.state.complex_eigenvalues()` with `nalgebra`. The four numbers of an
+/// attitude count as states: one pole at zero belongs to their length. So do the coordinates of loops that multipliers
+/// close: poles of what the loops hold lie at zero.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Linearised, System, mbg};
+/// use nalgebra::{ComplexField, SVector};
+///
+/// mbg! {
+///     /// A pendulum pushed by a torque.
+///     model Pendulum {
+///         input torque: N*m;
+///         1 joint {
+///             I rod { inertia: 0.5 }
+///             C weight { effort: 20.0 * sin(q) }
+///             R bearing { resistance: 0.2 }
+///             Se push { effort: torque }
+///         }
+///         output angle: rad = weight.q;
+///     }
+/// }
+///
+/// let pendulum = Pendulum::<f64>::new(PendulumParameters::default())?;
+/// let rest = pendulum.initial_state();
+/// let linear = Linearised::of(&pendulum, 0.0, &rest, &SVector::zeros()).unwrap();
+/// // 1 / (20 − 0.5 ω² + 0.2 jω) at its natural frequency.
+/// let response = linear.response(f64::sqrt(40.0)).unwrap()[(0, 0)];
+/// assert!((response.modulus() - 1.0 / (0.2 * f64::sqrt(40.0))).abs() < 1e-12);
+/// assert!((response.argument() + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+/// # Ok::<(), mbg_runtime::ParameterError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearised<T, const N: usize, const M: usize, const P: usize> {
+    /// The state matrix `A = ∂f/∂x`.
+    pub state: SMatrix<T, N, N>,
+    /// The input matrix `B = ∂f/∂u`.
+    pub input: SMatrix<T, N, M>,
+    /// The output matrix `C = ∂y/∂x`.
+    pub output: SMatrix<T, P, N>,
+    /// The feedthrough matrix `D = ∂y/∂u`.
+    pub feedthrough: SMatrix<T, P, M>,
+}
+
+impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M, P> {
+    /// Next to a state, exact but for rounding: the model's own Jacobians, and its outputs on [`Dual`] numbers. Where a law
+    /// has no finite slope, as a square root at zero, entries are infinite or NaN.
+    ///
+    /// # Errors
+    ///
+    /// What [`System::trouble`] says of this state.
+    pub fn of<S>(system: &S, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Result<Self, Trouble>
+    where
+        S: Convertible<T, N, M, P>,
+    {
+        let mut memory = S::Memory::default();
+        let (_, state) = system.derivative_and_jacobian(t, x, u, &mut memory);
+        if let Some(trouble) = system.trouble(t, x, u, &memory) {
+            return Err(trouble);
+        }
+        let dual = system.converted(Dual::constant);
+        let (time, x0, u0) = (
+            Dual::constant(t),
+            x.map(Dual::constant),
+            u.map(Dual::constant),
+        );
+        Ok(Self {
+            state,
+            input: system.jacobian_input(t, x, u, &mut memory),
+            output: slopes(x0, |x| dual.output(time, x, &u0, &mut ())),
+            feedthrough: slopes(u0, |u| dual.output(time, &x0, u, &mut ())),
+        })
+    }
+
+    /// The frequency response `C (jω I − A)⁻¹ B + D`: amplitudes and phases of outputs to inputs that swing with `frequency`
+    /// in rad/s. None where it is not finite: a pole lies there.
+    pub fn response(&self, frequency: T) -> Option<SMatrix<Complex<T>, P, M>> {
+        let zero = T::from_f64(0.0);
+        let mut factors = Factors::<Number<T>, N>::empty();
+        factors.factorise(|row, column| Number {
+            real: -self.state[(row, column)],
+            imaginary: if row == column { frequency } else { zero },
+        });
+        let swings: [[Number<T>; N]; M] = core::array::from_fn(|input| {
+            let column = core::array::from_fn(|row| Number {
+                real: self.input[(row, input)],
+                imaginary: zero,
+            });
+            factors.solve(column)
+        });
+        let response = SMatrix::<_, P, M>::from_fn(|output, input| {
+            let mut sum = Complex::new(self.feedthrough[(output, input)], zero);
+            for (state, swing) in swings[input].iter().enumerate() {
+                let weight = self.output[(output, state)];
+                sum.re += weight * swing.real;
+                sum.im += weight * swing.imaginary;
+            }
+            sum
+        });
+        let is_finite = |it: &Complex<T>| (it.re.magnitude() + it.im.magnitude()).is_finite();
+        response.iter().all(is_finite).then_some(response)
+    }
+}
+
+/// The derivatives of a function by each component.
+fn slopes<T: Real, const K: usize, const P: usize>(
+    at: SVector<Dual<T>, K>,
+    function: impl Fn(&SVector<Dual<T>, K>) -> SVector<Dual<T>, P>,
+) -> SMatrix<T, P, K> {
+    let mut matrix = SMatrix::<T, P, K>::from_element(T::from_f64(0.0));
+    for (component, mut column) in matrix.column_iter_mut().enumerate() {
+        let mut at = at;
+        at[component].slope = T::from_f64(1.0);
+        column.copy_from(&function(&at).map(|value| value.slope));
+    }
+    matrix
+}

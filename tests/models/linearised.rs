@@ -1,0 +1,195 @@
+//! Models next to a state, against closed forms, differences and runs.
+
+use std::f64::consts::TAU;
+
+use mbg_runtime::{Adaptive, Dop853, Integrator, Linearised, Real, Smooth, System, Trouble, mbg};
+use nalgebra::{Complex, ComplexField, SMatrix, SVector};
+
+use crate::references::errors::larger;
+
+mbg! {
+    include "examples/gallery/quarter_car.mbg";
+    include "examples/gallery/flying.mbg";
+
+    /// A pendulum in a wind whose force is an output, too: one that is fed through.
+    model Weathervane {
+        param inertia: kg*m^2 = 0.5;
+        input wind: N;
+        1 joint {
+            I vane { inertia: inertia }
+            C weight { effort: 20.0 * sin(q), initial: 0.7 }
+            R bearing { effort: 0.1 * f + 0.05 * f * abs(f) }
+        }
+        Se gust { effort: wind } -> TF arm { flow: 2.0 } -> joint;
+        output load[2] = [wind * cos(weight.q), exp(0.3 * weight.q) * joint.f];
+    }
+
+    /// What nothing damps.
+    model Ringing {
+        input force;
+        1 mesh { I mass { inertia: 2.0 } C spring { stiffness: 8.0 } Se push { effort: force } }
+        output speed = mesh.f;
+    }
+
+    /// Pulled through the attitude in which its gimbals lock.
+    model Locking {
+        input torque[3]: N*m;
+        1 frame[6];
+        flying: Flying { orientation: angles, inertia: diag(1.0, 2.0, 1.5) } (frame);
+        Se pull[3] { effort: torque } -> frame[0..3];
+        output rates[3]: rad/s = frame.f[0..3];
+    }
+}
+
+/// Speeds of body and wheel for the road's, by hand.
+fn car(frequency: f64) -> [Complex<f64>; 2] {
+    let s = Complex::new(0.0, frequency);
+    let strut = s * 1200.0 + 16e3;
+    let body = s * s * 300.0 + strut;
+    let wheel = s * s * 40.0 + strut + 190e3;
+    let determinant = body * wheel - strut * strut;
+    [strut * 190e3 / determinant, body * 190e3 / determinant]
+}
+
+#[test]
+fn response_of_a_quarter_car_is_that_by_hand() {
+    let model = QuarterCar::<f64>::new(QuarterCarParameters::default()).unwrap();
+    let (rest, still) = (model.initial_state(), SVector::zeros());
+    let linear = Linearised::of(&model, 0.0, &rest, &still).unwrap();
+    let mut worst = 0.0;
+    for step in 1..=200 {
+        let frequency = TAU * 0.1 * f64::from(step);
+        let response = linear.response(frequency).unwrap();
+        for (output, expected) in car(frequency).into_iter().enumerate() {
+            let found = response[(2 + output, 0)];
+            worst = larger(worst, (found - expected).modulus() / expected.modulus());
+            // Places are integrals of speeds.
+            let place = response[(output, 0)] * Complex::new(0.0, frequency);
+            worst = larger(worst, (place - expected).modulus() / expected.modulus());
+        }
+    }
+    assert!(worst < 1e-12, "{worst:e}");
+}
+
+/// Each matrix against differences of what it is the slope of.
+#[test]
+fn matrices_are_slopes() {
+    let model = Weathervane::<f64>::new(WeathervaneParameters::default()).unwrap();
+    let (x, u) = (SVector::from([0.4, 0.6]), SVector::from([1.5]));
+    let linear = Linearised::of(&model, 0.0, &x, &u).unwrap();
+    let values = |x: &SVector<f64, 2>, u: &SVector<f64, 1>| {
+        let slope = model.derivative(0.0, x, u, &mut ());
+        (slope, model.output(0.0, x, u, &mut ()))
+    };
+    let h = 1e-6;
+    let mut worst = 0.0;
+    let mut compare = |ends: [(SVector<f64, 2>, SVector<f64, 2>); 2],
+                       found: [SVector<f64, 2>; 2]| {
+        let [behind, ahead] = ends;
+        let expected = [
+            (ahead.0 - behind.0) / (2.0 * h),
+            (ahead.1 - behind.1) / (2.0 * h),
+        ];
+        for (found, expected) in found.iter().zip(expected) {
+            worst = larger(worst, (found - expected).amax());
+        }
+    };
+    for column in 0..2 {
+        let step = SVector::from_fn(|row, _| if row == column { h } else { 0.0 });
+        let ends = [values(&(x - step), &u), values(&(x + step), &u)];
+        let columns = [linear.state.column(column), linear.output.column(column)];
+        compare(ends, columns.map(|column| column.into_owned()));
+    }
+    let step = SVector::from([h]);
+    let ends = [values(&x, &(u - step)), values(&x, &(u + step))];
+    compare(
+        ends,
+        [linear.input.column(0), linear.feedthrough.column(0)].map(|it| it.into_owned()),
+    );
+    assert!(worst < 1e-8, "{worst:e}");
+    assert!(
+        linear.feedthrough[(0, 0)] == x[1].cos(),
+        "what is fed through"
+    );
+}
+
+/// A run with a small input swings as the response says.
+#[test]
+fn a_run_swings_as_the_response_says() {
+    let model = Weathervane::<f64>::new(WeathervaneParameters::default()).unwrap();
+    let (frequency, amplitude) = (5.0, 1e-4);
+    let rest = SVector::zeros();
+    let linear = Linearised::of(&model, 0.0, &rest, &SVector::zeros()).unwrap();
+    let response = linear.response(frequency).unwrap();
+    // Starts on the swing itself: x = Im((jω − A)⁻¹ B a).
+    let states = Linearised {
+        output: SMatrix::identity(),
+        feedthrough: SMatrix::zeros(),
+        ..linear
+    };
+    let start = states
+        .response(frequency)
+        .unwrap()
+        .map(|it| amplitude * it.im);
+    let push = Smooth(|t: f64| SVector::from([amplitude * (frequency * t).sin()]));
+    let times: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
+    let mut worst = 0.0;
+    Adaptive::new(Dop853, 1e-12, 1e-18)
+        .sample(&model, &push, 0.0, start, &times, |t, x| {
+            let u = SVector::from([amplitude * (frequency * t).sin()]);
+            let found = model.output(t, x, &u, &mut ());
+            let turned = Complex::new((frequency * t).cos(), (frequency * t).sin());
+            for (found, response) in found.iter().zip(response.iter()) {
+                worst = larger(worst, (found / amplitude - (response * turned).im).abs());
+            }
+        })
+        .unwrap();
+    // What is left is of the order of the amplitude.
+    assert!(worst < 2e-4, "{worst:e}");
+}
+
+#[test]
+fn there_is_no_response_at_a_pole() {
+    let model = Ringing::<f64>::new(RingingParameters::default()).unwrap();
+    let linear = Linearised::of(&model, 0.0, &model.initial_state(), &SVector::zeros()).unwrap();
+    assert_eq!(linear.response(2.0), None);
+    let near = linear.response(1.0).unwrap()[(0, 0)];
+    assert_eq!([near.re, near.im], [0.0, 1.0 / 6.0]);
+    let poles = linear.state.complex_eigenvalues();
+    assert!(
+        poles
+            .iter()
+            .all(|pole| pole.re.abs() < 1e-15 && (pole.im.abs() - 2.0).abs() < 1e-15)
+    );
+}
+
+#[test]
+fn a_singular_attitude_is_refused_by_name() {
+    let model = Locking::<f64>::new(LockingParameters::default()).unwrap();
+    let place = |name: &str| {
+        let states = <Locking as System<f64, _, _, _>>::META.states;
+        states
+            .iter()
+            .position(|state| state.name.ends_with(name))
+            .unwrap()
+    };
+    let mut x = model.initial_state();
+    x[place("angle.y")] = std::f64::consts::FRAC_PI_2;
+    let refused = Linearised::of(&model, 0.0, &x, &SVector::zeros()).unwrap_err();
+    assert!(matches!(refused, Trouble::Singular { .. }), "{refused}");
+    x[place("angle.y")] = 1.0;
+    assert!(Linearised::of(&model, 0.0, &x, &SVector::zeros()).is_ok());
+}
+
+#[test]
+fn single_precision_agrees_with_double() {
+    let model = QuarterCar::<f32>::new(QuarterCarParameters::default()).unwrap();
+    let (rest, still) = (model.initial_state(), SVector::zeros());
+    let linear = Linearised::of(&model, 0.0, &rest, &still).unwrap();
+    let response = linear.response(f32::from_f64(10.0)).unwrap();
+    for (output, expected) in car(10.0).into_iter().enumerate() {
+        let found = response[(2 + output, 0)];
+        let found = Complex::new(f64::from(found.re), f64::from(found.im));
+        assert!((found - expected).modulus() < 1e-5 * expected.modulus());
+    }
+}

@@ -15,4 +15,10 @@ mbg! {
     }
 }
 
-fn main() {}
+/// What uses the model is no mistake.
+fn main() {
+    use mbg_runtime::System;
+    let names = Names::<f64>::new(NamesParameters::default()).unwrap();
+    let still = nalgebra::SVector::zeros();
+    let _ = mbg_runtime::Linearised::of(&names, 0.0, &names.initial_state(), &still);
+}

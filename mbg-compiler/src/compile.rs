@@ -10,7 +10,7 @@ use crate::diagnostics::{Diagnostics, error};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
-use crate::graph::{ElementId, ElementKind, Junction};
+use crate::graph::{Element, ElementId, ElementKind, Junction, Law, Storage};
 use crate::jacobians;
 use crate::network::Network;
 use crate::program::{self, Program, Request};
@@ -18,6 +18,7 @@ use crate::sparsity::{self, Pattern};
 use crate::start;
 use crate::structure::{self, Failure, Formulation, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
+use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, products, share};
 use crate::syntax::ast;
 use crate::units;
@@ -195,6 +196,7 @@ fn finish(
     let mut notes = verdict.notes;
     notes.extend(unused_initial_values(&model, &answers));
     notes.extend(unused_initial_flows(&model));
+    notes.extend(modulated_energies(&model, &pool));
     Some(Compiled {
         program,
         conditioning: conditioning.iter().map(written).collect(),
@@ -285,6 +287,27 @@ fn unused_initial_flows(model: &Elaborated) -> Vec<String> {
         format!("the initial flow of `{name}` is not used: it follows from other states")
     };
     unused.map(note).collect()
+}
+
+/// Storages whose energy changes with more than their own states.
+fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<String> {
+    let is_modulated = |storage: &Storage| {
+        let mut read = symbols(pool, &[storage.energy]).into_iter();
+        read.any(|symbol| match symbol {
+            Symbol::State(state) => !storage.states.contains(&state),
+            Symbol::Parameter(_) => false,
+            _ => true,
+        })
+    };
+    let elements = model.graph.elements.iter();
+    let modulated = elements.filter(|it| matches!(&it.law, Law::Storage(it) if is_modulated(it)));
+    let note = |element: &Element| {
+        let name = &element.name;
+        format!(
+            "the energy of `{name}` changes with more than its own state: the power of that is not in the balance"
+        )
+    };
+    modulated.map(note).collect()
 }
 
 /// An expression with the model's names.

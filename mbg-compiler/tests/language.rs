@@ -5,7 +5,7 @@ mod models;
 
 use std::fmt::Write;
 
-use mbg_compiler::graph::BondId;
+use mbg_compiler::graph::{BondId, Law};
 use mbg_compiler::symbolic::Symbol;
 use mbg_compiler::symbolic::print::Printer;
 use models::{compiled, elaborated};
@@ -397,6 +397,7 @@ model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }}
     ");
     insta::assert_snapshot!(mistake("c: C { wya: left } (a);", ""), @"
     4:8 `C` has no parameter `wya` [MBG0207]
+      help: did you mean `way`?
       help: its parameters are `n`, `way`
     4:1 `C` needs a value for `way` [MBG0214]
       help: write `{ way: left | right }`
@@ -518,4 +519,95 @@ fn the_size_of_loops_is_known_before_they_are_built() {
         mistake("for i in 0..0 { for j in 0..1000000000 { 1 b; } }"),
         ""
     );
+}
+
+#[test]
+fn mistakes_in_laws_are_told() {
+    insta::assert_snapshot!(mistake("1 v[2] { EJS wheel { momentum: [0.0, 1.0] } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 2 [MBG0204]");
+    insta::assert_snapshot!(mistake("1 v[4] { EJS wheel { momentum: 1.0 } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 4 [MBG0204]");
+    insta::assert_snapshot!(mistake("input f; 1 v { I b { inertia: 1.0 } Se s { effort: 2.0 * f } }"), @"
+    2:58 `f` is a variable of `s` in its law, and declared as another value [MBG0202]
+      help: declare the other value by a longer name than `f`
+    ");
+    insta::assert_snapshot!(mistake("1 v[2] { C c { effort: [q.x + q.y, 2.0 * q.y] } I b { inertia: 1.0 } }"), @"
+    2:24 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
+      help: write `energy: …`, from which the law follows by differentiation
+    ");
+    insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0, initial: 2.0, initial_flow: 3.0 } }"), @"
+    2:41 `b` is given both a momentum and a flow at the start [MBG0104]
+      help: remove `initial` or `initial_flow`: one follows from the other
+    ");
+    insta::assert_snapshot!(mistake("1 v[3] { I b { inertia: [1.0, 2.0, 3.0] } }"), @"
+    2:25 expected a number or a 3×3 matrix, found a vector of 3 [MBG0204]
+      help: write `diag(…)` for a matrix with these on its diagonal
+    ");
+    insta::assert_snapshot!(mistake("1 v[2] { I b { inertia: [[1.0, 2.0], [2.0, 1.0]] } }"), @"2:25 the inertia of `b` is not positive definite: the determinant of its first 2 rows and columns is -3 [MBG0216]");
+    insta::assert_snapshot!(mistake("1 v { I b { inerta: 1.0 } R r { effort: Sin(f) } }"), @"
+    2:13 `I` does not know `inerta` [MBG0207]
+      help: did you mean `inertia`?
+      help: its words are `inertia`, `flow`, `energy`, `initial`, `initial_flow`, `gyroscopic`
+    2:9 `b` has no law [MBG0205]
+      help: write `I b { inertia: … }`
+    2:41 `Sin` is not a function of the language [MBG0203]
+      help: did you mean `sin`?
+      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of
+    ");
+    insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0 } } v -> v;"), @"
+    2:32 `v -> v` joins a junction to itself, which says nothing [MBG0209]
+      help: remove it, or lead it through a `TF` or a `GY`
+    ");
+    insta::assert_snapshot!(mistake("1 w[2]; a.x -> w[0];"), @"
+    2:3 junction `w[1]` has no bond [MBG0208]
+      help: write an arrow to it: `w[1] -> …;`
+    ");
+}
+
+/// A law that takes its vector apart, or the square of its length, is one of the whole vector.
+#[test]
+fn laws_of_whole_vectors_are_no_laws_of_components() {
+    let force = |law: &str| {
+        let (model, pool) = elaborated(&format!(
+            "model M {{ 1 v[2] {{ C c {{ {law} }} I m {{ inertia: 1.0 }} }} }}"
+        ))
+        .unwrap_or_else(|reported| panic!("{reported}"));
+        let Law::Storage(storage) = &model.graph.elements[0].law else {
+            panic!("a storage was written")
+        };
+        let name = |symbol| match symbol {
+            Symbol::State(index) => model.states[index].variable.name.clone(),
+            other => format!("{other:?}"),
+        };
+        let printer = Printer::new(&pool, &name);
+        let text = storage.coenergy.iter().map(|value| printer.text(*value));
+        text.collect::<Vec<_>>().join("\n")
+    };
+    insta::assert_snapshot!(force("effort: q * (transpose(q) * q)"), @"
+    (c.q.x c.q.x + c.q.y c.q.y) c.q.x
+    (c.q.x c.q.x + c.q.y c.q.y) c.q.y
+    ");
+    insta::assert_snapshot!(force("energy: 0.25 * powi(transpose(q) * q, 2)"), @"
+    0.25 2 c.q.x 2 (c.q.x c.q.x + c.q.y c.q.y)
+    0.25 2 (c.q.x c.q.x + c.q.y c.q.y) 2 c.q.y
+    ");
+    insta::assert_snapshot!(force("effort: 3.0 * powi(q, 3)"), @"
+    3 c.q.x c.q.x c.q.x
+    3 c.q.y c.q.y c.q.y
+    ");
+    insta::assert_snapshot!(force("energy: q[0] * q.y"), @"
+    c.q.y
+    c.q.x
+    ");
+}
+
+/// What its energy is changed by besides its own state is no port, so that the balance lacks that power.
+#[test]
+fn energies_that_are_modulated_are_noted() {
+    let notes = |stiffness: &str| {
+        let model = format!(
+            "model M {{ param k = 5.0; 1 v {{ I m {{ inertia: 1.0 }} C c {{ stiffness: {stiffness} }} }} output y = c.q; }}"
+        );
+        compiled(&model).notes.join("\n")
+    };
+    assert_eq!(notes("k"), "");
+    insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
 }

@@ -538,6 +538,7 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
         body: Body { mas: 1.0, inertia: 2.0 } (a); output p = body.spin.p.x; }";
     insta::assert_snapshot!(elaborated(word).err().unwrap(), @"
     2:22 `Body` has no parameter `mas` [MBG0207]
+      help: did you mean `mass`?
       help: its parameters are `mass`, `inertia`, `centre`, `gravity_at`
     2:9 `Body` needs a value for `mass` [MBG0214]
       help: write `{ mass: … }`

@@ -256,13 +256,20 @@ impl<T: Real, const M: usize, A: Input<T, M>, B: Input<T, M>> Input<T, M> for Su
     }
 }
 
-/// The derivative at `t` of what is smooth from `t` over the time `ahead`, from five values in its first sixteenth.
+/// The derivative at `t` of what is smooth from `t` over the time `ahead`, from five values in its first sixteenth, or
+/// farther apart where that is too short for time's last digits: then rounding would be all that differs.
 pub(crate) fn quotient<T: Real, const K: usize>(
     t: T,
     ahead: T,
     value: impl FnMut(T) -> SVector<T, K>,
 ) -> SVector<T, K> {
-    let distance = ahead * T::from_f64(1.0 / 64.0);
+    let [usual, most] = [64.0, 4.0].map(|part| ahead * T::from_f64(1.0 / part));
+    let least = T::from_f64(2.0 * T::SINGULAR * t.magnitude());
+    // As far as times can be apart, so that the values are where they are taken to be.
+    let distance = (t + usual.max(least.min(most))) - t;
+    if distance.magnitude() == 0.0 {
+        return SVector::from_element(T::from_f64(0.0));
+    }
     let times = [0.0, 1.0, 2.0, 3.0, 4.0].map(|part| t + T::from_f64(part) * distance);
     let [a, b, c, d, e] = times.map(value);
     let [p, q, r, s] = [48.0, -36.0, 16.0, -3.0].map(T::from_f64);

@@ -105,13 +105,13 @@ pub trait Real:
     /// Exponential.
     ///
     /// The same without branches where the result is a normal number, up to exponents of 708 in double and 87 in single
-    /// precision, with an error below one unit of the last place. Larger ones take `libm`.
+    /// precision, with an error below one unit of the last place, 1.04 in single precision. Larger ones take `libm`.
     fn exp(self) -> Self;
     /// Natural logarithm; NaN for negative numbers.
     fn ln(self) -> Self;
     /// Square root; NaN for negative numbers.
     fn sqrt(self) -> Self;
-    /// Hyperbolic tangent, within 2.7 units of the last place.
+    /// Hyperbolic tangent, within 2.75 units of the last place.
     fn tanh(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;

@@ -157,7 +157,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// Energy stored, in joule when the model is in SI units.
     fn energy(&self, t: T, x: &SVector<T, N>) -> T;
 
-    /// Power supplied by the sources and dissipated by the resistors: `dH/dt = supplied − dissipated`.
+    /// Power supplied by the sources and dissipated by the resistors: `dH/dt = supplied − dissipated`, where the energy of
+    /// each storage depends on its own state alone; [`Meta::notes`] names those where it does not.
     fn power(
         &self,
         t: T,

@@ -5,7 +5,7 @@ use proc_macro2::Span;
 use super::Builder;
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{ElementId, End, JunctionId, Rule};
+use crate::graph::{ElementId, End, Rule};
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
@@ -41,6 +41,16 @@ impl Builder<'_> {
                     format!("`{name}` joins two equal one-ports; both fix the same variable");
                 self.diagnostics
                     .error(codes::EQUAL_ONE_PORTS, span, message);
+            } else if let (End::Junction(a, first), End::Junction(b, second)) =
+                (&bond.from, &bond.to)
+                && a == b
+                && first.start < second.end
+                && second.start < first.end
+            {
+                let message = format!("`{name}` joins a junction to itself, which says nothing");
+                let report = error(codes::TOO_MANY_BONDS, span, message);
+                self.diagnostics
+                    .report(report.help("remove it, or lead it through a `TF` or a `GY`"));
             } else if from != to {
                 let message = format!("`{name}` joins dimension {from} to dimension {to}");
                 self.diagnostics
@@ -81,9 +91,12 @@ impl Builder<'_> {
         }
         for (index, bonded) in bonded.iter().enumerate() {
             if let Some(component) = bonded.iter().position(|bonded| !bonded) {
-                let name =
-                    graph.end_name(&End::Junction(JunctionId(index), component..component + 1));
-                let span = graph.origins.span(graph.junctions[index].origin);
+                let junction = &graph.junctions[index];
+                let name = match junction.dimension {
+                    1 => junction.name.clone(),
+                    _ => format!("{}[{component}]", junction.name),
+                };
+                let span = graph.origins.span(junction.origin);
                 let report = error(
                     codes::UNCONNECTED,
                     span,

@@ -18,6 +18,40 @@ pub enum Value {
     Matrix(Product),
 }
 
+/// Variables of an element in its own law: displacement, momentum, effort and flow.
+pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
+
+/// Functions, as messages list them.
+const FUNCTIONS: [&str; 27] = [
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan2",
+    "exp",
+    "ln",
+    "sqrt",
+    "abs",
+    "sign",
+    "tanh",
+    "min",
+    "max",
+    "powi",
+    "diag",
+    "transpose",
+    "skew",
+    "rot_x",
+    "rot_y",
+    "rot_z",
+    "rot",
+    "jacobian_xyz",
+    "jacobian",
+    "matrix_of",
+    "quaternion_of",
+    "angles_of",
+];
+
 /// A failed evaluation.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
@@ -43,6 +77,11 @@ pub trait Names {
 
     /// Every plain name.
     fn all(&self) -> Vec<&str>;
+
+    /// Whether a law is read for one component of a vector: its own variables stand for that one.
+    fn is_by_component(&self) -> bool {
+        false
+    }
 
     /// Is told the value of each operator, function and `if`, with the place of its sign or name.
     fn seen(&mut self, _pool: &mut Pool, _place: Span, _value: &Value) {}
@@ -212,6 +251,12 @@ impl<N: Names> Evaluator<'_, N> {
         if let Some((Step { name, index: None }, front)) = steps.split_last()
             && !front.is_empty()
             && component_index(name).is_some()
+        {
+            self.check_whole(&front[0].name)?;
+        }
+        if let Some((Step { name, index: None }, front)) = steps.split_last()
+            && !front.is_empty()
+            && component_index(name).is_some()
             && let Some(value) = self.names.value(self.pool, front)
         {
             return self.component(value?, name);
@@ -263,6 +308,15 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
+    /// A component of an element's own variable is one of the whole vector.
+    fn check_whole(&self, name: &Ident) -> Result<()> {
+        let is_own = OWN.iter().any(|own| name == own);
+        if is_own && self.names.is_by_component() {
+            return whole_vector(name.span());
+        }
+        Ok(())
+    }
+
     fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
         let Some(index) = component_index(name) else {
             return fail(
@@ -286,6 +340,11 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     fn index(&mut self, index: &syn::ExprIndex) -> Result<Value> {
+        if let Expr::Path(base) = &*index.expr
+            && let Some(name) = base.path.get_ident()
+        {
+            self.check_whole(name)?;
+        }
         let value = self.evaluate(&index.expr)?;
         let span = index.index.span();
         let Expr::Range(range) = &*index.index else {
@@ -483,6 +542,7 @@ impl<N: Names> Evaluator<'_, N> {
                 count(1)?;
                 match self.evaluate(&arguments[0])? {
                     Value::Matrix(product) => Ok(Value::Matrix(product.transpose())),
+                    Value::Scalar(_) if self.names.is_by_component() => whole_vector(name.span()),
                     scalar @ Value::Scalar(_) => Ok(scalar),
                 }
             }
@@ -530,11 +590,9 @@ impl<N: Names> Evaluator<'_, N> {
                 name.span(),
                 format!("`{name}` is not a function of the language"),
             );
-            return Err(Box::new(report.help(
-                "functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, \
-                 diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, \
-                 angles_of",
-            )));
+            let report = report.did_you_mean(&name.to_string(), &FUNCTIONS);
+            let known = FUNCTIONS.join(", ");
+            return Err(Box::new(report.help(format!("functions are {known}"))));
         };
         if arguments.len() != function.arity() {
             return fail(
@@ -638,6 +696,14 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(block.span(), "expected one expression"),
         }
     }
+}
+
+/// A law that takes the whole vector is read as a law of the vector, whatever this says.
+fn whole_vector<T>(span: Span) -> Result<T> {
+    mismatch(
+        span,
+        "expected a vector, found one component of it".to_owned(),
+    )
 }
 
 /// The value, which must be a number.

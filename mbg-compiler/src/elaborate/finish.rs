@@ -236,11 +236,10 @@ impl<'a> Builder<'a> {
             }
             let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
             let known = words.iter().map(|word| (*word).to_owned());
-            let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
-            self.tell(
-                scope,
-                report.help(format!("its words are {}", listing(known))),
-            );
+            let report = error(codes::UNKNOWN_FIELD, field.name.span(), message)
+                .did_you_mean(&field.name.to_string(), &words)
+                .help(format!("its words are {}", listing(known)));
+            self.tell(scope, report);
         }
     }
 

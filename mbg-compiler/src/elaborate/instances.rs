@@ -99,7 +99,9 @@ impl<'a> Builder<'a> {
             known.extend(component.choices().map(|known| known.name.to_string()));
             if !known.iter().any(|known| argument.name == known) {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
-                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+                let names: Vec<&str> = known.iter().map(String::as_str).collect();
+                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message)
+                    .did_you_mean(&argument.name.to_string(), &names);
                 let help = format!("its parameters are {}", listing(known));
                 self.tell(scope, report.help(help));
             }

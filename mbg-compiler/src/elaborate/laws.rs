@@ -13,7 +13,7 @@ use super::quadrature;
 use super::scope::{Lookup, Own};
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{ElementKind, Law, Rule, Storage};
+use crate::graph::{ElementKind, Law, Rule, Storage, component_name};
 use crate::symbolic::{Differentiator, Expression, Factor, Matrix, Pool, Product, Symbol};
 use crate::syntax::ast::{Element, Field};
 
@@ -76,10 +76,11 @@ impl Reader<'_, '_, '_> {
         match (self.element.kind, word.as_str()) {
             (ElementKind::Se, _) => Ok(plain(Law::Source(self.vector(value)?), Rule::EffortOut)),
             (ElementKind::Sf, _) => Ok(plain(Law::Source(self.vector(value)?), Rule::FlowOut)),
-            (ElementKind::EJS, _) => Ok(plain(
-                Law::EulerJunction(self.vector(value)?),
-                Rule::Gyroscopic,
-            )),
+            (ElementKind::EJS, _) => {
+                self.check_euler()?;
+                let momentum = self.vector(value)?;
+                Ok(plain(Law::EulerJunction(momentum), Rule::Gyroscopic))
+            }
             (ElementKind::I | ElementKind::C, _) => self.storage(&word, value),
             (ElementKind::R, "resistance") => Ok(plain(
                 Law::Resistance(self.coefficient(value)?),
@@ -122,6 +123,20 @@ impl Reader<'_, '_, '_> {
                 ))
             }
         }
+    }
+
+    /// An angular momentum has three components.
+    fn check_euler(&self) -> Result<()> {
+        let (name, size) = (&self.element.name, self.own.dimension);
+        if size == 3 {
+            return Ok(());
+        }
+        let message = format!("`{name}` needs a junction of dimension 3, and this one has {size}");
+        Err(Box::new(error(
+            codes::WRONG_DIMENSION,
+            name.span(),
+            message,
+        )))
     }
 
     /// What stands after a word, without what follows from it.
@@ -218,11 +233,13 @@ impl Reader<'_, '_, '_> {
                     "expected a number or a {size}×{size} matrix, found {}",
                     found.shape()
                 );
-                Err(Box::new(error(
-                    codes::WRONG_DIMENSION,
-                    value.span(),
-                    message,
-                )))
+                let report = error(codes::WRONG_DIMENSION, value.span(), message);
+                let vector = found.entries(self.pool);
+                Err(Box::new(if vector.is_some_and(|it| it.len() == size) {
+                    report.help("write `diag(…)` for a matrix with these on its diagonal")
+                } else {
+                    report
+                }))
             }
         }
     }
@@ -285,6 +302,7 @@ impl Reader<'_, '_, '_> {
             "energy" => self.by_energy(value)?,
             _ => {
                 let coenergy = self.by_component(value)?;
+                self.check_potential(&coenergy, value.span())?;
                 let energy = quadrature::energy(self.pool, &self.own.states, &coenergy);
                 let Some(energy) = energy else {
                     let message = format!("the law of `{}` divides by zero", self.element.name);
@@ -373,6 +391,37 @@ impl Reader<'_, '_, '_> {
         Err(Box::new(error(codes::EXPRESSION, span, message)))
     }
 
+    /// A storage has an energy only if a law's derivatives across its components are equal.
+    fn check_potential(&mut self, law: &[Expression], span: Span) -> Result<()> {
+        let states = self.own.states.clone();
+        let mut slope = |row: usize, column: usize| {
+            let state = Symbol::State(states.start + column);
+            Differentiator::new(state).derivative(self.pool, law[row])
+        };
+        for row in 1..law.len() {
+            for column in 0..row {
+                if slope(row, column) != slope(column, row) {
+                    return self.creates_energy([row, column], span);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn creates_energy<T>(&self, components: [usize; 2], span: Span) -> Result<T> {
+        let size = self.own.dimension;
+        let [first, second] = components.map(|component| component_name(component, size));
+        let message = format!(
+            "the law of `{}` would create energy: its component {second} changes with {first} otherwise than its \
+             component {first} with {second}",
+            self.element.name
+        );
+        let report = error(codes::EXPRESSION, span, message);
+        Err(Box::new(report.help(
+            "write `energy: …`, from which the law follows by differentiation",
+        )))
+    }
+
     fn inverse(&mut self, matrix: &Matrix, span: Span) -> Result<Matrix> {
         matrix.inverse(self.pool).ok_or_else(|| {
             Box::new(error(
@@ -395,10 +444,15 @@ impl Reader<'_, '_, '_> {
             match self.pool.constant_value(expression) {
                 Some(value) if value > 0.0 => {}
                 Some(value) => {
-                    let message = format!(
-                        "the inertia of `{}` is {value}, not positive",
-                        self.element.name
-                    );
+                    let name = &self.element.name;
+                    let message = if matrix.is_diagonal() {
+                        format!("the inertia of `{name}` is {value}, not positive")
+                    } else {
+                        format!(
+                            "the inertia of `{name}` is not positive definite: the determinant of its first {size} rows \
+                             and columns is {value}"
+                        )
+                    };
                     return Err(Box::new(error(codes::NOT_FINITE, span, message)));
                 }
                 None if assumptions
@@ -419,6 +473,14 @@ impl Reader<'_, '_, '_> {
 
     fn initial(&mut self, coenergy: &[Expression]) -> Result<Option<Vec<Expression>>> {
         let find = |word: &str| self.element.fields.iter().find(|field| field.name == word);
+        if let (Some(_), Some(second)) = (find("initial"), find("initial_flow")) {
+            let name = &self.element.name;
+            let message = format!("`{name}` is given both a momentum and a flow at the start");
+            let report = error(codes::FIELD_REPEATED, second.name.span(), message);
+            return Err(Box::new(report.help(
+                "remove `initial` or `initial_flow`: one follows from the other",
+            )));
+        }
         if let Some(value) = find("initial").and_then(|field| field.value.as_ref()) {
             return self.vector(value).map(Some);
         }

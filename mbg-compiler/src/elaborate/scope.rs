@@ -10,7 +10,7 @@ use super::bonds::is_two_port;
 use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
-use super::expressions::{Names, Result, Step, Value, fail};
+use super::expressions::{Names, OWN, Result, Step, Value, fail};
 use super::model::{Place, Quantity, Signals};
 use crate::codes;
 use crate::diagnostics::error;
@@ -212,22 +212,15 @@ impl Names for Lookup<'_, '_> {
     fn value(&mut self, pool: &mut Pool, path: &[Step]) -> Option<Result<Value>> {
         if let [Step { name, index: None }] = path {
             // An element may bear the name of time, since it has no value that could be meant.
-            let taken = matches!(
-                self.scopes.find(self.scope, "t"),
-                Some(
-                    Entity::Value(_)
-                        | Entity::Definition(_)
-                        | Entity::Input(_)
-                        | Entity::States(_)
-                        | Entity::Rotation(_)
-                )
-            );
-            if name == "t" && !taken {
+            if name == "t" && !self.is_value("t") {
                 return Some(Ok(Value::Scalar(pool.symbol(Symbol::Time))));
             }
             if let Some(own) = self.own.clone()
-                && ["q", "p", "e", "f"].iter().any(|word| name == word)
+                && let Some(word) = OWN.into_iter().find(|word| name == word)
             {
+                if self.is_value(word) {
+                    return Some(self.two_meanings(&own, name));
+                }
                 return Some(self.own_variable(pool, &own, name));
             }
         }
@@ -264,6 +257,11 @@ impl Names for Lookup<'_, '_> {
 
     fn all(&self) -> Vec<&str> {
         self.scopes.visible(self.scope)
+    }
+
+    fn is_by_component(&self) -> bool {
+        let own = self.own.as_ref();
+        own.is_some_and(|own| own.component.is_some() && own.dimension > 1)
     }
 
     fn seen(&mut self, pool: &mut Pool, place: Span, value: &Value) {
@@ -325,6 +323,31 @@ impl Lookup<'_, '_> {
             ),
             _ => fail(name.span(), format!("`{name}` has no value here")),
         }
+    }
+
+    /// Whether a name is declared as something with a value.
+    fn is_value(&self, name: &str) -> bool {
+        matches!(
+            self.scopes.find(self.scope, name),
+            Some(
+                Entity::Value(_)
+                    | Entity::Definition(_)
+                    | Entity::Input(_)
+                    | Entity::States(_)
+                    | Entity::Rotation(_)
+            )
+        )
+    }
+
+    fn two_meanings<T>(&self, own: &Own, name: &Ident) -> Result<T> {
+        let element = &self.graph.elements[own.element.0].name;
+        let message = format!(
+            "`{name}` is a variable of `{element}` in its law, and declared as another value"
+        );
+        let report = error(codes::DUPLICATE_NAME, name.span(), message);
+        Err(Box::new(report.help(format!(
+            "declare the other value by a longer name than `{name}`"
+        ))))
     }
 
     fn own_variable(&mut self, pool: &mut Pool, own: &Own, name: &Ident) -> Result<Value> {

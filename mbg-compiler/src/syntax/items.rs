@@ -130,13 +130,24 @@ fn elsewhere(cursor: &Cursor, error: Diagnostic, word: &str) -> Box<Diagnostic> 
     })
 }
 
+/// Type parameters of the generated code.
+const GENERIC: [&str; 3] = ["T", "L", "E"];
+
 fn model(
     cursor: &mut Cursor,
     attributes: Attributes,
     visibility: Visibility,
-    name: Ident,
+    mut name: Ident,
     sink: &mut Sink<'_>,
 ) -> Model {
+    if GENERIC.iter().any(|taken| name == taken) {
+        let message =
+            format!("a model cannot be called `{name}`: the code made of it calls a scalar so");
+        let report = error(codes::DUPLICATE_NAME, name.span(), message);
+        sink.report(Box::new(report.help("give it a longer name")));
+        // What stands in for it must not have that name either.
+        name = Ident::new(&format!("{name}Model"), name.span());
+    }
     let statements = braces(cursor, &format!("`{{` after `model {name}`"), sink);
     let Attributes {
         documentation,

@@ -26,7 +26,8 @@ use crate::{Input, Real, System};
 /// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
 /// numbers the values alone control the step.
 ///
-/// Jumps that the input does not declare cost rejected steps. So that none is stepped over while the system is at rest,
+/// Jumps that the input does not declare cost rejected steps, and in single precision the digits of time may be too few for
+/// what a stiff model does behind one: declare it. So that none is stepped over while the system is at rest,
 /// the input is looked at between the ends of each step; what is shorter than a sixty-fourth of the longest step may
 /// still be missed, and [`Adaptive::longest`] is the remedy.
 ///
@@ -136,6 +137,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             Some(first) => first,
             None => self.starting_step(problem, (start, end), (&x, &slope), &tolerance),
         };
+        problem.probes.enter(seen(start), first);
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));

@@ -1,7 +1,5 @@
 //! What a driven model does between the stages of a step.
 
-use nalgebra::SVector;
-
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{Family, Span, Start, Trial};
@@ -46,7 +44,7 @@ const SUDDEN: f64 = 25.0;
 const ROUNDING: f64 = 64.0;
 
 impl Probes {
-    /// For a run from this time on; its first step is looked into most closely.
+    /// For a run from this time on.
     pub(super) const fn new(start: f64) -> Self {
         Self {
             since: start,
@@ -54,6 +52,14 @@ impl Probes {
             longest: 0.0,
             last: [0.0; 2],
         }
+    }
+
+    /// Takes note of the first step of a piece of the input, which is short because nothing is known yet.
+    pub(super) fn enter(&mut self, time: f64, length: f64) {
+        if self.shortest == 0.0 {
+            self.begin(time, length, length);
+        }
+        self.longest = length;
     }
 
     /// Takes note of a step that has been taken, unless it had to end where it does.
@@ -149,16 +155,23 @@ where
                 defect
             }
         });
-        // Written so that NaN counts as much.
-        let small = |defect: &SVector<T, N>| measure.norm(defect) <= LARGE;
-        if small(&defect) || !A::IMPLICIT {
-            return !small(&defect);
+        // Comparisons are written so that NaN counts as much.
+        let size = measure.norm(&defect);
+        if size <= LARGE {
+            return false;
         }
         // In stiff components slopes differ by much where states do not: what counts is how far those would move.
+        if !A::IMPLICIT {
+            // By the derivative along the defect, which leads to a state as far away as the tolerance.
+            let by = T::from_f64(1.0 / size);
+            let beside = self.slope(t, &x.zip_map(&defect, |x, defect| x + by * defect));
+            let moved = beside.zip_map(&slope, |beside, slope| span.length * (beside - slope));
+            return !(size <= LARGE * (1.0 + measure.norm(&moved)));
+        }
         self.statistics.factorisations += 1;
         let jacobian = self.jacobian(t, &x);
         let factors = Shifted::new::<S, M, P>(T::from_f64(1.0), span.length, &jacobian);
-        !small(&factors.solved::<S, M, P>(&defect))
+        !(measure.norm(&factors.solved::<S, M, P>(&defect)) <= LARGE)
     }
 }
 

@@ -155,9 +155,10 @@ where
                 defect
             }
         });
-        // Comparisons are written so that NaN counts as much.
+        // NaN is not small.
+        let is_small = |size: f64, most: f64| size <= most;
         let size = measure.norm(&defect);
-        if size <= LARGE {
+        if is_small(size, LARGE) {
             return false;
         }
         // In stiff components slopes differ by much where states do not: what counts is how far those would move.
@@ -166,12 +167,12 @@ where
             let by = T::from_f64(1.0 / size);
             let beside = self.slope(t, &x.zip_map(&defect, |x, defect| x + by * defect));
             let moved = beside.zip_map(&slope, |beside, slope| span.length * (beside - slope));
-            return !(size <= LARGE * (1.0 + measure.norm(&moved)));
+            return !is_small(size, LARGE * (1.0 + measure.norm(&moved)));
         }
         self.statistics.factorisations += 1;
         let jacobian = self.jacobian(t, &x);
         let factors = Shifted::new::<S, M, P>(T::from_f64(1.0), span.length, &jacobian);
-        !(measure.norm(&factors.solved::<S, M, P>(&defect)) <= LARGE)
+        !is_small(measure.norm(&factors.solved::<S, M, P>(&defect)), LARGE)
     }
 }
 

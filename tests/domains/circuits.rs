@@ -72,6 +72,17 @@ mbg! {
         }
         output current = mesh.f;
     }
+
+    /// A capacitor that follows its source within 0.1 ms.
+    pub(crate) model Lag {
+        input voltage;
+        1 mesh {
+            Se source { effort: voltage }
+            R wire { resistance: 1.0 }
+            C store { compliance: 1e-4 }
+        }
+        output moved = store.q;
+    }
 }
 
 /// Time in s; current in A, speed in rad/s and angle in rad of the motor: by the matrix exponential, to 17 digits.
@@ -320,6 +331,63 @@ fn a_smooth_source_is_hardly_probed() {
             "{pairs:?}"
         );
     }
+}
+
+/// A capacitor that follows a slow source: for explicit methods the fast mode limits the step, and what they differ by there
+/// moves nothing.
+#[test]
+fn a_fast_mode_is_no_pulse() {
+    let source = Smooth(|t: f64| SVector::from([f64::sin(2.0 * t)]));
+    let model = Lag::<f64>::new(LagParameters::default()).unwrap();
+    let start = model.initial_state();
+    let solver = Adaptive {
+        nominal: &[1e-4],
+        ..Adaptive::new(Dop853, 1e-3, 1e-3)
+    };
+    let found = solver.integrate(&model, &source, 0.0, 1.0, start, |_| ());
+    let Statistics {
+        steps, rejected, ..
+    } = found.unwrap();
+    // Of 0.64 ms, a tenth more than where the method is stable by real hλ.
+    assert!(steps + rejected < 1800, "{steps} {rejected}");
+}
+
+/// Times have seven digits there, and so few must be enough for the rate of the input.
+#[test]
+fn a_fast_mode_is_followed_in_single_precision() {
+    let source = Smooth(|t: f32| SVector::from([(2.0 * t).sin()]));
+    let model = Lag::<f32>::new(LagParameters::default()).unwrap();
+    for step in 0..8 {
+        let solver = Adaptive {
+            nominal: &[1e-4],
+            ..Adaptive::new(Rodas4, 1e-4 * f64::powi(0.6, step), 1e-5)
+        };
+        let start = model.initial_state();
+        let found = solver.integrate(&model, &source, 0.0, 10.0, start, |_| ());
+        let evaluations = found.unwrap().evaluations;
+        assert!(evaluations < 5000, "{evaluations}");
+    }
+}
+
+/// A run in many parts, as a simulation that exchanges inputs with another one makes it, pays little for each.
+#[test]
+fn many_short_runs_are_hardly_probed() {
+    let source = Smooth(|t: f64| SVector::from([f64::sin(300.0 * t)]));
+    let model = Open::<f64>::new(OpenParameters::default()).unwrap();
+    let solver = Adaptive::new(Tsit5, 1e-7, 1e-10);
+    let (mut x, mut attempts, mut evaluations) = (model.initial_state(), 0, 0);
+    for part in 0..100 {
+        let ends = [part, part + 1].map(|end| 1e-3 * f64::from(end));
+        let found = solver.integrate(&model, &source, ends[0], ends[1], x, |step| {
+            x = *step.state();
+        });
+        let found = found.unwrap();
+        attempts += found.steps + found.rejected;
+        evaluations += found.evaluations;
+    }
+    // The starting step of each takes two more; a fifth may be probes.
+    let needed = 6 * attempts + 200;
+    assert!(5 * evaluations < 6 * needed, "{needed} {evaluations}");
 }
 
 #[test]

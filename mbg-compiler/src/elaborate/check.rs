@@ -43,9 +43,7 @@ impl Builder<'_> {
                     .error(codes::EQUAL_ONE_PORTS, span, message);
             } else if let (End::Junction(a, first), End::Junction(b, second)) =
                 (&bond.from, &bond.to)
-                && a == b
-                && first.start < second.end
-                && second.start < first.end
+                && (a, first) == (b, second)
             {
                 let message = format!("`{name}` joins a junction to itself, which says nothing");
                 let report = error(codes::TOO_MANY_BONDS, span, message);

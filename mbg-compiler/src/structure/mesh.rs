@@ -32,11 +32,13 @@ pub(super) fn report(
             .collect();
         names.sort();
         names.dedup();
-        report = report.note(format!(
-            "{} of its equations say the same thing twice, about {}",
-            mesh.len(),
-            listing(names)
-        ));
+        report = report.note(match mesh.len() {
+            1 => "one of its equations says nothing: what it is about cancels".to_owned(),
+            count => format!(
+                "{count} of its equations say the same thing twice, about {}",
+                listing(names)
+            ),
+        });
         if let Some(gains) = gains(scalars, &mesh) {
             let written = |value| text(model, scalars, pool, value);
             let ratio = |(top, bottom)| match (top, bottom) {

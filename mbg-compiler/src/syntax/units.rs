@@ -135,7 +135,9 @@ fn exponent(cursor: &mut Cursor, unit: &mut Unit) -> Parsed<i32> {
         _ => None,
     };
     let Some(number) = number.filter(|number| number.suffix().is_empty()) else {
-        return Err(cursor.expected_with(codes::UNIT, "an integer exponent"));
+        let report = *cursor.expected_with(codes::UNIT, "an integer exponent");
+        let help = "a quantity whose unit has a root, such as the coefficient of an orifice, is declared without a unit";
+        return Err(Box::new(report.help(help)));
     };
     cursor.advance(1);
     match number.base10_parse::<i32>() {

@@ -9,23 +9,7 @@ use nalgebra::{Complex, ComplexField, SVector};
 
 use crate::draw::{BLUE, ORANGE, Panel, Point, picture};
 use crate::quarter_car::{QuarterCar, QuarterCarParameters};
-
-/// Speeds of body and wheel for the road's at a frequency in rad/s, by hand.
-fn by_hand(frequency: f64) -> [Complex<f64>; 2] {
-    let QuarterCarParameters {
-        sprung,
-        unsprung,
-        spring,
-        damper,
-        tyre,
-    } = QuarterCarParameters::<f64>::default();
-    let s = Complex::new(0.0, frequency);
-    let strut = s * damper + spring;
-    let body = s * s * sprung + strut;
-    let wheel = s * s * unsprung + strut + tyre;
-    let determinant = body * wheel - strut * strut;
-    [strut * tyre / determinant, body * tyre / determinant]
-}
+use crate::references::quarter_car as by_hand;
 
 /// Amplitudes over frequencies in Hz.
 fn amplitudes(responses: &[(f64, Complex<f64>)]) -> Vec<Point> {
@@ -61,7 +45,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         let line = over(800, &|frequency| {
             Some(linear.response(frequency)?[(2 + output, 0)])
         });
-        let dots = over(20, &|frequency| Some(by_hand(frequency)[output]));
+        let dots = over(20, &|frequency| Some(by_hand::response(frequency)[output]));
         amplitude =
             amplitude
                 .line(name, color, amplitudes(&line))

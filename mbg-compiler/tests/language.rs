@@ -597,6 +597,9 @@ fn laws_of_whole_vectors_are_no_laws_of_components() {
     c.q.y
     c.q.x
     ");
+    // A junction of that name is no variable of the element.
+    let law = "1 q[2] { I g { inertia: 1.0 } } 1 v[2] { I b { inertia: 1.0 } R r { effort: q.f.x * powi(f, 3) } }";
+    assert_eq!(mistake(law), "");
 }
 
 /// What its energy is changed by besides its own state is no port, so that the balance lacks that power.

@@ -8,8 +8,8 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
 ///
 /// Poles are the eigenvalues of `A`, `linearised.state.complex_eigenvalues()` with `nalgebra`. The four numbers of an
-/// attitude count as states: one pole at zero belongs to their length. So do the coordinates of loops that multipliers
-/// close: poles of what the loops hold lie at zero.
+/// attitude count as states, and so do all coordinates of loops that multipliers close: some poles are no motion of such a
+/// model.
 ///
 /// # Example
 ///
@@ -64,7 +64,7 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         S: Convertible<T, N, M, P>,
     {
         let mut memory = S::Memory::default();
-        let (_, state) = system.derivative_and_jacobian(t, x, u, &mut memory);
+        let state = system.jacobian_state(t, x, u, &mut memory);
         if let Some(trouble) = system.trouble(t, x, u, &memory) {
             return Err(trouble);
         }

@@ -6,6 +6,7 @@ use mbg_runtime::{Adaptive, Dop853, Integrator, Linearised, Real, Smooth, System
 use nalgebra::{Complex, ComplexField, SMatrix, SVector};
 
 use crate::references::errors::larger;
+use crate::references::quarter_car;
 
 mbg! {
     include "examples/gallery/quarter_car.mbg";
@@ -41,16 +42,6 @@ mbg! {
     }
 }
 
-/// Speeds of body and wheel for the road's, by hand.
-fn car(frequency: f64) -> [Complex<f64>; 2] {
-    let s = Complex::new(0.0, frequency);
-    let strut = s * 1200.0 + 16e3;
-    let body = s * s * 300.0 + strut;
-    let wheel = s * s * 40.0 + strut + 190e3;
-    let determinant = body * wheel - strut * strut;
-    [strut * 190e3 / determinant, body * 190e3 / determinant]
-}
-
 #[test]
 fn response_of_a_quarter_car_is_that_by_hand() {
     let model = QuarterCar::<f64>::new(QuarterCarParameters::default()).unwrap();
@@ -60,7 +51,7 @@ fn response_of_a_quarter_car_is_that_by_hand() {
     for step in 1..=200 {
         let frequency = TAU * 0.1 * f64::from(step);
         let response = linear.response(frequency).unwrap();
-        for (output, expected) in car(frequency).into_iter().enumerate() {
+        for (output, expected) in quarter_car::response(frequency).into_iter().enumerate() {
             let found = response[(2 + output, 0)];
             worst = larger(worst, (found - expected).modulus() / expected.modulus());
             // Places are integrals of speeds.
@@ -187,7 +178,7 @@ fn single_precision_agrees_with_double() {
     let (rest, still) = (model.initial_state(), SVector::zeros());
     let linear = Linearised::of(&model, 0.0, &rest, &still).unwrap();
     let response = linear.response(f32::from_f64(10.0)).unwrap();
-    for (output, expected) in car(10.0).into_iter().enumerate() {
+    for (output, expected) in quarter_car::response(10.0).into_iter().enumerate() {
         let found = response[(2 + output, 0)];
         let found = Complex::new(f64::from(found.re), f64::from(found.im));
         assert!((found - expected).modulus() < 1e-5 * expected.modulus());

@@ -17,6 +17,7 @@ pub(crate) mod governor;
 pub(crate) mod integrate;
 pub(crate) mod noise;
 pub(crate) mod planar;
+pub(crate) mod quarter_car;
 pub(crate) mod rectifier;
 pub(crate) mod robots;
 pub(crate) mod slider_crank;

@@ -252,14 +252,12 @@ impl<N: Names> Evaluator<'_, N> {
             && !front.is_empty()
             && component_index(name).is_some()
         {
-            self.check_whole(&front[0].name)?;
-        }
-        if let Some((Step { name, index: None }, front)) = steps.split_last()
-            && !front.is_empty()
-            && component_index(name).is_some()
-            && let Some(value) = self.names.value(self.pool, front)
-        {
-            return self.component(value?, name);
+            if let [own] = front {
+                self.check_whole(&own.name)?;
+            }
+            if let Some(value) = self.names.value(self.pool, front) {
+                return self.component(value?, name);
+            }
         }
         let name = steps
             .last()

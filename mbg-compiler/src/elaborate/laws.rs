@@ -14,6 +14,7 @@ use super::scope::{Lookup, Own};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{ElementKind, Law, Rule, Storage, component_name};
+use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Differentiator, Expression, Factor, Matrix, Pool, Product, Symbol};
 use crate::syntax::ast::{Element, Field};
 
@@ -394,15 +395,27 @@ impl Reader<'_, '_, '_> {
     /// A storage has an energy only if a law's derivatives across its components are equal.
     fn check_potential(&mut self, law: &[Expression], span: Span) -> Result<()> {
         let states = self.own.states.clone();
+        // Only what a component reads of others, since most laws of large vectors read nothing.
+        let crossed = |row: usize| {
+            let read = symbols(self.pool, &[law[row]]).into_iter();
+            let columns = read.filter_map(|symbol| match symbol {
+                Symbol::State(state) if states.contains(&state) => Some(state - states.start),
+                _ => None,
+            });
+            let pairs: Vec<_> = columns
+                .filter(|it| *it != row)
+                .map(|it| (row, it))
+                .collect();
+            pairs
+        };
+        let crossed: Vec<_> = (0..law.len()).flat_map(crossed).collect();
         let mut slope = |row: usize, column: usize| {
             let state = Symbol::State(states.start + column);
             Differentiator::new(state).derivative(self.pool, law[row])
         };
-        for row in 1..law.len() {
-            for column in 0..row {
-                if slope(row, column) != slope(column, row) {
-                    return self.creates_energy([row, column], span);
-                }
+        for (row, column) in crossed {
+            if slope(row, column) != slope(column, row) {
+                return self.creates_energy([column, row], span);
             }
         }
         Ok(())

@@ -50,7 +50,7 @@ where
     }
 }
 
-/// Twice the error that the evaluations of this crate may have, where products are rounded in registers alone.
+/// What the evaluations of this crate differ by, at most, where products are rounded once in registers and twice alone.
 fn epsilons(place: usize, value: f64) -> f64 {
     match place {
         _ if crate::FUSED || cfg!(feature = "reproducible") => 0.0,

@@ -45,19 +45,26 @@ where
         self.system.derivative(t, x, &u, &mut self.memory)
     }
 
-    /// The derivatives at four stages.
+    /// The inputs at four stages.
+    #[inline]
+    pub(super) fn inputs(&self, times: T::Stages) -> SVector<T::Stages, M> {
+        let times = times.as_columns();
+        let inputs: [SVector<T, M>; 4] =
+            core::array::from_fn(|stage| self.input.value(times[stage], self.since));
+        SVector::from_fn(|input, _| T::Stages::from_columns(|stage| inputs[stage][input]))
+    }
+
+    /// Writes the derivatives at four stages.
     #[inline]
     pub(super) fn slopes(
         &mut self,
         times: T::Stages,
         x: &SVector<T::Stages, N>,
-    ) -> SVector<T::Stages, N> {
+        u: &SVector<T::Stages, M>,
+        slopes: &mut SVector<T::Stages, N>,
+    ) {
         self.statistics.evaluations += 4;
-        let u = times.as_columns();
-        let u: [SVector<T, M>; 4] =
-            core::array::from_fn(|stage| self.input.value(u[stage], self.since));
-        let u = SVector::from_fn(|input, _| T::Stages::from_columns(|stage| u[stage][input]));
-        self.system.derivatives(times, x, &u, &mut self.memory)
+        *slopes = self.system.derivatives(times, x, u, &mut self.memory);
     }
 
     /// `∂f/∂x`.

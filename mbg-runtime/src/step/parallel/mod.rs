@@ -13,6 +13,7 @@ use super::method::{
     Estimating, Family, Method, Start, Stepper, Trial, combination, lagrange, leading,
 };
 use super::problem::Problem;
+use super::seen;
 use super::tolerance::{Measure, Tolerance};
 use crate::{Columns, Input, Real, System};
 
@@ -97,7 +98,7 @@ pub trait Swept<const S: usize, const G: usize>: Copy {
 /// Numbers at all nodes but the first, by groups of four.
 type Nodes<T, const N: usize, const G: usize> = [SVector<<T as Real>::Stages, N>; G];
 
-/// Slopes at the nodes of a step.
+/// Slopes at the nodes of a step; of no length as long as there is none.
 #[derive(Clone, Copy)]
 struct Slopes<T: Real, const N: usize, const G: usize> {
     length: T,
@@ -106,9 +107,13 @@ struct Slopes<T: Real, const N: usize, const G: usize> {
 }
 
 /// The last step that was taken, and the one that was tried last.
+///
+/// Both keep their place, and what is as large as slopes at all nodes is written where it stays: copied as a whole it goes
+/// through memory, in other parts than it is read by what comes next, which has to wait for that.
 pub struct Stages<A, T: Real, const N: usize, const S: usize, const G: usize> {
-    before: Option<Slopes<T, N, G>>,
-    tried: Option<Slopes<T, N, G>>,
+    steps: [Slopes<T, N, G>; 2],
+    /// Which of them was tried last.
+    tried: usize,
     method: PhantomData<A>,
 }
 
@@ -119,10 +124,17 @@ where
     A: Swept<S, G>,
     T: Real,
 {
+    #[inline]
     fn new(_method: &A) -> Self {
+        let zero = T::from_f64(0.0);
+        let none = Slopes {
+            length: zero,
+            first: SVector::from_element(zero),
+            others: [SVector::from_element(T::Stages::whole(zero)); G],
+        };
         Self {
-            before: None,
-            tried: None,
+            steps: [none; 2],
+            tried: 0,
             method: PhantomData,
         }
     }
@@ -137,49 +149,62 @@ where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        if !start.again {
-            self.before = self.tried;
-        }
+        let (before, tried) = self.next(start.again);
         let length = start.span.length;
         let nodes = const { &A::TABLEAU.nodes };
-        let weights =
-            const { &A::TABLEAU.weights }.map(|row| row.map(|it| scaled::<T>(length, it)));
-        let base: Nodes<T, N, G> = array::from_fn(|group| {
-            SVector::from_fn(|state, _| {
-                let slope = T::Stages::whole(start.slope[state]);
-                weights[0][group].multiply_add(slope, T::Stages::whole(start.x[state]))
-            })
-        });
-        let times: [T::Stages; G] = array::from_fn(|group| {
-            T::Stages::from_columns(|place| {
+        let mut weights = [[T::Stages::whole(length); G]; S];
+        for (weights, of_node) in weights.iter_mut().zip(const { &A::TABLEAU.weights }) {
+            for (weight, of_group) in weights.iter_mut().zip(of_node) {
+                *weight = scaled::<T>(length, *of_group);
+            }
+        }
+        let mut base: Nodes<T, N, G> = [start.x.map(T::Stages::whole); G];
+        let mut times = [T::Stages::whole(start.span.start); G];
+        for group in 0..G {
+            for (base, slope) in base[group].iter_mut().zip(start.slope.iter()) {
+                *base = weights[0][group].multiply_add(T::Stages::whole(*slope), *base);
+            }
+            times[group] = T::Stages::from_columns(|place| {
                 start.span.at(T::from_f64(nodes[4 * group + place + 1]))
-            })
-        });
-        let sweeps = match self.before {
-            Some(_) => A::SWEEPS[0],
-            None => A::SWEEPS[0] + A::SWEEPS[1],
+            });
+        }
+        let inputs = times.map(|times| problem.inputs(times));
+        let sweeps = if seen(before.length) > 0.0 {
+            A::SWEEPS[0]
+        } else {
+            A::SWEEPS[0] + A::SWEEPS[1]
         };
 
-        let mut stages = advanced::<T, N, S, G>(&base, &weights, &self.predicted(start));
+        tried.length = length;
+        tried.first = start.slope;
+        Self::predict(before, tried);
+        let slopes = &mut tried.others;
+        let mut stages = base;
+        advance::<T, N, S, G>(&mut stages, &base, &weights, slopes);
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
-        let (mut slopes, mut before) = (stages, stages);
+        let mut before = start.x;
         let (mut left, mut missed) = (sweeps, 0.0);
         let error = loop {
             for sweep in 0..left {
                 for group in 0..G {
-                    slopes[group] = problem.slopes(times[group], &stages[group]);
+                    problem.slopes(
+                        times[group],
+                        &stages[group],
+                        &inputs[group],
+                        &mut slopes[group],
+                    );
                 }
                 if sweep == 0
                     && left > 1
                     && let Some(measure) = &measure
                 {
-                    missed = Self::truncation(measure, start, &slopes);
+                    missed = Self::truncation(measure, start, slopes);
                 }
-                before = stages;
-                stages = advanced::<T, N, S, G>(&base, &weights, &slopes);
+                before = last::<T, N, G>(&stages);
+                advance::<T, N, S, G>(&mut stages, &base, &weights, slopes);
             }
-            let change = last::<T, N, G>(&stages) - last::<T, N, G>(&before);
+            let change = last::<T, N, G>(&stages) - before;
             let square = measure.as_ref().map_or(0.0, |it| it.square(&change));
             let error = Real::sqrt(square + missed);
             if left == 1 {
@@ -191,14 +216,9 @@ where
             }
             left = 1;
         };
-        self.tried = Some(Slopes {
-            length,
-            first: start.slope,
-            others: slopes,
-        });
         Trial {
             change: last::<T, N, G>(&stages) - start.x,
-            slope: Some(last::<T, N, G>(&slopes)),
+            slope: Some(last::<T, N, G>(slopes)),
             error,
             coarse: error * error,
         }
@@ -229,9 +249,7 @@ where
 {
     /// The polynomial over the step that was tried last.
     fn between(&self, start: &Start<T, N>, end: &SVector<T, N>) -> Polynomial<T, N> {
-        let Some(tried) = &self.tried else {
-            return Polynomial::line(&start.x, end);
-        };
+        let tried = &self.steps[self.tried];
         let slopes: [SVector<T, N>; S] = array::from_fn(|node| match node {
             0 => tried.first,
             _ => at::<T, N, G>(node, &tried.others),
@@ -246,13 +264,27 @@ where
         polynomial
     }
 
-    /// The slopes as the last step continues; without one, those at the start.
-    fn predicted(&self, start: &Start<T, N>) -> Nodes<T, N, G> {
-        let Some(before) = &self.before else {
-            return [start.slope.map(T::Stages::whole); G];
-        };
+    /// The last step that was taken, and the place of the one that is to be tried.
+    fn next(&mut self, again: bool) -> (&Slopes<T, N, G>, &mut Slopes<T, N, G>) {
+        if !again {
+            self.tried = 1 - self.tried;
+        }
+        let [first, second] = &mut self.steps;
+        if self.tried == 0 {
+            (second, first)
+        } else {
+            (first, second)
+        }
+    }
+
+    /// The slopes of a step as the one before continues; without one, those at the start.
+    fn predict(before: &Slopes<T, N, G>, step: &mut Slopes<T, N, G>) {
+        if seen(before.length) <= 0.0 {
+            step.others = [step.first.map(T::Stages::whole); G];
+            return;
+        }
         let nodes = const { &A::TABLEAU.nodes };
-        let ratio = start.span.length / before.length;
+        let ratio = step.length / before.length;
         let mut weights = [[T::Stages::from_f64(0.0); G]; S];
         for group in 0..G {
             let own = array::from_fn(|place| nodes[4 * group + place + 1]);
@@ -265,7 +297,7 @@ where
         }
         let first = before.first.map(T::Stages::whole);
         let base = weights[0].map(|weight| first.map(|slope| weight * slope));
-        advanced::<T, N, S, G>(&base, &weights, &before.others)
+        advance::<T, N, S, G>(&mut step.others, &base, &weights, &before.others);
     }
 
     /// What the method misses even where the sweeps come to their end: the mean square in units of the tolerance.
@@ -294,18 +326,17 @@ where
 /// Numbers of four stages times one of all.
 #[inline]
 fn scaled<T: Real>(by: T, numbers: [f64; 4]) -> T::Stages {
-    T::Stages::from_columns(|stage| by * T::from_f64(numbers[stage]))
+    T::Stages::whole(by) * T::Stages::from_columns(|stage| T::from_f64(numbers[stage]))
 }
 
 /// The states at the stages, from slopes there.
 #[inline(always)]
-fn advanced<T: Real, const N: usize, const S: usize, const G: usize>(
+fn advance<T: Real, const N: usize, const S: usize, const G: usize>(
+    stages: &mut Nodes<T, N, G>,
     base: &Nodes<T, N, G>,
     weights: &[[T::Stages; G]; S],
     slopes: &Nodes<T, N, G>,
-) -> Nodes<T, N, G> {
-    // A call, which `array::from_fn` would be, would pass all through memory.
-    let mut stages = *base;
+) {
     for state in 0..N {
         let mut sums = [base[0][state]; G];
         for (sum, base) in sums.iter_mut().zip(base) {
@@ -316,7 +347,6 @@ fn advanced<T: Real, const N: usize, const S: usize, const G: usize>(
             stages[state] = sum;
         }
     }
-    stages
 }
 
 /// `sums` and the slopes of a state at all nodes but the first, weighted.
@@ -446,8 +476,8 @@ mod tests {
         slopes: Slopes<f64, N, G>,
     ) -> Stages<A, f64, N, S, G> {
         Stages {
-            before: Some(slopes),
-            tried: Some(slopes),
+            steps: [slopes; 2],
+            tried: 0,
             method: PhantomData,
         }
     }
@@ -523,10 +553,13 @@ mod tests {
             let slope = |_: usize, t: f64| t.powi(power);
             let state = |t: f64| t.powi(power + 1) / f64::from(power + 1);
             let (earlier, slopes) = sampled::<A, 1, S, G>(span(0.0, before), slope);
-            let (start, expected) = sampled::<A, 1, S, G>(span(before, length), slope);
-            let work = work::<A, 1, S, G>(slopes);
-            let predicted = work.predicted(&start);
-            for (predicted, expected) in predicted.iter().zip(&expected.others) {
+            let (_, expected) = sampled::<A, 1, S, G>(span(before, length), slope);
+            let mut predicted = Slopes {
+                others: slopes.others,
+                ..expected
+            };
+            Stages::<A, f64, 1, S, G>::predict(&slopes, &mut predicted);
+            for (predicted, expected) in predicted.others.iter().zip(&expected.others) {
                 let pairs = predicted[0]
                     .as_columns()
                     .iter()
@@ -537,6 +570,7 @@ mod tests {
                     assert!(error < 1e-9, "{power}: {predicted} {expected}");
                 }
             }
+            let work = work::<A, 1, S, G>(slopes);
             let between = work.between(&earlier, &SVector::from([state(before)]));
             for s in [0.1, 0.35, 0.8] {
                 let error = (between.at(s)[0] - state(s * before)).abs();

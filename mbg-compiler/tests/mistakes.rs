@@ -407,3 +407,42 @@ fn a_mesh_of_gain_one_is_shown() {
         "they form a mesh whose gain is one: 1 / (n) · 1 / (0.5) · 1 / (2/n)"
     );
 }
+
+/// A source that imposes what a transformer gives, and the same source where the help has it.
+#[test]
+fn a_source_that_asks_for_an_inverse_can_act_through_a_storage() {
+    let column = "MTF axis { flow: [[1.0], [0.0], [0.0]] }";
+    let flow =
+        format!("1 rate {{ I rotor {{ inertia: 1.0 }} }} 1 wide[3]; rate -> {column} -> wide;");
+    let effort = format!(
+        "1 wide[3] {{ #[derivative] I rotor {{ inertia: 1.0 }} }} 0 rate; rate -> {column} -> wide;"
+    );
+    let cases = [
+        (
+            &flow,
+            "Sf drive { flow: [0.0, 0.0, 0.0] }",
+            "wide",
+            "1 driven[3];",
+            "0 between[3] { C spring { stiffness: … } } driven -> between; between -> wide;",
+        ),
+        (
+            &effort,
+            "Se push { effort: 1.0 }",
+            "rate",
+            "0 driven;",
+            "1 between { I mass { inertia: … } } driven -> between; between -> rate;",
+        ),
+    ];
+    for (model, source, place, driven, between) in cases {
+        let imposed = diagnose(&format!("model M {{ {model} {source} -> {place}; }}"));
+        let report = &imposed.list()[0];
+        assert_eq!(report.code, codes::RECTANGULAR_INVERSE);
+        assert!(report.helps[0].contains(&format!("bond it to `{driven}` and write `{between}`")));
+        let mended = format!(
+            "{driven} {} {source} -> driven;",
+            between.replace('…', "1.0")
+        );
+        let codes = found(&format!("model M {{ {model} {mended} }}"));
+        assert!(codes.is_empty(), "{codes:?}");
+    }
+}

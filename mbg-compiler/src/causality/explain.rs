@@ -117,7 +117,7 @@ fn path(graph: &BondGraph, storage: ElementId, bond: BondId, needed: &[&Step]) -
     }
     let element = |id: ElementId| words::symbol(graph.elements[id.0].kind);
     let mut stops = vec![element(storage)];
-    let mut bond = Some(bond);
+    let (mut bond, mut last) = (Some(bond), storage);
     while let Some(step) = bond.and_then(|bond| by_bond.get(&bond)) {
         match &step.cause {
             Cause::Junction(id, _) => stops.push(match graph.junctions[id.0].kind {
@@ -128,7 +128,12 @@ fn path(graph: &BondGraph, storage: ElementId, bond: BondId, needed: &[&Step]) -
             | Cause::Integral(id)
             | Cause::Supposed(id)
             | Cause::Yielded(id)
-            | Cause::TwoPort(id) => stops.push(element(*id)),
+            | Cause::TwoPort(id) => {
+                // What a transformer passes on may be what it demands itself.
+                if std::mem::replace(&mut last, *id) != *id {
+                    stops.push(element(*id));
+                }
+            }
             Cause::Free => {}
         }
         bond = step

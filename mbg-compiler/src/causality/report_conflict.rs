@@ -125,7 +125,10 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
     let place = end
         .as_ref()
         .map_or_else(|| "junction".to_owned(), |end| graph.end_name(end));
-    helps.push(match (conflict.code, end) {
+    let imposed = (conflict.code == codes::RECTANGULAR_INVERSE)
+        .then(|| through(graph, &elements))
+        .flatten();
+    helps.push(imposed.unwrap_or_else(|| match (conflict.code, end) {
         (codes::SOURCES_CONFLICT, _) => format!("remove one of {}", names(graph, &elements)),
         (codes::GYROSCOPIC_INVERSE, _) => {
             format!("give `{place}` its flow from an inertia: `{place} -> I rotor {{ inertia: … }};`")
@@ -134,7 +137,7 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
             format!("attach a resistor that can give the effort: `{place} -> R damper {{ resistance: … }};`")
         }
         _ => format!("attach a resistor that can give the flow: `{place} -> R damper {{ conductance: … }};`"),
-    });
+    }));
     if soluble {
         helps.push(COMPONENTWISE.to_owned());
     }
@@ -142,4 +145,28 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
         helps.push(JACOBIAN.to_owned());
     }
     helps
+}
+
+/// Where a source imposes what a transformer gives: how the source can act without imposing it.
+fn through(graph: &BondGraph, elements: &[ElementId]) -> Option<String> {
+    elements.iter().find_map(|id| {
+        let element = &graph.elements[id.0];
+        let (word, outer, inner, store) = match element.rule {
+            Rule::FlowOut => ("spring", 1, 0, "C spring { stiffness: … }"),
+            Rule::EffortOut => ("mass", 0, 1, "I mass { inertia: … }"),
+            _ => return None,
+        };
+        let own = End::OnePort(*id);
+        let bond = graph.bonds.iter().find(|it| it.from == own || it.to == own)?;
+        let place = graph.end_name(if bond.from == own { &bond.to } else { &bond.from });
+        let dimension = match bond.dimension {
+            1 => String::new(),
+            dimension => format!("[{dimension}]"),
+        };
+        let name = &element.name;
+        Some(format!(
+            "remove `{name}`, or let it act through a {word}: bond it to `{outer} driven{dimension};` and write \
+             `{inner} between{dimension} {{ {store} }} driven -> between; between -> {place};`"
+        ))
+    })
 }

@@ -68,6 +68,19 @@ joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_
 }
 
 #[test]
+fn a_path_names_a_transformer_once_that_demands_what_it_passes_on() {
+    let mut builder = Builder::new();
+    let rate = builder.one("rate", 1);
+    let wide = builder.one("wide", 3);
+    builder.transformer("axis", (3, 1), builder.whole(rate), builder.whole(wide));
+    builder.port("damper", Rule::Either, builder.whole(rate));
+    let body = builder.port("body", Rule::PreferFlowOut, builder.whole(wide));
+    let found = verdict(&builder.graph).expect("the inertia can be dependent");
+    let path = explain(&builder.graph, &found, body).map(|chain| chain.path);
+    assert_eq!(path.as_deref(), Some("I <- 1 <- MTF"));
+}
+
+#[test]
 fn fig_12_names_the_inertia_its_path_and_all_blocked_axes() {
     let graph = fig_12(Joint::Revolutes);
     let found = verdict(&graph).expect("admissible");

@@ -1,6 +1,7 @@
 //! Collocation by sweeps that evaluate all stages at once.
 
 mod lobatto;
+mod sweep;
 
 use core::array;
 use core::marker::PhantomData;
@@ -8,6 +9,7 @@ use core::marker::PhantomData;
 use nalgebra::SVector;
 
 use self::lobatto::Tableau;
+use self::sweep::{Nodes, Sweep, advance, at, last, scaled, summed};
 use super::dense::Polynomial;
 use super::method::{
     Estimating, Family, Method, Start, Stepper, Trial, combination, lagrange, leading,
@@ -95,9 +97,6 @@ pub trait Swept<const S: usize, const G: usize>: Copy {
     const SINE: f64;
 }
 
-/// Numbers at all nodes but the first, by groups of four.
-type Nodes<T, const N: usize, const G: usize> = [SVector<<T as Real>::Stages, N>; G];
-
 /// Slopes at the nodes of a step; of no length as long as there is none.
 #[derive(Clone, Copy)]
 struct Slopes<T: Real, const N: usize, const G: usize> {
@@ -150,59 +149,33 @@ where
         I: Input<T, M>,
     {
         let (before, tried) = self.next(start.again);
-        let length = start.span.length;
-        let nodes = const { &A::TABLEAU.nodes };
-        let mut weights = [[T::Stages::whole(length); G]; S];
-        for (weights, of_node) in weights.iter_mut().zip(const { &A::TABLEAU.weights }) {
-            for (weight, of_group) in weights.iter_mut().zip(of_node) {
-                *weight = scaled::<T>(length, *of_group);
-            }
-        }
-        let mut base: Nodes<T, N, G> = [start.x.map(T::Stages::whole); G];
-        let mut times = [T::Stages::whole(start.span.start); G];
-        for group in 0..G {
-            for (base, slope) in base[group].iter_mut().zip(start.slope.iter()) {
-                *base = weights[0][group].multiply_add(T::Stages::whole(*slope), *base);
-            }
-            times[group] = T::Stages::from_columns(|place| {
-                start.span.at(T::from_f64(nodes[4 * group + place + 1]))
-            });
-        }
-        let inputs = times.map(|times| problem.inputs(times));
+        let sweep = Sweep::over::<A, _, _, P>(problem, start);
         let sweeps = if seen(before.length) > 0.0 {
             A::SWEEPS[0]
         } else {
             A::SWEEPS[0] + A::SWEEPS[1]
         };
 
-        tried.length = length;
-        tried.first = start.slope;
+        (tried.length, tried.first) = (start.span.length, start.slope);
         Self::predict(before, tried);
         let slopes = &mut tried.others;
-        let mut stages = base;
-        advance::<T, N, S, G>(&mut stages, &base, &weights, slopes);
+        let mut stages = sweep.base;
+        sweep.advance(&mut stages, slopes);
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
         let mut before = start.x;
         let (mut left, mut missed) = (sweeps, 0.0);
         let error = loop {
-            for sweep in 0..left {
-                for group in 0..G {
-                    problem.slopes(
-                        times[group],
-                        &stages[group],
-                        &inputs[group],
-                        &mut slopes[group],
-                    );
-                }
-                if sweep == 0
+            for number in 0..left {
+                sweep.slopes(problem, &stages, slopes);
+                if number == 0
                     && left > 1
                     && let Some(measure) = &measure
                 {
                     missed = Self::truncation(measure, start, slopes);
                 }
                 before = last::<T, N, G>(&stages);
-                advance::<T, N, S, G>(&mut stages, &base, &weights, slopes);
+                sweep.advance(&mut stages, slopes);
             }
             let change = last::<T, N, G>(&stages) - before;
             let square = measure.as_ref().map_or(0.0, |it| it.square(&change));
@@ -321,80 +294,6 @@ where
         let smooth = 0.25 * A::SINE;
         last * ratio * ratio * (ratio + smooth * smooth)
     }
-}
-
-/// Numbers of four stages times one of all.
-#[inline]
-fn scaled<T: Real>(by: T, numbers: [f64; 4]) -> T::Stages {
-    T::Stages::whole(by) * T::Stages::from_columns(|stage| T::from_f64(numbers[stage]))
-}
-
-/// The states at the stages, from slopes there.
-#[inline(always)]
-fn advance<T: Real, const N: usize, const S: usize, const G: usize>(
-    stages: &mut Nodes<T, N, G>,
-    base: &Nodes<T, N, G>,
-    weights: &[[T::Stages; G]; S],
-    slopes: &Nodes<T, N, G>,
-) {
-    for state in 0..N {
-        let mut sums = [base[0][state]; G];
-        for (sum, base) in sums.iter_mut().zip(base) {
-            *sum = base[state];
-        }
-        let sums = summed::<T, N, S, G, G>(sums, weights, slopes, state);
-        for (stages, sum) in stages.iter_mut().zip(sums) {
-            stages[state] = sum;
-        }
-    }
-}
-
-/// `sums` and the slopes of a state at all nodes but the first, weighted.
-///
-/// All sums go on together, so that each slope is spread over a register once, and in two halves, so that fewer additions
-/// wait for one another.
-#[inline(always)]
-fn summed<T: Real, const N: usize, const S: usize, const G: usize, const K: usize>(
-    mut sums: [T::Stages; K],
-    weights: &[[T::Stages; K]; S],
-    slopes: &Nodes<T, N, G>,
-    state: usize,
-) -> [T::Stages; K] {
-    let middle = S / 2 + 1;
-    let mut late = [T::Stages::from_f64(0.0); K];
-    for node in 1..S {
-        let slopes = slopes[(node - 1) / 4][state];
-        let slope = T::Stages::whole(slopes.as_columns()[(node - 1) % 4]);
-        for place in 0..K {
-            let weight = weights[node][place];
-            if node < middle {
-                sums[place] = weight.multiply_add(slope, sums[place]);
-            } else if node == middle {
-                late[place] = weight * slope;
-            } else {
-                late[place] = weight.multiply_add(slope, late[place]);
-            }
-        }
-    }
-    for (sum, late) in sums.iter_mut().zip(late) {
-        *sum += late;
-    }
-    sums
-}
-
-/// What is at one of the nodes but the first.
-#[inline(always)]
-fn at<T: Real, const N: usize, const G: usize>(
-    node: usize,
-    numbers: &Nodes<T, N, G>,
-) -> SVector<T, N> {
-    numbers[(node - 1) / 4].map(|it| it.as_columns()[(node - 1) % 4])
-}
-
-/// What is at the end.
-#[inline(always)]
-fn last<T: Real, const N: usize, const G: usize>(numbers: &Nodes<T, N, G>) -> SVector<T, N> {
-    at::<T, N, G>(4 * G, numbers)
 }
 
 /// A method of this family.

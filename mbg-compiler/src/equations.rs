@@ -267,7 +267,8 @@ impl Former<'_> {
         about: [usize; 2],
     ) {
         let mut sum: BTreeMap<usize, Expression> = BTreeMap::new();
-        for (unknown, coefficient) in terms {
+        let is_there = |(_, coefficient): &&(usize, Expression)| *coefficient != Expression::ZERO;
+        for (unknown, coefficient) in terms.iter().filter(is_there) {
             let known = sum.get(unknown).copied().unwrap_or(Expression::ZERO);
             sum.insert(*unknown, self.pool.add(known, *coefficient));
         }

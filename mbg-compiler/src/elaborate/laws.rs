@@ -448,8 +448,9 @@ impl Reader<'_, '_, '_> {
     /// Leading principal minors are positive.
     fn positive(&mut self, matrix: &Matrix, span: Span) -> Result<Vec<Assumption>> {
         let mut assumptions: Vec<Assumption> = Vec::new();
+        let is_diagonal = matrix.is_diagonal();
         for size in 1..=matrix.rows {
-            let expression = if matrix.is_diagonal() {
+            let expression = if is_diagonal {
                 matrix.at(size - 1, size - 1)
             } else {
                 matrix.leading(size).determinant(self.pool)
@@ -458,7 +459,7 @@ impl Reader<'_, '_, '_> {
                 Some(value) if value > 0.0 => {}
                 Some(value) => {
                     let name = &self.element.name;
-                    let message = if matrix.is_diagonal() {
+                    let message = if is_diagonal {
                         format!("the inertia of `{name}` is {value}, not positive")
                     } else {
                         format!(

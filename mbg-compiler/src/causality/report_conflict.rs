@@ -125,9 +125,10 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
     let place = end
         .as_ref()
         .map_or_else(|| "junction".to_owned(), |end| graph.end_name(end));
-    let imposed = (conflict.code == codes::RECTANGULAR_INVERSE)
-        .then(|| through(graph, &elements))
-        .flatten();
+    let imposed = match conflict.code {
+        codes::RECTANGULAR_INVERSE => through(graph, &elements),
+        _ => None,
+    };
     helps.push(imposed.unwrap_or_else(|| match (conflict.code, end) {
         (codes::SOURCES_CONFLICT, _) => format!("remove one of {}", names(graph, &elements)),
         (codes::GYROSCOPIC_INVERSE, _) => {

@@ -105,6 +105,12 @@ struct Slopes<T: Real, const N: usize, const G: usize> {
     others: Nodes<T, N, G>,
 }
 
+impl<T: Real, const N: usize, const G: usize> Slopes<T, N, G> {
+    fn is_known(&self) -> bool {
+        seen(self.length) > 0.0
+    }
+}
+
 /// The last step that was taken, and the one that was tried last.
 ///
 /// Both keep their place, and what is as large as slopes at all nodes is written where it stays: copied as a whole it goes
@@ -150,7 +156,7 @@ where
     {
         let (before, tried) = self.next(start.again);
         let sweep = Sweep::over::<A, _, _, P>(problem, start);
-        let sweeps = if seen(before.length) > 0.0 {
+        let sweeps = if before.is_known() {
             A::SWEEPS[0]
         } else {
             A::SWEEPS[0] + A::SWEEPS[1]
@@ -163,7 +169,7 @@ where
         sweep.advance(&mut stages, slopes);
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
-        let mut before = start.x;
+        let mut end = start.x;
         let (mut left, mut missed) = (sweeps, 0.0);
         let error = loop {
             for number in 0..left {
@@ -174,10 +180,10 @@ where
                 {
                     missed = Self::truncation(measure, start, slopes);
                 }
-                before = last::<T, N, G>(&stages);
+                end = last::<T, N, G>(&stages);
                 sweep.advance(&mut stages, slopes);
             }
-            let change = last::<T, N, G>(&stages) - before;
+            let change = last::<T, N, G>(&stages) - end;
             let square = measure.as_ref().map_or(0.0, |it| it.square(&change));
             let error = Real::sqrt(square + missed);
             if left == 1 {
@@ -252,7 +258,7 @@ where
 
     /// The slopes of a step as the one before continues; without one, those at the start.
     fn predict(before: &Slopes<T, N, G>, step: &mut Slopes<T, N, G>) {
-        if seen(before.length) <= 0.0 {
+        if !before.is_known() {
             step.others = [step.first.map(T::Stages::whole); G];
             return;
         }

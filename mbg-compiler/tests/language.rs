@@ -5,10 +5,12 @@ mod models;
 
 use std::fmt::Write;
 
+use mbg_compiler::compile::Routines;
 use mbg_compiler::graph::{BondId, Law};
+use mbg_compiler::program::{self, Arguments};
 use mbg_compiler::symbolic::Symbol;
 use mbg_compiler::symbolic::print::Printer;
-use models::{compiled, elaborated};
+use models::{attempted, compiled, elaborated};
 
 /// Bonds, initial states and outputs of the flat graph.
 fn flat(text: &str) -> String {
@@ -533,6 +535,16 @@ fn mistakes_in_laws_are_told() {
     2:24 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
       help: write `energy: …`, from which the law follows by differentiation
     ");
+    insta::assert_snapshot!(mistake("1 v { C c { stiffness: 1.0 + f } I b { inertia: 2.0 + e * e } }"), @"
+    2:30 `c` stores energy by its own `q` alone, and its law reads `f` [MBG0213]
+      help: write `effort: …` or `energy: …` as a function of `q`
+    2:55 `b` stores energy by its own `p` alone, and its law reads `e` [MBG0213]
+      help: write `flow: …` or `energy: …` as a function of `p`
+    ");
+    insta::assert_snapshot!(mistake("1 v[2] { C c { stiffness: diag(1.0 + q.y, 1.0) } I b { inertia: 1.0 } }"), @"
+    2:27 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
+      help: write `energy: …`, from which the law follows by differentiation
+    ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0, initial: 2.0, initial_flow: 3.0 } }"), @"
     2:41 `b` is given both a momentum and a flow at the start [MBG0104]
       help: remove `initial` or `initial_flow`: one follows from the other
@@ -600,6 +612,85 @@ fn laws_of_whole_vectors_are_no_laws_of_components() {
     // A junction of that name is no variable of the element.
     let law = "1 q[2] { I g { inertia: 1.0 } } 1 v[2] { I b { inertia: 1.0 } R r { effort: q.f.x * powi(f, 3) } }";
     assert_eq!(mistake(law), "");
+}
+
+/// A law that jumps has the same slope on both sides, and yet two values.
+#[test]
+fn laws_that_jump_keep_both_sides() {
+    let force = |law: &str, momentum: f64| {
+        let text =
+            format!("model M {{ 1 v {{ I m {{ inertia: 2.0 }} {law} }} output force = m.e; }}");
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[momentum],
+            input: &[],
+        };
+        program::evaluate(&compiled(&text).program, Routines::OUTPUT, &arguments)[0]
+    };
+    let cases = [
+        ("R r { effort: 5.0 * sign(f) }", -5.0, 5.0),
+        ("R r { effort: 5.0 * sign(f) + 0.1 * f }", -5.15, 5.15),
+        (
+            "R r { effort: if f > 0.0 { 5.0 } else { -2.0 } }",
+            -5.0,
+            2.0,
+        ),
+        (
+            "R r { effort: if f > 0.0 { 5.0 + f } else { f } }",
+            -6.5,
+            1.5,
+        ),
+        (
+            "Se s { effort: if v.f < 1.0 { 2.0 } else { 0.5 } }",
+            0.5,
+            2.0,
+        ),
+    ];
+    for (law, forward, backward) in cases {
+        assert_eq!(
+            [3.0, -3.0].map(|momentum| force(law, momentum)),
+            [forward, backward],
+            "{law}"
+        );
+    }
+    // Such a law has no inverse, which a dependent storage would need.
+    let text = "#[derivative] model M { 0 n { C a { stiffness: 2.0 } C b { effort: q + sign(q) } } \
+                1 v { I m { inertia: 1.0 } } n -> v; }";
+    assert_eq!(attempted(text).err(), Some(vec!["MBG0403"]));
+}
+
+/// A stiffness that changes with the displacement it multiplies is a law `k(q) q`, whose energy is its integral.
+#[test]
+fn coefficients_may_change_with_the_state_they_multiply() {
+    let energy = |storage: &str, state: f64| {
+        let text = format!("model M {{ 1 v {{ {storage} R r {{ resistance: 1.0 }} }} }}");
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[state],
+            input: &[],
+        };
+        program::evaluate(&compiled(&text).program, Routines::ENERGY, &arguments)[0]
+    };
+    let cases = [
+        // ½ · 50 q² + ¼ · 400 q⁴
+        ("C c { stiffness: 50.0 + 400.0 * q * q }", 3.06),
+        // ∫ p / (2 + p) dp = p − 2 ln(1 + p / 2)
+        ("I m { inertia: 2.0 + p }", 0.3 - 2.0 * 1.15_f64.ln()),
+        // ∫ q √(1 + q) dq, with s = √(1 + q): 2 (s⁵ / 5 − s³ / 3)
+        (
+            "C c { compliance: 1.0 / sqrt(1.0 + q) }",
+            2.0 * (1.3_f64.powf(2.5) / 5.0 - 1.3_f64.powf(1.5) / 3.0 + 2.0 / 15.0),
+        ),
+    ];
+    for (storage, expected) in cases {
+        let found = energy(storage, 0.3);
+        assert!(
+            (found - expected).abs() < 1e-13,
+            "{storage}: {found}, not {expected}"
+        );
+    }
 }
 
 /// What its energy is changed by besides its own state is no port, so that the balance lacks that power.

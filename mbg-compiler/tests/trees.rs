@@ -1,5 +1,7 @@
 //! Random trees of rigid bodies on hinges and slides, of components of the library, against Kane's equations in the
-//! axes of the world. Joints at right angles and at zero are as frequent as any: nothing that is divided by may vanish.
+//! axes of the world, and the efforts in them against Newton's and Euler's. Joints at right angles and at zero are as
+//! frequent as any: nothing that is divided by may vanish. Masses and lengths are often round numbers: what is equal by
+//! chance must not be taken for the same.
 
 #[path = "../../tests/references/dense.rs"]
 #[allow(clippy::unwrap_used)]
@@ -8,6 +10,7 @@ mod models;
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
+use std::ops::Range;
 
 use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::program::{Arguments, evaluate};
@@ -31,6 +34,8 @@ struct Body {
     centre: Vector3<f64>,
     position: f64,
     rate: f64,
+    /// What a servo changes the rate by; none where the joint moves freely.
+    servo: Option<f64>,
 }
 
 fn vector(of: &Vector3<f64>) -> String {
@@ -68,12 +73,22 @@ fn text(tree: &[Body]) -> String {
     offset{k}: Offset {{ by: {by} }} ({frame}, base{k});
     joint{k}: {word} {{ {axis}, damping: {DAMPING:?} }} (base{k}, frame{k});
     body{k}: Body {{ mass: {mass:?}, inertia: {inertia}, centre: {centre}, gravity_at: {own} }} (frame{k});
+    output force{k}[3] = body{k}.force.e;
+    output turning{k}[3] = body{k}.spin.e;
 "
         )
         .expect("a string grows");
+        if let Some(acceleration) = body.servo {
+            let rate = body.rate;
+            writeln!(
+                text,
+                "    Sf servo{k} {{ flow: {rate:?} + {acceleration:?} * t }} -> joint{k}.rate;\n    output drive{k} = servo{k}.e;"
+            )
+            .expect("a string grows");
+        }
         down.push(own);
     }
-    text.push_str("}\n");
+    text.push_str("    output held[6] = fixed.e;\n}\n");
     text
 }
 
@@ -83,7 +98,7 @@ struct Joint {
     place: Vector3<f64>,
 }
 
-/// A frame in the axes of the world, with the accelerations at `q̈ = 0`.
+/// A frame in the axes of the world.
 #[derive(Clone)]
 struct Frame {
     axes: Matrix3<f64>,
@@ -114,8 +129,8 @@ impl Frame {
         }
     }
 
-    /// The frame behind a joint.
-    fn behind(&self, body: &Body) -> (Self, Joint) {
+    /// The frame behind a joint whose own rate changes by `acceleration`.
+    fn behind(&self, body: &Body, acceleration: f64) -> (Self, Joint) {
         let base = self.at(&(self.axes * body.by));
         let unit = Vector3::from_fn(|row, _| f64::from(u8::from(row == body.axis)));
         let axis = base.axes * unit;
@@ -123,9 +138,9 @@ impl Frame {
         let moved = axis * body.rate;
         let frame = if body.slides {
             let slid = base.at(&(axis * body.position));
-            let acceleration = slid.acceleration + 2.0 * slid.omega.cross(&moved);
+            let own = axis * acceleration + 2.0 * slid.omega.cross(&moved);
             Self {
-                acceleration,
+                acceleration: slid.acceleration + own,
                 ..slid
             }
         } else {
@@ -133,7 +148,7 @@ impl Frame {
             Self {
                 axes: base.axes * turn.matrix(),
                 omega: base.omega + moved,
-                alpha: base.alpha + base.omega.cross(&moved),
+                alpha: base.alpha + axis * acceleration + base.omega.cross(&moved),
                 ..base
             }
         };
@@ -141,22 +156,49 @@ impl Frame {
     }
 }
 
-/// `M q̈ = τ − b` (Kane), with the partial velocities of the joints above each body.
-fn accelerations(tree: &[Body]) -> Vec<f64> {
+/// What moves a body, in the axes of the world.
+struct Load {
+    centre: Frame,
+    inertia: Matrix3<f64>,
+    force: Vector3<f64>,
+    torque: Vector3<f64>,
+}
+
+impl Load {
+    fn of(body: &Body, frame: &Frame) -> Self {
+        let centre = frame.at(&(frame.axes * body.centre));
+        let inertia = frame.axes * Matrix3::from_diagonal(&body.inertia) * frame.axes.transpose();
+        Self {
+            force: body.mass * (centre.acceleration - GRAVITY),
+            torque: inertia * centre.alpha + centre.omega.cross(&(inertia * centre.omega)),
+            centre,
+            inertia,
+        }
+    }
+}
+
+/// The frame that holds a body.
+fn above(body: &Body, frames: &[Frame]) -> Frame {
+    body.parent
+        .map_or_else(Frame::ground, |parent| frames[parent].clone())
+}
+
+/// `M q̈ = τ − b` (Kane), with the partial velocities of the joints above each body: the accelerations of the joints, and
+/// what servos add to `τ`.
+fn motion(tree: &[Body]) -> (Vec<f64>, Vec<f64>) {
     let size = tree.len();
     let (mut frames, mut joints): (Vec<Frame>, Vec<Joint>) = (Vec::new(), Vec::new());
     let mut matrix = vec![vec![0.0; size]; size];
     let mut right: Vec<f64> = tree.iter().map(|body| -DAMPING * body.rate).collect();
     for (k, body) in tree.iter().enumerate() {
-        let above = body
-            .parent
-            .map_or_else(Frame::ground, |parent| frames[parent].clone());
-        let (frame, joint) = above.behind(body);
+        let (frame, joint) = above(body, &frames).behind(body, 0.0);
         joints.push(joint);
-        let centre = frame.at(&(frame.axes * body.centre));
-        let inertia = frame.axes * Matrix3::from_diagonal(&body.inertia) * frame.axes.transpose();
-        let force = body.mass * (centre.acceleration - GRAVITY);
-        let torque = inertia * centre.alpha + centre.omega.cross(&(inertia * centre.omega));
+        let Load {
+            centre,
+            inertia,
+            force,
+            torque,
+        } = Load::of(body, &frame);
         let mut partials = Vec::new();
         let mut next = Some(k);
         while let Some(j) = next {
@@ -176,11 +218,45 @@ fn accelerations(tree: &[Body]) -> Vec<f64> {
         }
         frames.push(frame);
     }
-    dense::solve(matrix, right)
+    let free: Vec<usize> = (0..size).filter(|k| tree[*k].servo.is_none()).collect();
+    let mut accelerations: Vec<f64> = tree.iter().map(|body| body.servo.unwrap_or(0.0)).collect();
+    let needed = |accelerations: &[f64], k: usize| {
+        let inertial = matrix[k].iter().zip(accelerations).map(|(m, a)| m * a);
+        inertial.sum::<f64>() - right[k]
+    };
+    let rows = |k: &usize| free.iter().map(|j| matrix[*k][*j]).collect();
+    let lacking = free.iter().map(|k| -needed(&accelerations, *k)).collect();
+    let found = dense::solve(free.iter().map(rows).collect(), lacking);
+    for (k, acceleration) in free.iter().zip(found) {
+        accelerations[*k] = acceleration;
+    }
+    let drives = (0..size).map(|k| needed(&accelerations, k)).collect();
+    (accelerations, drives)
 }
 
-/// Accelerations by the program.
-fn compiled(tree: &[Body], model: &Compiled) -> Vec<f64> {
+/// The outputs of the tree, from the accelerations of its joints (Newton and Euler) and what servos add.
+fn efforts(tree: &[Body], accelerations: &[f64], drives: &[f64]) -> Vec<f64> {
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut outputs = Vec::new();
+    let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+    for ((body, acceleration), drive) in tree.iter().zip(accelerations).zip(drives) {
+        let (frame, _) = above(body, &frames).behind(body, *acceleration);
+        let load = Load::of(body, &frame);
+        force += load.force;
+        moment += load.torque + load.centre.place.cross(&load.force);
+        let inward = frame.axes.transpose();
+        outputs.extend((inward * load.force).iter());
+        outputs.extend((inward * (load.inertia * load.centre.alpha)).iter());
+        outputs.extend(body.servo.map(|_| *drive));
+        frames.push(frame);
+    }
+    outputs.extend(moment.iter());
+    outputs.extend(force.iter());
+    outputs
+}
+
+/// Accelerations and outputs by the program.
+fn compiled(tree: &[Body], model: &Compiled) -> (Vec<f64>, Vec<f64>) {
     let names: Vec<&str> = model
         .states
         .iter()
@@ -195,9 +271,11 @@ fn compiled(tree: &[Body], model: &Compiled) -> Vec<f64> {
         if let Some(place) = find(format!("joint{k}.{word}")) {
             state[place] = body.position;
         }
-        let place = find(format!("joint{k}.rate.f")).expect("the rates are states");
-        state[place] = body.rate;
-        places.push(place);
+        if body.servo.is_none() {
+            let place = find(format!("joint{k}.rate.f")).expect("the rates are states");
+            state[place] = body.rate;
+            places.push(place);
+        }
     }
     let arguments = Arguments {
         parameters: &[],
@@ -206,32 +284,41 @@ fn compiled(tree: &[Body], model: &Compiled) -> Vec<f64> {
         input: &[],
     };
     let rates = evaluate(&model.program, Routines::DERIVATIVE, &arguments);
-    places.into_iter().map(|place| rates[place]).collect()
+    let outputs = evaluate(&model.program, Routines::OUTPUT, &arguments);
+    (
+        places.into_iter().map(|place| rates[place]).collect(),
+        outputs,
+    )
 }
 
-fn tree() -> impl Strategy<Value = Vec<Body>> {
+/// So many bodies, with these shares of slides and of servos.
+fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = Vec<Body>> {
     let special = prop_oneof![Just(0.0), Just(FRAC_PI_2), Just(-FRAC_PI_2), -2.0..2.0_f64];
-    let place = || {
-        prop::array::uniform3(prop_oneof![Just(0.0), Just(0.0), -1.0..1.0_f64])
-            .prop_map(Vector3::from)
-    };
+    let round = || prop::sample::select(&[0.0, 0.0, 1.0, -1.0, 0.5][..]);
+    let place =
+        || prop::array::uniform3(prop_oneof![round(), -1.0..1.0_f64]).prop_map(Vector3::from);
     let joint = (
         any::<usize>(),
-        prop::bool::weighted(0.3),
+        prop::bool::weighted(slides),
         0..3_usize,
         place(),
     );
-    let body = (
-        0.5..2.0_f64,
-        prop::array::uniform3(0.2..1.0_f64).prop_map(Vector3::from),
-        place(),
-    );
-    let motion = (special, -1.0..1.0_f64);
-    prop::collection::vec((joint, body, motion), 1..7).prop_map(|all| {
+    let positive = || prop_oneof![prop::sample::select(&[1.0, 2.0, 0.5][..]), 0.2..2.0_f64];
+    let inertia = prop_oneof![
+        positive().prop_map(|equal| [equal; 3]),
+        prop::array::uniform3(positive()),
+    ];
+    let body = (positive(), inertia.prop_map(Vector3::from), place());
+    let servo = prop::option::weighted(servos, -1.0..1.0_f64);
+    let motion = (special, -1.0..1.0_f64, servo);
+    prop::collection::vec((joint, body, motion), sizes).prop_map(|all| {
         let bodies = all.into_iter().enumerate();
         bodies
             .map(
-                |(k, ((parent, slides, axis, by), (mass, inertia, centre), (position, rate)))| {
+                |(
+                    k,
+                    ((parent, slides, axis, by), (mass, inertia, centre), (position, rate, servo)),
+                )| {
                     Body {
                         // Chains are more frequent than stars.
                         parent: [k.checked_sub(1), k.checked_sub(1), k.checked_sub(2)][parent % 3],
@@ -243,6 +330,7 @@ fn tree() -> impl Strategy<Value = Vec<Body>> {
                         centre,
                         position,
                         rate,
+                        servo,
                     }
                 },
             )
@@ -250,17 +338,46 @@ fn tree() -> impl Strategy<Value = Vec<Body>> {
     })
 }
 
+/// What a tree says of itself is what the equations of mechanics say.
+fn assert_moves(tree: &[Body]) -> Result<(), TestCaseError> {
+    let text = text(tree);
+    let (rates, outputs) = compiled(tree, &models::compiled(&text));
+    let (accelerations, drives) = motion(tree);
+    let efforts = efforts(tree, &accelerations, &drives);
+    let both = tree.iter().zip(accelerations);
+    let free = both.filter_map(|(body, it)| body.servo.is_none().then_some(it));
+    for (found, expected) in [(rates, free.collect()), (outputs, efforts)] {
+        prop_assert_eq!(found.len(), expected.len());
+        let size = expected.iter().fold(1.0_f64, |size, a| size.max(a.abs()));
+        for (found, expected) in found.iter().zip(&expected) {
+            let error = (found - expected).abs() / size;
+            prop_assert!(
+                error < 1e-11,
+                "{} {} {:e}\n{}",
+                found,
+                expected,
+                error,
+                text
+            );
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn trees_move_as_kane_says(tree in tree()) {
-        let model = models::compiled(&text(&tree));
-        let (found, expected) = (compiled(&tree, &model), accelerations(&tree));
-        let size = expected.iter().fold(1.0_f64, |size, a| size.max(a.abs()));
-        for (found, expected) in found.iter().zip(&expected) {
-            let error = (found - expected).abs() / size;
-            prop_assert!(error < 1e-11, "{} {} {:e}\n{}", found, expected, error, text(&tree));
-        }
+    fn trees_move_as_kane_says(tree in tree(1..7, 0.3, 0.1)) {
+        assert_moves(&tree)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn servos_are_given_what_they_take(tree in tree(1..4, 0.5, 0.4)) {
+        assert_moves(&tree)?;
     }
 }

@@ -297,18 +297,17 @@ impl Reader<'_, '_, '_> {
                 let coenergy = matrix
                     .times(self.pool, &Matrix::column(states.clone()))
                     .entries;
-                let energy = self.half_product(&states, &coenergy);
+                let energy = if self.changes_with_its_state(&matrix) {
+                    self.potential(&coenergy, value.span())?
+                } else {
+                    self.half_product(&states, &coenergy)
+                };
                 (coenergy, energy)
             }
             "energy" => self.by_energy(value)?,
             _ => {
                 let coenergy = self.by_component(value)?;
-                self.check_potential(&coenergy, value.span())?;
-                let energy = quadrature::energy(self.pool, &self.own.states, &coenergy);
-                let Some(energy) = energy else {
-                    let message = format!("the law of `{}` divides by zero", self.element.name);
-                    return Err(Box::new(error(codes::NOT_FINITE, value.span(), message)));
-                };
+                let energy = self.potential(&coenergy, value.span())?;
                 (coenergy, energy)
             }
         };
@@ -328,6 +327,21 @@ impl Reader<'_, '_, '_> {
             rule,
             initial,
             assumptions,
+        })
+    }
+
+    fn changes_with_its_state(&self, matrix: &Matrix) -> bool {
+        let read = symbols(self.pool, &matrix.entries);
+        let mut states = self.own.states.clone().map(Symbol::State);
+        states.any(|state| read.contains(&state))
+    }
+
+    /// The energy of a law that is no multiple of the state.
+    fn potential(&mut self, law: &[Expression], span: Span) -> Result<Expression> {
+        self.check_potential(law, span)?;
+        quadrature::energy(self.pool, &self.own.states, law).ok_or_else(|| {
+            let message = format!("the law of `{}` divides by zero", self.element.name);
+            Box::new(error(codes::NOT_FINITE, span, message))
         })
     }
 

@@ -359,10 +359,24 @@ impl Lookup<'_, '_> {
             "q" if kind == ElementKind::C => Ok(states(pool, &own.states, components)),
             "p" if kind == ElementKind::I => Ok(states(pool, &own.states, components)),
             "e" | "f" if is_two_port(kind) => fail(name.span(), TWO_PORT_VARIABLE),
+            "e" | "f" if kind == ElementKind::C => self.no_energy(own, name, ("q", "effort")),
+            "e" | "f" if kind == ElementKind::I => self.no_energy(own, name, ("p", "flow")),
             "e" => Ok(self.signals(pool, Quantity::Effort, Place::Port(own.element), components)),
             "f" => Ok(self.signals(pool, Quantity::Flow, Place::Port(own.element), components)),
             _ => fail(name.span(), format!("a {kind:?} has no `{name}`")),
         }
+    }
+
+    /// What a storage holds is a function of its state; read with an effort or a flow, a law stores no energy.
+    fn no_energy<T>(&self, own: &Own, name: &Ident, (state, law): (&str, &str)) -> Result<T> {
+        let element = &self.graph.elements[own.element.0].name;
+        let message = format!(
+            "`{element}` stores energy by its own `{state}` alone, and its law reads `{name}`"
+        );
+        let report = error(codes::EXPRESSION, name.span(), message);
+        Err(Box::new(report.help(format!(
+            "write `{law}: …` or `energy: …` as a function of `{state}`"
+        ))))
     }
 
     fn element_variable(

@@ -34,16 +34,19 @@ struct Effort {
 }
 
 impl Moment {
-    /// Those of a block in which rates have not yet been shifted.
+    /// Those of a block in which rates have not yet been shifted, but for balances that are `taken`: what is left there
+    /// is decided already.
     pub(super) fn all(
         pool: &Pool,
         system: &System,
         tree: &Tree,
         vectors: &[Triple],
         velocity: &dyn Fn(usize) -> Expression,
+        taken: BTreeSet<usize>,
     ) -> Vec<Self> {
         let mut balances = Balances {
             system,
+            taken,
             left: BTreeMap::new(),
         };
         let mut moments = Vec::new();
@@ -69,8 +72,9 @@ impl Moment {
         ORDERS.iter().find_map(|order| {
             let inertia = order.map(|number| laws[number].row_of_inertia(&omega));
             let symmetric = |a: usize| (0..a).all(|b| inertia[a][b] == inertia[b][a]);
+            let resists = |a: usize| inertia[a][a] != Expression::ZERO;
             let turning = gyroscopic(pool, speeds, &inertia);
-            if !(0..3).all(symmetric) || turning == [Image::ZERO; 3] {
+            if !(0..3).all(|a| resists(a) && symmetric(a)) || turning == [Image::ZERO; 3] {
                 return None;
             }
             let effort = |k: usize| laws[order[k]].effort(pool, balances, turning[k]);
@@ -115,6 +119,7 @@ struct Law {
 /// What is known in rows, as far as moments have changed it.
 struct Balances<'a> {
     system: &'a System,
+    taken: BTreeSet<usize>,
     left: BTreeMap<usize, Expression>,
 }
 
@@ -170,6 +175,9 @@ impl Law {
 
     /// The effort, if its balance holds this component of `ω × J ω`.
     fn effort(&self, pool: &Pool, balances: &Balances, turning: Image) -> Option<Effort> {
+        if balances.taken.contains(&self.balance) {
+            return None;
+        }
         let factor = pool.image(balances.system.entry(self.balance, self.effort));
         let left = pool.image(balances.right(self.balance));
         Some(Effort {

@@ -17,7 +17,9 @@ use crate::elaborate::{Condition, Elaborated, State, StateRate, Variable};
 use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, Turn, linearise};
 use crate::graph::{ElementId, ElementKind, Law, component_name};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol};
+use crate::symbolic::{
+    Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol, affine,
+};
 
 /// What replaces the lost states.
 pub struct Reduction {
@@ -120,27 +122,18 @@ impl Reducer<'_> {
         };
         let own =
             |symbol: &Symbol| matches!(symbol, Symbol::State(s) if storage.states.contains(s));
-        let mut entries = Vec::new();
+        let (mut entries, mut offset) = (Vec::new(), Vec::new());
         for row in &storage.coenergy {
+            let mut rest = *row;
             for state in storage.states.clone() {
-                let slope = Differentiator::new(Symbol::State(state)).derivative(self.pool, *row);
-                if symbols(self.pool, &[slope]).iter().any(own) {
-                    return None;
-                }
+                let (slope, without) = affine(self.pool, rest, Symbol::State(state), own)?;
                 entries.push(slope);
+                rest = without;
             }
+            offset.push(rest);
         }
         let size = storage.coenergy.len();
         let matrix = Matrix::new(size, size, entries).inverse(self.pool)?;
-        let mut empty = Substitution::new();
-        for state in storage.states.clone() {
-            empty.set(Symbol::State(state), Expression::ZERO);
-        }
-        let offset = storage
-            .coenergy
-            .iter()
-            .map(|row| empty.apply(self.pool, *row))
-            .collect::<Option<_>>()?;
         Some(Inverse { matrix, offset })
     }
 

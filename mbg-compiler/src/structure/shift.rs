@@ -11,6 +11,7 @@ use super::eliminate::System;
 use super::moments::Moment;
 use super::tensor::Tensor;
 use super::tree::Tree;
+use crate::symbolic::field::Image;
 use crate::symbolic::{Expression, Pool};
 
 /// What the shifted unknowns were: each as a sum of others and what is known, in order.
@@ -37,6 +38,19 @@ impl Given {
                 .map(|(other, value)| (other, value.flipped(!own.is_negative())))
                 .collect(),
             constant: system.right(row).flipped(own.is_negative()),
+        })
+    }
+
+    /// The image of the value with another constant.
+    pub(super) fn image(
+        &self,
+        pool: &Pool,
+        constant: Expression,
+        values: &dyn Fn(usize) -> Expression,
+    ) -> Image {
+        let terms = self.terms.iter();
+        terms.fold(pool.image(constant), |sum, (other, coefficient)| {
+            sum.plus(pool.image(*coefficient).times(pool.image(values(*other))))
         })
     }
 
@@ -102,18 +116,21 @@ impl Shift {
             rates: BTreeMap::new(),
         };
         for given in &rows {
-            let value = match carried.ends.get(&given.unknown) {
-                Some(end) => motion.end(pool, end),
-                None => {
-                    let left = carried.left.get(&given.unknown);
-                    let constant = *left.unwrap_or(&given.constant);
-                    given.plus(pool, constant, &|column| motion.rate(column))
-                }
+            let left = carried.left.get(&given.unknown);
+            let constant = *left.unwrap_or(&given.constant);
+            let rate = |column: usize| motion.rate(column);
+            let end = carried.ends.get(&given.unknown);
+            let by_arm = end.map(|end| motion.end(pool, end));
+            // What an arm adds that slides or changes its length is more.
+            let value = match by_arm {
+                Some(value) if pool.image(value) == given.image(pool, constant, &rate) => value,
+                _ => given.plus(pool, constant, &rate),
             };
             motion.rates.insert(given.unknown, value);
             system.set_right(tree.conjugates[&given.unknown].row, Expression::ZERO);
         }
-        let moments = Moment::all(pool, system, tree, vectors, velocity);
+        let taken = carried.masses.iter().map(|(balance, _)| *balance);
+        let moments = Moment::all(pool, system, tree, vectors, velocity, taken.collect());
         for row in system
             .open()
             .iter()

@@ -92,7 +92,11 @@ pub fn operations(pool: &Pool, expressions: &[Expression]) -> usize {
 }
 
 /// Each node that the expressions depend on, once.
-fn visit<'a>(pool: &'a Pool, expressions: &[Expression], mut each: impl FnMut(&'a Operation)) {
+pub(super) fn visit<'a>(
+    pool: &'a Pool,
+    expressions: &[Expression],
+    mut each: impl FnMut(&'a Operation),
+) {
     let mut seen = vec![false; pool.len()];
     let mut pending: Vec<Expression> = expressions.iter().rev().copied().collect();
     while let Some(current) = pending.pop() {

@@ -45,14 +45,14 @@ const JOINTS: &[(&str, &str, &str, &[&str])] = &[
     (
         "Universal",
         "first: 2, second: 0",
-        "initial: [0.3, 0.2], stiffness: [5.0, 6.0], rest: 0.1, damping: [0.2, 0.3], friction: [0.4, 0.3], torque: [1.5, 0.2]",
+        "initial: [0.3, 0.2], stiffness: [5.0, 6.0], rest: [0.1, 0.1], damping: [0.2, 0.3], friction: [0.4, 0.3], torque: [1.5, 0.2]",
         &["angle.x", "angle.y"],
     ),
     (
         "Planar",
         "axis: 1",
         "initial_angle: 0.3, initial_travel: [0.2, 0.1], turn_stiffness: 5.0, slide_stiffness: [6.0, 7.0], rest_angle: 0.1,
-         rest_travel: 0.2, turn_damping: 0.3, slide_damping: [0.2, 0.4], turn_friction: 0.4,
+         rest_travel: [0.2, 0.2], turn_damping: 0.3, slide_damping: [0.2, 0.4], turn_friction: 0.4,
          slide_friction: [0.3, 0.2], torque: 1.5, force: [1.2, 0.3]",
         &["angle", "travel.x", "travel.y"],
     ),

@@ -136,7 +136,7 @@ fn values_are_found_whatever_their_order_and_from_outside() {
         output beyond[2] = second.tip[0..2];
         let quarter = rot_x(1.5);
         second: Arm { shift: first.tip, turn: quarter } (b);
-        first: Arm { shift: 1.0 } (a);
+        first: Arm { shift: [1.0, 1.0] } (a);
         1 a { I m { inertia: 1.0 } }
         1 b { I n { inertia: 1.0 } }
     }";
@@ -484,6 +484,50 @@ fn mistakes_in_values_are_told() {
     2:7 `p` is a parameter of a model, which is a number [MBG0204]
       help: give each component a parameter of its own, and `let p[2] = [first, second];`
     ");
+}
+
+/// What holds in the world does not hold at a frame that a joint has turned.
+#[test]
+fn what_a_frame_needs_is_handed_on() {
+    let scene = |gravity: &str, hinge: &str, body: &str| {
+        let text = format!(
+            "#[derivative] model M {{ {gravity} 1 ground[6] {{ Sf fixed {{ flow: 0.0 }} }} 1 arm[6]; 1 end[6];
+             hinge: Revolute {{ axis: 1 }} (ground, arm);
+             rod: Offset {{ by: [1.0, 0.0, 0.0]{hinge} }} (arm, end);
+             body: Body {{ mass: 1.0, inertia: 1.0{body} }} (end); }}"
+        );
+        elaborated(&text).err().unwrap_or_default()
+    };
+    let falling = "gravity [0.0, 0.0, -9.81];";
+    insta::assert_snapshot!(scene(falling, "", ""), @"
+    4:14 `body` is at a frame of `rod` and is not given `gravity_at` [MBG0214]
+      this is inside `Body`, a component of the library
+      help: write `gravity_at: rod.gravity_b`
+      help: write `gravity_at: gravity` where that of the world is meant
+    ");
+    insta::assert_snapshot!(scene(falling, "", ", gravity_at: rod.gravity_b"), @"
+    3:14 `rod` is at a frame of `hinge` and is not given `gravity_a` [MBG0214]
+      this is inside `Offset`, a component of the library
+      help: write `gravity_a: hinge.gravity_b`
+      help: write `gravity_a: gravity` where that of the world is meant
+    ");
+    assert_eq!(
+        scene(
+            falling,
+            ", gravity_a: hinge.gravity_b",
+            ", gravity_at: rod.gravity_b"
+        ),
+        ""
+    );
+    assert_eq!(scene(falling, "", ", gravity_at: gravity"), "");
+    assert_eq!(scene("", "", ""), "");
+    insta::assert_snapshot!(scene("gravity -9.81;", "", ", gravity_at: gravity"), @"
+    4:52 `gravity_at` has dimension 3, found a number [MBG0204]
+      help: write `gravity [0.0, 0.0, -9.81];` in the model
+    ");
+    insta::assert_snapshot!(scene("", "", ", centre: 0.5"), @"4:52 `centre` has dimension 3, found a number [MBG0204]");
+    // Nothing is handed on to what a source moves, nor where nothing needs it.
+    assert_eq!(scene(falling, "", ", gravity_at: hinge.gravity_b"), "");
 }
 
 #[test]

@@ -9,9 +9,10 @@ use syn::Expr;
 
 use super::Builder;
 use super::expressions::{Result, Value};
-use super::scope::Entity;
+use super::scope::{Entity, GRAVITY};
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{Diagnostic, error};
+use crate::symbolic::Expression;
 use crate::syntax::ast::Unit;
 
 /// A named value.
@@ -22,7 +23,7 @@ pub(super) struct Definition<'a> {
     pub(super) name: &'a Ident,
     /// Its path.
     pub(super) path: String,
-    /// Dimension, when declared: a number then stands for each component.
+    /// Dimension, when declared.
     pub(super) dimension: Option<usize>,
     /// Unit, when declared.
     pub(super) unit: Option<&'a Unit>,
@@ -135,10 +136,9 @@ impl<'a> Builder<'a> {
         // A value that nothing needs must not make anything measure an effort or a flow.
         let signals = self.signals.clone();
         for definition in 0..self.definitions.len() {
-            if self.scopes[self.definitions[definition].scope]
-                .library
-                .is_none()
-            {
+            let names = self.definitions[definition].scope;
+            // Where nothing needs a parameter, it may be left to its default.
+            if self.not_handed_on(definition).is_none() && self.scopes[names].library.is_none() {
                 self.define(definition);
             }
         }
@@ -146,18 +146,27 @@ impl<'a> Builder<'a> {
     }
 
     fn read(&mut self, definition: usize) -> Result<Value> {
+        if let Some(report) = self.not_handed_on(definition) {
+            return Err(report);
+        }
         let Definition {
             scope,
             name,
             dimension,
-            value,
+            value: expression,
             ..
         } = self.definitions[definition];
-        let value = self.evaluate(scope, value)?;
+        let value = self.evaluate(scope, expression)?;
         let value = match (dimension, &value) {
             (None, _) => value,
-            (Some(dimension), Value::Scalar(number)) => Value::column(vec![*number; dimension]),
-            (Some(dimension), _) => Value::column(self.entries(&value, dimension, name)?),
+            // Nothing has the same components along all axes, but for zero.
+            (Some(dimension), Value::Scalar(number)) if *number == Expression::ZERO => {
+                Value::column(vec![*number; dimension])
+            }
+            (Some(size), _) => {
+                let entries = self.entries(&value, size, name);
+                Value::column(entries.map_err(|report| about_gravity(report, expression, size))?)
+            }
         };
         Ok(self.claim_definition(definition, value))
     }
@@ -174,4 +183,14 @@ impl<'a> Builder<'a> {
             report.note(format!("each needs the next: {}", through.join(", "))),
         );
     }
+}
+
+/// What to type where gravity itself has the wrong dimension.
+fn about_gravity(report: Box<Diagnostic>, expression: &Expr, dimension: usize) -> Box<Diagnostic> {
+    let is_gravity = matches!(expression, Expr::Path(path) if path.path.is_ident(GRAVITY));
+    if !is_gravity || !(2..=3).contains(&dimension) {
+        return report;
+    }
+    let level = "0.0, ".repeat(dimension - 1);
+    Box::new(report.help(format!("write `gravity [{level}-9.81];` in the model")))
 }

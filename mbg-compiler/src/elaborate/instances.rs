@@ -4,6 +4,7 @@ use proc_macro2::Ident;
 
 use super::Builder;
 use super::conditions::no_word;
+use super::frames::LeftOut;
 use super::scope::{Entity, Scope};
 use crate::codes;
 use crate::diagnostics::{error, listing};
@@ -45,7 +46,7 @@ impl<'a> Builder<'a> {
         scope: usize,
         inner: usize,
         instance: &ast::Instance,
-        component: &ast::Component,
+        component: &'a ast::Component,
     ) {
         if instance.connections.len() != component.ports.len() {
             let message = format!(
@@ -66,6 +67,7 @@ impl<'a> Builder<'a> {
                 .and_then(|reference| self.resolve(scope, reference));
             let entity = match given {
                 Some((End::Junction(id, range), size)) if size == port.dimension => {
+                    self.at_frame(inner, component, port, (id, range.clone()));
                     Entity::Junction(id, range)
                 }
                 Some((_, size)) => {
@@ -117,7 +119,14 @@ impl<'a> Builder<'a> {
                 (Some((name, argument)), _) => {
                     self.definition(inner, name, shape, (scope, argument))
                 }
-                (None, Some(default)) => self.definition(inner, name, shape, (inner, default)),
+                (None, Some(default)) => {
+                    self.defaults.push(LeftOut {
+                        definition: self.definitions.len(),
+                        scope: inner,
+                        parameter,
+                    });
+                    self.definition(inner, name, shape, (inner, default))
+                }
                 (None, None) => {
                     self.missing_argument(scope, instance, name, "…");
                     Entity::Opaque

@@ -14,6 +14,7 @@ mod declare;
 mod definitions;
 pub mod expressions;
 mod finish;
+mod frames;
 mod instances;
 mod laws;
 mod loops;
@@ -47,6 +48,7 @@ use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::graph::{BondGraph, Causality, ElementId, JunctionId, Origins};
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, Statement};
+use frames::{Frame, LeftOut};
 
 /// Elaborates one model; none if anything was reported.
 #[must_use]
@@ -173,6 +175,9 @@ struct Builder<'a> {
     inputs: Vec<Variable>,
     outputs: Vec<Output>,
     signals: Signals,
+    frames: Vec<Frame<'a>>,
+    /// Parameters that are left to their defaults.
+    defaults: Vec<LeftOut<'a>>,
     assumptions: Vec<Assumption>,
     pending: Vec<Pending<'a>>,
     integrals: Vec<(usize, &'a Statement)>,
@@ -218,6 +223,8 @@ impl<'a> Builder<'a> {
             inputs: Vec::new(),
             outputs: Vec::new(),
             signals: Signals::default(),
+            frames: Vec::new(),
+            defaults: Vec::new(),
             assumptions: Vec::new(),
             pending: Vec::new(),
             integrals: Vec::new(),

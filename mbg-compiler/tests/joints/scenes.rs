@@ -71,7 +71,7 @@ fn alike(found: &[f64], expected: &[f64]) {
 #[test]
 fn a_load_in_axes_of_the_world_pulls_as_gravity_does() {
     let weight = "1 tip[6]; arm: Offset { by: [0.1, 0.2, 0.3] } (b, tip);
-        load: Load { axes: world, force: [0.0, 0.0, -19.62], orientation: joint.orientation_b } (tip);";
+        load: Load { axes: world, force: [0.0, 0.0, -19.62], orientation_at: joint.orientation_b } (tip);";
     let gravity = "gravity [0.0, 0.0, -9.81];";
     alike(&pulled(weight, ""), &pulled("", gravity));
 }
@@ -80,7 +80,7 @@ fn a_load_in_axes_of_the_world_pulls_as_gravity_does() {
 fn a_load_in_axes_of_the_body_turns_with_it() {
     let moment = "load: Load { moment: [0.3, -0.2, 0.5] } (b);";
     let turned = "load: Load {
-        axes: world, moment: joint.orientation_b * [0.3, -0.2, 0.5], orientation: joint.orientation_b
+        axes: world, moment: joint.orientation_b * [0.3, -0.2, 0.5], orientation_at: joint.orientation_b
     } (b);";
     alike(&pulled(moment, ""), &pulled(turned, ""));
     let moved = pulled(moment, "");
@@ -135,7 +135,7 @@ fn in_a_plane_a_load_and_a_point_mass_do_the_same() {
     alike(&change(&weight, ""), &found);
     let moment = format!("{bob} load: PlanarLoad {{ moment: 0.4 }} (b);");
     let force =
-        format!("{bob} load: PlanarLoad {{ force: [0.0, 0.8], angle: hinge.angle }} (tip);");
+        format!("{bob} load: PlanarLoad {{ force: [0.0, 0.8], angle_at: hinge.angle }} (tip);");
     alike(&change(&moment, ""), &change(&force, ""));
 }
 

@@ -1,0 +1,124 @@
+//! What is known at a frame, and must be handed on.
+//!
+//! A component tells what holds at its port `b` by a value whose name ends so, such as `gravity_b`, and asks what holds
+//! at its port `a` by a parameter such as `gravity_a`. Its default holds in the world. Where another component at the
+//! same frame tells otherwise, a parameter that is needed must be given.
+
+use std::ops::Range;
+
+use quote::ToTokens;
+
+use super::Builder;
+use super::scope::{Entity, GRAVITY};
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
+use crate::graph::{ElementKind, End, JunctionId};
+use crate::syntax::ast;
+
+/// A port of a component in use, and what it is connected to.
+pub(super) struct Frame<'a> {
+    /// The component's scope.
+    scope: usize,
+    component: &'a ast::Component,
+    /// Name of the port.
+    port: String,
+    junction: (JunctionId, Range<usize>),
+}
+
+/// A parameter that is left to its default.
+pub(super) struct LeftOut<'a> {
+    /// Number of its definition.
+    pub(super) definition: usize,
+    /// Scope of its component.
+    pub(super) scope: usize,
+    pub(super) parameter: &'a ast::Parameter,
+}
+
+impl<'a> Builder<'a> {
+    /// Notes what a port of a component is connected to.
+    pub(super) fn at_frame(
+        &mut self,
+        scope: usize,
+        component: &'a ast::Component,
+        port: &ast::Port,
+        junction: (JunctionId, Range<usize>),
+    ) {
+        self.frames.push(Frame {
+            scope,
+            component,
+            port: port.name.to_string(),
+            junction,
+        });
+    }
+
+    /// The mistake of leaving a parameter to its default where another component tells what it is.
+    pub(super) fn not_handed_on(&self, definition: usize) -> Option<Box<Diagnostic>> {
+        let left = self
+            .defaults
+            .iter()
+            .find(|it| it.definition == definition)?;
+        let name = left.parameter.name.to_string();
+        let (frame, quantity) = self.frames.iter().find_map(|frame| {
+            let quantity = name.strip_suffix(&frame.port)?.strip_suffix('_')?;
+            (frame.scope == left.scope).then_some((frame, quantity))
+        })?;
+        if self.is_moved_by_source(frame.junction.0) || self.is_weightless(quantity) {
+            return None;
+        }
+        let teller = self
+            .frames
+            .iter()
+            .find(|other| self.tells(other, frame, quantity))?;
+        let told = format!("{quantity}_{}", teller.port);
+        let (whole, own) = (self.name_of(teller.scope), self.name_of(left.scope));
+        let near = match (whole.rsplit_once('.'), own.rsplit_once('.')) {
+            (Some((around, name)), Some((same, _))) if around == same => name,
+            _ => whole,
+        };
+        let message = format!("`{own}` is at a frame of `{near}` and is not given `{name}`");
+        let default = left.parameter.default.to_token_stream();
+        let report = error(codes::MISSING_DEFAULT, left.parameter.name.span(), message)
+            .help(format!("write `{name}: {near}.{told}`"))
+            .help(format!(
+                "write `{name}: {default}` where that of the world is meant"
+            ));
+        Some(Box::new(report))
+    }
+
+    /// Whether another component at the same frame tells a quantity there.
+    fn tells(&self, teller: &Frame, frame: &Frame, quantity: &str) -> bool {
+        let told = format!("{quantity}_{}", teller.port);
+        let [own, other] = [frame, teller].map(|it| self.scopes[it.scope].prefix.as_str());
+        teller.junction == frame.junction
+            && !own.starts_with(other)
+            && !other.starts_with(own)
+            && matches!(
+                self.scopes[teller.scope].names.get(&told),
+                Some(Entity::Definition(_))
+            )
+            && !teller.component.parameters().any(|it| it.name == told)
+    }
+
+    /// A source that moves a frame knows how.
+    fn is_moved_by_source(&self, junction: JunctionId) -> bool {
+        let is_source = |end: &End| match end {
+            End::OnePort(id) => self.graph.elements[id.0].kind == ElementKind::Sf,
+            _ => false,
+        };
+        let is_here = |end: &End| matches!(end, End::Junction(id, _) if *id == junction);
+        self.graph.bonds.iter().any(|bond| {
+            (is_source(&bond.from) && is_here(&bond.to))
+                || (is_here(&bond.from) && is_source(&bond.to))
+        })
+    }
+
+    /// Without gravity there is none at any frame.
+    fn is_weightless(&self, quantity: &str) -> bool {
+        quantity == GRAVITY && matches!(self.scopes[0].names.get(GRAVITY), Some(Entity::Value(_)))
+    }
+
+    /// Path of the component in use with this scope.
+    fn name_of(&self, scope: usize) -> &str {
+        self.scopes[scope].prefix.trim_end_matches('.')
+    }
+}

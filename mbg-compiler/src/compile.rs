@@ -197,6 +197,7 @@ fn finish(
     notes.extend(unused_initial_values(&model, &answers));
     notes.extend(unused_initial_flows(&model));
     notes.extend(modulated_energies(&model, &pool));
+    notes.extend(approximate_energies(&model));
     Some(Compiled {
         program,
         conditioning: conditioning.iter().map(written).collect(),
@@ -308,6 +309,19 @@ fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<String> {
         )
     };
     modulated.map(note).collect()
+}
+
+/// Storages whose law has no integral in closed form.
+fn approximate_energies(model: &Elaborated) -> Vec<String> {
+    let elements = model.graph.elements.iter();
+    let approximate = elements.filter(|it| matches!(&it.law, Law::Storage(it) if !it.is_exact));
+    let note = |element: &Element| {
+        let name = &element.name;
+        format!(
+            "the energy of `{name}` is a quadrature of its law, good to rounding where that is smooth"
+        )
+    };
+    approximate.map(note).collect()
 }
 
 /// An expression with the model's names.

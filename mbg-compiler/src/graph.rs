@@ -229,6 +229,8 @@ pub struct Storage {
     pub coenergy: Vec<Expression>,
     /// Stored energy.
     pub energy: Expression,
+    /// Whether the energy is that of the law, and no quadrature of it.
+    pub is_exact: bool,
 }
 
 impl Element {

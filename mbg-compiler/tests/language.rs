@@ -727,6 +727,21 @@ fn coefficients_may_change_with_the_state_they_multiply() {
             "C c { compliance: 1.0 / sqrt(1.0 + q) }",
             2.0 * (1.3_f64.powf(2.5) / 5.0 - 1.3_f64.powf(1.5) / 3.0 + 2.0 / 15.0),
         ),
+        // Gas, a chemical potential, play
+        (
+            "C c { effort: 2.0 * exp(1.4 * ln(1.0 / (1.0 - q))) }",
+            5.0 * (0.7_f64.powf(-0.4) - 1.0),
+        ),
+        ("C c { effort: 2.0 * ln(q) }", 0.6 * (0.3_f64.ln() - 1.0)),
+        ("C c { effort: 3.0 / q }", 3.0 * 0.3_f64.ln()),
+        (
+            "C c { effort: if q > 0.1 { 100.0 * (q - 0.1) } else { 0.0 } }",
+            2.0,
+        ),
+        (
+            "C c { effort: tanh(50.0 * q) }",
+            15.0_f64.cosh().ln() / 50.0,
+        ),
     ];
     for (storage, expected) in cases {
         let found = energy(storage, 0.3);
@@ -748,4 +763,5 @@ fn energies_that_are_modulated_are_noted() {
     };
     assert_eq!(notes("k"), "");
     insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
+    insta::assert_snapshot!(notes("exp(-q * q)"), @"the energy of `c` is a quadrature of its law, good to rounding where that is smooth");
 }

@@ -15,7 +15,10 @@ use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{ElementKind, Law, Rule, Storage, component_name};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Differentiator, Expression, Factor, Matrix, Pool, Product, Symbol};
+use crate::symbolic::{
+    Differentiator, Evaluation, Expression, Factor, Matrix, Pool, Product, Substitution, Symbol,
+    antiderivative,
+};
 use crate::syntax::ast::{Element, Field};
 
 /// What reading the fields of an element gives.
@@ -282,7 +285,7 @@ impl Reader<'_, '_, '_> {
             .map(|state| self.pool.symbol(Symbol::State(state)))
             .collect();
         let mut assumptions = Vec::new();
-        let (coenergy, energy) = match word {
+        let (coenergy, (energy, is_exact)) = match word {
             "inertia" | "compliance" | "stiffness" => {
                 let matrix = self.coefficient(value)?;
                 self.check_symmetry(&matrix, value.span())?;
@@ -300,11 +303,14 @@ impl Reader<'_, '_, '_> {
                 let energy = if self.changes_with_its_state(&matrix) {
                     self.potential(&coenergy, value.span())?
                 } else {
-                    self.half_product(&states, &coenergy)
+                    (self.half_product(&states, &coenergy), true)
                 };
                 (coenergy, energy)
             }
-            "energy" => self.by_energy(value)?,
+            "energy" => {
+                let (coenergy, energy) = self.by_energy(value)?;
+                (coenergy, (energy, true))
+            }
             _ => {
                 let coenergy = self.by_component(value)?;
                 let energy = self.potential(&coenergy, value.span())?;
@@ -321,6 +327,7 @@ impl Reader<'_, '_, '_> {
             states: self.own.states.clone(),
             coenergy,
             energy,
+            is_exact,
         });
         Ok(Reading {
             law,
@@ -336,13 +343,44 @@ impl Reader<'_, '_, '_> {
         states.any(|state| read.contains(&state))
     }
 
-    /// The energy of a law that is no multiple of the state.
-    fn potential(&mut self, law: &[Expression], span: Span) -> Result<Expression> {
+    /// The energy of a law that is no multiple of the state, and whether it is exact.
+    fn potential(&mut self, law: &[Expression], span: Span) -> Result<(Expression, bool)> {
         self.check_potential(law, span)?;
-        quadrature::energy(self.pool, &self.own.states, law).ok_or_else(|| {
+        let is_exact = quadrature::is_exact(self.pool, &self.own.states, law);
+        if !is_exact && let Some(energy) = self.integral(law) {
+            return Ok((energy, true));
+        }
+        let energy = quadrature::energy(self.pool, &self.own.states, law).ok_or_else(|| {
             let message = format!("the law of `{}` divides by zero", self.element.name);
             Box::new(error(codes::NOT_FINITE, span, message))
-        })
+        })?;
+        Ok((energy, is_exact))
+    }
+
+    /// The energy of a law in closed form, of which each component reads its own state alone. It is counted from the state
+    /// zero, if it has a value there.
+    fn integral(&mut self, law: &[Expression]) -> Option<Expression> {
+        let mut total = Expression::ZERO;
+        for (row, state) in law.iter().zip(self.own.states.clone()) {
+            let others = |it: &Symbol| matches!(it, Symbol::State(other) if self.own.states.contains(other) && *other != state);
+            if symbols(self.pool, &[*row]).iter().any(others) {
+                return None;
+            }
+            let energy = antiderivative(self.pool, *row, Symbol::State(state))?;
+            let mut at_rest = Substitution::new();
+            at_rest.set(Symbol::State(state), Expression::ZERO);
+            let start = at_rest.apply(self.pool, energy);
+            let somewhere = |_| 0.5;
+            let is_finite = |it: &Expression| {
+                Evaluation::new(&somewhere)
+                    .value(self.pool, *it)
+                    .is_finite()
+            };
+            let start = start.filter(is_finite).unwrap_or(Expression::ZERO);
+            let counted = self.pool.subtract(energy, start);
+            total = self.pool.add(total, counted);
+        }
+        Some(total)
     }
 
     fn by_energy(&mut self, value: &Expr) -> Result<(Vec<Expression>, Expression)> {

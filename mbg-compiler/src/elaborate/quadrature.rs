@@ -14,10 +14,7 @@ pub(super) fn energy(
     states: &Range<usize>,
     law: &[Expression],
 ) -> Option<Expression> {
-    let degree = law
-        .iter()
-        .map(|row| degree(pool, *row, states))
-        .try_fold(0, |a, b| b.map(|b| a.max(b)));
+    let degree = largest_degree(pool, states, law);
     let count = degree.map_or(NODES, |degree| (degree as usize / 2 + 1).min(NODES));
     let mut total = Expression::ZERO;
     for (node, weight) in gauss_legendre(count) {
@@ -37,6 +34,17 @@ pub(super) fn energy(
         }
     }
     Some(total)
+}
+
+/// Whether the quadrature has no error but that of rounding.
+pub(super) fn is_exact(pool: &Pool, states: &Range<usize>, law: &[Expression]) -> bool {
+    largest_degree(pool, states, law).is_some_and(|degree| (degree as usize) < 2 * NODES - 1)
+}
+
+/// The largest degree, if all rows are polynomials.
+fn largest_degree(pool: &Pool, states: &Range<usize>, law: &[Expression]) -> Option<u32> {
+    let mut degrees = law.iter().map(|row| degree(pool, *row, states));
+    degrees.try_fold(0, |a, b| b.map(|b| a.max(b)))
 }
 
 fn exact(pool: &mut Pool, value: f64) -> Option<Expression> {

@@ -3,6 +3,7 @@
 //! This is the ground on which the stages from elaboration to the program stand. Nothing in it knows of bond graphs.
 
 pub mod affine;
+pub mod antiderivative;
 mod arithmetic;
 pub mod dense;
 pub mod differentiate;
@@ -23,6 +24,7 @@ mod uses;
 mod walk;
 
 pub use affine::affine;
+pub use antiderivative::antiderivative;
 pub use dense::dense;
 pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;

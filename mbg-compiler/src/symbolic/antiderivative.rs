@@ -1,0 +1,375 @@
+//! Antiderivatives in closed form, of what laws of storages are made of.
+
+use super::affine::affine;
+use super::expression::{Expression, Function, Operation, Symbol};
+use super::pool::Pool;
+use super::substitute::{Substitution, symbols};
+
+/// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
+/// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root,
+/// hyperbolic tangent, absolute value and sign of what is affine in the symbol, powers `exp(c ln(…))` of such or of its
+/// reciprocal, and choices between them by what is affine.
+#[must_use]
+pub fn antiderivative(
+    pool: &mut Pool,
+    expression: Expression,
+    symbol: Symbol,
+) -> Option<Expression> {
+    Integration { pool, symbol }.of(expression)
+}
+
+struct Integration<'a> {
+    pool: &'a mut Pool,
+    symbol: Symbol,
+}
+
+impl Integration<'_> {
+    fn of(&mut self, expression: Expression) -> Option<Expression> {
+        if self.is_free(expression) {
+            let symbol = self.pool.symbol(self.symbol);
+            return Some(self.pool.multiply(expression, symbol));
+        }
+        let found = match self.pool.operation(expression).clone() {
+            Operation::Constant(_) => None,
+            Operation::Symbol(_) => self.power(expression.magnitude(), 1),
+            Operation::Add(a, b) => {
+                let (a, b) = (self.of(a)?, self.of(b)?);
+                Some(self.pool.add(a, b))
+            }
+            Operation::Multiply(a, b) => self.product(a, b),
+            Operation::Divide(a, b) => self.quotient(a, b),
+            Operation::Sine(angle) => {
+                let cosine = self.pool.cosine(angle);
+                self.inner(angle, cosine.negated())
+            }
+            Operation::Cosine(angle) => {
+                let sine = self.pool.sine(angle);
+                self.inner(angle, sine)
+            }
+            Operation::Call(function, arguments) => self.call(function, &arguments),
+        };
+        found.map(|it| it.flipped(expression.is_negative()))
+    }
+
+    fn is_free(&self, expression: Expression) -> bool {
+        !symbols(self.pool, &[expression]).contains(&self.symbol)
+    }
+
+    /// The slope of what is affine in the symbol, and not free of it.
+    fn slope(&mut self, expression: Expression) -> Option<Expression> {
+        let symbol = self.symbol;
+        let (slope, _) = affine(self.pool, expression, symbol, |it| *it == symbol)?;
+        (slope != Expression::ZERO).then_some(slope)
+    }
+
+    /// An antiderivative by the affine argument, over its slope.
+    fn inner(&mut self, argument: Expression, value: Expression) -> Option<Expression> {
+        let slope = self.slope(argument)?;
+        self.pool.divide(value, slope)
+    }
+
+    fn product(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        for (factor, rest) in [(a, b), (b, a)] {
+            if self.is_free(factor) {
+                let rest = self.of(rest)?;
+                return Some(self.pool.multiply(factor, rest));
+            }
+        }
+        let (base, exponent) = self.base(a, b)?;
+        self.power(base, exponent)
+    }
+
+    /// Base and exponent of a product of equal factors.
+    fn base(&self, a: Expression, b: Expression) -> Option<(Expression, i32)> {
+        let [a, b] = [a, b].map(|factor| match self.pool.operation(factor) {
+            Operation::Multiply(c, d) => self.base(*c, *d),
+            _ => Some((factor, 1)),
+        });
+        let ((base, more), (other, exponent)) = (a?, b?);
+        (base == other).then_some((base, more + exponent))
+    }
+
+    /// `uⁿ⁺¹ / (n + 1)`, or `ln |u|`, over the slope of `u`.
+    fn power(&mut self, base: Expression, exponent: i32) -> Option<Expression> {
+        let value = if exponent == -1 {
+            let size = self.pool.call(Function::Abs, &[base]);
+            self.pool.call(Function::Ln, &[size])
+        } else {
+            let next = self.pool.integer(i64::from(exponent) + 1);
+            let power = self.pool.power(base, exponent + 1)?;
+            self.pool.divide(power, next)?
+        };
+        self.inner(base, value)
+    }
+
+    fn quotient(&mut self, a: Expression, b: Expression) -> Option<Expression> {
+        if self.is_free(b) {
+            let value = self.of(a)?;
+            return self.pool.divide(value, b);
+        }
+        if !self.is_free(a) {
+            return None;
+        }
+        let (base, exponent) = match self.pool.operation(b) {
+            Operation::Multiply(c, d) => self.base(*c, *d)?,
+            _ => (b, 1),
+        };
+        let value = self.power(base, -exponent)?;
+        Some(self.pool.multiply(a, value))
+    }
+
+    fn call(&mut self, function: Function, arguments: &[Expression]) -> Option<Expression> {
+        let u = arguments[0];
+        match function {
+            Function::Exp => match self.slope(u) {
+                Some(_) => {
+                    let value = self.pool.call(Function::Exp, &[u]);
+                    self.inner(u, value)
+                }
+                None => self.real_power(u),
+            },
+            Function::Ln => {
+                let logarithm = self.pool.call(Function::Ln, &[u]);
+                let product = self.pool.multiply(u, logarithm);
+                let value = self.pool.subtract(product, u);
+                self.inner(u, value)
+            }
+            Function::Sqrt => {
+                let root = self.pool.call(Function::Sqrt, &[u]);
+                let product = self.pool.multiply(u, root);
+                let value = self.share(product, 2, 3)?;
+                self.inner(u, value)
+            }
+            Function::Abs => {
+                let size = self.pool.call(Function::Abs, &[u]);
+                let product = self.pool.multiply(u, size);
+                let value = self.share(product, 1, 2)?;
+                self.inner(u, value)
+            }
+            Function::Sign => {
+                let value = self.pool.call(Function::Abs, &[u]);
+                self.inner(u, value)
+            }
+            Function::Tan => {
+                let cosine = self.pool.cosine(u);
+                let size = self.pool.call(Function::Abs, &[cosine]);
+                let value = self.pool.call(Function::Ln, &[size]);
+                self.inner(u, value.negated())
+            }
+            Function::Tanh => {
+                let value = self.logarithm_of_cosh(u)?;
+                self.inner(u, value)
+            }
+            Function::Atan2 => self.arc_tangent(u, arguments[1]),
+            Function::Min => self.choice(u, arguments[1], u, arguments[1]),
+            Function::Max => self.choice(u, arguments[1], arguments[1], u),
+            Function::SelectLess => self.choice(u, arguments[1], arguments[2], arguments[3]),
+            Function::Asin | Function::Acos => None,
+        }
+    }
+
+    fn share(&mut self, value: Expression, numerator: i64, divisor: i64) -> Option<Expression> {
+        let [numerator, divisor] = [numerator, divisor].map(|it| self.pool.integer(it));
+        let product = self.pool.multiply(value, numerator);
+        self.pool.divide(product, divisor)
+    }
+
+    /// Of `w^c = exp(c ln w)`: `w^c v / ((1 + c) v')` for `w = v`, and `w^c v / ((1 − c) v')` for `w = k / v`.
+    fn real_power(&mut self, exponent: Expression) -> Option<Expression> {
+        let (factor, logarithm) = match self.pool.operation(exponent) {
+            Operation::Call(Function::Ln, _) => (Expression::ONE, exponent.magnitude()),
+            Operation::Multiply(a, b) => {
+                let is_logarithm = |it: &Expression| {
+                    matches!(self.pool.operation(*it), Operation::Call(Function::Ln, _))
+                };
+                let logarithm = [*a, *b].into_iter().find(is_logarithm)?;
+                (if logarithm == *a { *b } else { *a }, logarithm)
+            }
+            _ => return None,
+        };
+        let factor = factor.flipped(exponent.is_negative());
+        let Operation::Call(_, arguments) = self.pool.operation(logarithm).clone() else {
+            return None;
+        };
+        let (argument, factor_of_argument) = match self.pool.operation(arguments[0]) {
+            Operation::Divide(k, v) if self.is_free(*k) => (*v, factor.negated()),
+            _ => (arguments[0], factor),
+        };
+        if !self.is_free(factor) {
+            return None;
+        }
+        let next = self.pool.add(factor_of_argument, Expression::ONE);
+        let power = self.pool.call(Function::Exp, &[exponent]);
+        let product = self.pool.multiply(power, argument);
+        let value = self.pool.divide(product, next)?;
+        self.inner(argument, value)
+    }
+
+    /// `|u| + ln((1 + exp(−2 |u|)) / 2)`, which overflows nowhere.
+    fn logarithm_of_cosh(&mut self, u: Expression) -> Option<Expression> {
+        let size = self.pool.call(Function::Abs, &[u]);
+        let twice = self.share(size, -2, 1)?;
+        let falling = self.pool.call(Function::Exp, &[twice]);
+        let sum = self.pool.add(falling, Expression::ONE);
+        let half = self.share(sum, 1, 2)?;
+        let rest = self.pool.call(Function::Ln, &[half]);
+        Some(self.pool.add(size, rest))
+    }
+
+    /// `u atan(u / c) − c / 2 ln(u² + c²)`.
+    fn arc_tangent(&mut self, u: Expression, c: Expression) -> Option<Expression> {
+        if !self.is_free(c) {
+            return None;
+        }
+        let angle = self.pool.call(Function::Atan2, &[u, c]);
+        let [first, square, other] =
+            [(u, angle), (u, u), (c, c)].map(|(a, b)| self.pool.multiply(a, b));
+        let length = self.pool.add(square, other);
+        let logarithm = self.pool.call(Function::Ln, &[length]);
+        let product = self.pool.multiply(c, logarithm);
+        let second = self.share(product, 1, 2)?;
+        let value = self.pool.subtract(first, second);
+        self.inner(u, value)
+    }
+
+    /// Of `c` where `a < b`, else of `d`; both are counted from where they meet.
+    fn choice(
+        &mut self,
+        a: Expression,
+        b: Expression,
+        c: Expression,
+        d: Expression,
+    ) -> Option<Expression> {
+        let mut parts = [self.of(c)?, self.of(d)?];
+        let difference = self.pool.subtract(a, b);
+        if !self.is_free(difference) {
+            let symbol = self.symbol;
+            let (slope, rest) = affine(self.pool, difference, symbol, |it| *it == symbol)?;
+            let place = self.pool.divide(rest.negated(), slope)?;
+            let mut there = Substitution::new();
+            there.set(symbol, place);
+            for part in &mut parts {
+                let start = there.apply(self.pool, *part)?;
+                *part = self.pool.subtract(*part, start);
+            }
+        }
+        Some(
+            self.pool
+                .call(Function::SelectLess, &[a, b, parts[0], parts[1]]),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symbolic::Evaluation;
+
+    const X: Symbol = Symbol::State(0);
+
+    /// What an antiderivative grows by between two places is the integral, by Simpson's rule.
+    fn assert_integral(law: impl Fn(&mut Pool, Expression) -> Expression, [from, to]: [f64; 2]) {
+        let mut pool = Pool::new();
+        let x = pool.symbol(X);
+        let law = law(&mut pool, x);
+        let found = antiderivative(&mut pool, law, X).expect("it has an antiderivative");
+        let at = |expression: Expression, x: f64| {
+            let symbol = |_| x;
+            Evaluation::new(&symbol).value(&pool, expression)
+        };
+        let intervals = 4096;
+        let step = (to - from) / f64::from(intervals);
+        let sum: f64 = (0..intervals)
+            .map(|k| {
+                let left = from + step * f64::from(k);
+                let [a, b, c] = [0.0, 0.5, 1.0].map(|part| at(law, left + part * step));
+                step / 6.0 * (a + 4.0 * b + c)
+            })
+            .sum();
+        let growth = at(found, to) - at(found, from);
+        assert!((growth - sum).abs() < 1e-9, "{growth} and {sum}");
+    }
+
+    fn affine_part(pool: &mut Pool, x: Expression) -> Expression {
+        let (two, three) = (pool.integer(2), pool.integer(3));
+        let product = pool.multiply(two, x);
+        pool.subtract(three, product)
+    }
+
+    #[test]
+    fn functions_of_what_is_affine_are_integrated() {
+        use Function::{Abs, Exp, Ln, Sign, Sqrt, Tan, Tanh};
+        for function in [Exp, Ln, Sqrt, Tan, Tanh, Abs, Sign] {
+            let law = |pool: &mut Pool, x| {
+                let u = affine_part(pool, x);
+                pool.call(function, &[u])
+            };
+            assert_integral(law, [0.8, 1.2]);
+        }
+        let circular = |pool: &mut Pool, x| {
+            let u = affine_part(pool, x);
+            let (sine, cosine, one) = (pool.sine(u), pool.cosine(x), pool.integer(1));
+            let angle = pool.call(Function::Atan2, &[u, one]);
+            pool.sum(&[sine, cosine.negated(), angle])
+        };
+        assert_integral(circular, [-1.0, 2.5]);
+    }
+
+    #[test]
+    fn powers_are_integrated() {
+        for exponent in [-3, -2, -1, 1, 2, 5] {
+            let law = |pool: &mut Pool, x| {
+                let u = affine_part(pool, x);
+                pool.power(u, exponent).expect("a power")
+            };
+            assert_integral(law, [-0.5, 1.0]);
+        }
+        // (1 / (1 − x))^1.4, and u^1.4
+        let gas = |pool: &mut Pool, x| {
+            let rest = pool.subtract(Expression::ONE, x);
+            let ratio = pool.divide(Expression::ONE, rest).expect("a quotient");
+            let exponent = pool.literal("1.4").expect("a number");
+            let logarithm = pool.call(Function::Ln, &[ratio]);
+            let product = pool.multiply(exponent, logarithm);
+            pool.call(Function::Exp, &[product])
+        };
+        assert_integral(gas, [0.0, 0.7]);
+        let power = |pool: &mut Pool, x| {
+            let u = affine_part(pool, x);
+            let exponent = pool.literal("1.4").expect("a number");
+            let logarithm = pool.call(Function::Ln, &[u]);
+            let product = pool.multiply(exponent, logarithm);
+            pool.call(Function::Exp, &[product])
+        };
+        assert_integral(power, [0.0, 1.4]);
+    }
+
+    #[test]
+    fn choices_are_continuous_where_they_change() {
+        let play = |pool: &mut Pool, x| {
+            let (gap, stiffness) = (pool.literal("0.25").expect("a number"), pool.integer(100));
+            let beyond = pool.subtract(x, gap);
+            let force = pool.multiply(stiffness, beyond);
+            pool.call(Function::SelectLess, &[gap, x, force, Expression::ZERO])
+        };
+        assert_integral(play, [-0.5, 1.0]);
+        let largest = |pool: &mut Pool, x| {
+            let u = affine_part(pool, x);
+            let larger = pool.call(Function::Max, &[u, x]);
+            let smaller = pool.call(Function::Min, &[u, Expression::ZERO]);
+            pool.subtract(larger, smaller)
+        };
+        assert_integral(largest, [-1.0, 3.0]);
+    }
+
+    #[test]
+    fn what_is_not_known_is_none() {
+        let mut pool = Pool::new();
+        let x = pool.symbol(X);
+        let sine = pool.sine(x);
+        let product = pool.multiply(x, sine);
+        assert_eq!(antiderivative(&mut pool, product, X), None);
+        let nested = pool.call(Function::Exp, &[sine]);
+        assert_eq!(antiderivative(&mut pool, nested, X), None);
+    }
+}

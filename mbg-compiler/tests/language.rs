@@ -500,16 +500,16 @@ fn what_a_frame_needs_is_handed_on() {
     };
     let falling = "gravity [0.0, 0.0, -9.81];";
     insta::assert_snapshot!(scene(falling, "", ""), @"
-    4:14 `body` is at a frame of `rod` and is not given `gravity_at` [MBG0214]
-      this is inside `Body`, a component of the library
-      help: write `gravity_at: rod.gravity_b`
-      help: write `gravity_at: gravity` where that of the world is meant
-    ");
-    insta::assert_snapshot!(scene(falling, "", ", gravity_at: rod.gravity_b"), @"
     3:14 `rod` is at a frame of `hinge` and is not given `gravity_a` [MBG0214]
       this is inside `Offset`, a component of the library
       help: write `gravity_a: hinge.gravity_b`
       help: write `gravity_a: gravity` where that of the world is meant
+    ");
+    insta::assert_snapshot!(scene(falling, ", gravity_a: hinge.gravity_b", ""), @"
+    4:14 `body` is at a frame of `rod` and is not given `gravity_at` [MBG0214]
+      this is inside `Body`, a component of the library
+      help: write `gravity_at: rod.gravity_b`
+      help: write `gravity_at: gravity` where that of the world is meant
     ");
     assert_eq!(
         scene(
@@ -521,6 +521,8 @@ fn what_a_frame_needs_is_handed_on() {
     );
     assert_eq!(scene(falling, "", ", gravity_at: gravity"), "");
     assert_eq!(scene("", "", ""), "");
+    // Along the axis of the hinge nothing changes.
+    assert_eq!(scene("gravity [0.0, -9.81, 0.0];", "", ""), "");
     insta::assert_snapshot!(scene("gravity -9.81;", "", ", gravity_at: gravity"), @"
     4:52 `gravity_at` has dimension 3, found a number [MBG0204]
       help: write `gravity [0.0, 0.0, -9.81];` in the model

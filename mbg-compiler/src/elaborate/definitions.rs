@@ -138,7 +138,7 @@ impl<'a> Builder<'a> {
         for definition in 0..self.definitions.len() {
             let names = self.definitions[definition].scope;
             // Where nothing needs a parameter, it may be left to its default.
-            if self.not_handed_on(definition).is_none() && self.scopes[names].library.is_none() {
+            if self.told(definition).is_none() && self.scopes[names].library.is_none() {
                 self.define(definition);
             }
         }
@@ -146,9 +146,6 @@ impl<'a> Builder<'a> {
     }
 
     fn read(&mut self, definition: usize) -> Result<Value> {
-        if let Some(report) = self.not_handed_on(definition) {
-            return Err(report);
-        }
         let Definition {
             scope,
             name,
@@ -168,6 +165,7 @@ impl<'a> Builder<'a> {
                 Value::column(entries.map_err(|report| about_gravity(report, expression, size))?)
             }
         };
+        self.check_default(definition, &value)?;
         Ok(self.claim_definition(definition, value))
     }
 

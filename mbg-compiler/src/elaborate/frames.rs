@@ -9,10 +9,13 @@ use std::ops::Range;
 use quote::ToTokens;
 
 use super::Builder;
+use super::definitions::{Missing, Progress};
+use super::expressions::{Result, Value};
 use super::scope::{Entity, GRAVITY};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{ElementKind, End, JunctionId};
+use crate::symbolic::{Matrix, Pool};
 use crate::syntax::ast;
 
 /// A port of a component in use, and what it is connected to.
@@ -51,12 +54,27 @@ impl<'a> Builder<'a> {
         });
     }
 
-    /// The mistake of leaving a parameter to its default where another component tells what it is.
-    pub(super) fn not_handed_on(&self, definition: usize) -> Option<Box<Diagnostic>> {
-        let left = self
+    /// Reports a parameter that is left to its default where another component tells something else.
+    pub(super) fn check_default(&mut self, definition: usize, value: &Value) -> Result<()> {
+        let Some((told, report)) = self.told(definition) else {
+            return Ok(());
+        };
+        match &self.definitions[told].progress {
+            Progress::Known(other) if is_same(self.pool, value, other) => return Ok(()),
+            Progress::Known(_) => {}
+            Progress::Unread => self.missing = Some(Missing::Definition(told)),
+            Progress::Failed => self.missing = Some(Missing::Broken),
+        }
+        Err(report)
+    }
+
+    /// Where a parameter is left to its default: the definition by which another component tells what it is, and the
+    /// mistake if that is something else.
+    pub(super) fn told(&self, definition: usize) -> Option<(usize, Box<Diagnostic>)> {
+        let number = self
             .defaults
-            .iter()
-            .find(|it| it.definition == definition)?;
+            .binary_search_by_key(&definition, |it| it.definition);
+        let left = &self.defaults[number.ok()?];
         let name = left.parameter.name.to_string();
         let (frame, quantity) = self.frames.iter().find_map(|frame| {
             let quantity = name.strip_suffix(&frame.port)?.strip_suffix('_')?;
@@ -65,38 +83,39 @@ impl<'a> Builder<'a> {
         if self.is_moved_by_source(frame.junction.0) || self.is_weightless(quantity) {
             return None;
         }
-        let teller = self
-            .frames
-            .iter()
-            .find(|other| self.tells(other, frame, quantity))?;
-        let told = format!("{quantity}_{}", teller.port);
-        let (whole, own) = (self.name_of(teller.scope), self.name_of(left.scope));
+        let tells = |other: &Frame| Some((self.tells(other, frame, quantity)?, other.scope));
+        let (told, teller) = self.frames.iter().find_map(tells)?;
+        let [own, whole] = [left.scope, teller].map(|scope| self.name_of(scope));
         let near = match (whole.rsplit_once('.'), own.rsplit_once('.')) {
             (Some((around, name)), Some((same, _))) if around == same => name,
             _ => whole,
         };
         let message = format!("`{own}` is at a frame of `{near}` and is not given `{name}`");
         let default = left.parameter.default.to_token_stream();
+        let value = &self.definitions[told].name;
         let report = error(codes::MISSING_DEFAULT, left.parameter.name.span(), message)
-            .help(format!("write `{name}: {near}.{told}`"))
+            .help(format!("write `{name}: {near}.{value}`"))
             .help(format!(
                 "write `{name}: {default}` where that of the world is meant"
             ));
-        Some(Box::new(report))
+        Some((told, Box::new(report)))
     }
 
-    /// Whether another component at the same frame tells a quantity there.
-    fn tells(&self, teller: &Frame, frame: &Frame, quantity: &str) -> bool {
+    /// The definition by which another component at the same frame tells a quantity there.
+    fn tells(&self, teller: &Frame, frame: &Frame, quantity: &str) -> Option<usize> {
         let told = format!("{quantity}_{}", teller.port);
         let [own, other] = [frame, teller].map(|it| self.scopes[it.scope].prefix.as_str());
-        teller.junction == frame.junction
-            && !own.starts_with(other)
-            && !other.starts_with(own)
-            && matches!(
-                self.scopes[teller.scope].names.get(&told),
-                Some(Entity::Definition(_))
-            )
-            && !teller.component.parameters().any(|it| it.name == told)
+        if teller.junction != frame.junction
+            || own.starts_with(other)
+            || other.starts_with(own)
+            || teller.component.parameters().any(|it| it.name == told)
+        {
+            return None;
+        }
+        match self.scopes[teller.scope].names.get(&told) {
+            Some(Entity::Definition(definition)) => Some(*definition),
+            _ => None,
+        }
     }
 
     /// A source that moves a frame knows how.
@@ -121,4 +140,17 @@ impl<'a> Builder<'a> {
     fn name_of(&self, scope: usize) -> &str {
         self.scopes[scope].prefix.trim_end_matches('.')
     }
+}
+
+/// Whether two values are the same function; a number stands for its multiple of a unit matrix.
+fn is_same(pool: &mut Pool, a: &Value, b: &Value) -> bool {
+    let mut matrix = |value: &Value, other: &Value| match (value, other) {
+        (Value::Matrix(product), _) => product.to_matrix(pool),
+        (Value::Scalar(number), Value::Matrix(other)) => {
+            Matrix::diagonal(&vec![*number; other.rows()])
+        }
+        (Value::Scalar(number), Value::Scalar(_)) => Matrix::diagonal(&[*number]),
+    };
+    let (a, b) = (matrix(a, b), matrix(b, a));
+    a == b
 }

@@ -112,6 +112,39 @@ impl Pose {
     }
 }
 
+/// What is this small beside the largest entry of a matrix is what rounding leaves of zero.
+const ROUNDING: f64 = 1e-12;
+
+/// A symmetric matrix as a sum of `weight direction directionᵀ` with positive weights, as many as its rank. None where the
+/// matrix is negative along a direction.
+///
+/// Cholesky's method, the largest entry of the diagonal first.
+pub(crate) fn squares(matrix: &Matrix) -> Option<Vec<(f64, Vector)>> {
+    let size = matrix
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |size, it| size.max(it.abs()));
+    let (mut left, mut found) = (*matrix, Vec::new());
+    for _ in 0..3 {
+        let larger = |a: usize, b: usize| if left[b][b] > left[a][a] { b } else { a };
+        let pivot = larger(larger(0, 1), 2);
+        let weight = left[pivot][pivot];
+        if weight <= ROUNDING * size {
+            break;
+        }
+        let share = left[pivot].map(|it| it / weight);
+        let direction = share.map(|it| if it.abs() <= ROUNDING { 0.0 } else { it });
+        let rest = |i: usize, j: usize| match i == pivot || j == pivot {
+            true => 0.0,
+            false => left[i][j] - weight * direction[i] * direction[j],
+        };
+        left = [0, 1, 2].map(|i| [0, 1, 2].map(|j| rest(i, j)));
+        found.push((weight, direction));
+    }
+    let nothing = left.iter().flatten().all(|it| it.abs() <= ROUNDING * size);
+    nothing.then_some(found)
+}
+
 /// Mass, its centre, and the inertia about that centre, in axes of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
@@ -139,17 +172,27 @@ impl Body {
     /// of the centres.
     pub(crate) fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
-        let centre = |i: usize| (self.mass * self.centre[i] + other.mass * other.centre[i]) / mass;
+        let shared = |i: usize| (self.mass * self.centre[i] + other.mass * other.centre[i]) / mass;
+        // An inertia without a mass has no centre that matters.
+        let centre = match [self.mass, other.mass] {
+            [_, 0.0] => self.centre,
+            [0.0, _] => other.centre,
+            _ => [0, 1, 2].map(shared),
+        };
         let d = [0, 1, 2].map(|i| other.centre[i] - self.centre[i]);
         let square: f64 = d.iter().map(|it| it * it).sum();
-        let reduced = self.mass * other.mass / mass;
+        let reduced = if mass == 0.0 {
+            0.0
+        } else {
+            self.mass * other.mass / mass
+        };
         let entry = |i: usize, j: usize| {
             let steiner = if i == j { square } else { 0.0 } - d[i] * d[j];
             self.inertia[i][j] + other.inertia[i][j] + reduced * steiner
         };
         Self {
             mass,
-            centre: [0, 1, 2].map(centre),
+            centre,
             inertia: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
         }
     }
@@ -161,6 +204,7 @@ fn symmetric(matrix: &Matrix) -> Matrix {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -209,6 +253,43 @@ mod tests {
         let rod = half(-0.5).with(&half(0.5));
         assert_eq!(rod.centre, [0.0; 3]);
         assert_near(&rod.inertia, &[[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn an_inertia_without_a_mass_is_added_wherever_it_is() {
+        let body = |mass: f64, at: f64, inertia: f64| Body {
+            mass,
+            centre: [at, 0.0, 0.0],
+            inertia: [[inertia, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+        };
+        let (link, rotor) = (body(2.0, 0.3, 0.1), body(0.0, 0.7, 0.5));
+        for whole in [link.with(&rotor), rotor.with(&link)] {
+            assert_eq!((whole.mass, whole.centre), (2.0, [0.3, 0.0, 0.0]));
+            assert_eq!(whole.inertia, [[0.6, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        }
+        let two = rotor.with(&rotor);
+        assert_eq!((two.mass, two.inertia[0][0]), (0.0, 1.0));
+    }
+
+    #[test]
+    fn inertias_are_sums_of_squares() {
+        let turn = rotation([0.3, -0.4, 1.1]);
+        for (principal, rank) in [
+            ([0.0, 0.0, 0.0], 0),
+            ([0.0, 0.5, 0.0], 1),
+            ([0.5, 0.0, 0.5], 2),
+            ([0.1, 0.2, 0.3], 3),
+        ] {
+            let mut diagonal = [[0.0; 3]; 3];
+            (0..3).for_each(|i| diagonal[i][i] = principal[i]);
+            let inertia = product(&product(&turn, &diagonal), &transposed(&turn));
+            let found = squares(&inertia).unwrap();
+            assert_eq!(found.len(), rank);
+            let entry = |i: usize, j: usize| found.iter().map(|(d, l)| d * l[i] * l[j]).sum();
+            assert_near(&inertia, &[0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))));
+        }
+        assert_eq!(squares(&[[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0; 3]]), None);
+        assert_eq!(squares(&[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0; 3]]), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A robot as text in the language.
 
-use crate::geometry::{Body, IDENTITY, Matrix, Pose, Vector, aligned, transposed};
+use crate::geometry::{Body, IDENTITY, Matrix, Pose, Vector, aligned, squares, transposed};
 use crate::names::{Names, component};
 use crate::robot::{Joint, Motion, Robot, shown};
 
@@ -272,18 +272,90 @@ impl Printer<'_> {
     fn bodies(&mut self) {
         self.text += "\n    // Links that fixed joints hold together are one body.\n";
         for number in 0..self.rigid.len() {
-            let rigid = &self.rigid[number];
-            let Some(body) = rigid.body else { continue };
-            let name = self.names.take(&format!("{}_body", rigid.junction));
-            self.text += &format!(
-                "    {name}: Body {{\n        mass: {:?},\n        centre: {},\n        inertia: {},\n        gravity_at: {}\n    }} ({});\n",
-                body.mass,
-                column(&body.centre),
-                matrix(&body.inertia),
-                rigid.gravity,
-                rigid.junction
-            );
+            let Some(body) = self.rigid[number].body else {
+                continue;
+            };
+            match squares(&body.inertia) {
+                Some(parts) if body.mass == 0.0 || parts.len() < 3 => {
+                    self.point_mass(number, &body);
+                    self.inertia(number, &body.inertia, &parts);
+                }
+                _ => self.body(number, &body),
+            }
         }
+    }
+
+    fn body(&mut self, rigid: usize, body: &Body) {
+        let rigid = &self.rigid[rigid];
+        let name = self.names.take(&format!("{}_body", rigid.junction));
+        self.text += &format!(
+            "    {name}: Body {{\n        mass: {:?},\n        centre: {},\n        inertia: {},\n        gravity_at: {}\n    }} ({});\n",
+            body.mass,
+            column(&body.centre),
+            matrix(&body.inertia),
+            rigid.gravity,
+            rigid.junction
+        );
+    }
+
+    /// The mass of a body at its centre, where there is any.
+    fn point_mass(&mut self, rigid: usize, body: &Body) {
+        if body.mass == 0.0 {
+            return;
+        }
+        let rigid = &self.rigid[rigid];
+        let name = |ending: &str| format!("{}_{ending}", rigid.junction);
+        let mut junction = rigid.junction.clone();
+        if body.centre != [0.0; 3] {
+            let [centre, arm] = ["centre", "arm"].map(|it| self.names.take(&name(it)));
+            self.text += &format!(
+                "    1 {centre}[6];\n    {arm}: Offset {{ by: {} }} ({junction}, {centre});\n",
+                column(&body.centre)
+            );
+            junction = centre;
+        }
+        let name = self.names.take(&name("mass"));
+        self.text += &format!(
+            "    {name}: PointMass {{ mass: {:?}, gravity_at: {} }} ({junction});\n",
+            body.mass, rigid.gravity
+        );
+    }
+
+    /// An inertia beside a point mass or alone.
+    fn inertia(&mut self, rigid: usize, inertia: &Matrix, parts: &[(f64, Vector)]) {
+        let junction = self.rigid[rigid].junction.clone();
+        match parts.len() {
+            0 => {}
+            3 => {
+                let spin = self.names.take(&format!("{junction}_spin"));
+                let inertia = matrix(inertia);
+                self.text += &format!(
+                    "    {junction}[0..3] -> I {spin} {{ inertia: {inertia}, gyroscopic }};\n"
+                );
+            }
+            _ => self.singular(&junction, parts),
+        }
+    }
+
+    /// A singular inertia `Σ d l lᵀ`, as that of a thin rod: it has the momentum `Σ l p` with `p = d lᵀ ω`.
+    ///
+    /// Each `p` is in two equal parts, so that no storage by itself can hold the state: that stays with the rates of the
+    /// joints, whose initial values the component is given.
+    fn singular(&mut self, junction: &str, parts: &[(f64, Vector)]) {
+        let halves = || parts.iter().flat_map(|it| [it, it]);
+        let weights: Vec<String> = halves().map(|(d, _)| format!("{:?}", d / 2.0)).collect();
+        let directions: Vec<String> = halves().map(|(_, l)| column(l)).collect();
+        let (weights, directions) = (weights.join(", "), directions.join(", "));
+        let count = 2 * parts.len();
+        let [felt, along, spin, whirl, axes] = ["felt", "along", "spin", "whirl", "axes"]
+            .map(|it| self.names.take(&format!("{junction}_{it}")));
+        self.text += &format!(
+            "    let {axes} = [{directions}];\n    \
+             1 {felt}[{count}];\n    \
+             {junction}[0..3] -> TF {along} {{ flow: {axes} }} -> {felt};\n    \
+             {felt} -> I {spin} {{ inertia: diag({weights}) }};\n    \
+             {junction}[0..3] -> EJS {whirl} {{ momentum: transpose({axes}) * {spin}.p }};\n"
+        );
     }
 
     /// Where each link is, and the motion of the joints.

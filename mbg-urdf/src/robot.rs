@@ -5,7 +5,7 @@ use std::fmt;
 
 use roxmltree::{Document, Node};
 
-use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, rotation};
+use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, rotation, squares};
 
 /// Something about a line of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(crate) enum Motion {
 
 pub(crate) struct Link {
     pub(crate) name: String,
-    /// In its own frame; nothing without mass.
+    /// In its own frame; nothing without mass and inertia.
     pub(crate) body: Option<Body>,
 }
 
@@ -60,6 +60,23 @@ pub(crate) struct Robot {
     /// In the order of a walk from the root: a joint comes after the one that holds its parent.
     pub(crate) joints: Vec<Joint>,
     pub(crate) root: usize,
+}
+
+/// What a joint moves.
+#[derive(Clone, Copy)]
+struct Load {
+    mass: bool,
+    inertia: bool,
+}
+
+impl Load {
+    fn of(link: &Link) -> Self {
+        let body = link.body.as_ref();
+        Self {
+            mass: body.is_some_and(|it| it.mass != 0.0),
+            inertia: body.is_some_and(|it| it.inertia != [[0.0; 3]; 3]),
+        }
+    }
 }
 
 type Checked<T> = Result<T, Remark>;
@@ -175,22 +192,28 @@ impl<'a> Reader<'a> {
         Ok(robot)
     }
 
-    /// Names the joints that move no mass: their equation is without a solution.
+    /// Names the joints that move nothing: their equation is without a solution.
     fn note_massless(&mut self, robot: &Robot) {
-        let mut heavy: Vec<bool> = robot.links.iter().map(|it| it.body.is_some()).collect();
+        let mut loads: Vec<Load> = robot.links.iter().map(Load::of).collect();
         for joint in robot.joints.iter().rev() {
-            if heavy[joint.child] {
-                heavy[joint.parent] = true;
-            } else if joint.motion != Motion::Fixed {
-                let text = format!(
-                    "nothing that `{}` moves has a mass, which `mbg!` will refuse",
-                    joint.name
-                );
+            let load = loads[joint.child];
+            let missing = match joint.motion {
+                Motion::Turn if !load.mass && !load.inertia => "a mass or an inertia",
+                Motion::Slide if !load.mass => "a mass",
+                _ => "",
+            };
+            if !missing.is_empty() {
+                let name = &joint.name;
                 self.remarks.push(Remark {
                     line: joint.line,
-                    text,
+                    text: format!(
+                        "nothing that `{name}` moves has {missing}, which `mbg!` will refuse"
+                    ),
                 });
             }
+            let below = &mut loads[joint.parent];
+            below.mass |= load.mass;
+            below.inertia |= load.inertia;
         }
     }
 
@@ -210,18 +233,17 @@ impl<'a> Reader<'a> {
             return self.fail(node, "expected a `mass` inside `inertial`");
         };
         let mass = self.number(mass, "value")?;
-        if mass == 0.0 {
+        let inertia = match child(node, "inertia") {
+            Some(tensor) => self.inertia(tensor)?,
+            None if mass == 0.0 => return Ok(None),
+            None => return self.fail(node, "expected an `inertia` inside `inertial`"),
+        };
+        if mass == 0.0 && inertia == [[0.0; 3]; 3] {
             return Ok(None);
         }
-        let Some(tensor) = child(node, "inertia") else {
-            return self.fail(node, "expected an `inertia` inside `inertial`");
-        };
-        let inertia = self.inertia(tensor)?;
-        if mass < 0.0 || !is_positive(&inertia) {
-            let text = format!(
-                "mass and inertia of `{link}` are not positive, as those of a moving body must be"
-            );
-            self.note(tensor, text);
+        if mass < 0.0 || squares(&inertia).is_none() {
+            let text = format!("mass or inertia of `{link}` is negative, as no body's can be");
+            self.note(node, text);
         }
         let body = Body {
             mass,
@@ -367,15 +389,6 @@ pub(crate) fn shown(name: &str) -> String {
 /// The first element with this tag.
 fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
     node.children().find(|it| it.has_tag_name(tag))
-}
-
-/// Whether a symmetric matrix is positive definite, by its leading minors.
-fn is_positive(m: &Matrix) -> bool {
-    let second = m[0][0] * m[1][1] - m[0][1] * m[0][1];
-    let third = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2])
-        - m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2])
-        + m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
-    m[0][0] > 0.0 && second > 0.0 && third > 0.0
 }
 
 /// The joints in the order of a walk from the root; each link hangs on one, so that all are met or a ring is left out.

@@ -133,17 +133,27 @@ fn what_is_left_out_is_told() {
         (
             "izz=\"1\"",
             "izz=\"-1\"",
-            "5: mass and inertia of `b` are not positive, as those of a moving body must be",
+            "3: mass or inertia of `b` is negative, as no body's can be",
         ),
         (
             "ixx=\"1\" iyy=\"1\"",
             "ixx=\"-1\" iyy=\"-1\"",
-            "5: mass and inertia of `b` are not positive, as those of a moving body must be",
+            "3: mass or inertia of `b` is negative, as no body's can be",
         ),
         (
-            "value=\"1\"",
-            "value=\"0\"",
-            "7: nothing that `j` moves has a mass, which `mbg!` will refuse",
+            "ixx=\"1\" iyy=\"1\" izz=\"1\"",
+            "ixx=\"1\" ixy=\"2\" iyy=\"1\" izz=\"1\"",
+            "3: mass or inertia of `b` is negative, as no body's can be",
+        ),
+        (
+            "<mass value=\"1\"/>\n<inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>",
+            "<mass value=\"0\"/>\n<inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/>",
+            "7: nothing that `j` moves has a mass or an inertia, which `mbg!` will refuse",
+        ),
+        (
+            "<mass value=\"1\"/>\n<inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>",
+            "<mass value=\"0\"/>",
+            "6: nothing that `j` moves has a mass or an inertia, which `mbg!` will refuse",
         ),
     ];
     for (part, changed, expected) in cases {

@@ -7,12 +7,13 @@ use super::energy::imbalance;
 use crate::arm::{Arm, ArmParameters};
 use crate::references::errors::larger;
 use crate::references::noise::noise;
-use crate::references::robots::{crane, panda};
+use crate::references::robots::{crane, panda, winder};
 use crate::references::tree::{self, Link};
 
 mbg! {
     include "examples/arm/serial.mbg";
     include "tests/robots/crane.mbg";
+    include "tests/robots/winder.mbg";
 
     /// The arm of `panda.urdf` from its parameters.
     pub(crate) model Serial {
@@ -99,6 +100,15 @@ fn crane_with_everything_a_file_may_say_equals_the_recursion() {
 }
 
 #[test]
+fn winder_of_links_that_are_no_whole_bodies_equals_the_recursion() {
+    let model = Winder::new(WinderParameters::default()).unwrap();
+    let [acceleration, energy] = compared(&model, &winder());
+    println!("winder: accelerations {acceleration:.1e}, energy {energy:.1e}");
+    assert!(acceleration < 1e-13, "{acceleration:e}");
+    assert!(energy < 1e-14, "{energy:e}");
+}
+
+#[test]
 fn hand_is_where_the_links_lead() {
     let links = panda();
     let (arm, serial) = (
@@ -162,6 +172,7 @@ fn files_are_printed_as_they_are_included() {
                 "96: `gazebo` is not converted",
             ],
         ),
+        ("tests/robots/winder", Some("Winder"), &[]),
     ];
     for (file, model, remarks) in files {
         let read = |ending: &str| std::fs::read_to_string(format!("{file}.{ending}")).unwrap();

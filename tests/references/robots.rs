@@ -160,3 +160,74 @@ pub(crate) fn crane() -> Vec<Link> {
     };
     vec![cart, tower, boom, lamp, counterweight, hook, tip]
 }
+
+/// The robot of `winder.urdf`, with the links in the order in which its component lists the joints.
+pub(crate) fn winder() -> Vec<Link> {
+    let arm = Link {
+        place: [0.0, 0.0, 0.5],
+        axis: [0.0, 1.0, 0.0],
+        mass: 2.0,
+        centre: [0.2, 0.0, 0.1],
+        inertia: [0.1, 0.0, 0.0, 0.3, 0.0, 0.2],
+        ..Link::PLAIN
+    };
+    let armature = Link {
+        parent: Some(0),
+        kind: Kind::Fixed,
+        place: [0.1, 0.0, 0.0],
+        angles: [0.0, 0.4, 0.0],
+        centre: [0.0, 5.0, 0.0],
+        centre_angles: [0.3, 0.2, 0.1],
+        inertia: [0.5, 0.0, 0.0, 0.0, 0.0, 0.0],
+        ..Link::PLAIN
+    };
+    let wheel = Link {
+        parent: Some(0),
+        place: [0.3, 0.0, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        centre: [0.0, 0.0, 0.4],
+        inertia: [0.02, 0.0, 0.0, 0.03, 0.0, 0.04],
+        ..Link::PLAIN
+    };
+    let shaft = Link {
+        parent: Some(0),
+        place: [0.4, 0.0, 0.0],
+        angles: [0.1, 0.0, 0.0],
+        axis: [0.3, 0.8, 0.1],
+        centre_angles: [0.5, 0.6, 0.7],
+        inertia: [0.0, 0.0, 0.0, 0.06, 0.0, 0.0],
+        ..Link::PLAIN
+    };
+    let bob = Link {
+        parent: Some(0),
+        place: [0.5, 0.0, 0.0],
+        mass: 0.7,
+        centre: [0.1, -0.2, 0.3],
+        ..Link::PLAIN
+    };
+    let carriage = Link {
+        parent: Some(2),
+        kind: Kind::Prismatic,
+        place: [0.0, 0.1, 0.0],
+        mass: 0.4,
+        ..Link::PLAIN
+    };
+    let hook = Link {
+        parent: Some(5),
+        kind: Kind::Fixed,
+        place: [0.0, 0.1, -0.3],
+        mass: 0.2,
+        ..Link::PLAIN
+    };
+    let rod = Link {
+        parent: Some(4),
+        place: [0.0, 0.2, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        mass: 0.9,
+        centre: [0.3, 0.0, 0.0],
+        centre_angles: [0.2, 0.4, 0.0],
+        inertia: [0.0, 0.0, 0.0, 0.05, 0.0, 0.05],
+        ..Link::PLAIN
+    };
+    vec![arm, armature, wheel, shaft, bob, carriage, hook, rod]
+}

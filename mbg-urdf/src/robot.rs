@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, rotation, squares};
 
@@ -83,7 +83,12 @@ type Checked<T> = Result<T, Remark>;
 
 /// Reads a file, and lists what of it means nothing to the equations of motion.
 pub(crate) fn read(text: &str) -> Checked<(Robot, Vec<Remark>)> {
-    let document = Document::parse(text).map_err(|error| Remark {
+    // A line `<!DOCTYPE robot>` says nothing more, and is no mistake.
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    let document = Document::parse_with_options(text, options).map_err(|error| Remark {
         line: error.pos().row,
         text: format!("this is no XML: {error}"),
     })?;
@@ -295,7 +300,7 @@ impl<'a> Reader<'a> {
             parent: self.linked(node, "parent", links)?,
             child: self.linked(node, "child", links)?,
             origin: self.origin(node)?,
-            axis: self.axis(node)?,
+            axis: self.axis(node, motion)?,
             damping,
             friction,
             line: self.line(node),
@@ -315,9 +320,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn axis(&self, node: Node<'a, 'a>) -> Checked<Vector> {
-        let Some(element) = child(node, "axis") else {
-            return Ok([1.0, 0.0, 0.0]);
+    /// What a fixed joint gives as its axis means nothing, and is often zero.
+    fn axis(&self, node: Node<'a, 'a>, motion: Motion) -> Checked<Vector> {
+        let element = match child(node, "axis") {
+            Some(element) if motion != Motion::Fixed => element,
+            _ => return Ok([1.0, 0.0, 0.0]),
         };
         let axis = self.vector(element, "xyz")?;
         if axis == [0.0; 3] {

@@ -163,6 +163,25 @@ fn what_is_left_out_is_told() {
     }
 }
 
+#[test]
+fn what_means_nothing_is_no_mistake() {
+    let plain = |part: &str, changed: &str| {
+        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap();
+        assert_eq!(found.remarks, []);
+        found.text
+    };
+    let head = "<?xml version=\"1.0\"?>\n<!DOCTYPE robot>\n<robot name=\"r\">";
+    assert_eq!(plain("<robot name=\"r\">", head), plain("", ""));
+    let held = |axis: &str| {
+        let joint = "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/>";
+        plain(
+            "</robot>",
+            &format!("<link name=\"c\"/>{joint}{axis}</joint></robot>"),
+        )
+    };
+    assert_eq!(held("<axis xyz=\"0 0 0\"/>"), held(""));
+}
+
 /// What the command prints on standard output and standard error, and whether it succeeds.
 fn run(arguments: &[&str]) -> (String, String, Option<i32>) {
     let output = Command::new(env!("CARGO_BIN_EXE_mbg-urdf"))

@@ -60,7 +60,9 @@ const TAKEN: &[&str] = &[
     "rates",
     "ref",
     "return",
+    "Self",
     "self",
+    "slide_slip",
     "slip",
     "static",
     "struct",
@@ -78,6 +80,56 @@ const TAKEN: &[&str] = &[
     "where",
     "while",
     "yield",
+];
+
+/// Names of the library's components, which one of the same name would hide.
+const LIBRARY: &[&str] = &[
+    "Accumulator",
+    "Bearing",
+    "Blade",
+    "Body",
+    "Capacitor",
+    "Conduction",
+    "Cut",
+    "Cylinder",
+    "Cylindrical",
+    "DcMotor",
+    "Diode",
+    "Fixed",
+    "Free",
+    "FreeRotation",
+    "Friction",
+    "Gear",
+    "Gimbal",
+    "GimbalAxis",
+    "GimbalSeries",
+    "HeatCapacity",
+    "HeatSource",
+    "Inductor",
+    "Load",
+    "Mount",
+    "Offset",
+    "Orifice",
+    "Planar",
+    "PlanarBody",
+    "PlanarCut",
+    "PlanarLink",
+    "PlanarLoad",
+    "PlanarOffset",
+    "PlanarPointMass",
+    "PlanarPrismatic",
+    "PlanarRevolute",
+    "PointMass",
+    "Prismatic",
+    "Pump",
+    "Rack",
+    "Resistor",
+    "Revolute",
+    "Rotor",
+    "Spherical",
+    "Transformer",
+    "Turn",
+    "Universal",
 ];
 
 /// The names given so far.
@@ -111,20 +163,22 @@ fn identifier(text: &str) -> String {
     }
 }
 
-/// `UpperCamelCase`, as components are named.
+/// `UpperCamelCase`, as components are named, and no name that is in use already.
 pub(crate) fn component(text: &str) -> String {
     let words = text.split(|it: char| !it.is_ascii_alphanumeric());
     let name: String = words
         .filter_map(|word| Some((word.chars().next()?.to_ascii_uppercase(), &word[1..])))
         .map(|(first, rest)| format!("{first}{rest}"))
         .collect();
+    let free = name != "Self" && !LIBRARY.contains(&name.as_str());
     match name.chars().next() {
-        Some(first) if first.is_ascii_alphabetic() => name,
+        Some(first) if first.is_ascii_alphabetic() && free => name,
         _ => format!("Robot{name}"),
     }
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -140,7 +194,33 @@ mod tests {
 
     #[test]
     fn components_are_in_camel_case() {
-        let given = ["panda", "my_robot-2", "", "6r"].map(component);
-        assert_eq!(given, ["Panda", "MyRobot2", "Robot", "Robot6r"]);
+        let given = ["panda", "my_robot-2", "", "6r", "self", "body"].map(component);
+        let expected = [
+            "Panda",
+            "MyRobot2",
+            "Robot",
+            "Robot6r",
+            "RobotSelf",
+            "RobotBody",
+        ];
+        assert_eq!(given, expected);
+    }
+
+    #[test]
+    fn components_of_the_library_are_known() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../mbg-compiler/library");
+        let mut found: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .flat_map(|file| {
+                let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
+                let heads = text
+                    .lines()
+                    .filter_map(|line| line.strip_prefix("component "));
+                let names = heads.filter_map(|head| head.split('(').next());
+                names.map(str::to_owned).collect::<Vec<String>>()
+            })
+            .collect();
+        found.sort();
+        assert_eq!(found, LIBRARY);
     }
 }

@@ -94,8 +94,13 @@ fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
              /// Angles and travels of the joints at the start.\n    param initial[{count}] = 0.0;\n"
         );
     }
-    if robot.joints.iter().any(has_friction) {
-        text += "    /// The rate at which dry friction has three quarters of its value.\n    param slip = 1e-3;\n";
+    for (motion, slip, unit) in SLIPS {
+        let rubs = |it: &Joint| it.motion == *motion && has_friction(it);
+        if robot.joints.iter().any(rubs) {
+            text += &format!(
+                "    /// The rate at which dry friction has three quarters of its value.\n    param {slip}: {unit} = 1e-3;\n"
+            );
+        }
     }
     text += "    /// The acceleration of free fall in axes of the base.\n    param gravity_base[3]: m/s^2 = gravity;\n    \
              /// From axes of the base to those of the world.\n    param orientation_base = 1.0;\n    \
@@ -152,8 +157,9 @@ impl Printer<'_> {
         if has_friction(joint) {
             let friction = self.names.take(&format!("{name}_friction"));
             self.text += &format!(
-                "    {name}.rate -> R {friction} {{ effort: {:?} * tanh(f / slip) }};\n",
-                joint.friction
+                "    {name}.rate -> R {friction} {{ effort: {:?} * tanh(f / {}) }};\n",
+                joint.friction,
+                slip(joint.motion)
             );
         }
         self.rates.push(format!("{name}.rate.f"));
@@ -386,6 +392,17 @@ impl Printer<'_> {
             );
         }
     }
+}
+
+/// The parameters of dry friction, of one unit each.
+const SLIPS: &[(Motion, &str, &str)] = &[
+    (Motion::Turn, "slip", "rad/s"),
+    (Motion::Slide, "slide_slip", "m/s"),
+];
+
+fn slip(motion: Motion) -> &'static str {
+    let own = SLIPS.iter().find(|(of, ..)| *of == motion);
+    own.map_or("slip", |(_, slip, _)| slip)
 }
 
 fn has_friction(joint: &Joint) -> bool {

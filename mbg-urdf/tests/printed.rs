@@ -1,0 +1,111 @@
+//! What is printed is a model that `mbg!` takes.
+#![allow(clippy::unwrap_used)]
+
+use mbg_compiler::diagnostics::Diagnostics;
+use mbg_compiler::items;
+
+/// A file of a pendulum on a slide, with damping and friction, an axis along no coordinate axis and a fixed link.
+fn pendulum([robot, slide, hinge, cart, rod]: [&str; 5]) -> String {
+    let inertial = "<inertial><origin xyz=\"0.1 0 0\"/><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>";
+    format!(
+        "<robot name=\"{robot}\">
+        <link name=\"ground\"/>
+        <link name=\"{cart}\">{inertial}</link>
+        <link name=\"{rod}\">{inertial}</link>
+        <link name=\"tip\">{inertial}</link>
+        <joint name=\"{slide}\" type=\"prismatic\">
+          <origin xyz=\"1 0 0\" rpy=\"0 0 0.3\"/>
+          <parent link=\"ground\"/><child link=\"{cart}\"/><axis xyz=\"1 0 0\"/>
+          <dynamics damping=\"0.1\" friction=\"0.2\"/>
+        </joint>
+        <joint name=\"{hinge}\" type=\"revolute\">
+          <origin xyz=\"0 1 0\" rpy=\"0 0.3 0\"/>
+          <parent link=\"{cart}\"/><child link=\"{rod}\"/><axis xyz=\"0.6 0.8 0\"/>
+          <dynamics damping=\"0.1\" friction=\"0.2\"/>
+        </joint>
+        <joint name=\"end\" type=\"fixed\"><parent link=\"{rod}\"/><child link=\"tip\"/></joint>
+        </robot>"
+    )
+}
+
+/// What is wrong with what a file is printed as.
+fn mistakes(file: &str) -> Vec<String> {
+    let printed = mbg_urdf::convert(file, "r.urdf", Some("Bench")).unwrap();
+    let mut diagnostics = Diagnostics::new();
+    let _ = items(printed.text.parse().unwrap(), &mut diagnostics);
+    let list = diagnostics.list().iter();
+    list.map(|it| format!("{}\n{}", it.text(), printed.text))
+        .collect()
+}
+
+/// Names that mean something to the language, to Rust or to the library.
+const NAMES: &[&str] = &[
+    "Self",
+    "self",
+    "R",
+    "Se",
+    "TF",
+    "MGY",
+    "T",
+    "E",
+    "t",
+    "u",
+    "x",
+    "y",
+    "k",
+    "e",
+    "f",
+    "tanh",
+    "transpose",
+    "diag",
+    "given",
+    "initial",
+    "initial_rate",
+    "ideal",
+    "matrix",
+    "coordinate",
+    "component",
+    "model",
+    "port",
+    "gyroscopic",
+    "by",
+    "rates",
+    "base",
+    "gravity",
+    "robot",
+    "body",
+    "offset",
+    "turn",
+    "revolute",
+    "prismatic",
+    "Offset",
+    "union",
+    "_",
+    "causality",
+    "slip",
+    "slide_slip",
+    "robot_body",
+    "if",
+    "inertia",
+];
+
+#[test]
+fn any_name_can_be_one_of_a_robot() {
+    for name in NAMES {
+        for names in [
+            [name, name, "hinge", "cart", "rod"],
+            [name, "slide", "hinge", name, "rod"],
+        ] {
+            assert_eq!(mistakes(&pendulum(names)), [""; 0], "{names:?}");
+        }
+    }
+}
+
+#[test]
+fn dry_friction_may_be_on_hinges_and_on_slides() {
+    let text = pendulum(["robot", "slide", "hinge", "cart", "rod"]);
+    assert_eq!(mistakes(&text), [""; 0]);
+    let printed = mbg_urdf::convert(&text, "r.urdf", None).unwrap().text;
+    assert!(printed.contains("0.2 * tanh(f / slide_slip)"), "{printed}");
+    assert!(printed.contains("0.2 * tanh(f / slip)"), "{printed}");
+}

@@ -39,6 +39,7 @@ const TAKEN: &[&str] = &[
     "in",
     "include",
     "initial",
+    "initial_rate",
     "input",
     "integral",
     "let",

@@ -91,7 +91,8 @@ fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
     if count > 0 {
         text += &format!(
             "    /// Torques and forces that drive the joints.\n    param effort[{count}] = 0.0;\n    \
-             /// Angles and travels of the joints at the start.\n    param initial[{count}] = 0.0;\n"
+             /// Angles and travels of the joints at the start.\n    param initial[{count}] = 0.0;\n    \
+             /// Their rates at the start.\n    param initial_rate[{count}] = 0.0;\n"
         );
     }
     for (motion, slip, unit) in SLIPS {
@@ -231,7 +232,7 @@ impl Printer<'_> {
         number: usize,
     ) -> Rigid {
         self.text += &format!(
-            "    {name}: Revolute {{\n        axis: {axis}, initial: initial[{number}], torque: effort[{number}]{},\n        \
+            "    {name}: Revolute {{\n        axis: {axis}, initial: initial[{number}], initial_rate: initial_rate[{number}], torque: effort[{number}]{},\n        \
              gravity_a: {}, orientation_a: {}\n    }} ({}, {junction});\n",
             damping(joint),
             foot.gravity,
@@ -258,7 +259,7 @@ impl Printer<'_> {
     ) -> Rigid {
         let reached = self.names.take(&format!("{name}_reached"));
         self.text += &format!(
-            "    {name}: Prismatic {{ axis: {axis}, initial: initial[{number}], force: effort[{number}]{} }} ({}, {junction});\n    \
+            "    {name}: Prismatic {{ axis: {axis}, initial: initial[{number}], initial_rate: initial_rate[{number}], force: effort[{number}]{} }} ({}, {junction});\n    \
              let {reached}[3] = {} + {} * {name}.arm;\n",
             damping(joint),
             foot.junction,

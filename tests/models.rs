@@ -35,6 +35,7 @@ mod models {
     mod loops;
     #[allow(dead_code, reason = "the example prints more of it")]
     mod mechanisms;
+    mod mimics;
     mod navigation;
     mod parameters;
     mod pins;

@@ -103,6 +103,24 @@ impl Pose {
         turn: IDENTITY,
     };
 
+    /// Turned about an axis.
+    pub(crate) fn turned(axis: &Vector, angle: f64) -> Self {
+        let (along, tilt) = aligned(axis);
+        let mut angles = [0.0; 3];
+        angles[along] = angle;
+        let turn = product(&product(&tilt, &rotation(angles)), &transposed(&tilt));
+        Self { turn, ..Self::NONE }
+    }
+
+    /// Moved along an axis.
+    pub(crate) fn moved(axis: &Vector, travel: f64) -> Self {
+        let length = axis.iter().map(|it| it * it).sum::<f64>().sqrt();
+        Self {
+            place: axis.map(|it| it / length * travel),
+            ..Self::NONE
+        }
+    }
+
     /// A pose in this one's frame, in the frame that this one is in.
     pub(crate) fn of(&self, inner: &Self) -> Self {
         Self {

@@ -20,6 +20,10 @@
 //!
 //! - Joints: `fixed`, `revolute`, `continuous` and `prismatic`, about any axis. Links that fixed joints hold together become
 //!   one body. Where an axis is no coordinate axis, the printed frame of the link is turned so that it is one.
+//! - A joint that mimics another one has the rate of that, by a transformer, and is none of the numbered joints; the angle
+//!   of `finger` is `robot.finger.angle`. It is held where the other one does not move.
+//! - A link without a mass keeps its inertia, as rotors are given; masses without an extent and rods without a width are
+//!   bodies, too.
 //! - Damping becomes that of the joint, dry friction a resistor `friction tanh(rate / slip)` beside it.
 //! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, so that what is zero costs nothing.
 //! - What shows or collides is left out. Every other tag without an equation is named with its line.

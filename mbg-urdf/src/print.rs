@@ -27,23 +27,26 @@ struct Rigid {
 struct Printer<'a> {
     robot: &'a Robot,
     names: Names,
+    /// The joints that have numbers: those that are degrees of freedom.
+    free: Vec<&'a str>,
+    /// The joints that move, with their names in the language.
+    moving: Vec<(&'a Joint, String)>,
     parts: Vec<Option<Part>>,
     rigid: Vec<Rigid>,
     text: String,
-    coordinates: Vec<String>,
-    rates: Vec<String>,
 }
 
 /// The component, and a model of it with its base at rest where that is given a name.
 pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String {
+    let free = robot.joints.iter().filter(|it| it.is_free());
     let mut printer = Printer {
         robot,
         names: Names::new(),
+        free: free.map(|it| it.name.as_str()).collect(),
+        moving: Vec::new(),
         parts: robot.links.iter().map(|_| None).collect(),
         rigid: Vec::new(),
         text: String::new(),
-        coordinates: Vec::new(),
-        rates: Vec::new(),
     };
     printer.parts[robot.root] = Some(Part {
         rigid: 0,
@@ -59,16 +62,15 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
     for joint in &robot.joints {
         printer.joint(joint);
     }
+    printer.mimics();
     printer.bodies();
     printer.poses();
     let name = component(&robot.name);
-    let moving = || robot.joints.iter().filter(|it| it.motion != Motion::Fixed);
-    let joints: Vec<&str> = moving().map(|it| it.name.as_str()).collect();
-    let mut text = head(robot, &shown(source), &name, &joints);
+    let mut text = head(robot, &shown(source), &name, &printer.free);
     text += &printer.text;
     text += "}\n";
     if let Some(model) = model {
-        text += &at_rest(&robot.name, &name, model, joints.len());
+        text += &at_rest(&robot.name, &name, model, printer.free.len());
     }
     text
 }
@@ -86,6 +88,7 @@ fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
             text += &format!("/// {number}. `{joint}`\n");
         }
     }
+    text += &mimics(robot);
     text += &format!("#[derivative]\ncomponent {name}(port base[6]) {{\n");
     let count = joints.len();
     if count > 0 {
@@ -95,11 +98,11 @@ fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
              /// Their rates at the start.\n    param initial_rate[{count}] = 0.0;\n"
         );
     }
-    for (motion, slip, unit) in SLIPS {
+    for (motion, slip, unit, joints) in SLIPS {
         let rubs = |it: &Joint| it.motion == *motion && has_friction(it);
         if robot.joints.iter().any(rubs) {
             text += &format!(
-                "    /// The rate at which dry friction has three quarters of its value.\n    param {slip}: {unit} = 1e-3;\n"
+                "    /// The rate at which dry friction of {joints} has three quarters of its value.\n    param {slip}: {unit} = 1e-3;\n"
             );
         }
     }
@@ -107,6 +110,30 @@ fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
              /// From axes of the base to those of the world.\n    param orientation_base = 1.0;\n    \
              /// Of the base in the world.\n    param position_base[3]: m = 0.0;\n";
     text
+}
+
+/// What the documentation says about joints that mimic others.
+fn mimics(robot: &Robot) -> String {
+    let line = |joint: &Joint| {
+        let mimic = joint.mimic.as_ref()?;
+        let (leader, times, offset) = (&mimic.leader, mimic.multiplier, added(mimic.offset));
+        let name = &joint.name;
+        Some(format!("/// - `{name}` = {times:?} `{leader}`{offset}\n"))
+    };
+    let lines: String = robot.joints.iter().filter_map(line).collect();
+    match lines.as_str() {
+        "" => lines,
+        _ => format!("///\n/// Joints that mimic others:\n{lines}"),
+    }
+}
+
+/// A term of a sum, nothing where it is zero.
+fn added(term: f64) -> String {
+    match term {
+        0.0 => String::new(),
+        _ if term < 0.0 => format!(" - {:?}", -term),
+        _ => format!(" + {term:?}"),
+    }
 }
 
 /// A model in which the base does not move.
@@ -127,8 +154,8 @@ fn at_rest(robot: &str, component: &str, model: &str, count: usize) -> String {
     text + "}\n"
 }
 
-impl Printer<'_> {
-    fn joint(&mut self, joint: &Joint) {
+impl<'a> Printer<'a> {
+    fn joint(&mut self, joint: &'a Joint) {
         // A joint comes after the one that holds its parent.
         let Some(parent) = &self.parts[joint.parent] else {
             return;
@@ -150,10 +177,9 @@ impl Printer<'_> {
         let foot = self.moved(&name, above, &at.of(&in_joint));
         let junction = self.names.take(&self.robot.links[child].name);
         self.text += &format!("    1 {junction}[6];\n");
-        let number = self.coordinates.len();
         let after = match joint.motion {
-            Motion::Slide => self.slide(joint, &name, (&foot, &junction), axis, number),
-            _ => self.turn(joint, &name, (&foot, &junction), axis, number),
+            Motion::Slide => self.slide(joint, &name, (&foot, &junction), axis),
+            _ => self.turn(joint, &name, (&foot, &junction), axis),
         };
         if has_friction(joint) {
             let friction = self.names.take(&format!("{name}_friction"));
@@ -163,7 +189,7 @@ impl Printer<'_> {
                 slip(joint.motion)
             );
         }
-        self.rates.push(format!("{name}.rate.f"));
+        self.moving.push((joint, name));
         self.rigid.push(after);
         let back = Pose {
             place: [0.0; 3],
@@ -229,17 +255,16 @@ impl Printer<'_> {
         name: &str,
         (foot, junction): (&Rigid, &str),
         axis: usize,
-        number: usize,
     ) -> Rigid {
         self.text += &format!(
-            "    {name}: Revolute {{\n        axis: {axis}, initial: initial[{number}], initial_rate: initial_rate[{number}], torque: effort[{number}]{},\n        \
+            "    {name}: Revolute {{\n        axis: {axis}, {}{},\n        \
              gravity_a: {}, orientation_a: {}\n    }} ({}, {junction});\n",
+            self.start(joint, "torque"),
             damping(joint),
             foot.gravity,
             foot.orientation,
             foot.junction
         );
-        self.coordinates.push(format!("{name}.angle"));
         Rigid {
             body: None,
             junction: junction.to_owned(),
@@ -255,24 +280,63 @@ impl Printer<'_> {
         name: &str,
         (foot, junction): (&Rigid, &str),
         axis: usize,
-        number: usize,
     ) -> Rigid {
         let reached = self.names.take(&format!("{name}_reached"));
         self.text += &format!(
-            "    {name}: Prismatic {{ axis: {axis}, initial: initial[{number}], initial_rate: initial_rate[{number}], force: effort[{number}]{} }} ({}, {junction});\n    \
+            "    {name}: Prismatic {{ axis: {axis}, {}{} }} ({}, {junction});\n    \
              let {reached}[3] = {} + {} * {name}.arm;\n",
+            self.start(joint, "force"),
             damping(joint),
             foot.junction,
             foot.position,
             foot.orientation
         );
-        self.coordinates.push(format!("{name}.travel"));
         Rigid {
             body: None,
             junction: junction.to_owned(),
             gravity: foot.gravity.clone(),
             orientation: foot.orientation.clone(),
             position: reached,
+        }
+    }
+
+    /// How a joint starts and what drives it. One that mimics another starts as that does, whichever rate is the state.
+    fn start(&self, joint: &Joint, effort: &str) -> String {
+        let number = |name: &str| self.free.iter().position(|it| *it == name).unwrap_or(0);
+        match &joint.mimic {
+            None => {
+                let number = number(&joint.name);
+                format!(
+                    "initial: initial[{number}], initial_rate: initial_rate[{number}], {effort}: effort[{number}]"
+                )
+            }
+            Some(mimic) => {
+                let (number, times) = (number(&mimic.leader), mimic.multiplier);
+                let offset = added(mimic.offset);
+                format!(
+                    "initial: {times:?} * initial[{number}]{offset}, initial_rate: {times:?} * initial_rate[{number}]"
+                )
+            }
+        }
+    }
+
+    /// The joints whose rates are those of others.
+    fn mimics(&mut self) {
+        if self.moving.iter().all(|(joint, _)| joint.is_free()) {
+            return;
+        }
+        self.text += "\n    // Joints that mimic others.\n";
+        for (joint, name) in &self.moving {
+            let Some(mimic) = &joint.mimic else { continue };
+            let mut leaders = self.moving.iter().filter(|(it, _)| it.name == mimic.leader);
+            let Some((_, leader)) = leaders.next() else {
+                continue;
+            };
+            let mimicry = self.names.take(&format!("{name}_mimic"));
+            self.text += &format!(
+                "    {leader}.rate -> TF {mimicry} {{ flow: {:?} }} -> {name}.rate;\n",
+                mimic.multiplier
+            );
         }
     }
 
@@ -384,10 +448,17 @@ impl Printer<'_> {
             self.text +=
                 &format!("    let {at}[3] = {position};\n    let {axes} = {orientation};\n");
         }
-        let count = self.coordinates.len();
+        let free = || self.moving.iter().filter(|(joint, _)| joint.is_free());
+        let coordinate = |(joint, name): &(&Joint, String)| match joint.motion {
+            Motion::Slide => format!("{name}.travel"),
+            _ => format!("{name}.angle"),
+        };
+        let coordinates: Vec<String> = free().map(coordinate).collect();
+        let rates: Vec<String> = free().map(|(_, name)| format!("{name}.rate.f")).collect();
+        let count = coordinates.len();
         if count > 0 {
             self.text += "\n    // Angles and travels of the joints, and how fast they change.\n";
-            let (coordinates, rates) = (self.coordinates.join(", "), self.rates.join(", "));
+            let (coordinates, rates) = (coordinates.join(", "), rates.join(", "));
             self.text += &format!(
                 "    let coordinates[{count}] = [{coordinates}];\n    let rates[{count}] = [{rates}];\n"
             );
@@ -396,14 +467,14 @@ impl Printer<'_> {
 }
 
 /// The parameters of dry friction, of one unit each.
-const SLIPS: &[(Motion, &str, &str)] = &[
-    (Motion::Turn, "slip", "rad/s"),
-    (Motion::Slide, "slide_slip", "m/s"),
+const SLIPS: &[(Motion, &str, &str, &str)] = &[
+    (Motion::Turn, "slip", "rad/s", "hinges"),
+    (Motion::Slide, "slide_slip", "m/s", "slides"),
 ];
 
 fn slip(motion: Motion) -> &'static str {
     let own = SLIPS.iter().find(|(of, ..)| *of == motion);
-    own.map_or("slip", |(_, slip, _)| slip)
+    own.map_or("slip", |(_, slip, ..)| slip)
 }
 
 fn has_friction(joint: &Joint) -> bool {

@@ -38,6 +38,26 @@ pub(crate) struct Link {
     pub(crate) body: Option<Body>,
 }
 
+/// A coordinate that follows that of another joint: it is `multiplier × other + offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Mimic {
+    /// The other joint, which moves and mimics none.
+    pub(crate) leader: String,
+    pub(crate) multiplier: f64,
+    pub(crate) offset: f64,
+}
+
+impl Mimic {
+    /// Where the leader mimics, too: the same of its leader.
+    fn through(&self, leader: &Self) -> Self {
+        Self {
+            leader: leader.leader.clone(),
+            multiplier: self.multiplier * leader.multiplier,
+            offset: self.multiplier * leader.offset + self.offset,
+        }
+    }
+}
+
 pub(crate) struct Joint {
     pub(crate) name: String,
     pub(crate) motion: Motion,
@@ -48,10 +68,36 @@ pub(crate) struct Joint {
     pub(crate) origin: Pose,
     /// In axes of the joint.
     pub(crate) axis: Vector,
+    pub(crate) mimic: Option<Mimic>,
     pub(crate) damping: f64,
     /// Dry friction.
     pub(crate) friction: f64,
     pub(crate) line: u32,
+}
+
+impl Joint {
+    /// Whether it is a degree of freedom of its own.
+    pub(crate) fn is_free(&self) -> bool {
+        self.motion != Motion::Fixed && self.mimic.is_none()
+    }
+
+    /// Makes it a fixed joint that stays where it is at a coordinate.
+    fn fix(&mut self, coordinate: f64) {
+        let moved = match self.motion {
+            Motion::Fixed => Pose::NONE,
+            Motion::Turn => Pose::turned(&self.axis, coordinate),
+            Motion::Slide => Pose::moved(&self.axis, coordinate),
+        };
+        self.origin = self.origin.of(&moved);
+        self.motion = Motion::Fixed;
+        self.mimic = None;
+    }
+
+    /// Whether it mimics the joint of this name.
+    fn follows(&self, leader: &str) -> bool {
+        let mimic = self.mimic.as_ref();
+        mimic.is_some_and(|it| it.leader == leader)
+    }
 }
 
 pub(crate) struct Robot {
@@ -165,6 +211,7 @@ impl<'a> Reader<'a> {
             }
             joints.push(joint);
         }
+        resolve_mimics(&mut joints)?;
         let held: BTreeSet<usize> = joints.iter().map(|joint| joint.child).collect();
         let roots: Vec<usize> = (0..links.len()).filter(|it| !held.contains(it)).collect();
         let [root] = roots[..] else {
@@ -197,28 +244,35 @@ impl<'a> Reader<'a> {
         Ok(robot)
     }
 
-    /// Names the joints that move nothing: their equation is without a solution.
+    /// Names the joints that move nothing, nor any joint that mimics them: their equation is without a solution.
     fn note_massless(&mut self, robot: &Robot) {
         let mut loads: Vec<Load> = robot.links.iter().map(Load::of).collect();
         for joint in robot.joints.iter().rev() {
             let load = loads[joint.child];
-            let missing = match joint.motion {
-                Motion::Turn if !load.mass && !load.inertia => "a mass or an inertia",
-                Motion::Slide if !load.mass => "a mass",
-                _ => "",
-            };
-            if !missing.is_empty() {
-                let name = &joint.name;
-                self.remarks.push(Remark {
-                    line: joint.line,
-                    text: format!(
-                        "nothing that `{name}` moves has {missing}, which `mbg!` will refuse"
-                    ),
-                });
-            }
             let below = &mut loads[joint.parent];
             below.mass |= load.mass;
             below.inertia |= load.inertia;
+        }
+        let resists = |joint: &Joint| {
+            let load = loads[joint.child];
+            load.mass || load.inertia && joint.motion == Motion::Turn
+        };
+        for joint in robot.joints.iter().filter(|it| it.is_free()) {
+            let moved = |it: &Joint| it.name == joint.name || it.follows(&joint.name);
+            if robot.joints.iter().any(|it| moved(it) && resists(it)) {
+                continue;
+            }
+            let missing = match joint.motion {
+                Motion::Slide => "a mass",
+                _ => "a mass or an inertia",
+            };
+            let name = &joint.name;
+            self.remarks.push(Remark {
+                line: joint.line,
+                text: format!(
+                    "nothing that `{name}` moves has {missing}, which `mbg!` will refuse"
+                ),
+            });
         }
     }
 
@@ -286,14 +340,12 @@ impl<'a> Reader<'a> {
                 return self.fail(node, text);
             }
         };
-        self.note_others(node, &["origin", "parent", "child", "axis", "dynamics"]);
+        let known = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
+        self.note_others(node, &known);
         let (mut damping, mut friction) = (0.0, 0.0);
         if let Some(dynamics) = child(node, "dynamics") {
-            let given = |name: &str| match dynamics.attribute(name) {
-                Some(_) => self.number(dynamics, name),
-                None => Ok(0.0),
-            };
-            (damping, friction) = (given("damping")?, given("friction")?);
+            damping = self.number_or(dynamics, "damping", 0.0)?;
+            friction = self.number_or(dynamics, "friction", 0.0)?;
         }
         Ok(Joint {
             motion,
@@ -301,6 +353,7 @@ impl<'a> Reader<'a> {
             child: self.linked(node, "child", links)?,
             origin: self.origin(node)?,
             axis: self.axis(node, motion)?,
+            mimic: self.mimic(node, motion)?,
             damping,
             friction,
             line: self.line(node),
@@ -331,6 +384,31 @@ impl<'a> Reader<'a> {
             return self.fail(element, "an axis has a direction");
         }
         Ok(axis)
+    }
+
+    fn mimic(&mut self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<Mimic>> {
+        let Some(element) = child(node, "mimic") else {
+            return Ok(None);
+        };
+        if motion == Motion::Fixed {
+            self.note(element, "a fixed joint mimics none");
+            return Ok(None);
+        }
+        let leader = shown(self.attribute(element, "joint")?);
+        let mut joints = node.parent().into_iter().flat_map(|it| it.children());
+        if !joints.any(|it| it.has_tag_name("joint") && self.is_named(it, &leader)) {
+            return self.fail(element, format!("there is no joint `{leader}`"));
+        }
+        Ok(Some(Mimic {
+            leader,
+            multiplier: self.number_or(element, "multiplier", 1.0)?,
+            offset: self.number_or(element, "offset", 0.0)?,
+        }))
+    }
+
+    fn is_named(&self, node: Node<'a, 'a>, name: &str) -> bool {
+        self.attribute(node, "name")
+            .is_ok_and(|it| shown(it) == name)
     }
 
     fn origin(&mut self, node: Node<'a, 'a>) -> Checked<Pose> {
@@ -377,6 +455,13 @@ impl<'a> Reader<'a> {
         }
     }
 
+    fn number_or(&self, node: Node<'a, 'a>, name: &str, otherwise: f64) -> Checked<f64> {
+        match node.attribute(name) {
+            Some(_) => self.number(node, name),
+            None => Ok(otherwise),
+        }
+    }
+
     fn vector(&self, node: Node<'a, 'a>, name: &str) -> Checked<Vector> {
         let text = self.attribute(node, name)?;
         let numbers = text.split_whitespace().map(str::parse::<f64>);
@@ -396,6 +481,47 @@ pub(crate) fn shown(name: &str) -> String {
 /// The first element with this tag.
 fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
     node.children().find(|it| it.has_tag_name(tag))
+}
+
+/// Makes every mimic one of a joint that moves and mimics none. What mimics a joint that does not move is fixed.
+fn resolve_mimics(joints: &mut [Joint]) -> Checked<()> {
+    for at in 0..joints.len() {
+        let mut left = joints.len();
+        while let Some(further) = further(joints, &joints[at]) {
+            if left == 0 {
+                let name = &joints[at].name;
+                return Err(Remark {
+                    line: joints[at].line,
+                    text: format!("in the end joint `{name}` mimics itself"),
+                });
+            }
+            left -= 1;
+            joints[at].mimic = Some(further);
+        }
+    }
+    let held = |joint: &Joint| {
+        let still = leader(joints, joint)?.motion == Motion::Fixed;
+        let mimic = joint.mimic.as_ref()?;
+        (still || mimic.multiplier == 0.0).then_some(mimic.offset)
+    };
+    let held: Vec<Option<f64>> = joints.iter().map(held).collect();
+    for (joint, held) in joints.iter_mut().zip(held) {
+        if let Some(coordinate) = held {
+            joint.fix(coordinate);
+        }
+    }
+    Ok(())
+}
+
+/// The mimic of a joint's leader's leader, where there is one.
+fn further(joints: &[Joint], joint: &Joint) -> Option<Mimic> {
+    let next = leader(joints, joint)?.mimic.as_ref()?;
+    joint.mimic.as_ref().map(|it| it.through(next))
+}
+
+fn leader<'a>(joints: &'a [Joint], joint: &Joint) -> Option<&'a Joint> {
+    let mimic = joint.mimic.as_ref()?;
+    joints.iter().find(|it| it.name == mimic.leader)
 }
 
 /// The joints in the order of a walk from the root; each link hangs on one, so that all are met or a ring is left out.

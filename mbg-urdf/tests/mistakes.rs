@@ -109,6 +109,27 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>",
         "1: no link is without a joint that holds it",
     ),
+    (
+        "<axis ",
+        "<mimic joint=\"k\"/><axis ",
+        "11: there is no joint `k`",
+    ),
+    (
+        "<axis ",
+        "<mimic joint=\"j\" multiplier=\"2\"/><axis ",
+        "7: in the end joint `j` mimics itself",
+    ),
+    (
+        "<axis xyz=\"0 0 1\"/>",
+        "<mimic joint=\"k\"/></joint><link name=\"c\"/><joint name=\"k\" type=\"prismatic\">\
+         <parent link=\"b\"/><child link=\"c\"/><mimic joint=\"j\"/>",
+        "7: in the end joint `j` mimics itself",
+    ),
+    (
+        "<axis ",
+        "<mimic joint=\"j\" multiplier=\"twice\"/><axis ",
+        "11: `multiplier` is a number, found `twice`",
+    ),
 ];
 
 #[test]
@@ -164,6 +185,17 @@ fn what_is_left_out_is_told() {
 }
 
 #[test]
+fn a_fixed_joint_mimics_none() {
+    let text = file("type=\"revolute\"", "type=\"fixed\"");
+    let text = text.replace("<axis ", "<mimic joint=\"j\"/><axis ");
+    let found = mbg_urdf::convert(&text, "r.urdf", None).unwrap();
+    assert_eq!(
+        found.remarks[0].to_string(),
+        "11: a fixed joint mimics none"
+    );
+}
+
+#[test]
 fn what_means_nothing_is_no_mistake() {
     let plain = |part: &str, changed: &str| {
         let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap();
@@ -199,13 +231,13 @@ fn run(arguments: &[&str]) -> (String, String, Option<i32>) {
 #[test]
 fn the_command_prints_the_component() {
     let path = format!("{}/arm.urdf", env!("CARGO_TARGET_TMPDIR"));
-    let text = file("<axis ", "<mimic joint=\"k\"/><axis ");
+    let text = file("<axis ", "<limit effort=\"1\"/><axis ");
     std::fs::write(&path, &text).unwrap();
     let (printed, told, code) = run(&["--model", "Bench", &path]);
     let expected = mbg_urdf::convert(&text, &path, Some("Bench")).unwrap();
     assert_eq!(printed, expected.text);
     assert!(printed.contains("pub model Bench {"));
-    assert_eq!(told, format!("{path}:11: `mimic` is not converted\n"));
+    assert_eq!(told, format!("{path}:11: `limit` is not converted\n"));
     assert_eq!(code, Some(0));
 }
 

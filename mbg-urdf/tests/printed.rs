@@ -109,3 +109,36 @@ fn dry_friction_may_be_on_hinges_and_on_slides() {
     assert!(printed.contains("0.2 * tanh(f / slide_slip)"), "{printed}");
     assert!(printed.contains("0.2 * tanh(f / slip)"), "{printed}");
 }
+
+#[test]
+fn a_drive_without_a_mass_moves_what_mimics_it() {
+    let finger = |name: &str, inertial: &str, mimic: &str| {
+        format!(
+            "<link name=\"{name}_link\">{inertial}</link>
+            <joint name=\"{name}\" type=\"prismatic\">
+              <parent link=\"palm\"/><child link=\"{name}_link\"/><axis xyz=\"1 0 0\"/>{mimic}
+            </joint>"
+        )
+    };
+    let inertial =
+        "<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>";
+    let text = format!(
+        "<robot name=\"gripper\"><link name=\"palm\"/>{}{}</robot>",
+        finger("drive", "", ""),
+        finger(
+            "finger",
+            inertial,
+            "<mimic joint=\"drive\" multiplier=\"-0.5\"/>"
+        )
+    );
+    assert_eq!(mistakes(&text), [""; 0]);
+    let found = mbg_urdf::convert(&text, "r.urdf", None).unwrap();
+    assert_eq!(found.remarks, []);
+    let alone = text.replace("<mimic joint=\"drive\" multiplier=\"-0.5\"/>", "");
+    let found = mbg_urdf::convert(&alone, "r.urdf", None).unwrap();
+    let told: Vec<&str> = found.remarks.iter().map(|it| it.text.as_str()).collect();
+    assert_eq!(
+        told,
+        ["nothing that `drive` moves has a mass, which `mbg!` will refuse"]
+    );
+}

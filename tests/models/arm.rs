@@ -7,12 +7,11 @@ use super::energy::imbalance;
 use crate::arm::{Arm, ArmParameters};
 use crate::references::errors::larger;
 use crate::references::noise::noise;
-use crate::references::robots::{crane, panda, winder};
+use crate::references::robots::{panda, winder};
 use crate::references::tree::{self, Link};
 
 mbg! {
     include "examples/arm/serial.mbg";
-    include "tests/robots/crane.mbg";
     include "tests/robots/winder.mbg";
 
     /// The arm of `panda.urdf` from its parameters.
@@ -91,15 +90,6 @@ fn arm_out_of_its_parameters_equals_the_recursion() {
 }
 
 #[test]
-fn crane_with_everything_a_file_may_say_equals_the_recursion() {
-    let model = Crane::new(CraneParameters::default()).unwrap();
-    let [acceleration, energy] = compared(&model, &crane());
-    println!("crane: accelerations {acceleration:.1e}, energy {energy:.1e}");
-    assert!(acceleration < 1e-13, "{acceleration:e}");
-    assert!(energy < 1e-14, "{energy:e}");
-}
-
-#[test]
 fn winder_of_links_that_are_no_whole_bodies_equals_the_recursion() {
     let model = Winder::new(WinderParameters::default()).unwrap();
     let [acceleration, energy] = compared(&model, &winder());
@@ -168,10 +158,10 @@ fn files_are_printed_as_they_are_included() {
             &[
                 "57: `limit` is not converted",
                 "91: 1.5708 is 3.7e-6 rad beside a right angle; with 1.5707963267948966 fewer operations are left",
-                "94: `mimic` is not converted",
                 "96: `gazebo` is not converted",
             ],
         ),
+        ("tests/robots/gripper", None, &[]),
         ("tests/robots/winder", Some("Winder"), &[]),
     ];
     for (file, model, remarks) in files {

@@ -231,3 +231,82 @@ pub(crate) fn winder() -> Vec<Link> {
     };
     vec![arm, armature, wheel, shaft, bob, carriage, hook, rod]
 }
+
+/// The robot of `gripper.urdf`, with the links in the order in which its component lists the joints.
+pub(crate) fn gripper() -> Vec<Link> {
+    let palm = Link {
+        place: [0.0, 0.0, 0.1],
+        angles: [0.4, 0.0, 0.0],
+        axis: [0.0, 0.6, 0.8],
+        damping: 0.02,
+        mass: 0.8,
+        centre: [0.0, 0.01, 0.05],
+        inertia: [0.003, 0.0, 0.0, 0.002, 0.0, 0.001],
+        ..Link::PLAIN
+    };
+    let right = Link {
+        parent: Some(0),
+        kind: Kind::Prismatic,
+        place: [0.0, 0.0, 0.08],
+        angles: [0.0, 0.0, PI],
+        axis: [0.0, 1.0, 0.0],
+        mass: 0.2,
+        centre: [0.0, 0.02, 0.03],
+        inertia: [0.0003, 0.0, 0.0, 0.0002, 0.0, 0.0001],
+        ..Link::PLAIN
+    };
+    let left = Link {
+        parent: Some(0),
+        kind: Kind::Prismatic,
+        place: [0.0, 0.0, 0.08],
+        axis: [0.0, 1.0, 0.0],
+        damping: 0.5,
+        friction: 0.3,
+        mass: 0.25,
+        centre: [0.01, 0.02, 0.03],
+        inertia: [0.0003, 0.00005, 0.0, 0.0002, 0.0, 0.0001],
+        ..Link::PLAIN
+    };
+    let thumb = Link {
+        parent: Some(0),
+        place: [0.03, 0.0, 0.06],
+        angles: [0.0, 0.2, 0.0],
+        axis: [0.0, 1.0, 0.0],
+        damping: 0.001,
+        friction: 0.002,
+        mass: 0.15,
+        centre: [0.04, 0.0, 0.0],
+        centre_angles: [0.1, 0.2, 0.3],
+        inertia: [0.0001, 0.0, 0.0, 0.0002, 0.0, 0.0003],
+        ..Link::PLAIN
+    };
+    let cover = Link {
+        parent: Some(0),
+        place: [-0.03, 0.0, 0.06],
+        axis: [0.48, 0.6, 0.64],
+        mass: 0.1,
+        centre: [0.03, 0.0, 0.0],
+        inertia: [0.0001, 0.0, 0.0, 0.0001, 0.0, 0.0001],
+        ..Link::PLAIN
+    };
+    let plug = Link {
+        parent: Some(0),
+        kind: Kind::Prismatic,
+        place: [0.0, 0.03, 0.06],
+        axis: [0.0, -2.0, 0.0],
+        mass: 0.03,
+        centre: [0.0, 0.0, 0.02],
+        inertia: [0.00001, 0.0, 0.0, 0.00001, 0.0, 0.00001],
+        ..Link::PLAIN
+    };
+    let nail = Link {
+        parent: Some(3),
+        place: [0.08, 0.0, 0.0],
+        axis: [0.0, 1.0, 0.0],
+        mass: 0.05,
+        centre: [0.02, 0.0, 0.01],
+        inertia: [0.00002, 0.0, 0.0, 0.00003, 0.0, 0.00004],
+        ..Link::PLAIN
+    };
+    vec![palm, right, left, thumb, cover, plug, nail]
+}

@@ -29,6 +29,7 @@ mod models {
     mod columns;
     mod dependent;
     mod energy;
+    mod floating;
     mod gimbals;
     mod lagrange;
     mod linearised;

@@ -18,13 +18,17 @@
 //! }
 //! ```
 //!
-//! - Joints: `fixed`, `revolute`, `continuous` and `prismatic`, about any axis. Links that fixed joints hold together become
-//!   one body. Where an axis is no coordinate axis, the printed frame of the link is turned so that it is one.
+//! - Joints: `fixed`, `revolute`, `continuous`, `prismatic`, `planar` and `floating`, about any axis. Links that fixed
+//!   joints hold together become one body. Where an axis is no coordinate axis, the printed frame of the link is turned so
+//!   that it is one.
+//! - Planar and floating joints are none of the numbered joints: each has parameters of its own for its start, such as
+//!   `table_initial_travel`.
 //! - A joint that mimics another one has the rate of that, by a transformer, and is none of the numbered joints; the angle
 //!   of `finger` is `robot.finger.angle`. It is held where the other one does not move.
 //! - A link without a mass keeps its inertia, as rotors are given; masses without an extent and rods without a width are
 //!   bodies, too.
-//! - Damping becomes that of the joint, dry friction a resistor `friction tanh(rate / slip)` beside it.
+//! - Damping becomes that of the joint, dry friction a resistor `friction tanh(rate / slip)` beside it,
+//!   with `slide_slip` on slides.
 //! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, so that what is zero costs nothing.
 //! - What shows or collides is left out. Every other tag without an equation is named with its line.
 
@@ -67,7 +71,7 @@ pub struct Conversion {
 ///
 /// # Errors
 ///
-/// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of another type.
+/// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of no known type.
 pub fn convert(text: &str, source: &str, model: Option<&str>) -> Result<Conversion, Remark> {
     let (robot, remarks) = robot::read(text)?;
     Ok(Conversion {

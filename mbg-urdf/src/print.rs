@@ -29,10 +29,12 @@ struct Printer<'a> {
     names: Names,
     /// The joints that have numbers: those that are degrees of freedom.
     free: Vec<&'a str>,
-    /// The joints that move, with their names in the language.
-    moving: Vec<(&'a Joint, String)>,
+    /// The joints of one coordinate, with their names in the language.
+    single: Vec<(&'a Joint, String)>,
     parts: Vec<Option<Part>>,
     rigid: Vec<Rigid>,
+    /// How joints of several coordinates start.
+    parameters: String,
     text: String,
 }
 
@@ -43,7 +45,8 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
         robot,
         names: Names::new(),
         free: free.map(|it| it.name.as_str()).collect(),
-        moving: Vec::new(),
+        single: Vec::new(),
+        parameters: String::new(),
         parts: robot.links.iter().map(|_| None).collect(),
         rigid: Vec::new(),
         text: String::new(),
@@ -67,6 +70,7 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
     printer.poses();
     let name = component(&robot.name);
     let mut text = head(robot, &shown(source), &name, &printer.free);
+    text += &printer.parameters;
     text += &printer.text;
     text += "}\n";
     if let Some(model) = model {
@@ -179,6 +183,7 @@ impl<'a> Printer<'a> {
         self.text += &format!("    1 {junction}[6];\n");
         let after = match joint.motion {
             Motion::Slide => self.slide(joint, &name, (&foot, &junction), axis),
+            Motion::Float | Motion::Plane => self.several(joint, &name, (&foot, &junction), axis),
             _ => self.turn(joint, &name, (&foot, &junction), axis),
         };
         if has_friction(joint) {
@@ -189,7 +194,9 @@ impl<'a> Printer<'a> {
                 slip(joint.motion)
             );
         }
-        self.moving.push((joint, name));
+        if joint.motion.is_single() {
+            self.single.push((joint, name));
+        }
         self.rigid.push(after);
         let back = Pose {
             place: [0.0; 3],
@@ -300,6 +307,40 @@ impl<'a> Printer<'a> {
         }
     }
 
+    /// A joint of several coordinates, with parameters of its own for how it starts.
+    fn several(
+        &mut self,
+        joint: &Joint,
+        name: &str,
+        (foot, junction): (&Rigid, &str),
+        axis: usize,
+    ) -> Rigid {
+        let (kind, choice, starts) = match joint.motion {
+            Motion::Float => ("Free", "orientation: quaternion".to_owned(), FLOATING),
+            _ => ("Planar", format!("axis: {axis}"), PLANAR),
+        };
+        self.text += &format!("    {name}: {kind} {{\n        {choice},\n");
+        for (argument, ending, size, meaning) in starts {
+            let parameter = self.names.take(&format!("{name}_{ending}"));
+            self.text += &format!("        {argument}: {parameter},\n");
+            self.parameters += &format!(
+                "    /// {meaning}, of `{}` at the start.\n    param {parameter}{size} = 0.0;\n",
+                joint.name
+            );
+        }
+        self.text += &format!(
+            "        gravity_a: {}, orientation_a: {}, position_a: {}\n    }} ({}, {junction});\n",
+            foot.gravity, foot.orientation, foot.position, foot.junction
+        );
+        Rigid {
+            body: None,
+            junction: junction.to_owned(),
+            gravity: format!("{name}.gravity_b"),
+            orientation: format!("{name}.orientation_b"),
+            position: format!("{name}.position_b"),
+        }
+    }
+
     /// How a joint starts and what drives it. One that mimics another starts as that does, whichever rate is the state.
     fn start(&self, joint: &Joint, effort: &str) -> String {
         let number = |name: &str| self.free.iter().position(|it| *it == name).unwrap_or(0);
@@ -322,13 +363,13 @@ impl<'a> Printer<'a> {
 
     /// The joints whose rates are those of others.
     fn mimics(&mut self) {
-        if self.moving.iter().all(|(joint, _)| joint.is_free()) {
+        if self.single.iter().all(|(joint, _)| joint.is_free()) {
             return;
         }
         self.text += "\n    // Joints that mimic others.\n";
-        for (joint, name) in &self.moving {
+        for (joint, name) in &self.single {
             let Some(mimic) = &joint.mimic else { continue };
-            let mut leaders = self.moving.iter().filter(|(it, _)| it.name == mimic.leader);
+            let mut leaders = self.single.iter().filter(|(it, _)| it.name == mimic.leader);
             let Some((_, leader)) = leaders.next() else {
                 continue;
             };
@@ -448,7 +489,7 @@ impl<'a> Printer<'a> {
             self.text +=
                 &format!("    let {at}[3] = {position};\n    let {axes} = {orientation};\n");
         }
-        let free = || self.moving.iter().filter(|(joint, _)| joint.is_free());
+        let free = || self.single.iter().filter(|(joint, _)| joint.is_free());
         let coordinate = |(joint, name): &(&Joint, String)| match joint.motion {
             Motion::Slide => format!("{name}.travel"),
             _ => format!("{name}.angle"),
@@ -466,6 +507,48 @@ impl<'a> Printer<'a> {
     }
 }
 
+/// How a joint starts: the parameter of the library, the ending of the component's, its size and unit, what it is.
+type Start = (&'static str, &'static str, &'static str, &'static str);
+
+const FLOATING: &[Start] = &[
+    (
+        "initial",
+        "initial_angles",
+        "[3]: rad",
+        "Angles about x, then y, then z",
+    ),
+    (
+        "initial_rate",
+        "initial_turning",
+        "[3]: rad/s",
+        "Angular velocity in axes of its link",
+    ),
+    ("initial_position", "initial_position", "[3]: m", "Position"),
+    (
+        "initial_velocity",
+        "initial_velocity",
+        "[3]: m/s",
+        "Rate of the position",
+    ),
+];
+
+const PLANAR: &[Start] = &[
+    ("initial_angle", "initial_angle", ": rad", "Angle"),
+    (
+        "initial_turning",
+        "initial_turning",
+        ": rad/s",
+        "Rate of the angle",
+    ),
+    ("initial_travel", "initial_travel", "[2]: m", "Travels"),
+    (
+        "initial_sliding",
+        "initial_sliding",
+        "[2]: m/s",
+        "Rates of the travels",
+    ),
+];
+
 /// The parameters of dry friction, of one unit each.
 const SLIPS: &[(Motion, &str, &str, &str)] = &[
     (Motion::Turn, "slip", "rad/s", "hinges"),
@@ -478,7 +561,7 @@ fn slip(motion: Motion) -> &'static str {
 }
 
 fn has_friction(joint: &Joint) -> bool {
-    joint.friction != 0.0 && joint.motion != Motion::Fixed
+    joint.friction != 0.0 && joint.motion.is_single()
 }
 
 /// The argument for it, if there is any.

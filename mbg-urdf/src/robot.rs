@@ -30,6 +30,20 @@ pub(crate) enum Motion {
     Fixed,
     Turn,
     Slide,
+    Float,
+    /// Along two axes, and about the third.
+    Plane,
+}
+
+impl Motion {
+    /// Whether it has one coordinate, which has a number or follows that of another joint.
+    pub(crate) fn is_single(self) -> bool {
+        matches!(self, Self::Turn | Self::Slide)
+    }
+
+    fn is_several(self) -> bool {
+        matches!(self, Self::Float | Self::Plane)
+    }
 }
 
 pub(crate) struct Link {
@@ -76,17 +90,17 @@ pub(crate) struct Joint {
 }
 
 impl Joint {
-    /// Whether it is a degree of freedom of its own.
+    /// Whether its one coordinate is a degree of freedom.
     pub(crate) fn is_free(&self) -> bool {
-        self.motion != Motion::Fixed && self.mimic.is_none()
+        self.motion.is_single() && self.mimic.is_none()
     }
 
     /// Makes it a fixed joint that stays where it is at a coordinate.
     fn fix(&mut self, coordinate: f64) {
         let moved = match self.motion {
-            Motion::Fixed => Pose::NONE,
             Motion::Turn => Pose::turned(&self.axis, coordinate),
             Motion::Slide => Pose::moved(&self.axis, coordinate),
+            _ => Pose::NONE,
         };
         self.origin = self.origin.of(&moved);
         self.motion = Motion::Fixed;
@@ -257,14 +271,15 @@ impl<'a> Reader<'a> {
             let load = loads[joint.child];
             load.mass || load.inertia && joint.motion == Motion::Turn
         };
-        for joint in robot.joints.iter().filter(|it| it.is_free()) {
+        let moving = |it: &&Joint| it.motion != Motion::Fixed && it.mimic.is_none();
+        for joint in robot.joints.iter().filter(moving) {
             let moved = |it: &Joint| it.name == joint.name || it.follows(&joint.name);
             if robot.joints.iter().any(|it| moved(it) && resists(it)) {
                 continue;
             }
             let missing = match joint.motion {
-                Motion::Slide => "a mass",
-                _ => "a mass or an inertia",
+                Motion::Turn => "a mass or an inertia",
+                _ => "a mass",
             };
             let name = &joint.name;
             self.remarks.push(Remark {
@@ -329,13 +344,11 @@ impl<'a> Reader<'a> {
             "fixed" => Motion::Fixed,
             "revolute" | "continuous" => Motion::Turn,
             "prismatic" => Motion::Slide,
-            kind @ ("floating" | "planar") => {
-                let text = format!("joint `{name}` is {kind}, which is not supported yet");
-                return self.fail(node, text);
-            }
+            "floating" => Motion::Float,
+            "planar" => Motion::Plane,
             kind => {
                 let text = format!(
-                    "joint `{name}` is of the type `{kind}`, known are `fixed`, `revolute`, `continuous` and `prismatic`"
+                    "joint `{name}` is of the type `{kind}`, known are `fixed`, `revolute`, `continuous`, `prismatic`, `planar` and `floating`"
                 );
                 return self.fail(node, text);
             }
@@ -346,6 +359,11 @@ impl<'a> Reader<'a> {
         if let Some(dynamics) = child(node, "dynamics") {
             damping = self.number_or(dynamics, "damping", 0.0)?;
             friction = self.number_or(dynamics, "friction", 0.0)?;
+            if motion.is_several() && (damping, friction) != (0.0, 0.0) {
+                let kind = self.attribute(node, "type")?;
+                let text = format!("`dynamics` of a {kind} joint is not converted");
+                self.note(dynamics, text);
+            }
         }
         Ok(Joint {
             motion,
@@ -373,10 +391,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What a fixed joint gives as its axis means nothing, and is often zero.
+    /// What a joint without one gives as its axis means nothing, and is often zero.
     fn axis(&self, node: Node<'a, 'a>, motion: Motion) -> Checked<Vector> {
         let element = match child(node, "axis") {
-            Some(element) if motion != Motion::Fixed => element,
+            Some(element) if !matches!(motion, Motion::Fixed | Motion::Float) => element,
             _ => return Ok([1.0, 0.0, 0.0]),
         };
         let axis = self.vector(element, "xyz")?;
@@ -390,8 +408,9 @@ impl<'a> Reader<'a> {
         let Some(element) = child(node, "mimic") else {
             return Ok(None);
         };
-        if motion == Motion::Fixed {
-            self.note(element, "a fixed joint mimics none");
+        if !motion.is_single() {
+            let kind = self.attribute(node, "type")?;
+            self.note(element, format!("a {kind} joint mimics none"));
             return Ok(None);
         }
         let leader = shown(self.attribute(element, "joint")?);
@@ -483,22 +502,44 @@ fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
     node.children().find(|it| it.has_tag_name(tag))
 }
 
-/// Makes every mimic one of a joint that moves and mimics none. What mimics a joint that does not move is fixed.
+/// Makes every mimic one of a joint that is free. What mimics a joint that does not move is fixed.
 fn resolve_mimics(joints: &mut [Joint]) -> Checked<()> {
+    follow_chains(joints)?;
+    refuse_several(joints)?;
+    fix_held(joints);
+    Ok(())
+}
+
+fn follow_chains(joints: &mut [Joint]) -> Checked<()> {
     for at in 0..joints.len() {
         let mut left = joints.len();
         while let Some(further) = further(joints, &joints[at]) {
             if left == 0 {
-                let name = &joints[at].name;
-                return Err(Remark {
-                    line: joints[at].line,
-                    text: format!("in the end joint `{name}` mimics itself"),
-                });
+                let text = format!("in the end joint `{}` mimics itself", joints[at].name);
+                let line = joints[at].line;
+                return Err(Remark { line, text });
             }
             left -= 1;
             joints[at].mimic = Some(further);
         }
     }
+    Ok(())
+}
+
+fn refuse_several(joints: &[Joint]) -> Checked<()> {
+    for joint in joints {
+        let leader = leader(joints, joint);
+        if let Some(leader) = leader.filter(|it| it.motion.is_several()) {
+            let (name, leader) = (&joint.name, &leader.name);
+            let text = format!("joint `{name}` mimics `{leader}`, which has several coordinates");
+            let line = joint.line;
+            return Err(Remark { line, text });
+        }
+    }
+    Ok(())
+}
+
+fn fix_held(joints: &mut [Joint]) {
     let held = |joint: &Joint| {
         let still = leader(joints, joint)?.motion == Motion::Fixed;
         let mimic = joint.mimic.as_ref()?;
@@ -510,7 +551,6 @@ fn resolve_mimics(joints: &mut [Joint]) -> Checked<()> {
             joint.fix(coordinate);
         }
     }
-    Ok(())
 }
 
 /// The mimic of a joint's leader's leader, where there is one.

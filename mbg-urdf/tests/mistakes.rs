@@ -55,13 +55,8 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ),
     (
         "type=\"revolute\"",
-        "type=\"floating\"",
-        "7: joint `j` is floating, which is not supported yet",
-    ),
-    (
-        "type=\"revolute\"",
         "type=\"hinge\"",
-        "7: joint `j` is of the type `hinge`, known are `fixed`, `revolute`, `continuous` and `prismatic`",
+        "7: joint `j` is of the type `hinge`, known are `fixed`, `revolute`, `continuous`, `prismatic`, `planar` and `floating`",
     ),
     ("type=\"revolute\"", "", "7: `joint` needs `type`"),
     (
@@ -124,6 +119,12 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "<mimic joint=\"k\"/></joint><link name=\"c\"/><joint name=\"k\" type=\"prismatic\">\
          <parent link=\"b\"/><child link=\"c\"/><mimic joint=\"j\"/>",
         "7: in the end joint `j` mimics itself",
+    ),
+    (
+        "<axis xyz=\"0 0 1\"/>",
+        "<mimic joint=\"k\"/></joint><link name=\"c\"/><joint name=\"k\" type=\"floating\">\
+         <parent link=\"b\"/><child link=\"c\"/>",
+        "7: joint `j` mimics `k`, which has several coordinates",
     ),
     (
         "<axis ",

@@ -162,6 +162,7 @@ fn files_are_printed_as_they_are_included() {
             ],
         ),
         ("tests/robots/gripper", None, &[]),
+        ("tests/robots/rover", Some("Rover"), &[]),
         ("tests/robots/winder", Some("Winder"), &[]),
     ];
     for (file, model, remarks) in files {

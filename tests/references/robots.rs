@@ -310,3 +310,59 @@ pub(crate) fn gripper() -> Vec<Link> {
     };
     vec![palm, right, left, thumb, cover, plug, nail]
 }
+
+/// The robot of `rover.urdf`: its floating joint as slides along x, y and z and hinges about x, y and z, its planar one as two
+/// slides and a hinge.
+pub(crate) fn rover() -> Vec<Link> {
+    let step = |parent: Option<usize>, kind: Kind, axis: [f64; 3]| Link {
+        parent,
+        kind,
+        axis,
+        ..Link::PLAIN
+    };
+    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let first = Link {
+        place: [0.0, 0.0, 1.0],
+        angles: [0.2, 0.0, 0.0],
+        ..step(None, Kind::Prismatic, x)
+    };
+    let hull = Link {
+        mass: 5.0,
+        centre: [0.1, 0.02, 0.03],
+        centre_angles: [0.1, 0.2, 0.3],
+        inertia: [0.4, 0.01, 0.0, 0.5, 0.0, 0.6],
+        ..step(Some(4), Kind::Revolute, z)
+    };
+    let arm = Link {
+        place: [0.4, 0.0, 0.1],
+        angles: [0.3, 0.0, 0.0],
+        mass: 1.0,
+        centre: [0.3, 0.0, 0.0],
+        inertia: [0.01, 0.0, 0.0, 0.03, 0.0, 0.03],
+        ..step(Some(5), Kind::Revolute, y)
+    };
+    // The plane's axes are the shortest turn from z to its normal away from those of the joint.
+    let along = Link {
+        place: [-0.2, 0.0, 0.2],
+        angles: [0.0, 0.4, 0.0],
+        ..step(Some(5), Kind::Prismatic, [0.8, 0.0, -0.6])
+    };
+    let plate = Link {
+        mass: 0.7,
+        centre: [0.05, 0.06, 0.01],
+        inertia: [0.01, 0.0, 0.0, 0.02, 0.0, 0.03],
+        ..step(Some(8), Kind::Revolute, [0.6, 0.0, 0.8])
+    };
+    vec![
+        first,
+        step(Some(0), Kind::Prismatic, y),
+        step(Some(1), Kind::Prismatic, z),
+        step(Some(2), Kind::Revolute, x),
+        step(Some(3), Kind::Revolute, y),
+        hull,
+        arm,
+        along,
+        step(Some(7), Kind::Prismatic, y),
+        plate,
+    ]
+}

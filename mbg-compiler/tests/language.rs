@@ -660,6 +660,33 @@ fn laws_of_whole_vectors_are_no_laws_of_components() {
     assert_eq!(mistake(law), "");
 }
 
+/// A law that multiplies is a resistance, whatever word gives it, and so has both causalities.
+#[test]
+fn a_law_that_multiplies_is_a_coefficient() {
+    let model = |resistor: &str| {
+        let text = format!(
+            "model M {{ param k = 2.0; 1 a {{ I m {{ inertia: 1.0 }} }}
+             0 b {{ C c {{ stiffness: 3.0 }} {resistor} }} a -> b; }}"
+        );
+        let model = compiled(&text);
+        let arguments = Arguments {
+            parameters: &[2.0],
+            time: 0.0,
+            state: &[0.5, 0.7],
+            input: &[],
+        };
+        program::evaluate(&model.program, Routines::DERIVATIVE, &arguments)
+    };
+    let expected = model("R r { resistance: k }");
+    assert_eq!(model("R r { effort: k * f }"), expected);
+    assert_eq!(model("R r { flow: e / k }"), expected);
+    let itself = |law| mistake(&format!("1 v {{ I b {{ inertia: 1.0 }} R r {{ {law} }} }}"));
+    insta::assert_snapshot!(itself("effort: 2.0 * e"), @"
+    2:42 the law of `r` gives its effort `e`, and reads it [MBG0218]
+      help: write it as a function of `f`
+    ");
+}
+
 /// A law that jumps has the same slope on both sides, and yet two values.
 #[test]
 fn laws_that_jump_keep_both_sides() {

@@ -8,7 +8,7 @@ use syn::spanned::Spanned;
 
 use super::bonds::is_two_port;
 use super::expressions::{Evaluator, Result, Value};
-use super::model::{Assumption, Condition};
+use super::model::{Assumption, Condition, Place, Quantity};
 use super::quadrature;
 use super::scope::{Lookup, Own};
 use crate::codes;
@@ -17,7 +17,7 @@ use crate::graph::{ElementKind, Law, Rule, Storage, component_name};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Differentiator, Evaluation, Expression, Factor, Matrix, Pool, Product, Substitution, Symbol,
-    antiderivative,
+    antiderivative, linear_part,
 };
 use crate::syntax::ast::{Element, Field};
 
@@ -94,14 +94,10 @@ impl Reader<'_, '_, '_> {
                 Law::Conductance(self.coefficient(value)?),
                 Rule::Either,
             )),
-            (ElementKind::R, "effort") => Ok(plain(
-                Law::EffortLaw(self.by_component(value)?),
-                Rule::ResistanceOnly,
-            )),
-            (ElementKind::R, _) => Ok(plain(
-                Law::FlowLaw(self.by_component(value)?),
-                Rule::ConductanceOnly,
-            )),
+            (ElementKind::R, _) => {
+                let (law, rule) = self.resistor(&word, value)?;
+                Ok(plain(law, rule))
+            }
             (ElementKind::TF | ElementKind::MTF, _) => {
                 let product = self.matrix(value)?;
                 let (rows, columns, invertible) = self.size(&product);
@@ -275,6 +271,47 @@ impl Reader<'_, '_, '_> {
                 _ => true,
             });
         (rows, columns, invertible)
+    }
+
+    /// A law that gives the effort or the flow; one that multiplies is as good as its coefficient, and has both causalities.
+    fn resistor(&mut self, word: &str, value: &Expr) -> Result<(Law, Rule)> {
+        let rows = self.by_component(value)?;
+        let port = Place::Port(self.own.element);
+        let [given, found] = match word {
+            "effort" => [Quantity::Flow, Quantity::Effort],
+            _ => [Quantity::Effort, Quantity::Flow],
+        };
+        let read = |quantity| {
+            let signals = (0..self.own.dimension).map(move |index| (quantity, port, index));
+            signals.map(|signal| self.lookup.signals.symbol(signal))
+        };
+        let reads = symbols(self.pool, &rows);
+        if read(found).flatten().any(|it| reads.contains(&it)) {
+            return self.defined_by_itself(word, value);
+        }
+        let given: Option<Vec<Symbol>> = read(given).collect();
+        let multiple = given.and_then(|given| linear_part(self.pool, &rows, &given));
+        let multiple = multiple.filter(|(_, rest)| rest.iter().all(|it| *it == Expression::ZERO));
+        Ok(match (word, multiple) {
+            ("effort", Some((matrix, _))) => (Law::Resistance(matrix), Rule::Either),
+            ("effort", None) => (Law::EffortLaw(rows), Rule::ResistanceOnly),
+            (_, Some((matrix, _))) => (Law::Conductance(matrix), Rule::Either),
+            (_, None) => (Law::FlowLaw(rows), Rule::ConductanceOnly),
+        })
+    }
+
+    fn defined_by_itself<T>(&self, word: &str, value: &Expr) -> Result<T> {
+        let (own, other) = if word == "effort" {
+            ("e", "f")
+        } else {
+            ("f", "e")
+        };
+        let name = &self.element.name;
+        let message = format!("the law of `{name}` gives its {word} `{own}`, and reads it");
+        let report = error(codes::CYCLE, value.span(), message);
+        Err(Box::new(
+            report.help(format!("write it as a function of `{other}`")),
+        ))
     }
 
     fn storage(&mut self, word: &str, value: &Expr) -> Result<Reading> {

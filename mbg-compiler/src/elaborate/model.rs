@@ -169,6 +169,12 @@ impl Signals {
         })
     }
 
+    /// The symbol of a signal that something reads.
+    #[must_use]
+    pub fn symbol(&self, signal: Signal) -> Option<Symbol> {
+        self.numbers.get(&signal).copied().map(Symbol::Signal)
+    }
+
     /// All of them by number.
     #[must_use]
     pub fn list(&self) -> &[Signal] {

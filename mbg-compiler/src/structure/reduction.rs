@@ -18,7 +18,7 @@ use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, Turn, lin
 use crate::graph::{ElementId, ElementKind, Law, component_name};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
-    Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol, affine,
+    Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol, linear_part,
 };
 
 /// What replaces the lost states.
@@ -120,20 +120,9 @@ impl Reducer<'_> {
         let Law::Storage(storage) = &model.graph.elements[id.0].law else {
             return None;
         };
-        let own =
-            |symbol: &Symbol| matches!(symbol, Symbol::State(s) if storage.states.contains(s));
-        let (mut entries, mut offset) = (Vec::new(), Vec::new());
-        for row in &storage.coenergy {
-            let mut rest = *row;
-            for state in storage.states.clone() {
-                let (slope, without) = affine(self.pool, rest, Symbol::State(state), own)?;
-                entries.push(slope);
-                rest = without;
-            }
-            offset.push(rest);
-        }
-        let size = storage.coenergy.len();
-        let matrix = Matrix::new(size, size, entries).inverse(self.pool)?;
+        let own: Vec<Symbol> = storage.states.clone().map(Symbol::State).collect();
+        let (matrix, offset) = linear_part(self.pool, &storage.coenergy, &own)?;
+        let matrix = matrix.inverse(self.pool)?;
         Some(Inverse { matrix, offset })
     }
 

@@ -1,7 +1,8 @@
-//! Taking apart what is affine in a symbol.
+//! Taking apart what is affine in symbols.
 
 use super::differentiate::Differentiator;
 use super::expression::{Expression, Function, Operation, Symbol};
+use super::matrix::Matrix;
 use super::pool::Pool;
 use super::substitute::{Substitution, symbols, visit};
 
@@ -25,6 +26,26 @@ pub fn affine(
     let mut absent = Substitution::new();
     absent.set(symbol, Expression::ZERO);
     Some((slope, absent.apply(pool, expression)?))
+}
+
+/// `(A, b)` with `rows = A · symbols + b`; none unless A and b are free of the symbols.
+#[must_use]
+pub fn linear_part(
+    pool: &mut Pool,
+    rows: &[Expression],
+    symbols: &[Symbol],
+) -> Option<(Matrix, Vec<Expression>)> {
+    let (mut entries, mut rests) = (Vec::new(), Vec::new());
+    for row in rows {
+        let mut rest = *row;
+        for symbol in symbols {
+            let (slope, without) = affine(pool, rest, *symbol, |it| symbols.contains(it))?;
+            entries.push(slope);
+            rest = without;
+        }
+        rests.push(rest);
+    }
+    Some((Matrix::new(rows.len(), symbols.len(), entries), rests))
 }
 
 /// What decides between the values of functions that jump.

@@ -23,7 +23,7 @@ pub mod substitute;
 mod uses;
 mod walk;
 
-pub use affine::affine;
+pub use affine::{affine, linear_part};
 pub use antiderivative::antiderivative;
 pub use dense::dense;
 pub use differentiate::{Differentiator, jacobian};

@@ -6,6 +6,8 @@ use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: explain FILE")?;
-    print!("{}", mbg_compiler::explain::explain(source::read(&path)?));
+    let tokens = source::read(&path)?;
+    let place = |span| source::place(&path, span);
+    print!("{}", mbg_compiler::explain::explain(tokens, &place));
     Ok(())
 }

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Span, TokenStream};
 
 use crate::compile::{self, Compiled, Routines};
 use crate::diagnostics::Diagnostics;
@@ -16,9 +16,10 @@ use crate::symbolic::{Expression, Method, Pool};
 use crate::syntax::ast::{Component, Item, Model};
 use crate::{drawing, program, syntax};
 
-/// Prints what each stage makes of the tokens between the braces of `mbg! { … }`, and at the end what is wrong.
+/// Prints what each stage makes of the tokens between the braces of `mbg! { … }`, and at the end what is wrong, with its
+/// place as the caller spells it.
 #[must_use]
-pub fn explain(tokens: TokenStream) -> String {
+pub fn explain(tokens: TokenStream, place: &dyn Fn(Span) -> String) -> String {
     let mut diagnostics = Diagnostics::new();
     let source = syntax::parse(tokens, &mut diagnostics);
     let mut text = section("syntax", &syntax::dump(&source));
@@ -35,7 +36,8 @@ pub fn explain(tokens: TokenStream) -> String {
         }
     }
     for diagnostic in diagnostics.list() {
-        text += &section("error", &diagnostic.text());
+        let report = format!("{}: {}", place(diagnostic.span), diagnostic.text());
+        text += &section("error", &report);
     }
     text
 }

@@ -225,6 +225,18 @@ fn time_yields_to_a_value_of_its_name_and_to_nothing_else() {
     output t[3].declared = 3
     output time = Time
     ");
+    for value in [
+        "param t = 1.0;",
+        "input t;",
+        "let t = 1.0;",
+        "integral t = a.f.x;",
+    ] {
+        let told = mistake(value);
+        assert!(
+            told.contains("`t` is time, and no other value is called so [MBG0202]"),
+            "{told}"
+        );
+    }
 }
 
 #[test]
@@ -482,7 +494,8 @@ fn mistakes_in_values_are_told() {
     insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"2:14 expected a junction or an element, found `p` [MBG0203]");
     insta::assert_snapshot!(mistake("param p[2] = 1.0;"), @"
     2:7 `p` is a parameter of a model, which is a number [MBG0204]
-      help: give each component a parameter of its own, and `let p[2] = [first, second];`
+      help: give each component a parameter of its own, `param p_x = 1.0;`, and write `let p[2] = [p_x, p_y];`
+      help: write `let p[2] = [1.0, 1.0];` for a value that never changes
     ");
 }
 
@@ -793,4 +806,129 @@ fn energies_that_are_modulated_are_noted() {
     assert_eq!(notes("k"), "");
     insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
     insta::assert_snapshot!(notes("exp(-q * q)"), @"the energy of `c` is a quadrature of its law, good to rounding where that is smooth");
+}
+
+/// The value of an expression of constants.
+fn value(expression: &str) -> f64 {
+    let text = format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} output y = {expression}; }}");
+    let (model, pool) = elaborated(&text).unwrap_or_else(|reported| panic!("{reported}"));
+    pool.constant_value(model.outputs[0].value).unwrap()
+}
+
+/// What the help on the only mistake of an expression says to write.
+fn instead(expression: &str) -> String {
+    let text = format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} output y = {expression}; }}");
+    let reported = elaborated(&text).err().unwrap_or_default();
+    let [_, help] = reported.lines().collect::<Vec<_>>()[..] else {
+        panic!("one mistake with one help, found {reported}")
+    };
+    help.split('`').nth(1).unwrap().to_owned()
+}
+
+#[test]
+fn words_of_other_languages_are_answered_with_what_has_their_value() {
+    let cases = [
+        ("atan(0.7)", 0.7_f64.atan()),
+        ("arctan(0.7)", 0.7_f64.atan()),
+        ("arctan2(0.7, 0.2)", 0.7_f64.atan2(0.2)),
+        ("arcsin(0.7)", 0.7_f64.asin()),
+        ("arccos(0.7)", 0.7_f64.acos()),
+        ("sinh(0.5 + 0.2)", 0.7_f64.sinh()),
+        ("cosh(0.7)", 0.7_f64.cosh()),
+        ("log(0.7)", 0.7_f64.ln()),
+        ("log10(0.7)", 0.7_f64.log10()),
+        ("log2(0.7)", 0.7_f64.log2()),
+        ("hypot(0.7, 0.2)", 0.7_f64.hypot(0.2)),
+        ("sgn(-0.7)", -1.0),
+        ("(-0.7).signum()", -1.0),
+        ("fabs(-0.7)", 0.7),
+        ("clamp(0.7, -1.0, 0.5)", 0.5),
+        ("clamp(0.7 - 2.0, -1.0, 0.5)", -1.0),
+        ("norm([3.0, 4.0])", 5.0),
+        ("dot([3.0, 4.0], [1.0, 2.0])", 11.0),
+        ("radians(90)", std::f64::consts::FRAC_PI_2),
+        ("pow(0.7, 2)", 0.49),
+        ("powf(0.7, 2.0)", 0.49),
+        ("pow(0.2 + 0.5, -1)", 0.7_f64.recip()),
+        ("powf(0.7, 0.5)", 0.7_f64.sqrt()),
+        ("powf(0.7, 1.5)", 0.7_f64.powf(1.5)),
+        ("powi(0.7, 1.5)", 0.7_f64.powf(1.5)),
+        ("pow(0.7, 1.0 + 0.5)", 0.7_f64.powf(1.5)),
+        ("0.7 ^ 2", 0.49),
+        ("0.7 ** 2", 0.49),
+        ("0.7 ** 1.5", 0.7_f64.powf(1.5)),
+        ("pi", std::f64::consts::PI),
+        ("std::f64::consts::PI", std::f64::consts::PI),
+        ("TAU", std::f64::consts::TAU),
+    ];
+    for (typed, expected) in cases {
+        let found = value(&instead(typed));
+        assert!(
+            (found - expected).abs() < 1e-15 * (1.0 + expected.abs()),
+            "{typed}: {found}"
+        );
+    }
+    assert_eq!(instead("time"), "t");
+    assert_eq!(instead("cross(a.f, 2.0 + a.f)"), "skew(a.f) * (2.0 + a.f)");
+}
+
+#[test]
+fn mistakes_in_powers_and_functions_are_told() {
+    // What stands beside the sign was meant, whatever Rust takes for its operands.
+    insta::assert_snapshot!(mistake("1 v { R r { effort: 3.0 * f ** 2 + f } }"), @"
+    2:29 `**` is not a power; Rust has no sign for it [MBG0212]
+      help: write `powi(f, 2)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: 2.0 + f ^ 2 * 3.0 } }"), @"
+    2:29 `^` is not a power; in Rust it is the exclusive or [MBG0212]
+      help: write `powi(f, 2)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: powi(f, n) } }"), @"
+    2:29 expected an integer exponent between -64 and 64 [MBG0213]
+      help: write `exp(n * ln(f))`, where `f` is positive
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: atan(f) } }"), @"
+    2:21 `atan` is not a function of the language [MBG0203]
+      help: write `atan2(f, 1.0)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: clamp(f) } }"), @"
+    2:21 `clamp` is not a function of the language [MBG0203]
+      help: for `clamp(x, a, b)` write `min(max(x, a), b)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: sin(f, f) } }"), @"2:21 `sin` takes 1 argument, found 2 [MBG0213]");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: n * (f > 0.0) } }"), @"2:28 expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{` [MBG0213]");
+}
+
+#[test]
+fn conditions_of_laws_are_joined() {
+    let holds = |condition: &str| value(&format!("if {condition} {{ 1.0 }} else {{ 2.0 }}")) == 1.0;
+    for a in ["0.5 < 1.0", "0.5 > 1.0", "1 < 2", "1 > 2"] {
+        assert_eq!(holds(&format!("!({a})")), !holds(a));
+        for b in ["2.0 <= 2.0", "2.5 <= 2.0", "2 >= 2", "2 >= 3"] {
+            let (first, second) = (holds(a), holds(b));
+            assert_eq!(holds(&format!("{a} && {b}")), first && second, "{a} && {b}");
+            assert_eq!(holds(&format!("{a} || {b}")), first || second, "{a} || {b}");
+            assert_eq!(
+                holds(&format!("{a} && !({b})")),
+                first && !second,
+                "{a} && !({b})"
+            );
+            let both = format!("0.5 > 1.0 || {a} && {b}");
+            assert_eq!(holds(&both), first && second, "{both}");
+        }
+    }
+    let text = "model M {
+        1 a { I m { inertia: 1.0 } C c { effort: if q > 0.0 && q < 1.0 || q < -3.0 { 2.0 * q } else { q } } }
+        output y = if a.f > 0.0 && a.f < 1.0 { 1.0 } else { 0.0 };
+    }";
+    assert!(compiled(text).notes.is_empty());
+    insta::assert_snapshot!(flat(text), @"
+    a -> m [1]
+    a -> c [1]
+    state m.p = 0
+    state c.q = 0
+    output y = select_less(0, Signal(0), select_less(Signal(0), 1, 1, 0), 0)
+    ");
+    insta::assert_snapshot!(mistake("output y = if a.f.x > 0.0 && a.f.y == 1.0 { 1.0 } else { 0.0 };"), @"2:36 expected a comparison with < <= > or >= [MBG0213]");
+    insta::assert_snapshot!(mistake("output y = if a.f.x { 1.0 } else { 0.0 };"), @"2:15 expected a comparison with < <= > or >= [MBG0213]");
 }

@@ -499,17 +499,12 @@ fn a_chain_moves_as_newton_and_euler_say() {
 fn mistakes_inside_the_library_are_told_at_the_instance() {
     let planar = "model M { gravity [0.0, 0.0, -9.81]; 1 a[3];
         body: PlanarBody { mass: 1.0, inertia: 2.0 } (a); }";
-    insta::assert_snapshot!(elaborated(planar).err().unwrap(), @"
-    2:9 expected a number or a vector of 2, found a vector of 3 [MBG0204]
-      this is inside `PlanarBody`, a component of the library
-    ");
+    insta::assert_snapshot!(elaborated(planar).err().unwrap(), @"1:19 `gravity` does not fit in `PlanarBody`: expected a number or a vector of 2, found a vector of 3 [MBG0204]");
     let axis = "model M { 1 a[6]; 1 b[6];
         hinge: Revolute { axis: 3 } (a, b); }";
     insta::assert_snapshot!(elaborated(axis).err().unwrap(), @"
-    2:9 `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
-      this is inside `Revolute`, a component of the library
-    2:9 expected 0, 1 or 2 for the axis x, y or z [MBG0213]
-      this is inside `Revolute`, a component of the library
+    2:33 `axis` does not fit in `Revolute`: `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
+      `axis`: 0, 1 or 2 for x, y or z
     ");
     let undecided = "model M { param n = 1.0; 1 a[6]; 1 b[6];
         hinge: Revolute { axis: n, blocked: compliant } (a, b); }";
@@ -530,10 +525,7 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     insta::assert_snapshot!(elaborated(shape).err().unwrap(), @"2:26 `by` has dimension 3, found a vector of 2 [MBG0204]");
     let negative = "component Arm(port a[6]) { body: Body { mass: -1.0, inertia: 2.0 } (a); }
         model M { 1 a[6]; arm: Arm (a); }";
-    insta::assert_snapshot!(elaborated(negative).err().unwrap(), @"
-    1:28 the inertia of `body` is -1, not positive [MBG0216]
-      this is inside `Body`, a component of the library
-    ");
+    insta::assert_snapshot!(elaborated(negative).err().unwrap(), @"1:47 `mass` does not fit in `Body`: the inertia of `body` is -1, not positive [MBG0216]");
     let word = "model M { 1 a[6];
         body: Body { mas: 1.0, inertia: 2.0 } (a); output p = body.spin.p.x; }";
     insta::assert_snapshot!(elaborated(word).err().unwrap(), @"

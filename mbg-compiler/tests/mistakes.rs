@@ -446,3 +446,265 @@ fn a_source_that_asks_for_an_inverse_can_act_through_a_storage() {
         assert!(codes.is_empty(), "{codes:?}");
     }
 }
+
+/// Everything that is told of a text, with the places.
+fn told(text: &str) -> String {
+    let diagnostics = diagnose(text);
+    let list = diagnostics.list().iter().map(|it| {
+        let start = it.span.start();
+        format!("{}:{} {}", start.line, start.column + 1, it.text())
+    });
+    list.collect::<Vec<_>>().join("\n")
+}
+
+/// Names of the items that a text becomes.
+fn types(text: &str) -> Vec<String> {
+    let expansion = items(text.parse().unwrap(), &mut Diagnostics::new());
+    let file: syn::File = syn::parse2(expansion).unwrap();
+    let names = file.items.iter().filter_map(|item| match item {
+        syn::Item::Struct(it) => Some(it.ident.to_string()),
+        _ => None,
+    });
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn names_are_taken_once_and_leave_no_types_that_rust_refuses() {
+    let model = |name: &str| format!("model {name} {{ 1 a {{ I m {{ inertia: 1.0 }} }} }}\n");
+    let two = [model("M"), model("M")].concat();
+    insta::assert_snapshot!(told(&two), @"2:7 model `M` is declared twice [MBG0202]");
+    assert_eq!(types(&two), ["M", "MParameters"]);
+    let beside = [model("M"), model("MParameters")].concat();
+    insta::assert_snapshot!(told(&beside), @"2:7 model `MParameters` and the parameters of model `M` have one name [MBG0202]");
+    assert_eq!(types(&beside), ["M", "MParameters"]);
+    let behind = [model("MParameters"), model("M")].concat();
+    insta::assert_snapshot!(told(&behind), @"2:7 the parameters of model `M` and model `MParameters` have one name [MBG0202]");
+    assert_eq!(types(&behind), ["MParameters", "MParametersParameters"]);
+    // A component is no type.
+    let component = ["component M(port a) { }\n", &model("M")].concat();
+    assert_eq!(told(&component), "");
+    assert_eq!(types(&component), ["M", "MParameters"]);
+    for taken in ["T", "f64", "usize", "bool"] {
+        insta::allow_duplicates! {
+            insta::assert_snapshot!(told(&model(taken)).replace(taken, "…"), @"
+            1:7 a model cannot be called `…`: the code made of it calls another type so [MBG0202]
+              help: give it another name
+            ");
+        }
+    }
+    // The type of the parameters has each name once.
+    let twice = beside_a_mass("param mass = 1.0; param mass = 2.0;");
+    assert_eq!(found(&twice), ["MBG0202"]);
+    let expansion = items(twice.parse().unwrap(), &mut Diagnostics::new()).to_string();
+    assert_eq!(expansion.matches("pub mass : T").count(), 1);
+}
+
+#[test]
+fn mistakes_in_parameters_and_inputs_are_told() {
+    let told = |body: &str| told(&beside_a_mass(body));
+    insta::assert_snapshot!(told("param k: N/m;"), @"
+    1:46 parameter `k` has no value [MBG0214]
+      help: write `param k: N/m = 1.0;`
+    ");
+    insta::assert_snapshot!(told("param r[3]: m = [1.0, 2.0, 3.0]; output y: m = r.x;"), @"
+    1:46 `r` is a parameter of a model, which is a number [MBG0204]
+      help: give each component a parameter of its own, `param r_x: m = 1.0;`, and write `let r[3]: m = [r_x, r_y, r_z];`
+      help: write `let r[3]: m = [1.0, 2.0, 3.0];` for a value that never changes
+    ");
+    insta::assert_snapshot!(told("param k: N/m = 2.0 * l; param l = 1.0;"), @"
+    1:55 expected a number as the default of `k`, found `2.0 * l` [MBG0213]
+      help: write `let k: N/m = 2.0 * l;` for what follows from other values
+    ");
+    insta::assert_snapshot!(told("param k = a.f;"), @"
+    1:50 expected a number as the default of `k`, found `a.f` [MBG0213]
+      help: write `let k = a.f;` for what follows from other values
+    ");
+    insta::assert_snapshot!(told("param k = l;"), @"1:50 `l` is not declared [MBG0203]");
+    insta::assert_snapshot!(told("input u: N = 2.0; output y: N = u;"), @"
+    1:51 `u` is an input: its value comes from outside, and it has no default [MBG0101]
+      help: write `input u: N;`
+      help: write `param u: N = 2.0;` for a value that stays
+    ");
+    insta::assert_snapshot!(told("param r[2] = 1.0;"), @"
+    1:46 `r` is a parameter of a model, which is a number [MBG0204]
+      help: give each component a parameter of its own, `param r_x = 1.0;`, and write `let r[2] = [r_x, r_y];`
+      help: write `let r[2] = [1.0, 1.0];` for a value that never changes
+    ");
+    insta::assert_snapshot!(told("input u[2] = 2.0; output y = u.x;"), @"
+    1:51 `u` is an input: its value comes from outside, and it has no default [MBG0101]
+      help: write `input u[2];`
+      help: write `let u[2] = [2.0, 2.0];` for a value that stays
+    ");
+    insta::assert_snapshot!(told("input u[2] = [2.0, 1.0]; output y = u.x;"), @"
+    1:51 `u` is an input: its value comes from outside, and it has no default [MBG0101]
+      help: write `input u[2];`
+      help: write `let u[2] = [2.0, 1.0];` for a value that stays
+    ");
+    for mended in [
+        "param k: N/m = 1.0;",
+        "param r_x: m = 1.0; param r_y: m = 1.0; param r_z: m = 1.0; let r[3]: m = [r_x, r_y, r_z]; output y: m = r.x;",
+        "let r[3]: m = [1.0, 2.0, 3.0]; output y: m = r.x;",
+        "let k: N/m = 2.0 * l; param l: N/m = 1.0;",
+        "input u: N; output y: N = u;",
+        "param u: N = 2.0; output y: N = u;",
+        "let u[2] = [2.0, 1.0]; output y = u.x;",
+    ] {
+        assert_eq!(told(mended), "", "{mended}");
+    }
+}
+
+#[test]
+fn mistakes_at_ports_are_told() {
+    let told = |body: &str| {
+        told(&format!(
+            "component Tie(port left[3], port right) {{ left.x -> right; }}
+             component Stop(port at) {{ Sf s {{ flow: 0.0 }} -> at; }}
+             model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} R air {{ resistance: 1.0 }} }} 0 b {{ C c {{ compliance: 1.0 }} }} {body} }}"
+        ))
+    };
+    insta::assert_snapshot!(told("tie: Tie (air, b);"), @"
+    3:124 `air` is an element, `R`, and a port takes a junction [MBG0208]
+      help: write `a`, its junction
+    ");
+    insta::assert_snapshot!(told("tie: Tie (a);"), @"3:114 `Tie` has the ports `left[3]`, `right`, found 1 junction [MBG0208]");
+    insta::assert_snapshot!(told("stop: Stop (b, b);"), @"3:114 `Stop` has the port `at`, found 2 junctions [MBG0208]");
+    insta::assert_snapshot!(told("tie: Tie (a.x, b);"), @"3:124 port `left` has dimension 3, and `a.x` has 1 [MBG0204]");
+    assert_eq!(told("tie: Tie (a, b);"), "");
+}
+
+#[test]
+fn an_angular_velocity_has_three_components() {
+    let told = |body: &str| {
+        told(&beside_a_mass(&format!(
+            "1 f[6] {{ I n {{ inertia: 1.0 }} }} {body}"
+        )))
+    };
+    insta::assert_snapshot!(told("attitude q = quaternion(a.f);"), @"1:96 an angular velocity has three components, found a number [MBG0204]");
+    insta::assert_snapshot!(told("attitude q = quaternion(f.f);"), @"
+    1:96 an angular velocity has three components, found a vector of 6 [MBG0204]
+      help: write `f.f[0..3]` for that of a frame
+    ");
+    insta::assert_snapshot!(told("attitude q = quaternion(f.f[0..3]), initial: [1.0, 0.0];"), @"1:117 a quaternion has four components, found a vector of 2 [MBG0204]");
+    assert_eq!(told("attitude q = quaternion(f.f[0..3]);"), "");
+}
+
+/// A body on a hinge, with the hinge's arguments and more statements.
+fn hinged(arguments: &str, statements: &str) -> String {
+    format!(
+        "#[derivative] model M {{ 1 floor[6]; Sf still {{ flow: 0.0 }} -> floor; 1 frame[6];
+hinge: Revolute {{ {arguments} }} (floor, frame);
+{statements} }}"
+    )
+}
+
+/// The component is not the user's, and what fails inside has a name of its own.
+#[test]
+fn a_mistake_inside_a_component_is_told_at_the_argument_behind_it() {
+    let body = "body: Body { mass: 1.0, inertia: 1.0, gravity_at: hinge.gravity_b } (frame);";
+    let hinge = |arguments: &str| told(&hinged(arguments, body));
+    let body = |arguments: &str| {
+        told(&hinged(
+            "axis: 1",
+            &format!("body: Body {{ {arguments} }} (frame);"),
+        ))
+    };
+    insta::assert_snapshot!(hinge("axis: [0.0, 0.0, 1.0]"), @"
+    2:25 `axis` does not fit in `Revolute`: expected a whole number that is known while the model is compiled, found `[0.0, 0.0, 1.0]` [MBG0217]
+      `axis`: 0, 1 or 2 for x, y or z
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(hinge("axis: y"), @"
+    2:25 `axis` does not fit in `Revolute`: expected a whole number that is known while the model is compiled, found `y` [MBG0217]
+      `axis`: 0, 1 or 2 for x, y or z
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(hinge("axis: 3"), @"
+    2:25 `axis` does not fit in `Revolute`: `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
+      `axis`: 0, 1 or 2 for x, y or z
+    ");
+    insta::assert_snapshot!(hinge("axis: 1, torque: [0.0, 1.0, 0.0]"), @"
+    2:36 `torque` does not fit in `Revolute`: expected a number, found a vector of 3 [MBG0204]
+      `torque`: Of the motor
+    ");
+    insta::assert_snapshot!(hinge("axis: 1, tilt: [0.0, 1.0, 0.0]"), @"
+    2:34 `tilt` does not fit in `Revolute`: `gravity_b` has dimension 3, found a 3×3 matrix [MBG0204]
+      `tilt`: Takes axes of the joint to axes of a, such as `rot_x(0.5)`
+    ");
+    insta::assert_snapshot!(hinge("axis: 1, initial: hinge.angle"), @"
+    2:37 `initial` does not fit in `Revolute`: expected an initial value of numbers and parameters alone [MBG0213]
+      `initial`: Angle at the start
+    ");
+    insta::assert_snapshot!(body("mass: [1.0, 2.0], inertia: 1.0"), @"3:20 `mass` does not fit in `Body`: expected a number or a 3×3 matrix, found a vector of 2 [MBG0204]");
+    insta::assert_snapshot!(body("mass: 1.0, inertia: [1.0, 2.0, 3.0]"), @"
+    3:34 `inertia` does not fit in `Body`: expected a number or a 3×3 matrix, found a vector of 3 [MBG0204]
+      `inertia`: About the centre of mass: a 3×3 matrix, or a number for a ball
+      help: write `diag(…)` for a matrix with these on its diagonal
+    ");
+    insta::assert_snapshot!(body("mass: 1.0, inertia: -1.0"), @"
+    3:34 `inertia` does not fit in `Body`: the inertia of `spin` is -1, not positive [MBG0216]
+      `inertia`: About the centre of mass: a 3×3 matrix, or a number for a ball
+    ");
+    let planar = "gravity [0.0, -9.81]; weight: Body { mass: 1.0, inertia: 1.0 } (floor);";
+    insta::assert_snapshot!(told(&hinged("axis: 1, gravity_a: [0.0, 0.0, 0.0]", planar)), @"
+    3:9 `gravity` does not fit in `Body`: `gravity_at` has dimension 3, found a vector of 2 [MBG0204]
+      help: write `gravity [0.0, 0.0, -9.81];` in the model
+    ");
+    assert_eq!(
+        hinge("axis: 1, torque: 2.0, tilt: rot_x(0.5), initial: 0.1"),
+        ""
+    );
+}
+
+#[test]
+fn paths_that_lead_nowhere_are_answered_with_what_can_be_read() {
+    let read = |path: &str| {
+        let hub = "1 hub[3] { I m { inertia: 1.0 } C spring { stiffness: 1.0 } C wire { stiffness: 2.0 } }";
+        let body = "body: Body { mass: 1.0, inertia: 1.0 } (frame);";
+        told(&hinged(
+            "axis: 1",
+            &format!("{hub} {body}\noutput y = {path};"),
+        ))
+    };
+    insta::assert_snapshot!(read("hub.x.f"), @"
+    4:18 `hub.x.f` is not declared [MBG0203]
+      help: write `hub.f.x`
+    ");
+    insta::assert_snapshot!(read("hub[1].f"), @"
+    4:19 `hub[1].f` is not declared [MBG0203]
+      help: write `hub.f[1]`
+    ");
+    insta::assert_snapshot!(read("hub.spring.q.x"), @"
+    4:25 `hub.spring.q.x` is not declared [MBG0203]
+      help: write `spring.q.x`: an element at a junction has a name of its own
+    ");
+    insta::assert_snapshot!(read("hub.q"), @"
+    4:16 `hub` has no `q`, it has `f` [MBG0203]
+      help: its elements have one: `spring.q`, `wire.q`
+    ");
+    insta::assert_snapshot!(read("hub.p"), @"
+    4:16 `hub` has no `p`, it has `f` [MBG0203]
+      help: its element has one: `m.p`
+    ");
+    insta::assert_snapshot!(read("hinge.theta"), @"
+    4:18 `hinge.theta` is not declared [MBG0203]
+      help: of `hinge` can be read `angle`, `gravity_b`, `orientation_b`, `position_b`, `turn`, `force.e`, `moment.e`, `rate.f` and 2 more
+    ");
+    insta::assert_snapshot!(read("hinge.angel"), @"
+    4:18 `hinge.angel` is not declared [MBG0203]
+      help: did you mean `hinge.angle`?
+    ");
+    for mended in [
+        "hub.f.x",
+        "hub.f[1]",
+        "spring.q.x",
+        "m.p.x",
+        "hinge.angle",
+        "hinge.rate.f",
+    ] {
+        assert_eq!(read(mended), "", "{mended}");
+    }
+}

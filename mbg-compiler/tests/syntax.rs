@@ -185,7 +185,7 @@ fn broken_elements_leave_their_junction_and_their_neighbours() {
 
 #[test]
 fn no_model_is_called_as_a_scalar_of_the_code() {
-    insta::assert_snapshot!(errors("model T { 1 v { I b { inertia: 1.0 } } }").join(""), @"1:7: a model cannot be called `T`: the code made of it calls a scalar so");
+    insta::assert_snapshot!(errors("model T { 1 v { I b { inertia: 1.0 } } }").join(""), @"1:7: a model cannot be called `T`: the code made of it calls another type so");
 }
 
 #[test]

@@ -178,6 +178,35 @@ fn a_unit_that_would_scale_values_is_answered_with_the_text_to_type() {
             "write `rad`, and each value times 0.017453292519943295",
         ),
         (
+            "degrees",
+            "degrees",
+            "write `rad`, and each value times 0.017453292519943295",
+        ),
+        (
+            "hp",
+            "hp",
+            "write `W`, and each value times 745.6998715822702",
+        ),
+        ("kgf", "kgf", "write `N`, and each value times 9.80665"),
+        (
+            "lbf*ft",
+            "lbf",
+            "write `N*m`, and each value times 1.3558179483314003",
+        ),
+        ("lb", "lb", "write `kg`, and each value times 0.45359237"),
+        (
+            "slug",
+            "slug",
+            "write `kg`, and each value times 14.593902937206364",
+        ),
+        (
+            "kt",
+            "kt",
+            "write `m/s`, and each value times 0.5144444444444445",
+        ),
+        ("inch", "inch", "write `m`, and each value times 0.0254"),
+        ("daN", "daN", "write `N`, and each value times 10"),
+        (
             "rpm",
             "rpm",
             "write `rad/s`, and each value times 0.10471975511965977",
@@ -197,21 +226,57 @@ fn a_unit_that_would_scale_values_is_answered_with_the_text_to_type() {
 }
 
 #[test]
-fn an_unknown_unit_is_answered_with_the_nearest() {
-    for (unit, help) in [
-        ("Ohm", "write `ohm`"),
-        ("HZ", "did you mean `Hz`?"),
-        ("kkg", "did you mean `kg`?"),
+fn a_unit_in_another_spelling_is_answered_with_the_text_to_type() {
+    for (unit, place, help) in [
+        ("Ohm", "Ohm", "write `ohm`"),
+        ("N*Ohms", "Ohms", "write `N*ohm`"),
+        ("HZ", "HZ", "write `Hz`"),
+        ("v/m", "v", "write `V/m`"),
+        ("rad/sec", "sec", "write `rad/s`"),
+        ("Kg", "Kg", "write `kg`"),
+        ("KN", "KN", "write `N`, and each value times 1000"),
+        (
+            "degrees/sec",
+            "sec",
+            "write `rad/s`, and each value times 0.017453292519943295",
+        ),
+        // Units side by side.
+        ("Nm", "Nm", "write `N*m`"),
+        ("Nms", "Nms", "write `N*m*s`"),
+        ("Ns", "Ns", "write `N*s`"),
+        ("Vs", "Vs", "write `V*s`"),
+        ("Pas", "Pas", "write `Pa*s`"),
+        ("Nm/rad", "Nm", "write `N*m/rad`"),
+        ("kgm", "kgm", "write `kg*m`"),
+        ("kgm^2", "kgm", "write `kg*m^2`"),
+        ("J/kgK", "kgK", "write `J/kg/K`"),
+        ("W/Km", "Km", "write `W/K/m`"),
+        ("kNm", "kNm", "write `N*m`, and each value times 1000"),
+        ("mNm", "mNm", "write `N*m`, and each value times 0.001"),
+        ("Nmm", "Nmm", "write `N*m`, and each value times 0.001"),
+        // Digits behind them.
+        ("m3/s", "m3", "write `m^3/s`"),
+        ("m/s2", "s2", "write `m/s^2`"),
+        ("kg*m2", "m2", "write `kg*m^2`"),
+        ("1/kgm2", "kgm2", "write `1/kg/m^2`"),
+        ("cm3", "cm3", "write `m^3`, and each value times 1e-6"),
     ] {
-        let (found, text) = told(&mass(&format!("output x: N*{unit} = 1.0;")));
-        assert!(found.starts_with(unit), "{unit}: at `{found}`");
+        let (found, text) = told(&mass(&format!("output x: {unit} = 1.0;")));
+        assert!(found.starts_with(place), "{unit}: at `{found}`");
         assert!(text.contains("MBG0502") && text.ends_with(help), "{text}");
+        let written = help.split('`').nth(1).unwrap();
+        let mended = diagnose(&mass(&format!("output x: {written} = 1.0;")));
+        assert!(mended.is_empty(), "{unit}: {mended:#?}");
     }
-    let (_, text) = told(&mass("param x: furlong = 1.0;"));
-    assert!(
-        text.contains("units are products of powers of kg, m, s, A, K"),
-        "{text}"
-    );
+    // What differs by a letter may be another quantity.
+    for unit in ["furlong", "kkg", "lmn", "mo", "M"] {
+        let (_, text) = told(&mass(&format!("param x: {unit} = 1.0;")));
+        let help = "help: units are products of powers of kg, m, s, A, K";
+        assert!(
+            text.contains(help) && !text.contains("did you mean"),
+            "{text}"
+        );
+    }
 }
 
 #[test]
@@ -261,4 +326,26 @@ fn heat_flow_times_temperature_is_no_power() {
         told_of.starts_with("`temperature` is declared in `K`, and this is"),
         "{told_of}"
     );
+}
+
+#[test]
+fn an_angle_declared_in_another_unit_is_answered_with_its_own() {
+    let text = |unit: &str, value: &str| {
+        format!(
+            "model M {{ param k: N*m/rad = 1.0; param j: kg*m^2 = 1.0; 1 a {{ I m {{ inertia: j }} C s {{ stiffness: k }} }}
+output x: {unit} = {value}; }}"
+        )
+    };
+    let (place, told_of) = told(&text("m", "s.q"));
+    assert!(place.starts_with("s.q"), "{place}");
+    assert!(
+        told_of.ends_with(
+            "
+  help: an angle is declared in `rad`
+  help: a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts"
+        ),
+        "{told_of}"
+    );
+    assert!(diagnose(&text("rad", "s.q")).is_empty());
+    assert!(diagnose(&text("m", "1.0 * s.q")).is_empty());
 }

@@ -4,20 +4,33 @@ use std::error::Error;
 
 use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::inclusion::Inclusion;
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, LexError, Span, TokenStream, TokenTree};
 
 /// What a file says, with what it includes in place. It holds what stands between the braces of `mbg! { … }`, or Rust
 /// source with one such call in it; included files are looked for from the current directory.
 pub(crate) fn read(path: &str) -> Result<TokenStream, Box<dyn Error>> {
-    let tokens: TokenStream = std::fs::read_to_string(path)?.parse()?;
+    let text = std::fs::read_to_string(path)?;
+    let tokens = text.parse::<TokenStream>();
+    let tokens = tokens.map_err(|mistake: LexError| {
+        let place = place(path, mistake.span());
+        format!(
+            "{place}: this is no token of Rust, or a bracket or a quotation mark has no partner"
+        )
+    })?;
     let inner = between_braces(tokens.clone()).unwrap_or(tokens);
     let mut diagnostics = Diagnostics::new();
     let included = |path: &str| std::fs::read_to_string(path);
     let inclusion = Inclusion::of(inner, &included, &mut diagnostics);
     for diagnostic in diagnostics.list() {
-        eprintln!("{}", diagnostic.text());
+        eprintln!("{}: {}", place(path, diagnostic.span), diagnostic.text());
     }
     Ok(inclusion.tokens())
+}
+
+/// `file:line:column`, as editors and terminals follow it.
+pub(crate) fn place(path: &str, span: Span) -> String {
+    let start = span.start();
+    format!("{path}:{}:{}", start.line, start.column + 1)
 }
 
 /// What stands in the first `mbg! { … }` outside other brackets.

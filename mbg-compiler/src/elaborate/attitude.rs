@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use proc_macro2::Span;
+use syn::Expr;
 use syn::spanned::Spanned;
 
 use super::Builder;
@@ -15,6 +16,7 @@ use crate::diagnostics::error;
 use crate::symbolic::field::Image;
 use crate::symbolic::{Expression, Function, Matrix, Symbol};
 use crate::syntax::ast::{self, Orientation};
+use crate::syntax::dump;
 
 /// How far the constants of an initial rotation matrix may be from one.
 const ROTATION: f64 = 1e-6;
@@ -47,7 +49,8 @@ impl Builder<'_> {
         attitude: &ast::Attitude,
         states: Range<usize>,
     ) -> Result<()> {
-        let omega = self.vector(scope, &attitude.angular_velocity, 3, &attitude.name)?;
+        let what = "an angular velocity has three components";
+        let omega = self.components(scope, &attitude.angular_velocity, 3, what)?;
         let span = attitude.angular_velocity.span();
         self.claim(scope, Subject::Turning, &omega, span);
         let own: Vec<Expression> = states
@@ -69,6 +72,30 @@ impl Builder<'_> {
             self.initial_value(state, initial)?;
         }
         Ok(())
+    }
+
+    /// The components of a value of which it is known how many it has.
+    fn components(
+        &mut self,
+        scope: usize,
+        expression: &Expr,
+        count: usize,
+        what: &str,
+    ) -> Result<Vec<Expression>> {
+        let value = self.evaluate(scope, expression)?;
+        let entries = value.entries(self.pool).unwrap_or_default();
+        if entries.len() == count {
+            return Ok(entries);
+        }
+        let message = format!("{what}, found {}", value.shape());
+        let report = error(codes::WRONG_DIMENSION, expression.span(), message);
+        let frame = count == 3 && entries.len() == 6;
+        Err(Box::new(if frame && matches!(expression, Expr::Field(_)) {
+            let text = dump::expression(expression);
+            report.help(format!("write `{text}[0..3]` for that of a frame"))
+        } else {
+            report
+        }))
     }
 
     fn quaternion_rates(&mut self, q: &[Expression], omega: &[Expression]) -> Vec<Expression> {
@@ -115,7 +142,7 @@ impl Builder<'_> {
             none[0] = Expression::ONE;
             return Ok(none);
         };
-        let parts = self.vector(scope, value, 4, &attitude.name)?;
+        let parts = self.components(scope, value, 4, "a quaternion has four components")?;
         let squares: Vec<Expression> = parts
             .iter()
             .map(|part| self.pool.multiply(*part, *part))

@@ -147,6 +147,7 @@ impl<'a> Builder<'a> {
             origin,
         });
         self.ports.push((start..self.states.len(), dimension));
+        self.written.insert(id, (scope, element));
         self.name(scope, &element.name, Entity::Element(id));
         self.pending.push(Pending::Law { scope, element, id });
         id

@@ -1,11 +1,12 @@
 //! What must hold of the finished graph: equal dimensions, one bond per port.
 
 use proc_macro2::Span;
+use syn::Expr;
 
 use super::Builder;
 use crate::codes;
-use crate::diagnostics::error;
-use crate::graph::{ElementId, End, Rule};
+use crate::diagnostics::{Diagnostic, error};
+use crate::graph::{Bond, ElementId, End, Rule};
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
@@ -51,11 +52,25 @@ impl Builder<'_> {
                     .report(report.help("remove it, or lead it through a `TF` or a `GY`"));
             } else if from != to {
                 let message = format!("`{name}` joins dimension {from} to dimension {to}");
-                self.diagnostics
-                    .error(codes::WRONG_DIMENSION, span, message);
+                let report = error(codes::WRONG_DIMENSION, span, message);
+                self.tell_of_two_port(index, report);
             }
             self.graph.bonds[index].dimension = from;
         }
+    }
+
+    /// Reports a mistake at a bond, of which the law of a two-port is the reason if one is there.
+    fn tell_of_two_port(&mut self, bond: usize, report: Diagnostic) {
+        let Bond { from, to, .. } = &self.graph.bonds[bond];
+        let written = [from, to].into_iter().find_map(|end| match end {
+            End::In(id) | End::Out(id) => self.written.get(id).copied(),
+            _ => None,
+        });
+        let Some((scope, element)) = written else {
+            return self.diagnostics.report(report);
+        };
+        let law: Vec<&Expr> = element.values().collect();
+        self.tell_of(scope, report, &law);
     }
 
     fn size(&self, end: &End) -> usize {

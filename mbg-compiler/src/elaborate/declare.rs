@@ -8,9 +8,13 @@ use super::scope::{Entity, GRAVITY};
 use super::{Builder, component_names};
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{Junction, JunctionId};
+use crate::graph::{Junction, JunctionId, component_name};
 use crate::symbolic::Symbol;
 use crate::syntax::ast::{self, Statement};
+use crate::syntax::dump;
+
+/// More components than these get no parameters of their own in a message.
+const MOST_PARTS: usize = 6;
 
 impl<'a> Builder<'a> {
     /// Declares the names of junctions, parameters, inputs, values and loops.
@@ -78,15 +82,9 @@ impl<'a> Builder<'a> {
     }
 
     fn parameter(&mut self, parameter: &'a ast::Parameter) {
-        if parameter.dimension.is_some() {
-            let name = &parameter.name;
-            let message = format!("`{name}` is a parameter of a model, which is a number");
-            let report = error(codes::WRONG_DIMENSION, name.span(), message);
-            self.diagnostics.report(report.help(format!(
-                "give each component a parameter of its own, and `let {name}[2] = [first, second];`"
-            )));
+        if let Some(dimension) = parameter.dimension {
+            return self.vector_parameter(parameter, dimension);
         }
-        let default = self.default_value(parameter);
         let symbol = self.pool.symbol(Symbol::Parameter(self.parameters.len()));
         let value = Entity::Value(Value::Scalar(symbol));
         let number = self.parameters.len();
@@ -99,8 +97,33 @@ impl<'a> Builder<'a> {
                 .unit
                 .as_ref()
                 .map_or_else(String::new, |unit| unit.text.clone()),
-            default,
+            default: 0.0,
         });
+    }
+
+    fn vector_parameter(&mut self, parameter: &ast::Parameter, dimension: usize) {
+        let name = &parameter.name;
+        let unit = parameter.unit_text();
+        let parts =
+            (0..dimension).map(|part| format!("{name}_{}", component_name(part, dimension)));
+        let parts: Vec<String> = parts.take(MOST_PARTS).collect();
+        let message = format!("`{name}` is a parameter of a model, which is a number");
+        let mut report = error(codes::WRONG_DIMENSION, name.span(), message);
+        if dimension <= MOST_PARTS {
+            let all = parts.join(", ");
+            report = report.help(format!(
+                "give each component a parameter of its own, `param {}{unit} = 1.0;`, and write `let {name}[{dimension}]{unit} = [{all}];`",
+                parts[0]
+            ));
+        }
+        let value = parameter.default.as_ref();
+        if let Some(value) = value.and_then(|value| dump::column(value, dimension)) {
+            report = report.help(format!(
+                "write `let {name}[{dimension}]{unit} = {value};` for a value that never changes"
+            ));
+        }
+        self.diagnostics.report(report);
+        self.name(0, name, Entity::Opaque);
     }
 
     fn input(&mut self, scope: usize, input: &ast::Input) {

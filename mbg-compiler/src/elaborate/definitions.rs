@@ -13,7 +13,7 @@ use super::scope::{Entity, GRAVITY};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Expression;
-use crate::syntax::ast::Unit;
+use crate::syntax::ast::{Parameter, Unit};
 
 /// A named value.
 pub(super) struct Definition<'a> {
@@ -29,6 +29,8 @@ pub(super) struct Definition<'a> {
     pub(super) unit: Option<&'a Unit>,
     /// What it stands for.
     pub(super) value: &'a Expr,
+    /// The parameter whose argument or default it is.
+    pub(super) parameter: Option<&'a Parameter>,
     /// How far it is.
     pub(super) progress: Progress,
 }
@@ -71,15 +73,18 @@ impl<'a> Builder<'a> {
             dimension,
             unit,
             value,
+            parameter: None,
             progress: Progress::Unread,
         });
         Entity::Definition(self.definitions.len() - 1)
     }
 
-    /// Tries again and again, each time with one more definition known, until it works or fails for its own reason.
+    /// Tries again and again to read some expressions, each time with one more definition known, until it works or fails
+    /// for its own reason.
     pub(super) fn settle(
         &mut self,
         scope: usize,
+        read: &[&Expr],
         mut attempt: impl FnMut(&mut Self) -> Result<()>,
     ) {
         loop {
@@ -90,7 +95,7 @@ impl<'a> Builder<'a> {
                 Some(_) => return,
                 None => {
                     if let Err(report) = result {
-                        self.tell(scope, *report);
+                        self.tell_of(scope, *report, read);
                     }
                     return;
                 }
@@ -120,7 +125,8 @@ impl<'a> Builder<'a> {
                 (Some(Missing::Broken), _) => break,
                 (None, Ok(value)) => self.definitions[current].progress = Progress::Known(value),
                 (None, Err(report)) => {
-                    self.tell(self.definitions[current].scope, *report);
+                    let Definition { scope, value, .. } = self.definitions[current];
+                    self.tell_of(scope, *report, &[value]);
                     break;
                 }
             }

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
 use syn::{BinOp, Expr, Lit, Member, RangeLimits, UnOp};
 
+use super::elsewhere;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product, Rate};
@@ -77,6 +78,11 @@ pub trait Names {
 
     /// Every plain name.
     fn all(&self) -> Vec<&str>;
+
+    /// What to write for a path without a value, where that can be told.
+    fn advice(&mut self, _pool: &mut Pool, _path: &[Step]) -> Option<String> {
+        None
+    }
 
     /// Whether a law is read for one component of a vector: its own variables stand for that one.
     fn is_by_component(&self) -> bool {
@@ -237,6 +243,7 @@ impl<N: Names> Evaluator<'_, N> {
     fn path(&mut self, expression: &Expr) -> Result<Value> {
         let Some(steps) = self.steps(expression)? else {
             return match expression {
+                Expr::Path(path) => Err(no_plain_name(&path.path, &[])),
                 Expr::Field(field) => {
                     let name = member(field)?;
                     let value = self.evaluate(&field.base)?;
@@ -245,8 +252,15 @@ impl<N: Names> Evaluator<'_, N> {
                 _ => fail(expression.span(), "expected a plain name"),
             };
         };
-        if let Some(value) = self.names.value(self.pool, &steps) {
-            return value;
+        match self.names.value(self.pool, &steps) {
+            Some(Err(report)) if report.code == codes::UNKNOWN_NAME => {
+                return Err(match self.names.advice(self.pool, &steps) {
+                    Some(help) => Box::new(report.help(help)),
+                    None => report,
+                });
+            }
+            Some(value) => return value,
+            None => {}
         }
         if let Some((Step { name, index: None }, front)) = steps.split_last()
             && !front.is_empty()
@@ -268,8 +282,13 @@ impl<N: Names> Evaluator<'_, N> {
             name,
             format!("`{text}` is not declared"),
         );
-        let known = self.names.all();
-        Err(Box::new(report.did_you_mean(&text, &known)))
+        let help = elsewhere::instead(&text, &[]);
+        Err(Box::new(
+            match help.or_else(|| self.names.advice(self.pool, &steps)) {
+                Some(help) => report.help(help),
+                None => report.did_you_mean(&text, &self.names.all()),
+            },
+        ))
     }
 
     /// The steps of a dotted path; none if it does not begin with a name.
@@ -373,13 +392,17 @@ impl<N: Names> Evaluator<'_, N> {
 
     fn binary(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
         let span = binary.op.span();
-        if matches!(binary.op, BinOp::BitXor(_)) {
-            let report = error(
-                codes::POWER_OPERATOR,
-                span,
-                "`^` is not a power; in Rust it is the exclusive or",
-            );
-            return Err(Box::new(report.help("write `powi(x, 2)`")));
+        let no_power = match binary.op {
+            BinOp::BitXor(_) => Some("`^` is not a power; in Rust it is the exclusive or"),
+            _ if elsewhere::is_double_star(binary) => {
+                Some("`**` is not a power; Rust has no sign for it")
+            }
+            _ => None,
+        };
+        if let Some(message) = no_power {
+            let report = error(codes::POWER_OPERATOR, span, message);
+            let help = elsewhere::power_operator(&binary.left, &binary.right);
+            return Err(Box::new(report.help(help)));
         }
         if matches!(binary.op, BinOp::Rem(_)) {
             let whole = Expr::Binary(binary.clone());
@@ -392,7 +415,7 @@ impl<N: Names> Evaluator<'_, N> {
         ) {
             return fail(
                 span,
-                "expected +, -, * or /; comparisons belong into an `if`",
+                "expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{`",
             );
         }
         let left = self.evaluate(&binary.left)?;
@@ -500,28 +523,16 @@ impl<N: Names> Evaluator<'_, N> {
         let Expr::Path(path) = &*call.func else {
             return fail(call.func.span(), "expected the name of a function");
         };
-        let Some(name) = path.path.get_ident() else {
-            return fail(call.func.span(), "expected a plain name");
-        };
         let arguments: Vec<Expr> = call.args.iter().cloned().collect();
+        let Some(name) = path.path.get_ident() else {
+            return Err(no_plain_name(&path.path, &arguments));
+        };
         self.function(name, &arguments)
     }
 
     fn function(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
         let text = name.to_string();
-        let count = |expected: usize| {
-            if arguments.len() == expected {
-                Ok(())
-            } else {
-                fail(
-                    name.span(),
-                    format!(
-                        "`{text}` takes {expected} arguments, found {}",
-                        arguments.len()
-                    ),
-                )
-            }
-        };
+        let count = |expected: usize| check_count(name, expected, arguments.len());
         match text.as_str() {
             "sin" | "cos" => {
                 count(1)?;
@@ -588,16 +599,16 @@ impl<N: Names> Evaluator<'_, N> {
                 name.span(),
                 format!("`{name}` is not a function of the language"),
             );
-            let report = report.did_you_mean(&name.to_string(), &FUNCTIONS);
-            let known = FUNCTIONS.join(", ");
-            return Err(Box::new(report.help(format!("functions are {known}"))));
+            let text = name.to_string();
+            return Err(Box::new(match elsewhere::instead(&text, arguments) {
+                Some(help) => report.help(help),
+                None => {
+                    let known = format!("functions are {}", FUNCTIONS.join(", "));
+                    report.did_you_mean(&text, &FUNCTIONS).help(known)
+                }
+            }));
         };
-        if arguments.len() != function.arity() {
-            return fail(
-                name.span(),
-                format!("`{name}` takes {} arguments", function.arity()),
-            );
-        }
+        check_count(name, function.arity(), arguments.len())?;
         let values: Result<Vec<_>> = arguments
             .iter()
             .map(|argument| self.scalar(argument))
@@ -619,10 +630,12 @@ impl<N: Names> Evaluator<'_, N> {
                     ))),
                 }
             }
-            _ => fail(
-                arguments[1].span(),
-                "expected an integer exponent between -64 and 64",
-            ),
+            _ => {
+                let message = "expected an integer exponent between -64 and 64";
+                let report = error(codes::EXPRESSION, arguments[1].span(), message);
+                let help = elsewhere::power(&arguments[0], &arguments[1]);
+                Err(Box::new(report.help(help)))
+            }
         }
     }
 
@@ -654,38 +667,76 @@ impl<N: Names> Evaluator<'_, N> {
                 "expected an `else`: an `if` has a value on both sides",
             );
         };
+        let test = self.test(&choice.cond)?;
         // What is known chooses while the model is compiled: the other branch need not even exist.
-        match self.names.decide(&choice.cond) {
-            Ok(true) => return self.branch(&choice.then_branch),
-            Ok(false) => return self.evaluate(otherwise),
-            Err(report) if report.code != codes::CONDITION => return Err(report),
-            Err(_) => {}
+        if let Test::Known(holds) = test {
+            return if holds {
+                self.branch(&choice.then_branch)
+            } else {
+                self.evaluate(otherwise)
+            };
         }
-        let Expr::Binary(test) = &*choice.cond else {
-            return fail(
-                choice.cond.span(),
-                "expected a comparison with < <= > or >=",
-            );
-        };
-        let (a, b) = (self.scalar(&test.left)?, self.scalar(&test.right)?);
         let yes = number(
             &self.branch(&choice.then_branch)?,
             choice.then_branch.span(),
         )?;
         let no = self.scalar(otherwise)?;
-        let arguments = match test.op {
-            BinOp::Lt(_) => [a, b, yes, no],
-            BinOp::Gt(_) => [b, a, yes, no],
-            BinOp::Le(_) => [b, a, no, yes],
-            BinOp::Ge(_) => [a, b, no, yes],
-            _ => return fail(test.op.span(), "expected a comparison with < <= > or >="),
-        };
-        if yes == no {
-            return Ok(Value::Scalar(yes));
+        Ok(Value::Scalar(self.select(&test, yes, no)))
+    }
+
+    fn test(&mut self, condition: &Expr) -> Result<Test> {
+        match self.names.decide(condition) {
+            Ok(known) => return Ok(Test::Known(known)),
+            Err(report) if report.code != codes::CONDITION => return Err(report),
+            Err(_) => {}
         }
-        Ok(Value::Scalar(
-            self.pool.call(Function::SelectLess, &arguments),
-        ))
+        match condition {
+            Expr::Paren(inner) => self.test(&inner.expr),
+            Expr::Group(inner) => self.test(&inner.expr),
+            Expr::Unary(unary) if matches!(unary.op, UnOp::Not(_)) => {
+                Ok(Test::Not(Box::new(self.test(&unary.expr)?)))
+            }
+            Expr::Binary(binary) => self.comparison(binary),
+            _ => fail(condition.span(), NO_TEST),
+        }
+    }
+
+    fn comparison(&mut self, binary: &syn::ExprBinary) -> Result<Test> {
+        let join = match binary.op {
+            BinOp::And(_) => Test::Both,
+            BinOp::Or(_) => Test::Either,
+            BinOp::Lt(_) | BinOp::Gt(_) | BinOp::Le(_) | BinOp::Ge(_) => {
+                let (a, b) = (self.scalar(&binary.left)?, self.scalar(&binary.right)?);
+                return Ok(match binary.op {
+                    BinOp::Lt(_) => Test::Less(a, b),
+                    BinOp::Gt(_) => Test::Less(b, a),
+                    BinOp::Le(_) => Test::Not(Box::new(Test::Less(b, a))),
+                    _ => Test::Not(Box::new(Test::Less(a, b))),
+                });
+            }
+            _ => return fail(binary.op.span(), NO_TEST),
+        };
+        let (left, right) = (self.test(&binary.left)?, self.test(&binary.right)?);
+        Ok(join(Box::new(left), Box::new(right)))
+    }
+
+    /// One of two values, by selections inside each other.
+    fn select(&mut self, test: &Test, yes: Expression, no: Expression) -> Expression {
+        match test {
+            _ if yes == no => yes,
+            Test::Known(true) => yes,
+            Test::Known(false) => no,
+            Test::Less(a, b) => self.pool.call(Function::SelectLess, &[*a, *b, yes, no]),
+            Test::Not(test) => self.select(test, no, yes),
+            Test::Both(first, second) => {
+                let yes = self.select(second, yes, no);
+                self.select(first, yes, no)
+            }
+            Test::Either(first, second) => {
+                let no = self.select(second, yes, no);
+                self.select(first, yes, no)
+            }
+        }
     }
 
     fn branch(&mut self, block: &syn::Block) -> Result<Value> {
@@ -694,6 +745,45 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(block.span(), "expected one expression"),
         }
     }
+}
+
+/// A function takes so many arguments.
+fn check_count(name: &Ident, expected: usize, found: usize) -> Result<()> {
+    if expected == found {
+        return Ok(());
+    }
+    let noun = if expected == 1 {
+        "argument"
+    } else {
+        "arguments"
+    };
+    let message = format!("`{name}` takes {expected} {noun}, found {found}");
+    fail(name.span(), message)
+}
+
+/// What a choice between values depends on.
+enum Test {
+    /// It is decided while the model is compiled.
+    Known(bool),
+    /// Whether the first is less than the second.
+    Less(Expression, Expression),
+    Not(Box<Self>),
+    Both(Box<Self>, Box<Self>),
+    Either(Box<Self>, Box<Self>),
+}
+
+const NO_TEST: &str = "expected a comparison with < <= > or >=";
+
+/// A path where a name should stand; of another language's constant or function it says what is written here.
+fn no_plain_name(path: &syn::Path, arguments: &[Expr]) -> Box<Diagnostic> {
+    let report = error(codes::EXPRESSION, path.span(), "expected a plain name");
+    let last = path.segments.last().map(|last| last.ident.to_string());
+    Box::new(
+        match last.and_then(|last| elsewhere::instead(&last, arguments)) {
+            Some(help) => report.help(help),
+            None => report,
+        },
+    )
 }
 
 /// A law that takes the whole vector is read as a law of the vector, whatever this says.

@@ -6,8 +6,9 @@ use proc_macro2::Ident;
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
-use super::expressions::{Evaluator, Result, Value};
+use super::expressions::{Evaluator, Result, Step, Value};
 use super::laws::{Reader, law_words, other_words};
+use super::mentions::mentioned;
 use super::model::{Elaborated, Output, State, StateRate};
 use super::scope::{Entity, Lookup, Own};
 use super::{Builder, Pending, component_names};
@@ -16,18 +17,30 @@ use crate::diagnostics::{error, listing};
 use crate::graph::{ElementId, JunctionId, Law};
 use crate::symbolic::{Expression, Pool, Rate, Symbol};
 use crate::syntax::ast::{self, Orientation, Statement};
+use crate::syntax::dump;
 
 impl<'a> Builder<'a> {
+    /// Reads the defaults of a model's parameters, once it is known what the model declares.
+    pub(super) fn read_defaults(&mut self, statements: &[Statement]) {
+        let chosen = self.scopes[0].constants.chosen(statements);
+        let numbers = chosen.into_iter().filter_map(|statement| match statement {
+            Statement::Parameter(parameter) => Some(parameter),
+            _ => None,
+        });
+        let numbers = numbers.filter(|parameter| parameter.dimension.is_none());
+        for (number, parameter) in numbers.enumerate() {
+            self.parameters[number].default = self.default_value(parameter);
+        }
+    }
+
     /// A model parameter's default, which must be a number.
-    pub(super) fn default_value(&mut self, parameter: &ast::Parameter) -> f64 {
+    fn default_value(&mut self, parameter: &ast::Parameter) -> f64 {
+        let (name, unit) = (&parameter.name, parameter.unit_text());
         let Some(expression) = &parameter.default else {
-            let report = error(
-                codes::MISSING_DEFAULT,
-                parameter.name.span(),
-                format!("parameter `{}` has no value", parameter.name),
-            );
-            self.diagnostics
-                .report(report.help(format!("write `param {} = 1.0;`", parameter.name)));
+            let message = format!("parameter `{name}` has no value");
+            let report = error(codes::MISSING_DEFAULT, name.span(), message);
+            let help = format!("write `param {name}{unit} = 1.0;`");
+            self.diagnostics.report(report.help(help));
             return 0.0;
         };
         let value = self.evaluate(0, expression);
@@ -35,19 +48,32 @@ impl<'a> Builder<'a> {
         self.missing = None;
         match value {
             Ok(Value::Scalar(value)) if self.pool.constant_value(value).is_some() => {
-                self.pool.constant_value(value).unwrap_or(0.0)
+                return self.pool.constant_value(value).unwrap_or(0.0);
             }
-            Ok(_) => {
-                let message = format!("expected a number as the default of `{}`", parameter.name);
-                self.diagnostics
-                    .error(codes::EXPRESSION, parameter.name.span(), message);
-                0.0
-            }
-            Err(report) => {
-                self.diagnostics.report(*report);
-                0.0
+            // What reads a value that exists is no number, whatever else may be wrong with it.
+            Err(report) if !self.reads_what_exists(expression) => self.diagnostics.report(*report),
+            _ => {
+                let text = dump::expression(expression);
+                let message =
+                    format!("expected a number as the default of `{name}`, found `{text}`");
+                let report = error(codes::EXPRESSION, expression.span(), message);
+                let help = format!(
+                    "write `let {name}{unit} = {text};` for what follows from other values"
+                );
+                self.diagnostics.report(report.help(help));
             }
         }
+        0.0
+    }
+
+    /// Whether an expression of the model mentions names, all of them declared.
+    fn reads_what_exists(&self, expression: &syn::Expr) -> bool {
+        let paths = mentioned(expression);
+        let exists = |path: &Vec<Step>| {
+            let name = path[0].name.to_string();
+            name == "t" || self.scopes.find(0, &name).is_some()
+        };
+        !paths.is_empty() && paths.iter().all(exists)
     }
 
     /// Gives integrals and attitudes their states, after those of the storages.
@@ -111,7 +137,7 @@ impl<'a> Builder<'a> {
             if let Pending::Law { scope, element, .. } = pending {
                 self.check_words(scope, element);
             }
-            self.settle(pending.scope(), |builder| {
+            self.settle(pending.scope(), &pending.expressions(), |builder| {
                 builder.resolve_law(pending.clone())
             });
         }

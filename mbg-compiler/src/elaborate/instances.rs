@@ -7,9 +7,9 @@ use super::conditions::no_word;
 use super::frames::LeftOut;
 use super::scope::{Entity, Scope};
 use crate::codes;
-use crate::diagnostics::{error, listing};
-use crate::graph::End;
-use crate::syntax::{ast, library};
+use crate::diagnostics::{Diagnostic, error, listing};
+use crate::graph::{ElementId, End};
+use crate::syntax::{ast, dump, library};
 
 impl<'a> Builder<'a> {
     /// Puts a component in place.
@@ -49,16 +49,7 @@ impl<'a> Builder<'a> {
         component: &'a ast::Component,
     ) {
         if instance.connections.len() != component.ports.len() {
-            let message = format!(
-                "`{}` has {} ports, found {} junctions",
-                component.name,
-                component.ports.len(),
-                instance.connections.len()
-            );
-            self.tell(
-                scope,
-                error(codes::UNCONNECTED, instance.name.span(), message),
-            );
+            self.tell(scope, wrong_count(instance, component));
         }
         for (position, port) in component.ports.iter().enumerate() {
             let given = instance
@@ -70,18 +61,41 @@ impl<'a> Builder<'a> {
                     self.at_frame(inner, component, port, (id, range.clone()));
                     Entity::Junction(id, range)
                 }
-                Some((_, size)) => {
-                    let message = format!(
-                        "port `{}` has dimension {}, found {size}",
-                        port.name, port.dimension
-                    );
-                    let span = instance.connections[position].span;
-                    self.tell(scope, error(codes::WRONG_DIMENSION, span, message));
+                Some((end, size)) => {
+                    let reference = &instance.connections[position];
+                    let report = match end {
+                        End::OnePort(id) => self.no_junction(scope, reference, id),
+                        _ => wrong_size(port, reference, size),
+                    };
+                    self.tell(scope, report);
                     Entity::Opaque
                 }
                 None => Entity::Opaque,
             };
             self.name(inner, &port.name, entity);
+        }
+    }
+
+    /// An element where a junction is taken.
+    fn no_junction(&self, scope: usize, reference: &ast::Reference, id: ElementId) -> Diagnostic {
+        let kind = self.graph.elements[id.0].kind;
+        let text = dump::reference(reference);
+        let message = format!("`{text}` is an element, `{kind:?}`, and a port takes a junction");
+        let report = error(codes::UNCONNECTED, reference.span, message);
+        let mut bonds = self.graph.bonds.iter();
+        let junction = bonds.find_map(|bond| match (&bond.from, &bond.to) {
+            (End::Junction(junction, _), End::OnePort(other))
+            | (End::OnePort(other), End::Junction(junction, _))
+                if *other == id =>
+            {
+                Some(&self.graph.junctions[junction.0].name)
+            }
+            _ => None,
+        });
+        let prefix = &self.scopes[scope].prefix;
+        match junction.and_then(|junction| junction.strip_prefix(prefix.as_str())) {
+            Some(junction) => report.help(format!("write `{junction}`, its junction")),
+            None => report,
         }
     }
 
@@ -132,6 +146,9 @@ impl<'a> Builder<'a> {
                     Entity::Opaque
                 }
             };
+            if let Entity::Definition(id) = value {
+                self.definitions[id].parameter = Some(parameter);
+            }
             self.name(inner, name, value);
         }
     }
@@ -180,4 +197,29 @@ impl<'a> Builder<'a> {
         }
         self.tell(scope, report);
     }
+}
+
+/// More or fewer junctions than ports.
+fn wrong_count(instance: &ast::Instance, component: &ast::Component) -> Diagnostic {
+    let ports = component.ports.iter().map(|port| match port.dimension {
+        1 => port.name.to_string(),
+        dimension => format!("{}[{dimension}]", port.name),
+    });
+    let ports = match component.ports.len() {
+        0 => "no ports".to_owned(),
+        1 => format!("the port {}", listing(ports)),
+        _ => format!("the ports {}", listing(ports)),
+    };
+    let (name, found) = (&component.name, instance.connections.len());
+    let noun = if found == 1 { "junction" } else { "junctions" };
+    let message = format!("`{name}` has {ports}, found {found} {noun}");
+    error(codes::UNCONNECTED, instance.name.span(), message)
+}
+
+/// A junction of another dimension than the port.
+fn wrong_size(port: &ast::Port, reference: &ast::Reference, size: usize) -> Diagnostic {
+    let (name, dimension) = (&port.name, port.dimension);
+    let text = dump::reference(reference);
+    let message = format!("port `{name}` has dimension {dimension}, and `{text}` has {size}");
+    error(codes::WRONG_DIMENSION, reference.span, message)
 }

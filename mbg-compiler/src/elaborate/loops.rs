@@ -14,7 +14,7 @@ impl<'a> Builder<'a> {
         let (start, numbers) = match around.constants.range(repeated) {
             Ok(range) => (range.start, range),
             Err(report) => {
-                self.tell(scope, *report);
+                self.tell_of(scope, *report, &[&repeated.start, &repeated.end]);
                 self.scopes[scope].loops.push((String::new(), Vec::new()));
                 if let Some(label) = &repeated.label {
                     self.name(scope, label, Entity::Opaque);

@@ -4,7 +4,9 @@
 //! resolved, laws evaluated into the pool. Afterwards all dimensions agree and every port has one bond. Errors: `MBG02xx`,
 //! `MBG0601`.
 
+mod advice;
 mod attitude;
+mod blame;
 mod bonds;
 mod check;
 pub mod claims;
@@ -12,12 +14,14 @@ mod conditions;
 mod constants;
 mod declare;
 mod definitions;
+mod elsewhere;
 pub mod expressions;
 mod finish;
 mod frames;
 mod instances;
 mod laws;
 mod loops;
+mod mentions;
 mod model;
 mod orientation;
 mod quadrature;
@@ -64,6 +68,7 @@ pub fn elaborate(
     let mut builder = Builder::new(model, components, pool, diagnostics);
     builder.declare(0, &model.statements);
     builder.declare_integrals();
+    builder.read_defaults(&model.statements);
     builder.resolve_laws();
     builder.check(model.name.span());
     (builder.diagnostics.list().len() == builder.before).then(|| builder.finish(model))
@@ -153,6 +158,28 @@ impl Pending<'_> {
             | Self::Displacement { scope, .. } => *scope,
         }
     }
+
+    /// What is read for it.
+    fn expressions(&self) -> Vec<&Expr> {
+        match self {
+            Self::Law { element, .. } => element.values().collect(),
+            Self::Gyroscopic { .. } => Vec::new(),
+            Self::Integral { integral, .. } => {
+                let initial = integral.initial.as_ref();
+                initial.into_iter().chain([&integral.rate]).collect()
+            }
+            Self::Attitude { attitude, .. } => {
+                let initial = attitude.initial.as_ref();
+                initial
+                    .into_iter()
+                    .chain([&attitude.angular_velocity])
+                    .collect()
+            }
+            Self::Coordinate { value, .. } => vec![value],
+            Self::Output { output, .. } => vec![&output.value],
+            Self::Displacement { closure, .. } => closure.displacement.iter().collect(),
+        }
+    }
 }
 
 /// The graph while it is being built.
@@ -169,6 +196,8 @@ struct Builder<'a> {
     graph: BondGraph,
     /// States and dimension by element.
     ports: Vec<(Range<usize>, usize)>,
+    /// Elements as they are written, with their scopes.
+    written: BTreeMap<ElementId, (usize, &'a ast::Element)>,
     states: Vec<State>,
     attitudes: Vec<Attitude>,
     parameters: Vec<Parameter>,
@@ -217,6 +246,7 @@ impl<'a> Builder<'a> {
                 origins: Origins::default(),
             },
             ports: Vec::new(),
+            written: BTreeMap::new(),
             states: Vec::new(),
             attitudes: Vec::new(),
             parameters: Vec::new(),
@@ -274,6 +304,11 @@ impl<'a> Builder<'a> {
                 scope,
                 report.help("`gravity [0.0, 0.0, -9.81];` gives it its value"),
             );
+        }
+        if name == "t" && entity.is_value() {
+            let message = "`t` is time, and no other value is called so";
+            let report = error(codes::DUPLICATE_NAME, name.span(), message);
+            self.tell(scope, report.help("give it a longer name"));
         }
         if self.scopes[scope]
             .names

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use syn::Expr;
+
 use super::Builder;
 use super::expressions::{Result, Step, component_index};
 use super::scope::Entity;
@@ -15,7 +17,10 @@ impl Builder<'_> {
     /// What a reference stands for, and its dimension; none if that is broken, which is told.
     pub(super) fn resolve(&mut self, scope: usize, reference: &Reference) -> Option<(End, usize)> {
         self.end_of(scope, reference).unwrap_or_else(|report| {
-            self.tell(scope, *report);
+            let selections = reference.path.iter().filter_map(|it| it.selection.as_ref());
+            let numbers = selections.flat_map(|it| [Some(&it.start), it.end.as_ref()]);
+            let numbers: Vec<&Expr> = numbers.flatten().collect();
+            self.tell_of(scope, *report, &numbers);
             None
         })
     }

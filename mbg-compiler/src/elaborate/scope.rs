@@ -47,6 +47,20 @@ pub(super) enum Entity {
     Opaque,
 }
 
+impl Entity {
+    /// Whether it has a value.
+    pub(super) fn is_value(&self) -> bool {
+        matches!(
+            self,
+            Self::Value(_)
+                | Self::Definition(_)
+                | Self::Input(_)
+                | Self::States(_)
+                | Self::Rotation(_)
+        )
+    }
+}
+
 /// The names of a model, of one component in use, or of one iteration of a loop.
 #[derive(Debug, Default)]
 pub(super) struct Scope {
@@ -259,6 +273,10 @@ impl Names for Lookup<'_, '_> {
         self.scopes.visible(self.scope)
     }
 
+    fn advice(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
+        self.advice_on(pool, path)
+    }
+
     fn is_by_component(&self) -> bool {
         let own = self.own.as_ref();
         own.is_some_and(|own| own.component.is_some() && own.dimension > 1)
@@ -327,16 +345,8 @@ impl Lookup<'_, '_> {
 
     /// Whether a name is declared as something with a value.
     fn is_value(&self, name: &str) -> bool {
-        matches!(
-            self.scopes.find(self.scope, name),
-            Some(
-                Entity::Value(_)
-                    | Entity::Definition(_)
-                    | Entity::Input(_)
-                    | Entity::States(_)
-                    | Entity::Rotation(_)
-            )
-        )
+        let entity = self.scopes.find(self.scope, name);
+        entity.is_some_and(Entity::is_value)
     }
 
     fn two_meanings<T>(&self, own: &Own, name: &Ident) -> Result<T> {

@@ -3,6 +3,8 @@
 //! Its types and methods exist, so that the code around the model compiles and the user sees the mistake and nothing
 //! else. None of it ever runs: the error stops the build.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -12,7 +14,8 @@ use crate::syntax::ast::{self, Statement};
 pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
     let (visibility, name) = (&model.visibility, &model.name);
     let parameters = format_ident!("{}Parameters", name);
-    let fields: Vec<_> = model
+    // A name given twice is the mistake that has been told.
+    let fields: BTreeSet<&Ident> = model
         .statements
         .iter()
         .filter_map(|statement| match statement {
@@ -20,6 +23,7 @@ pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
             _ => None,
         })
         .collect();
+    let fields: Vec<&Ident> = fields.into_iter().collect();
     let scalar = fields
         .is_empty()
         .then(|| quote!(#[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>));

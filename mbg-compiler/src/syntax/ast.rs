@@ -111,6 +111,15 @@ pub struct Parameter {
     pub default: Option<Expr>,
 }
 
+impl Parameter {
+    /// `: N/m`, or nothing.
+    #[must_use]
+    pub fn unit_text(&self) -> String {
+        let unit = self.unit.as_ref();
+        unit.map_or_else(String::new, |unit| format!(": {}", unit.text))
+    }
+}
+
 /// `param name: word | word = word;`
 pub struct Choice {
     /// Documentation comments.
@@ -349,6 +358,13 @@ pub struct Element {
     pub dimension: Option<usize>,
     /// `word: value` and bare words, in order.
     pub fields: Vec<Field>,
+}
+
+impl Element {
+    /// What stands after its words.
+    pub fn values(&self) -> impl Iterator<Item = &Expr> {
+        self.fields.iter().filter_map(|field| field.value.as_ref())
+    }
 }
 
 /// The elements of the language.

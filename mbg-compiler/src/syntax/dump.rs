@@ -29,8 +29,28 @@ pub fn dump(source: &Source) -> String {
 /// An expression as a person would type it.
 #[must_use]
 pub fn expression(expression: &Expr) -> String {
+    tokens(expression.to_token_stream())
+}
+
+/// More components than these are not written out in a message.
+const MOST_PARTS: usize = 6;
+
+/// The list of a vector's components, each the same if only one is given; none where it would be long.
+#[must_use]
+pub fn column(value: &Expr, size: usize) -> Option<String> {
+    let text = expression(value);
+    if matches!(value, Expr::Array(_)) {
+        return Some(text);
+    }
+    let parts = vec![text; size.min(MOST_PARTS)];
+    (size <= MOST_PARTS).then(|| format!("[{}]", parts.join(", ")))
+}
+
+/// Tokens as a person would write them.
+#[must_use]
+pub fn tokens(tokens: TokenStream) -> String {
     let mut text = String::new();
-    spell(expression.to_token_stream(), &mut text);
+    spell(tokens, &mut text);
     text
 }
 

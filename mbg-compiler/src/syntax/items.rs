@@ -130,8 +130,11 @@ fn elsewhere(cursor: &Cursor, error: Diagnostic, word: &str) -> Box<Diagnostic> 
     })
 }
 
-/// Type parameters of the generated code.
-const GENERIC: [&str; 3] = ["T", "L", "E"];
+/// Types that the generated code calls by these names: its own parameters, and those of Rust.
+const TAKEN: [&str; 20] = [
+    "T", "L", "E", "f64", "f32", "usize", "isize", "u8", "u16", "u32", "u64", "u128", "i8", "i16",
+    "i32", "i64", "i128", "bool", "char", "str",
+];
 
 fn model(
     cursor: &mut Cursor,
@@ -140,13 +143,13 @@ fn model(
     mut name: Ident,
     sink: &mut Sink<'_>,
 ) -> Model {
-    if GENERIC.iter().any(|taken| name == taken) {
+    if TAKEN.iter().any(|taken| name == taken) {
         let message =
-            format!("a model cannot be called `{name}`: the code made of it calls a scalar so");
+            format!("a model cannot be called `{name}`: the code made of it calls another type so");
         let report = error(codes::DUPLICATE_NAME, name.span(), message);
-        sink.report(Box::new(report.help("give it a longer name")));
+        sink.report(Box::new(report.help("give it another name")));
         // What stands in for it must not have that name either.
-        name = Ident::new(&format!("{name}Model"), name.span());
+        name = Ident::new(&format!("Model{name}"), name.span());
     }
     let statements = braces(cursor, &format!("`{{` after `model {name}`"), sink);
     let Attributes {

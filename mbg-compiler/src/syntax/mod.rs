@@ -27,9 +27,9 @@ pub(crate) mod words;
 
 pub use dump::dump;
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 
 use crate::codes;
 use crate::diagnostics::Diagnostics;
@@ -53,22 +53,47 @@ pub const LARGEST_DIMENSION: usize = 1_000_000;
 #[must_use]
 pub fn parse(tokens: TokenStream, diagnostics: &mut Diagnostics) -> ast::Source {
     let mut source = items::source(tokens, &mut recovery::Sink::new(diagnostics));
-    refuse_namesakes(&source, diagnostics);
+    refuse_namesakes(&mut source, diagnostics);
     library::complete(&mut source);
     source
 }
 
-/// Reports components that bear the name of an earlier one.
-fn refuse_namesakes(source: &ast::Source, diagnostics: &mut Diagnostics) {
-    let mut known = BTreeSet::new();
-    for item in &source.items {
-        let ast::Item::Component(component) = item else {
-            continue;
+/// Reports items that bear the name of an earlier one, and leaves out models whose types Rust would refuse for it. A
+/// component is no type: a model may be called as the component that it uses.
+fn refuse_namesakes(source: &mut ast::Source, diagnostics: &mut Diagnostics) {
+    let mut known: BTreeMap<(bool, String), String> = BTreeMap::new();
+    source.items.retain(|item| {
+        let (name, is_type) = match item {
+            ast::Item::Component(component) => (&component.name, false),
+            ast::Item::Model(model) => (&model.name, true),
         };
-        let name = component.name.to_string();
-        if !known.insert(name.clone()) {
-            let message = format!("component `{name}` is declared twice");
-            diagnostics.error(codes::DUPLICATE_NAME, component.name.span(), message);
-        }
+        let own = names_of(name, is_type).into_iter();
+        let own: Vec<_> = own.map(|(name, what)| ((is_type, name), what)).collect();
+        let taken = own
+            .iter()
+            .find_map(|(name, what)| Some((what, known.get(name)?)));
+        let Some((what, other)) = taken else {
+            known.extend(own);
+            return true;
+        };
+        let message = if what == other {
+            format!("{what} is declared twice")
+        } else {
+            format!("{what} and {other} have one name")
+        };
+        diagnostics.error(codes::DUPLICATE_NAME, name.span(), message);
+        !is_type
+    });
+}
+
+/// The names that an item takes, and what bears them: the parameters of a model are a type of their own.
+fn names_of(name: &Ident, is_model: bool) -> Vec<(String, String)> {
+    if !is_model {
+        return vec![(name.to_string(), format!("component `{name}`"))];
     }
+    let parameters = format!("the parameters of model `{name}`");
+    vec![
+        (name.to_string(), format!("model `{name}`")),
+        (format!("{name}Parameters"), parameters),
+    ]
 }

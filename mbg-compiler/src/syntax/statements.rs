@@ -5,18 +5,20 @@ use syn::Expr;
 
 use super::ast::{
     Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let,
-    Orientation, Output, Parameter, Statement,
+    Orientation, Output, Parameter, Statement, Unit,
 };
 use super::attributes::Attributes;
 use super::chains::{chain, instance, reference};
 use super::choices::{choice, choice_follows, conditional};
 use super::cursor::{Cursor, Parsed};
+use super::dump;
 use super::elements::one_ports;
 use super::expressions::{condition, expression};
 use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
 use super::words;
+use crate::codes;
 use crate::diagnostics::Diagnostic;
 use crate::inclusion;
 
@@ -237,6 +239,9 @@ fn input(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Pa
     let name = cursor.name("the name of the input after `input`")?;
     let dimension = cursor.dimension()?;
     let unit = unit(cursor, sink);
+    if cursor.punct(0, '=') {
+        no_default(cursor, &name, dimension, unit.as_ref(), sink)?;
+    }
     let wanted = match (dimension, &unit) {
         (_, Some(_)) => "`;`",
         (Some(_), None) => "`:` or `;`",
@@ -253,6 +258,34 @@ fn input(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Pa
         dimension: dimension.unwrap_or(1),
         unit,
     })
+}
+
+/// Reports a value behind an input, and reads past it.
+fn no_default(
+    cursor: &mut Cursor,
+    name: &Ident,
+    dimension: Option<usize>,
+    unit: Option<&Unit>,
+    sink: &mut Sink<'_>,
+) -> Parsed<()> {
+    let message =
+        format!("`{name}` is an input: its value comes from outside, and it has no default");
+    let report = *cursor.failure(codes::SYNTAX, message);
+    cursor.advance(1);
+    let value = expression(cursor, "a value after `=`")?;
+    let unit = unit.map_or_else(String::new, |unit| format!(": {}", unit.text));
+    let size = dimension.map_or_else(String::new, |size| format!("[{size}]"));
+    let (word, value) = match dimension {
+        None => ("param", Some(dump::expression(&value))),
+        Some(size) => ("let", dump::column(&value, size)),
+    };
+    let mut report = report.help(format!("write `input {name}{size}{unit};`"));
+    if let Some(value) = value {
+        let text = format!("{word} {name}{size}{unit} = {value};");
+        report = report.help(format!("write `{text}` for a value that stays"));
+    }
+    sink.report(Box::new(report));
+    Ok(())
 }
 
 fn output(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Output> {

@@ -13,6 +13,7 @@ mod inference;
 mod names;
 mod ports;
 mod report;
+mod spellings;
 
 use std::collections::BTreeMap;
 

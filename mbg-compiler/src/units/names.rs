@@ -7,6 +7,7 @@
 use proc_macro2::{Ident, Span};
 
 use super::dimension::{Dimension, Ratio};
+use super::spellings;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::print::number;
@@ -41,25 +42,74 @@ const COHERENT: &[(&str, [i8; 7])] = &[
 ];
 
 /// Units outside SI: so many of what to type instead.
-const SCALED: &[(&str, f64, &str)] = &[
-    ("g", 1e-3, "kg"),
-    ("t", 1e3, "kg"),
-    ("min", 60.0, "s"),
-    ("h", 3600.0, "s"),
-    ("d", 86400.0, "s"),
-    ("deg", std::f64::consts::PI / 180.0, "rad"),
-    ("rev", std::f64::consts::TAU, "rad"),
-    ("rpm", std::f64::consts::TAU / 60.0, "rad/s"),
-    ("L", 1e-3, "m^3"),
-    ("l", 1e-3, "m^3"),
-    ("bar", 1e5, "Pa"),
-    ("mbar", 1e2, "Pa"),
-    ("atm", 101_325.0, "Pa"),
-    ("Wh", 3600.0, "J"),
-    ("kWh", 3.6e6, "J"),
-    ("eV", 1.602_176_634e-19, "J"),
-    ("ft", 0.3048, "m"),
+const SCALED: &[(&str, f64, Factors)] = &[
+    ("g", 1e-3, &[("kg", 1)]),
+    ("t", 1e3, &[("kg", 1)]),
+    ("tonne", 1e3, &[("kg", 1)]),
+    ("lb", 0.453_592_37, &[("kg", 1)]),
+    ("lbs", 0.453_592_37, &[("kg", 1)]),
+    ("lbm", 0.453_592_37, &[("kg", 1)]),
+    ("slug", 14.593_902_937_206_364, &[("kg", 1)]),
+    ("min", 60.0, &[("s", 1)]),
+    ("minute", 60.0, &[("s", 1)]),
+    ("minutes", 60.0, &[("s", 1)]),
+    ("h", 3600.0, &[("s", 1)]),
+    ("hr", 3600.0, &[("s", 1)]),
+    ("hour", 3600.0, &[("s", 1)]),
+    ("hours", 3600.0, &[("s", 1)]),
+    ("d", 86400.0, &[("s", 1)]),
+    ("day", 86400.0, &[("s", 1)]),
+    ("days", 86400.0, &[("s", 1)]),
+    ("deg", std::f64::consts::PI / 180.0, &[("rad", 1)]),
+    ("degree", std::f64::consts::PI / 180.0, &[("rad", 1)]),
+    ("degrees", std::f64::consts::PI / 180.0, &[("rad", 1)]),
+    ("rev", std::f64::consts::TAU, &[("rad", 1)]),
+    ("turn", std::f64::consts::TAU, &[("rad", 1)]),
+    ("turns", std::f64::consts::TAU, &[("rad", 1)]),
+    ("rpm", std::f64::consts::TAU / 60.0, TURNING),
+    ("rps", std::f64::consts::TAU, TURNING),
+    ("inch", 0.0254, &[("m", 1)]),
+    ("inches", 0.0254, &[("m", 1)]),
+    ("in", 0.0254, &[("m", 1)]),
+    ("ft", 0.3048, &[("m", 1)]),
+    ("foot", 0.3048, &[("m", 1)]),
+    ("feet", 0.3048, &[("m", 1)]),
+    ("yd", 0.9144, &[("m", 1)]),
+    ("mile", 1609.344, &[("m", 1)]),
+    ("miles", 1609.344, &[("m", 1)]),
+    ("nmi", 1852.0, &[("m", 1)]),
+    ("mph", 0.447_04, SPEED),
+    ("kmh", 1.0 / 3.6, SPEED),
+    ("kph", 1.0 / 3.6, SPEED),
+    ("kt", 1852.0 / 3600.0, SPEED),
+    ("knot", 1852.0 / 3600.0, SPEED),
+    ("knots", 1852.0 / 3600.0, SPEED),
+    ("L", 1e-3, &[("m", 3)]),
+    ("l", 1e-3, &[("m", 3)]),
+    ("litre", 1e-3, &[("m", 3)]),
+    ("liter", 1e-3, &[("m", 3)]),
+    ("mL", 1e-6, &[("m", 3)]),
+    ("ml", 1e-6, &[("m", 3)]),
+    ("kgf", 9.806_65, &[("N", 1)]),
+    ("lbf", 4.448_221_615_260_5, &[("N", 1)]),
+    ("bar", 1e5, &[("Pa", 1)]),
+    ("mbar", 1e2, &[("Pa", 1)]),
+    ("atm", 101_325.0, &[("Pa", 1)]),
+    ("psi", 6_894.757_293_168_36, &[("Pa", 1)]),
+    ("mmHg", 133.322_387_415, &[("Pa", 1)]),
+    ("Wh", 3600.0, &[("J", 1)]),
+    ("kWh", 3.6e6, &[("J", 1)]),
+    ("eV", 1.602_176_634e-19, &[("J", 1)]),
+    ("cal", 4.184, &[("J", 1)]),
+    ("kcal", 4184.0, &[("J", 1)]),
+    ("hp", 745.699_871_582_270_2, &[("W", 1)]),
+    ("PS", 735.498_75, &[("W", 1)]),
+    ("Ah", 3600.0, &[("C", 1)]),
+    ("mAh", 3.6, &[("C", 1)]),
 ];
+
+const TURNING: Factors = &[("rad", 1), ("s", -1)];
+const SPEED: Factors = &[("m", 1), ("s", -1)];
 
 /// Prefixes as powers of ten.
 const PREFIXES: &[(&str, i32)] = &[
@@ -72,6 +122,7 @@ const PREFIXES: &[(&str, i32)] = &[
     ("m", -3),
     ("c", -2),
     ("d", -1),
+    ("da", 1),
     ("h", 2),
     ("k", 3),
     ("M", 6),
@@ -113,68 +164,121 @@ const SPELLINGS: &[&[(&str, i32)]] = &[
 ///
 /// A name that is not of SI, or that would scale the values.
 pub(super) fn dimension(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
-    let mut dimension = Dimension::pure();
-    let (mut tens, mut scale, mut scaling) = (0, 1.0, None);
-    let mut instead: Vec<(String, i32)> = Vec::new();
+    let mut whole = Known::default();
+    let (mut misspelt, mut scaling) = (None, None);
     for (name, exponent) in &unit.factors {
-        let Some(known) = lookup(&name.to_string()) else {
-            return Err(Box::new(unknown(name)));
+        let text = name.to_string();
+        let known = lookup(&text).map(|known| known.to_power(*exponent));
+        let meant = match known {
+            Some(known) => known,
+            None => {
+                misspelt = misspelt.or(Some(name));
+                spellings::meant(&text, *exponent).ok_or_else(|| Box::new(unknown(name)))?
+            }
         };
-        dimension = dimension.times_power(&known.dimension, Ratio::new((*exponent).into(), 1));
-        tens += known.tens * exponent;
-        scale *= known.scale.powi(*exponent);
-        if known.tens != 0 || known.scale != 1.0 {
+        if meant.scales() {
             scaling = scaling.or(Some(name));
         }
-        let factors = known.factors.into_iter();
-        instead.extend(factors.map(|(name, power)| (name.to_owned(), power * exponent)));
+        whole.multiply(meant);
     }
-    match scaling {
-        Some(name) if tens != 0 || scale != 1.0 => {
-            let factor = number(scale * 10f64.powi(tens));
+    match (misspelt, scaling) {
+        (Some(name), _) => Err(Box::new(no_unit(name).help(whole.instead()))),
+        (None, Some(name)) if whole.scales() => {
             let message = format!(
                 "values in `{}` are not in SI: `{name}` scales them",
                 unit.text
             );
-            let help = format!("write `{}`, and each value times {factor}", spell(&instead));
-            Err(Box::new(
-                error(codes::UNIT_SCALE, name.span(), message).help(help),
-            ))
+            let report = error(codes::UNIT_SCALE, name.span(), message);
+            Err(Box::new(report.help(whole.instead())))
         }
-        _ => Ok(dimension),
+        _ => Ok(product(&whole.factors)),
     }
 }
 
-/// What a name stands for: a dimension, and by which power of ten and which factor it scales what to type instead.
-struct Known {
-    dimension: Dimension,
+/// Units with their exponents.
+type Factors = &'static [(&'static str, i32)];
+
+/// What names stand for: coherent units with their exponents, and by which power of ten and which factor they scale them.
+pub(super) struct Known {
     tens: i32,
     scale: f64,
     factors: Vec<(&'static str, i32)>,
 }
 
-fn lookup(name: &str) -> Option<Known> {
-    if let Some((name, exponents)) = COHERENT.iter().find(|(known, _)| *known == name) {
-        return Some(Known {
-            dimension: Dimension::of(*exponents),
+impl Default for Known {
+    fn default() -> Self {
+        Self {
             tens: 0,
             scale: 1.0,
-            factors: vec![(name, 1)],
-        });
+            factors: Vec::new(),
+        }
     }
-    if let Some((_, scale, instead)) = SCALED.iter().find(|(known, _, _)| *known == name) {
-        let factors = match *instead {
-            "m^3" => vec![("m", 3)],
-            "rad/s" => vec![("rad", 1), ("s", -1)],
-            plain => vec![(plain, 1)],
-        };
+}
+
+impl Known {
+    pub(super) fn to_power(&self, exponent: i32) -> Self {
+        let factors = self.factors.iter();
+        Self {
+            tens: self.tens * exponent,
+            scale: self.scale.powi(exponent),
+            factors: factors.map(|(name, own)| (*name, own * exponent)).collect(),
+        }
+    }
+
+    pub(super) fn multiply(&mut self, other: Self) {
+        self.tens += other.tens;
+        self.scale *= other.scale;
+        self.factors.extend(other.factors);
+    }
+
+    /// Whether values would not stay as they are.
+    fn scales(&self) -> bool {
+        self.tens != 0 || self.scale != 1.0
+    }
+
+    /// What to type.
+    fn instead(&self) -> String {
+        let unit = spell(&self.factors);
+        if !self.scales() {
+            return format!("write `{unit}`");
+        }
+        let factor = number(self.scale * 10f64.powi(self.tens));
+        format!("write `{unit}`, and each value times {factor}")
+    }
+}
+
+/// What a name stands for.
+pub(super) fn lookup(name: &str) -> Option<Known> {
+    if let Some(name) = coherent(name) {
         return Some(Known {
-            dimension: product(&factors),
-            tens: 0,
-            scale: *scale,
-            factors,
+            factors: vec![(name, 1)],
+            ..Known::default()
         });
     }
+    if let Some((_, scale, factors)) = SCALED.iter().find(|(known, _, _)| *known == name) {
+        return Some(Known {
+            scale: *scale,
+            factors: factors.to_vec(),
+            ..Known::default()
+        });
+    }
+    prefixed(name)
+}
+
+/// The name of a unit that scales nothing.
+pub(super) fn coherent(name: &str) -> Option<&'static str> {
+    let known = COHERENT.iter().find(|(known, _)| *known == name)?;
+    Some(known.0)
+}
+
+/// Such a unit in other letter case.
+pub(super) fn in_other_case(name: &str) -> Option<&'static str> {
+    let mut names = COHERENT.iter().map(|(known, _)| *known);
+    names.find(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// A unit with a prefix.
+pub(super) fn prefixed(name: &str) -> Option<Known> {
     PREFIXES.iter().find_map(|(prefix, tens)| {
         let rest = name.strip_prefix(prefix)?;
         let (tens, rest) = if rest == "g" {
@@ -182,18 +286,23 @@ fn lookup(name: &str) -> Option<Known> {
         } else {
             (*tens, rest)
         };
-        let prefixed = *COHERENT.iter().find(|(known, _)| *known == rest)?;
+        let unit = coherent(rest)?;
         // A kilogram has its prefix already, and a pure number has none.
-        let plain = name.ends_with(prefixed.0) && prefixed.0 == "kg" || prefixed.0 == "sr";
+        let plain = name.ends_with(unit) && unit == "kg" || unit == "sr";
         (!plain).then(|| Known {
-            dimension: Dimension::of(prefixed.1),
             tens,
-            scale: 1.0,
-            factors: vec![(prefixed.0, 1)],
+            factors: vec![(unit, 1)],
+            ..Known::default()
         })
     })
 }
 
+fn no_unit(name: &Ident) -> Diagnostic {
+    let message = format!("`{name}` is not a unit of SI");
+    error(codes::UNIT_NAME, name.span(), message)
+}
+
+/// A name of which it cannot be told what was meant: one that differs by a letter may be another quantity.
 fn unknown(name: &Ident) -> Diagnostic {
     let text = name.to_string();
     if matches!(text.as_str(), "degC" | "celsius" | "degF") {
@@ -204,21 +313,9 @@ fn unknown(name: &Ident) -> Diagnostic {
             "write `K`, and temperatures above absolute zero: 20 degrees Celsius are 293.15",
         );
     }
-    let report = error(
-        codes::UNIT_NAME,
-        name.span(),
-        format!("`{text}` is not a unit of SI"),
-    );
     let coherent: Vec<&str> = COHERENT.iter().map(|(name, _)| *name).collect();
-    if text == "Ω" || text == "Ohm" || text == "Ohms" {
-        return report.help("write `ohm`");
-    }
-    let report = report.did_you_mean(&text, &coherent);
-    if report.helps.is_empty() {
-        let help = format!("units are products of powers of {}", coherent.join(", "));
-        return report.help(help);
-    }
-    report
+    let help = format!("units are products of powers of {}", coherent.join(", "));
+    no_unit(name).help(help)
 }
 
 fn product(factors: &[(&str, i32)]) -> Dimension {

@@ -11,6 +11,10 @@ use crate::elaborate::{Elaborated, Place, Quantity, Signal};
 use crate::graph::{Junction, JunctionKind, OriginId, component_name};
 use crate::symbolic::{Expression, Operation, Pool, Symbol};
 
+/// How a pure number gets a unit.
+const FACTOR: &str =
+    "a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts";
+
 /// Tells mistakes, each once.
 pub(super) struct Reporter<'a> {
     model: &'a Elaborated,
@@ -133,7 +137,11 @@ impl<'a> Reporter<'a> {
     pub(super) fn declared(&mut self, claim: &Claim, name: &str, unit: &str, found: &Dimension) {
         let text = unit_text(found);
         let message = format!("`{name}` is declared in `{unit}`, and this is {text}");
-        self.report(&claim.place, message, None, found.is_pure());
+        let mut report = error(codes::UNIT_MISMATCH, claim.place.span, message);
+        if found.is_pure() {
+            report = report.help("an angle is declared in `rad`").help(FACTOR);
+        }
+        self.tell(&claim.place, report);
     }
 
     /// A value that its place wants in another unit.
@@ -157,9 +165,7 @@ impl<'a> Reporter<'a> {
             report = report.note(note);
         }
         if pure {
-            report = report.help(
-                "a number with a decimal point carries any unit as a factor: `2.0 * …`; a whole number counts",
-            );
+            report = report.help(FACTOR);
         }
         self.tell(place, report);
     }

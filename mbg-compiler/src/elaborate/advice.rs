@@ -1,0 +1,165 @@
+//! What to write for a path that leads nowhere.
+
+use proc_macro2::Ident;
+
+use super::expressions::{Names, Step, component_index};
+use super::scope::{Entity, Lookup};
+use crate::diagnostics::listing;
+use crate::graph::{ElementId, ElementKind, End, JunctionId, JunctionKind};
+use crate::symbolic::Pool;
+use crate::syntax::words::nearest;
+
+impl Lookup<'_, '_> {
+    /// A help for a path without a value, if there is one.
+    pub(super) fn advice_on(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
+        match self.scopes.follow(self.scope, path) {
+            Ok(Some((Entity::Junction(id, _), count))) => {
+                let id = *id;
+                self.at_junction(pool, path, count, id)
+            }
+            Ok(None) => self.in_instance(path),
+            _ => None,
+        }
+    }
+
+    /// `hub.x.f`, `hub[1].f`, `hub.spring.q` or `hub.q`, of a junction that is found after `count` steps.
+    fn at_junction(
+        &mut self,
+        pool: &mut Pool,
+        path: &[Step],
+        count: usize,
+        junction: JunctionId,
+    ) -> Option<String> {
+        let (front, rest) = path.split_at(count);
+        let (last, before) = front.split_last()?;
+        let plain = Step {
+            name: last.name.clone(),
+            index: None,
+        };
+        let own = |variable: &Step| [before, &[plain.clone(), variable.clone()]].concat();
+        match (rest, &last.index) {
+            ([variable], Some((index, _))) => {
+                let text = self.read(pool, &own(variable))?;
+                Some(format!("write `{text}[{index}]`"))
+            }
+            ([component, variable], None) if component_index(&component.name).is_some() => {
+                let text = self.read(pool, &own(variable))?;
+                Some(format!("write `{text}.{}`", component.name))
+            }
+            ([variable], None) => {
+                let elements = self.elements_with(junction, &variable.name);
+                let plural = if elements.len() > 1 {
+                    "elements have"
+                } else {
+                    "element has"
+                };
+                let texts = elements.iter().map(|it| format!("{it}.{}", variable.name));
+                (!elements.is_empty()).then(|| format!("its {plural} one: {}", listing(texts)))
+            }
+            ([_, ..], None) => {
+                let text = self.read(pool, &[before, rest].concat())?;
+                Some(format!(
+                    "write `{text}`: an element at a junction has a name of its own"
+                ))
+            }
+            _ => None,
+        }
+    }
+
+    /// The text of a path that has a value.
+    fn read(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
+        // A last step may pick a component of what the others read.
+        let (last, front) = path.split_last()?;
+        let picked = component_index(&last.name).map(|_| front);
+        let mut ways = [Some(path), picked].into_iter().flatten();
+        let has_value = ways.any(|way| matches!(self.value(pool, way), Some(Ok(_))));
+        has_value.then(|| text(path))
+    }
+
+    /// Elements at a junction that have a variable of this name, by their paths from here.
+    fn elements_with(&self, junction: JunctionId, variable: &Ident) -> Vec<String> {
+        let bonds = self.graph.bonds.iter();
+        let elements = bonds.filter_map(|bond| match (&bond.from, &bond.to) {
+            (End::Junction(id, _), End::OnePort(element))
+            | (End::OnePort(element), End::Junction(id, _))
+                if *id == junction =>
+            {
+                Some(*element)
+            }
+            _ => None,
+        });
+        let elements = elements.filter(|id| self.variables(*id).iter().any(|it| variable == it));
+        let prefix = self.scopes[self.scope].prefix.as_str();
+        let names = elements.filter_map(|id| self.graph.elements[id.0].name.strip_prefix(prefix));
+        names.map(str::to_owned).collect()
+    }
+
+    fn variables(&self, element: ElementId) -> &'static [&'static str] {
+        use ElementKind::{C, EJS, GY, I, MGY, MTF, R, Se, Sf, TF};
+        match self.graph.elements[element.0].kind {
+            I => &["p", "e", "f"],
+            C => &["q", "e", "f"],
+            R | Se | Sf | EJS => &["e", "f"],
+            TF | MTF | GY | MGY => &[],
+        }
+    }
+
+    /// What can be read of the instance in which the path ends.
+    fn in_instance(&self, path: &[Step]) -> Option<String> {
+        let (inner, count) = (1..path.len()).rev().find_map(|count| {
+            match self.scopes.follow(self.scope, &path[..count]) {
+                Ok(Some((Entity::Instance(inner), found))) if found == count => {
+                    Some((*inner, count))
+                }
+                _ => None,
+            }
+        })?;
+        let (front, name) = (text(&path[..count]), path[count].name.to_string());
+        let known = self.readable(inner);
+        let names: Vec<&str> = known.iter().map(String::as_str).collect();
+        if let Some(near) = nearest(&name, &names) {
+            return Some(format!("did you mean `{front}.{near}`?"));
+        }
+        (!known.is_empty()).then(|| format!("of `{front}` can be read {}", listing(known)))
+    }
+
+    /// What has a value in an instance: named values, variables of junctions, those of elements.
+    fn readable(&self, scope: usize) -> Vec<String> {
+        let within = &self.scopes[scope];
+        let (mut values, mut junctions, mut elements) = (Vec::new(), Vec::new(), Vec::new());
+        for (name, entity) in &within.names {
+            match entity {
+                // A port is a junction of the caller's, who knows it, as are the arguments.
+                Entity::Junction(id, _) => {
+                    let junction = &self.graph.junctions[id.0];
+                    if junction.name == format!("{}{name}", within.prefix) {
+                        junctions.push(match junction.kind {
+                            JunctionKind::One => format!("{name}.f"),
+                            JunctionKind::Zero => format!("{name}.e"),
+                        });
+                    }
+                }
+                Entity::Element(id) => {
+                    let first = self.variables(*id).first();
+                    elements.extend(first.map(|variable| format!("{name}.{variable}")));
+                }
+                Entity::Definition(_) if within.constants.given.contains_key(name) => {}
+                Entity::Value(_)
+                | Entity::Definition(_)
+                | Entity::States(_)
+                | Entity::Rotation(_) => values.push(name.clone()),
+                _ => {}
+            }
+        }
+        [values, junctions, elements].concat()
+    }
+}
+
+/// `links[2].spring.q`.
+fn text(path: &[Step]) -> String {
+    let steps = path.iter().map(|step| match step.index {
+        Some((index, _)) => format!("{}[{index}]", step.name),
+        None => step.name.to_string(),
+    });
+    steps.collect::<Vec<_>>().join(".")
+}

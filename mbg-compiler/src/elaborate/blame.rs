@@ -1,0 +1,159 @@
+//! Mistakes inside components of the library, which the user does not see, told at the value of the user's behind them.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::Span;
+use syn::spanned::Spanned;
+use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue};
+
+use super::Builder;
+use super::definitions::Progress;
+use super::expressions::Value;
+use super::mentions::mentioned;
+use super::scope::Entity;
+use crate::codes;
+use crate::diagnostics::{Code, Diagnostic};
+use crate::symbolic::Rate;
+use crate::syntax::dump;
+
+/// Mistakes that a value of the wrong kind makes.
+const OF_VALUES: [Code; 5] = [
+    codes::WRONG_DIMENSION,
+    codes::EXPRESSION,
+    codes::NOT_FINITE,
+    codes::WHOLE_NUMBER,
+    codes::NO_ROTATION,
+];
+
+impl Builder<'_> {
+    /// Reports a mistake that was made in reading expressions.
+    pub(super) fn tell_of(&mut self, scope: usize, report: Diagnostic, expressions: &[&Expr]) {
+        let inside = self.scopes[scope].library.clone();
+        let inside = inside.filter(|_| OF_VALUES.contains(&report.code));
+        let culprit = inside.and_then(|(component, _)| {
+            let culprit = self.culprit(scope, report.code, expressions)?;
+            Some((culprit, component))
+        });
+        let Some((culprit, component)) = culprit else {
+            return self.tell(scope, report);
+        };
+        // One mistake shows in many places of a component.
+        if matches!(self.definitions[culprit].progress, Progress::Failed) {
+            return;
+        }
+        self.definitions[culprit].progress = Progress::Failed;
+        let report = self.unfit(culprit, &component, report);
+        self.diagnostics.report_once(report, self.before);
+    }
+
+    /// The one value of the user's that can have made a mistake of this code.
+    fn culprit(&mut self, scope: usize, code: Code, expressions: &[&Expr]) -> Option<usize> {
+        let mut behind = BTreeSet::new();
+        for expression in expressions {
+            self.behind(scope, code, expression, &mut behind);
+        }
+        let told = |it: &&usize| matches!(self.definitions[**it].progress, Progress::Failed);
+        if let Some(told) = behind.iter().find(told) {
+            return Some(*told);
+        }
+        let odd: Vec<usize> = behind
+            .iter()
+            .copied()
+            .filter(|it| self.is_odd(*it, code))
+            .collect();
+        let all: Vec<usize> = behind.into_iter().collect();
+        match (&odd[..], &all[..]) {
+            ([only], _) | ([], [only]) => Some(*only),
+            _ => None,
+        }
+    }
+
+    /// Gathers the values of the user's from which an expression in a component follows.
+    fn behind(&self, scope: usize, code: Code, expression: &Expr, found: &mut BTreeSet<usize>) {
+        let mut open = vec![(scope, mentioned(expression))];
+        let mut seen = BTreeSet::new();
+        while let Some((scope, paths)) = open.pop() {
+            for path in &paths {
+                let Ok(Some((Entity::Definition(id), _))) = self.scopes.follow(scope, path) else {
+                    continue;
+                };
+                let definition = &self.definitions[*id];
+                let is_known = matches!(definition.progress, Progress::Known(_));
+                // What has the dimension that it declares has the right shape.
+                let fits =
+                    code == codes::WRONG_DIMENSION && is_known && definition.dimension.is_some();
+                if fits || !seen.insert(*id) {
+                    continue;
+                }
+                if self.scopes[definition.scope].library.is_none() {
+                    found.insert(*id);
+                } else {
+                    open.push((definition.scope, mentioned(definition.value)));
+                }
+            }
+        }
+    }
+
+    /// Whether a value is of the kind that makes such mistakes.
+    fn is_odd(&mut self, id: usize, code: Code) -> bool {
+        let definition = &self.definitions[id];
+        if code == codes::WHOLE_NUMBER {
+            let constants = &self.scopes[definition.scope].constants;
+            return constants.evaluate(definition.value).is_err();
+        }
+        if !self.define(id) {
+            return false;
+        }
+        let Progress::Known(value) = &self.definitions[id].progress else {
+            return false;
+        };
+        if code == codes::WRONG_DIMENSION {
+            return matches!(value, Value::Matrix(_));
+        }
+        let value = value.clone();
+        let entries = value.entries(self.pool).unwrap_or_default();
+        let mut rates = entries.iter().map(|entry| self.pool.rate(*entry));
+        rates.any(|rate| rate == Rate::Varying)
+    }
+
+    /// A mistake inside a component, at the value behind it.
+    fn unfit(&self, culprit: usize, component: &str, inner: Diagnostic) -> Diagnostic {
+        let definition = &self.definitions[culprit];
+        let (name, place) = (definition.name, self.written(culprit));
+        let value = dump::expression(definition.value);
+        // The component calls it by its parameter's name, the user wrote this.
+        let found = format!("found `{name}`");
+        let message = inner.message.replace(&found, &format!("found `{value}`"));
+        let report = Diagnostic {
+            span: place,
+            message: format!("`{name}` does not fit in `{component}`: {message}"),
+            ..inner
+        };
+        match definition.parameter.map(|it| text(&it.documentation)) {
+            Some(text) if !text.is_empty() => report.note(format!("`{name}`: {text}")),
+            _ => report,
+        }
+    }
+
+    /// Where a value is written.
+    fn written(&self, definition: usize) -> Span {
+        self.definitions[definition].value.span()
+    }
+}
+
+/// What documentation comments say.
+fn text(documentation: &[Attribute]) -> String {
+    let lines = documentation.iter().filter_map(|line| match &line.meta {
+        Meta::NameValue(MetaNameValue {
+            value:
+                Expr::Lit(ExprLit {
+                    lit: Lit::Str(text),
+                    ..
+                }),
+            ..
+        }) => Some(text.value().trim().to_owned()),
+        _ => None,
+    });
+    let text = lines.collect::<Vec<_>>().join(" ");
+    text.trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,165 @@
+//! Words of other languages and tools, and what is written here instead.
+
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::{BinOp, Expr, ExprBinary, Lit, UnOp};
+
+use crate::syntax::dump;
+
+/// The number π, as constants of other languages round it.
+const PI: &str = "3.141592653589793";
+
+/// A word, its arguments, and what is written here: in parentheses where another operator could come between.
+const WORDS: &[(&str, &[&str], &str)] = &[
+    ("pi", &[], PI),
+    ("PI", &[], PI),
+    ("π", &[], PI),
+    ("tau", &[], "6.283185307179586"),
+    ("TAU", &[], "6.283185307179586"),
+    ("time", &[], "t"),
+    ("atan", &["x"], "atan2(x, 1.0)"),
+    ("arctan", &["x"], "atan2(x, 1.0)"),
+    ("arctan2", &["y", "x"], "atan2(y, x)"),
+    ("arcsin", &["x"], "asin(x)"),
+    ("arccos", &["x"], "acos(x)"),
+    ("sinh", &["x"], "((exp(x) - exp(-x)) / 2)"),
+    ("cosh", &["x"], "((exp(x) + exp(-x)) / 2)"),
+    ("log", &["x"], "ln(x)"),
+    ("log10", &["x"], "(ln(x) / ln(10.0))"),
+    ("log2", &["x"], "(ln(x) / ln(2.0))"),
+    ("hypot", &["x", "y"], "sqrt(x * x + y * y)"),
+    ("sgn", &["x"], "sign(x)"),
+    ("signum", &["x"], "sign(x)"),
+    ("fabs", &["x"], "abs(x)"),
+    ("clamp", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("cross", &["a", "b"], "skew(a) * b"),
+    ("dot", &["a", "b"], "(transpose(a) * b)"),
+    ("norm", &["a"], "sqrt(transpose(a) * a)"),
+    ("to_radians", &["x"], "(0.017453292519943295 * x)"),
+    ("radians", &["x"], "(0.017453292519943295 * x)"),
+    ("deg2rad", &["x"], "(0.017453292519943295 * x)"),
+];
+
+/// What to type here for a word of another language with these arguments.
+pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
+    if let ("pow" | "powf", [base, exponent]) = (word, arguments) {
+        return Some(power(base, exponent));
+    }
+    let (_, places, text) = WORDS.iter().find(|(known, _, _)| *known == word)?;
+    if places.len() != arguments.len() {
+        let places = places.join(", ");
+        return Some(format!("for `{word}({places})` write `{text}`"));
+    }
+    let places: Vec<(&str, &Expr)> = places.iter().copied().zip(arguments).collect();
+    Some(format!("write `{}`", filled(text, &places)))
+}
+
+/// What to type for a power.
+pub(super) fn power(base: &Expr, exponent: &Expr) -> String {
+    let places = [("x", base), ("n", exponent)];
+    match number(exponent) {
+        Some(0.5) => format!("write `{}`", filled("sqrt(x)", &places)),
+        Some(whole) if whole.fract() == 0.0 => {
+            format!("write `{}`", filled(&format!("powi(x, {whole})"), &places))
+        }
+        _ => {
+            let (text, base) = (filled("exp(n * ln(x))", &places), dump::expression(base));
+            format!("write `{text}`, where `{base}` is positive")
+        }
+    }
+}
+
+/// What to type for a power that is written as an operator. Other operators bind tighter or looser than a power does
+/// elsewhere: only what stands next to the sign was meant.
+pub(super) fn power_operator(left: &Expr, right: &Expr) -> String {
+    power(last(left), first(right))
+}
+
+/// Whether this is `x ** y`: a product with what `y` points to.
+pub(super) fn is_double_star(binary: &ExprBinary) -> bool {
+    matches!(binary.op, BinOp::Mul(_)) && starred(&binary.right).is_some()
+}
+
+/// What stands behind the second star.
+fn starred(right: &Expr) -> Option<&Expr> {
+    match right {
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Deref(_)) => Some(&unary.expr),
+        _ => None,
+    }
+}
+
+/// The operand at the end of an expression.
+fn last(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Binary(binary) => last(&binary.right),
+        Expr::Unary(unary) => last(&unary.expr),
+        other => other,
+    }
+}
+
+/// The operand at the start of an expression, with its sign.
+fn first(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Binary(binary) => first(&binary.left),
+        other => starred(other).map_or(other, first),
+    }
+}
+
+/// An expression without parentheses around it.
+fn bare(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Paren(inner) => bare(&inner.expr),
+        Expr::Group(inner) => bare(&inner.expr),
+        other => other,
+    }
+}
+
+/// The number that an expression is.
+fn number(expression: &Expr) -> Option<f64> {
+    match bare(expression) {
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Int(number) => number.base10_parse().ok(),
+            Lit::Float(number) => number.base10_parse().ok(),
+            _ => None,
+        },
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+            number(&unary.expr).map(|value| -value)
+        }
+        _ => None,
+    }
+}
+
+/// A text with expressions in place of its names.
+fn filled(text: &str, places: &[(&str, &Expr)]) -> String {
+    let Ok(tokens) = text.parse::<TokenStream>() else {
+        return text.to_owned();
+    };
+    dump::tokens(put(tokens, places))
+}
+
+fn put(tokens: TokenStream, places: &[(&str, &Expr)]) -> TokenStream {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let is_end = |place: Option<usize>| {
+        let token = place.and_then(|place| tokens.get(place));
+        token.is_none_or(|token| token.to_string() == ",")
+    };
+    let put_one = |(at, token): (usize, &TokenTree)| match token {
+        TokenTree::Ident(name) => {
+            let Some((_, value)) = places.iter().find(|(place, _)| name == place) else {
+                return token.to_token_stream();
+            };
+            let alone = is_end(at.checked_sub(1)) && is_end(Some(at + 1));
+            let value = bare(value).to_token_stream();
+            if alone || value.clone().into_iter().count() == 1 {
+                return value;
+            }
+            TokenTree::from(Group::new(Delimiter::Parenthesis, value)).into()
+        }
+        TokenTree::Group(group) => {
+            let inner = put(group.stream(), places);
+            TokenTree::from(Group::new(group.delimiter(), inner)).into()
+        }
+        other => other.to_token_stream(),
+    };
+    tokens.iter().enumerate().map(put_one).collect()
+}

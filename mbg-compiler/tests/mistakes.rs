@@ -708,3 +708,24 @@ fn paths_that_lead_nowhere_are_answered_with_what_can_be_read() {
         assert_eq!(read(mended), "", "{mended}");
     }
 }
+
+/// Where no element fixes what a source imposes, the message does not end in an empty list.
+#[test]
+fn a_hinge_that_carries_nothing_is_told_so() {
+    let text = "#[derivative] model M { 1 ground[6] { Sf fixed { flow: 0.0 } } 1 arm[6]; 1 tip[6];
+        hinge: Revolute { axis: 1 } (ground, arm);
+        body: Body { mass: 1.0, inertia: 1.0 } (arm);
+        flap: Revolute { axis: 1, offset: [0.3, 0.0, 0.0] } (arm, tip); }";
+    let reported = diagnose(text);
+    let texts: Vec<String> = reported.list().iter().map(|it| it.text()).collect();
+    insta::assert_snapshot!(texts.join("\n"), @"
+    source `flap.motor` imposes effort that is imposed already [MBG0302]
+      the junction structure alone fixes it
+      help: give what it moves an inertia, such as a body on the frame that a joint carries
+    ");
+    let with_body = text.replace(
+        "(arm, tip);",
+        "(arm, tip); blade: Body { mass: 1.0, inertia: 1.0 } (tip);",
+    );
+    assert!(!diagnose(&with_body).any(), "the help works");
+}

@@ -317,8 +317,16 @@ impl<'a> Selector<'a> {
             element.name
         );
         let span = graph.origins.span(element.origin);
-        let note = format!("it is fixed by {}", self.names(id, causes));
-        diagnostics.report(error(codes::SOURCES_CONFLICT, span, message).note(note));
+        let report = error(codes::SOURCES_CONFLICT, span, message);
+        let names = self.names(id, causes);
+        if !names.is_empty() {
+            return diagnostics.report(report.note(format!("it is fixed by {names}")));
+        }
+        let report = report.note("the junction structure alone fixes it");
+        diagnostics.report(report.help(match element.kind {
+            ElementKind::Se => "give what it moves an inertia, such as a body on the frame that a joint carries",
+            _ => "where joints form a loop, close it by a `Cut`, or by `close a -> b by multipliers;`",
+        }));
     }
 
     fn report_storage(
@@ -336,11 +344,14 @@ impl<'a> Selector<'a> {
             format!("{count} components")
         };
         let follow = if count == 1 { "follows" } else { "follow" };
+        let names = match self.names(id, causes) {
+            none if none.is_empty() => "the junction structure alone".to_owned(),
+            names => names,
+        };
         let message = format!(
-            "storage `{}` depends on others: {components} of its {} {follow} from {}",
+            "storage `{}` depends on others: {components} of its {} {follow} from {names}",
             element.name,
             imposed(element.kind),
-            self.names(id, causes),
         );
         let report = error(
             codes::ORDER_LOST,

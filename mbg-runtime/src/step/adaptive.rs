@@ -11,7 +11,7 @@ use super::method::{Estimating, Span, Start, Stepper, along};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
-use super::{Cause, Stopped, check_result, seen};
+use super::{Cause, Stopped, check_result, less, seen};
 use crate::scalar::power;
 use crate::{Input, Real, System};
 
@@ -71,7 +71,7 @@ pub struct Adaptive<'a, Method> {
     pub nominal: &'a [f64],
     /// The starting step; chosen from the problem when there is none.
     pub first: Option<f64>,
-    /// No step is longer.
+    /// No step is longer, but for the rounding of time.
     pub longest: f64,
     /// No more steps than these, rejected ones included.
     pub most: u64,
@@ -137,6 +137,8 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             Some(first) => first,
             None => self.starting_step(problem, (start, end), (&x, &slope), &tolerance),
         };
+        // No shorter than time resolves; it grows from there.
+        let first = first.max(T::EPSILON * start.magnitude());
         problem.probes.enter(seen(start), first);
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
         let smallest =
@@ -149,6 +151,9 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 return Err(Stopped::new(t, Cause::TooManySteps));
             }
             let (span, last) = next_span(t, end, control.length.min(self.longest));
+            if !less(t, span.end) {
+                return Err(Stopped::new(t, Cause::StepTooSmall));
+            }
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
                 control.shorten(0.5 * seen(span.length));
@@ -256,11 +261,13 @@ impl<M: Estimating> Adaptive<'_, M> {
 }
 
 /// A step of this length, or up to the end where that is hardly farther; and whether it is the last.
+///
+/// It is as long as its times are apart, or the rounding of all times would add up to a state of another time.
 fn next_span<T: Real>(start: T, end: T, length: f64) -> (Span<T>, bool) {
-    let rest = end - start;
-    let last = 1.01 * length >= seen(rest);
-    let length = if last { rest } else { T::from_f64(length) };
-    let end = if last { end } else { start + length };
+    let ahead = start + T::from_f64(length);
+    let last = 1.01 * length >= seen(end - start) || !less(ahead, end);
+    let end = if last { end } else { ahead };
+    let length = end - start;
     (Span { start, end, length }, last)
 }
 

@@ -101,7 +101,7 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
 struct Factors<T, const N: usize, const PAIRS: usize> {
     /// None where there are no factors of the present Jacobian.
     length: Option<T>,
-    /// The real `λ/h` with its factors.
+    /// The real `λ/h` of the present step, with factors at a length that is nearly its own.
     real: (T, Shifted<T, N>),
     /// One of each pair of others.
     pairs: [(Complex<T>, Shifted<Complex<T>, N>); PAIRS],
@@ -114,6 +114,24 @@ impl<T: Real, const N: usize, const PAIRS: usize> Factors<T, N, PAIRS> {
             real: (T::from_f64(0.0), Shifted::empty()),
             pairs: core::array::from_fn(|_| (Complex::zero(), Shifted::empty())),
         }
+    }
+
+    /// Sets `λ/h` of a step of this length.
+    fn shift<const S: usize>(&mut self, length: T, tableau: &Tableau<S, PAIRS>) {
+        let inverse = T::from_f64(1.0) / length;
+        let by = |number: f64| inverse * T::from_f64(number);
+        self.real.0 = by(tableau.real);
+        for ((shift, _), pair) in self.pairs.iter_mut().zip(&tableau.pairs) {
+            let [real, imaginary] = pair.map(by);
+            *shift = Complex { real, imaginary };
+        }
+    }
+
+    /// Whether factors serve a step of this length: theirs may differ by the rounding of time, since sweeps then converge as
+    /// fast all the same.
+    fn serve(&self, length: T) -> bool {
+        self.length
+            .is_some_and(|own| (own - length).magnitude() <= T::SINGULAR * length.magnitude())
     }
 }
 
@@ -227,22 +245,17 @@ where
             self.jacobian = problem.jacobian(t, &(x + stages[S / 2]));
             self.factors.length = None;
         }
-        let length = span.length;
-        if self.factors.length == Some(length) {
+        self.factors.shift(span.length, &A::TABLEAU);
+        if self.factors.serve(span.length) {
             return;
         }
-        self.factors.length = Some(length);
+        self.factors.length = Some(span.length);
         problem.statistics.factorisations += 1 + PAIRS as u64;
         let one = T::from_f64(1.0);
-        let inverse = one / length;
-        let by = |number: f64| inverse * T::from_f64(number);
-        for ((shift, factors), pair) in self.factors.pairs.iter_mut().zip(&A::TABLEAU.pairs) {
-            let [real, imaginary] = pair.map(by);
-            *shift = Complex { real, imaginary };
+        for (shift, factors) in &mut self.factors.pairs {
             factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
         }
         let (shift, factors) = &mut self.factors.real;
-        *shift = by(A::TABLEAU.real);
         factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
     }
 

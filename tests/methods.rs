@@ -17,3 +17,5 @@ mod orders;
 mod parallel;
 #[path = "methods/stability.rs"]
 mod stability;
+#[path = "methods/times.rs"]
+mod times;

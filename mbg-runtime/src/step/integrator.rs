@@ -6,9 +6,7 @@ use nalgebra::SVector;
 
 use super::dense::{Direction, Step};
 use super::problem::Problem;
-use super::{
-    Cause, Statistics, Stopped, check_finite, check_times, less, piece_end, same_time, seen,
-};
+use super::{Cause, Statistics, Stopped, check_finite, check_times, less, piece_end};
 use crate::{Input, Real, System};
 
 /// Where and when a run until an event has ended.
@@ -30,7 +28,7 @@ pub struct Arrival<T, const N: usize> {
 /// Every run
 ///
 /// - starts by closing the loops of the system, and closes them after every step ([`System::close`]);
-/// - ends a step at each jump of the input and starts anew behind it;
+/// - ends a step at each jump of the input and starts anew behind it, however close the next one is;
 /// - asks [`System::trouble`] at the start, after each step and behind each jump.
 pub trait Integrator<const N: usize> {
     /// Refuses settings that cannot be met.
@@ -67,16 +65,13 @@ pub trait Integrator<const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let span = seen(t1 - t0);
         let mut since = t0;
         while less(since, t1) {
-            let end = piece_end(problem.input, since, t1, span)?;
+            let end = piece_end(problem.input, since, t1)?;
             problem.since = since;
-            if !same_time(since, end, span) {
-                match self.piece(problem, (since, end), x, observer)? {
-                    ControlFlow::Continue(next) => x = next,
-                    ControlFlow::Break(()) => return Ok(()),
-                }
+            match self.piece(problem, (since, end), x, observer)? {
+                ControlFlow::Continue(next) => x = next,
+                ControlFlow::Break(()) => return Ok(()),
             }
             since = end;
         }
@@ -141,7 +136,7 @@ pub trait Integrator<const N: usize> {
             }
             last = time;
         }
-        let (mut problem, mut x) = begin(self, system, input, (t0, last), x0)?;
+        let (mut problem, x) = begin(self, system, input, (t0, last), x0)?;
         let mut rest = times;
         while let [time, others @ ..] = rest
             && !less(t0, *time)
@@ -160,13 +155,8 @@ pub trait Integrator<const N: usize> {
                 }
                 rest = others;
             }
-            x = *step.state();
             ControlFlow::Continue(())
         })?;
-        // Left are times that differ from the end by rounding alone.
-        for time in rest {
-            observer(*time, &x);
-        }
         Ok(problem.statistics)
     }
 

@@ -15,7 +15,8 @@ use crate::{Input, Real, System};
 /// A method at steps of constant length.
 ///
 /// The grid is `t0 + k · h`. It starts anew at each jump of the input; the step before a jump, or before `t1`, is
-/// shortened to end there. Where `h` divides the way up to rounding, all steps are equal and no tiny one remains.
+/// shortened to end there. Where `h` divides the way up to rounding, all steps are equal and no tiny one remains: of length
+/// `h` where the grid meets the end to the last bit, else next to it.
 ///
 /// # Example
 ///
@@ -86,25 +87,20 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let (count, step) = divide(start, end, T::from_f64(self.step));
+        let Division { count, step, last } = divide(start, end, T::from_f64(self.step));
         let mut work = Scheme::Work::<T, N>::new(&self.method);
         let mut lost = SVector::from_element(T::from_f64(0.0));
         let mut t = start;
         for index in 1..=count {
-            let span = if index == count {
-                let length = end - t;
-                Span {
-                    start: t,
-                    end,
-                    length,
-                }
+            let (end, length) = if index == count {
+                (end, last)
             } else {
-                let end = start + T::from_f64(index as f64) * step;
-                Span {
-                    start: t,
-                    end,
-                    length: step,
-                }
+                (start + T::from_f64(index as f64) * step, step)
+            };
+            let span = Span {
+                start: t,
+                end,
+                length,
             };
             let slope = problem.slope(t, &x);
             problem.check(t, &x, &slope)?;
@@ -197,8 +193,9 @@ impl Rk4 {
         Ok(problem.statistics)
     }
 
-    /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock: the same bits as
-    /// those of [`Fixed`], with the least code and stack.
+    /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock, with the least code
+    /// and stack. The same bits as those of [`Fixed`] to a time that is `t0 + n · h` to the last bit, where
+    /// [`FUSED`](crate::FUSED) does not hold.
     ///
     /// Nothing is checked: ask [`System::trouble`] and look at the state where it matters.
     #[inline]
@@ -265,21 +262,44 @@ where
     mean
 }
 
-/// Number and length of the steps from `start` to `end`: of length `h`, or what is next to it when `h` divides the
-/// way up to rounding.
-fn divide<T: Real>(start: T, end: T, h: T) -> (u64, T) {
-    let ratio = seen((end - start) / h);
+/// Steps of constant length.
+struct Division<T> {
+    count: u64,
+    /// The length of all but the last.
+    step: T,
+    /// The length of the last.
+    last: T,
+}
+
+/// The steps from `start` to `end`: of length `h`, or what is next to it when `h` divides the way up to rounding; else
+/// the last one is shorter.
+fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
+    let way = end - start;
+    let number = |count: u64| T::from_f64(count as f64);
+    let ratio = seen(way / h);
     let whole = ratio as u64;
     let rest = ratio - whole as f64;
     let times = start.magnitude().max(end.magnitude()) / seen(h);
     let rounding = (8.0 * T::EPSILON * (times + ratio)).min(0.25);
-    let even = |count: u64| (count, (end - start) / T::from_f64(count as f64));
+    let even = |count: u64| {
+        let meets = start + number(count) * h == end;
+        let step = if meets { h } else { way / number(count) };
+        Division {
+            count,
+            step,
+            last: step,
+        }
+    };
     if whole > 0 && rest <= rounding {
         even(whole)
     } else if rest >= 1.0 - rounding {
         even(whole.saturating_add(1))
     } else {
-        (whole.saturating_add(1), h)
+        Division {
+            count: whole.saturating_add(1),
+            step: h,
+            last: way - number(whole) * h,
+        }
     }
 }
 
@@ -358,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn jump_within_rounding_of_the_end_or_of_the_start_takes_no_step() {
+    fn jump_within_rounding_of_the_end_takes_no_step() {
         let pulse = |start, end| Pulse {
             amplitude: SVector::from([1.0]),
             start,
@@ -366,10 +386,11 @@ mod tests {
         };
         // 0.1 + 0.2 is the number next to 0.3.
         assert_eq!(last(0.1, 0.1 + 0.2, &pulse(-1.0, 0.3)).1.steps, 3);
-        assert_eq!(last(0.1, 0.3, &pulse(0.1 + 0.2 - 0.3, 7.0)).1.steps, 3);
         let (x, _) = last(0.1, 0.1 + 0.2, &pulse(-1.0, 0.3));
         // ẍ + x = 1 from (1, 0) rests.
         assert!((x - SVector::from([1.0, 0.0])).norm() < 1e-15);
+        // Behind the start there is no piece that could go on to the jump.
+        assert_eq!(last(0.1, 0.3, &pulse(0.1 + 0.2 - 0.3, 7.0)).1.steps, 4);
     }
 
     #[test]
@@ -406,32 +427,68 @@ mod tests {
         assert!((last[1].slope + 2.0_f64.sin()).abs() < 1e-8);
     }
 
-    #[test]
-    fn single_steps_are_those_of_a_run() {
-        let (model, u, h) = (&Oscillator, SVector::from([2.0_f32]), 0.007_812_5);
-        let mut plain = SVector::from([0.3, -0.7]);
-        let (mut compensated, mut lost) = (plain, SVector::zeros());
-        let mut ends = [plain; 2];
-        let solver = Fixed::new(Rk4, f64::from(h));
-        for (solver, end) in [solver, solver.compensated()].iter().zip(&mut ends) {
-            let start = *end;
+    /// Ends of so many steps in a run and one by one, plain and compensated.
+    fn ends<T: Real>(t0: f64, h: f64, count: u32) -> [[SVector<T, 2>; 2]; 2] {
+        let [t0, h] = [t0, h].map(T::from_f64);
+        let t1 = t0 + T::from_f64(f64::from(count)) * h;
+        let start = SVector::from([0.3, -0.7].map(T::from_f64));
+        let u = SVector::from([T::from_f64(2.0)]);
+        let solver = Fixed::new(Rk4, seen(h));
+        let runs = [solver, solver.compensated()].map(|solver| {
+            let mut end = start;
             solver
-                .integrate(model, &Constant(u), 0.0, 1.0, start, |step| {
-                    *end = *step.state()
+                .integrate(&Oscillator, &Constant(u), t0, t1, start, |step| {
+                    end = *step.state()
                 })
                 .unwrap();
-        }
-        for _ in 0..128 {
-            plain = Rk4::step(model, 0.0, &plain, &u, h, &mut ());
+            end
+        });
+        let zero = SVector::from_element(T::from_f64(0.0));
+        let (mut plain, mut compensated, mut lost) = (start, start, zero);
+        for _ in 0..count {
+            plain = Rk4::step(&Oscillator, t0, &plain, &u, h, &mut ());
             compensated =
-                Rk4::compensated_step(model, 0.0, &compensated, &u, h, &mut lost, &mut ());
+                Rk4::compensated_step(&Oscillator, t0, &compensated, &u, h, &mut lost, &mut ());
         }
-        // Runs multiply and add in one rounding where the processor does, single steps in two everywhere.
-        let rounding = if crate::FUSED { f32::EPSILON } else { 0.0 };
-        for (step, end) in [plain, compensated].iter().zip(&ends) {
-            assert!((step - end).amax() <= rounding, "{step} {end}");
+        [runs, [plain, compensated]]
+    }
+
+    #[test]
+    fn single_steps_are_those_of_a_run_to_the_last() {
+        fn compare<T: Real>(t0: f64, h: f64, count: u32) {
+            let [runs, singles] = ends::<T>(t0, h, count);
+            // Runs multiply and add in one rounding where the processor does, single steps in two everywhere.
+            let same = runs == singles || crate::FUSED;
+            assert!(same, "{t0} {h} {count}: {runs:?} {singles:?}");
+            for (run, single) in runs.iter().zip(&singles) {
+                let distance = (run - single)
+                    .iter()
+                    .fold(0.0, |largest: f64, it| largest.max(it.magnitude()));
+                assert!(distance <= f64::from(count) * T::EPSILON, "{distance:e}");
+            }
         }
+        for (h, count) in [(1e-3, 1000), (1e-2, 1000), (1e-2, 30_000), (0.1, 3)] {
+            compare::<f32>(0.0, h, count);
+            compare::<f64>(0.0, h, count);
+        }
+        for t0 in [-0.7, 1e3, 1e6, 1e9] {
+            compare::<f64>(t0, 0.015_625, 1000);
+        }
+        compare::<f64>(1e9, 1e-3, 1000);
+        let [[plain, compensated], _] = ends::<f32>(0.0, 0.007_812_5, 128);
         assert_ne!(plain, compensated);
+    }
+
+    #[test]
+    fn a_shorter_last_step_meets_the_end_far_from_zero() {
+        let (t0, way) = (1e9, 1.000_5);
+        let mut last = SVector::from([1.0, 0.0]);
+        let t1 = t0 + way;
+        Fixed::new(Rk4, 1e-3)
+            .integrate(&Oscillator, &(), t0, t1, last, |step| last = *step.state())
+            .unwrap();
+        let error = last[0] - f64::cos(t1 - t0);
+        assert!(error.abs() < 1e-12, "{error:e}");
     }
 
     #[test]

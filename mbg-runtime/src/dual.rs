@@ -8,7 +8,8 @@ use crate::Real;
 ///
 /// A model that is generic over its scalar gives a column of its Jacobian when it runs on dual numbers: set one
 /// component's slope to 1 and read the slopes of the result. It serves to check symbolic Jacobians, and gives
-/// derivatives of whole simulations with respect to a parameter or an initial value.
+/// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
+/// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event.
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope
 /// zero, and at a kink ([`Real::abs`] at zero, equal arguments of [`Real::min`]) the slope is that of one side.
@@ -35,6 +36,7 @@ pub struct Dual<T> {
 
 impl<T: Real> Dual<T> {
     /// A number that does not depend on the variable: slope 0.
+    #[must_use]
     pub fn constant(value: T) -> Self {
         Self {
             value,
@@ -43,6 +45,7 @@ impl<T: Real> Dual<T> {
     }
 
     /// The variable itself: slope 1.
+    #[must_use]
     pub fn variable(value: T) -> Self {
         Self {
             value,
@@ -225,6 +228,20 @@ impl<T: Real> Real for Dual<T> {
         }
     }
 
+    /// The residual's slope stays zero: this number's own slope makes up for all others that it comes from.
+    fn root_of(self, mut residual: impl FnMut(Self) -> Self) -> Self {
+        let value = self
+            .value
+            .root_of(|value| residual(Self { value, ..self }).value);
+        let mut left = |slope| residual(Self { value, slope }).slope;
+        let of_others = left(T::from_f64(0.0));
+        let of_own = left(T::from_f64(1.0)) - of_others;
+        Self {
+            value,
+            slope: -of_others / of_own,
+        }
+    }
+
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         Self {
             value: self.value.select_less(bound.value, yes.value, no.value),
@@ -329,6 +346,19 @@ mod tests {
         let y = x * x * x.exp();
         let second = (0.25 + 4.0 * 0.5 + 2.0) * 0.5_f64.exp();
         assert!(close(y.slope.slope, second));
+    }
+
+    #[test]
+    fn roots_have_the_slopes_of_implicit_functions() {
+        // x² = a has dx/da = 1 / (2 x) and d²x/da² = −1 / (4 x³).
+        let a = Dual {
+            value: Dual::variable(9.0_f64),
+            slope: Dual::constant(1.0),
+        };
+        let x = Dual::<Dual<f64>>::from_f64(3.0).root_of(|x| x * x - a);
+        assert!(close(x.value.value, 3.0));
+        assert!(close(x.value.slope, 1.0 / 6.0) && close(x.slope.value, 1.0 / 6.0));
+        assert!(close(x.slope.slope, -1.0 / 108.0));
     }
 
     #[test]

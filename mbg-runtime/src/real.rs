@@ -121,6 +121,12 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger of two; NaN when either is.
     fn max(self, other: Self) -> Self;
+    /// This number, which is a zero of `residual` but for rounding, with the slopes of that zero.
+    ///
+    /// Only dual numbers have slopes; any other number stays as it is, and `residual` is not asked.
+    fn root_of(self, _residual: impl FnMut(Self) -> Self) -> Self {
+        self
+    }
     /// `yes` where `self < bound`, else `no`.
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self;
 }

@@ -1,12 +1,33 @@
 //! Events, and jumps of inputs.
 
 use mbg_runtime::{
-    Adaptive, Direction, Dop853, Estimating, Fixed, Gauss6, Integrator, Pirk8, Pirk16, Pulse,
-    Radau5, Rk4, Rodas4, Rodas5P, Ros2, Tsit5, Verner9,
+    Adaptive, Cause, Constant, Direction, Dop853, Dual, Estimating, Fixed, Gauss6, Integrator,
+    Pirk8, Pirk16, Pulse, Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Step, Tsit5, Variable, Verner9,
 };
 use nalgebra::SVector;
 
-use crate::problems::{Oscillator, Written};
+use crate::problems::{Law, Oscillator, Written};
+
+/// A height and its rate, pushed up by an input.
+#[derive(Clone, Copy)]
+struct Falling;
+
+impl Law<2, 1> for Falling {
+    const STATES: &'static [Variable] = &[
+        Variable {
+            name: "height",
+            unit: "",
+        },
+        Variable {
+            name: "rate",
+            unit: "",
+        },
+    ];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, u: &SVector<T, 1>) -> SVector<T, 2> {
+        SVector::from([x[1], u[0]])
+    }
+}
 
 type State = SVector<f64, 2>;
 
@@ -75,6 +96,89 @@ fn the_search_is_bounded() {
         .until(&Written(Oscillator), &(), 0.0, 10.0, start, event, |_| ())
         .unwrap();
     assert!((arrival.time - std::f64::consts::FRAC_PI_3).abs() < 1e-7);
+}
+
+#[test]
+fn the_observer_is_given_all_steps_up_to_the_event() {
+    let guard = |_t: f64, x: &State| x[0] - 0.5;
+    let start = SVector::from([1.0, 0.0]);
+    let mut before = (0.0, start);
+    let observer = |step: &mut Step<'_, f64, 2>| {
+        assert_eq!((step.start(), *step.first()), before);
+        let middle = 0.5 * (step.start() + step.end());
+        assert!((step.at(middle)[0] - middle.cos()).abs() < 1e-8);
+        assert_eq!(step.at(step.end()), *step.state());
+        before = (step.end(), *step.state());
+    };
+    let event = (Direction::Falling, guard);
+    let arrival = Adaptive::new(Dop853, 1e-10, 1e-10)
+        .until(&Written(Oscillator), &(), 0.0, 10.0, start, event, observer)
+        .unwrap();
+    assert!(arrival.found);
+    assert_eq!(before, (arrival.time, arrival.state));
+}
+
+#[test]
+fn a_guard_that_is_not_a_number_stops_the_run() {
+    let start = SVector::from([1.0, 0.0]);
+    let solver = Adaptive::new(Tsit5, 1e-8, 1e-8);
+    let stopped = |guard: &dyn Fn(f64, &State) -> f64| {
+        let event = (Direction::Either, guard);
+        let run = solver.until(&Written(Oscillator), &(), 0.0, 10.0, start, event, |_| ());
+        run.unwrap_err()
+    };
+    let never = stopped(&|_, _| f64::NAN);
+    assert_eq!((never.cause, never.time), (Cause::Guard, 0.0));
+    let later = stopped(&|_, x| (x[0] + 0.5).sqrt() + 0.1);
+    assert_eq!(later.cause, Cause::Guard);
+    // The root is real up to 2π/3.
+    assert!(later.time > 2.0 && later.time < 3.0, "{later}");
+}
+
+/// Falls from a height that varies: √(2 h / g) after 1 / √(2 g h), with √(2 g h).
+#[test]
+fn events_have_the_slopes_of_the_solution() {
+    fn fall(solver: impl Integrator<2>) {
+        let number = Dual::<f64>::constant;
+        let (height, gravity) = (1.0, 9.81);
+        let start = SVector::from([Dual::variable(height), number(0.0)]);
+        let push = Constant(SVector::from([number(-gravity)]));
+        let ground = |_t, x: &SVector<Dual<f64>, 2>| x[0];
+        let event = (Direction::Falling, ground);
+        let (begin, end) = (number(0.0), number(10.0));
+        let falling = &Written(Falling);
+        let arrival = solver
+            .until(falling, &push, begin, end, start, event, |_| ())
+            .unwrap();
+        let time = f64::sqrt(2.0 * height / gravity);
+        let close = |found: f64, exact: f64| (found - exact).abs() < 1e-8;
+        assert!(close(arrival.time.value, time), "{arrival:?}");
+        assert!(
+            close(arrival.time.slope, 1.0 / (gravity * time)),
+            "{arrival:?}"
+        );
+        assert!(close(arrival.state[0].slope, 0.0), "{arrival:?}");
+        assert!(close(arrival.state[1].slope, -1.0 / time), "{arrival:?}");
+        // Back up without a loss, and down to the same place.
+        let bounced = SVector::from([arrival.state[0], -arrival.state[1]]);
+        let mut last = bounced;
+        let end = arrival.time + number(time);
+        solver
+            .integrate(falling, &push, arrival.time, end, bounced, |step| {
+                last = *step.state()
+            })
+            .unwrap();
+        // A fixed time behind the bounce: the height is v t − g t² / 2.
+        assert!(close(last[0].value, height), "{last:?}");
+        assert!(close(last[0].slope, 1.0), "{last:?}");
+    }
+    fall(Adaptive::new(Tsit5, 1e-10, 1e-12));
+    fall(Adaptive::new(Dop853, 1e-10, 1e-12));
+    fall(Adaptive::new(Pirk8, 1e-10, 1e-12));
+    fall(Adaptive::new(Rodas5P, 1e-10, 1e-12));
+    fall(Adaptive::new(Radau5, 1e-10, 1e-12));
+    fall(Fixed::new(Rk4, 0.01));
+    fall(Fixed::new(Gauss6::default(), 0.01));
 }
 
 #[test]

@@ -143,21 +143,25 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     }
 
     /// The time at which the step starts.
+    #[must_use]
     pub fn start(&self) -> T {
         self.span.start
     }
 
-    /// The time at which the step ends.
+    /// The time at which the step ends; of the last one before an event, the time of that.
+    #[must_use]
     pub fn end(&self) -> T {
         self.span.end
     }
 
-    /// The state at the end, not interpolated.
+    /// The state at the end, not interpolated but at an event.
+    #[must_use]
     pub fn state(&self) -> &SVector<T, N> {
         &self.state
     }
 
     /// The state at the start.
+    #[must_use]
     pub fn first(&self) -> &SVector<T, N> {
         &self.first
     }
@@ -166,6 +170,7 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     /// of the step an extrapolation.
     ///
     /// The first call may evaluate the derivative, up to four times.
+    #[must_use]
     pub fn at(&mut self, t: T) -> SVector<T, N> {
         let polynomial = self.polynomial.get_or_insert_with(&mut self.source);
         polynomial.at((t - self.span.start) / self.span.length)
@@ -175,28 +180,47 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     ///
     /// `guard` is asked at the ends of eight equal parts of the step, so that a pair of crossings closer than that may
     /// be missed. Within a part the time is found by the Illinois method, and bisection where that is slow, in at most
-    /// [`Step::SEARCH`] evaluations, to the last bits. Lanes share their time: the first decides.
+    /// [`Step::SEARCH`] evaluations, to the last bits. Lanes share their time: the first decides. On
+    /// [`Dual`](crate::Dual) numbers the time has the slope of the zero, and so has the state there.
+    ///
+    /// Nothing is found either where the guard is not a number before it goes through zero.
+    #[must_use]
     pub fn crossing(
         &mut self,
         direction: Direction,
-        mut guard: impl FnMut(T, &SVector<T, N>) -> T,
+        guard: impl FnMut(T, &SVector<T, N>) -> T,
     ) -> Option<T> {
-        let (start, length) = (self.span.start, self.span.length);
-        let mut before = (start, seen(guard(start, &self.first)));
+        self.search(direction, guard).ok().flatten()
+    }
+
+    /// The same, or the first time at which the guard was asked and was not a number.
+    pub(super) fn search(
+        &mut self,
+        direction: Direction,
+        mut guard: impl FnMut(T, &SVector<T, N>) -> T,
+    ) -> Result<Option<T>, T> {
+        let (start, end) = (self.span.start, self.span.end);
+        let mut before = (start, number(start, guard(start, &self.first))?);
         for part in 1..=8 {
             let after = if part == 8 {
-                (self.span.end, seen(guard(self.span.end, &self.state)))
+                (end, number(end, guard(end, &self.state))?)
             } else {
-                let t = start + T::from_f64(f64::from(part) / 8.0) * length;
+                let t = start + T::from_f64(f64::from(part) / 8.0) * (end - start);
                 let x = self.at(t);
-                (t, seen(guard(t, &x)))
+                (t, number(t, guard(t, &x))?)
             };
             if direction.crosses(before.1, after.1) {
-                return Some(self.locate(before, after, guard));
+                return self.locate(before, after, guard).map(Some);
             }
             before = after;
         }
-        None
+        Ok(None)
+    }
+
+    /// Leaves the part of the step up to a time in it.
+    pub(super) fn cut(&mut self, end: T) {
+        self.state = self.at(end);
+        self.span.end = end;
     }
 
     /// Most evaluations of a guard in the search for its zero.
@@ -208,7 +232,7 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
         (mut before, mut low): (T, f64),
         (mut after, mut high): (T, f64),
         mut guard: impl FnMut(T, &SVector<T, N>) -> T,
-    ) -> T {
+    ) -> Result<T, T> {
         let positive = low > 0.0;
         let mut advanced = None;
         for round in 0..Self::SEARCH {
@@ -225,7 +249,7 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
                 break;
             }
             let x = self.at(t);
-            let value = seen(guard(t, &x));
+            let value = number(t, guard(t, &x))?;
             let advances = value != 0.0 && (value > 0.0) == positive;
             // The end that stays for the second time counts half.
             let half = if advanced == Some(advances) { 0.5 } else { 1.0 };
@@ -236,8 +260,16 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
                 (after, high, low) = (t, value, half * low);
             }
         }
-        after
+        Ok(after.root_of(|t| {
+            let x = self.at(t);
+            guard(t, &x)
+        }))
     }
+}
+
+/// What a guard is at a time, or that time where it is not a number.
+fn number<T: Real>(t: T, guard: T) -> Result<f64, T> {
+    Some(seen(guard)).filter(|it| !it.is_nan()).ok_or(t)
 }
 
 /// How a guard goes through zero.

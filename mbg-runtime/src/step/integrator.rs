@@ -29,7 +29,9 @@ pub struct Arrival<T, const N: usize> {
 ///
 /// - starts by closing the loops of the system, and closes them after every step ([`System::close`]);
 /// - ends a step at each jump of the input and starts anew behind it, however close the next one is;
-/// - asks [`System::trouble`] at the start, after each step and behind each jump.
+/// - asks [`System::trouble`] at the start, after each step and behind each jump;
+/// - begins without what a run before has found: the first solve of a nonlinear algebraic loop starts at zero. A loop with
+///   several solutions may find another one than the end of the run before had.
 pub trait Integrator<const N: usize> {
     /// Refuses settings that cannot be met.
     #[doc(hidden)]
@@ -160,8 +162,8 @@ pub trait Integrator<const N: usize> {
         Ok(problem.statistics)
     }
 
-    /// Runs from `t0` until `guard` goes through zero, at the latest until `t1`; `observer` is given the steps before
-    /// the one with the event.
+    /// Runs from `t0` until `guard` goes through zero, at the latest until `t1`; `observer` is given the steps up to the
+    /// event, at which the last one ends.
     ///
     /// The time of the event is found as [`Step::crossing`] tells, in a bounded number of evaluations of the guard. To
     /// go on, change the state and run again from there: a guard that is zero, or on the far side by rounding, at
@@ -169,7 +171,7 @@ pub trait Integrator<const N: usize> {
     ///
     /// # Errors
     ///
-    /// As [`Integrator::integrate`].
+    /// As [`Integrator::integrate`], and a guard that is not a number.
     ///
     /// # Example
     ///
@@ -206,15 +208,30 @@ pub trait Integrator<const N: usize> {
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let (mut time, mut state, mut found) = (t1, x, false);
+        let mut undefined = None;
         self.run(&mut problem, (t0, t1), x, &mut |step| {
-            if let Some(crossing) = step.crossing(direction, &mut guard) {
-                (time, state, found) = (crossing, step.at(crossing), true);
-                return ControlFlow::Break(());
+            match step.search(direction, &mut guard) {
+                Ok(None) => {}
+                Ok(Some(crossing)) => {
+                    (time, found) = (crossing, true);
+                    step.cut(crossing);
+                }
+                Err(time) => {
+                    undefined = Some(time);
+                    return ControlFlow::Break(());
+                }
             }
             state = *step.state();
             observer(step);
-            ControlFlow::Continue(())
+            if found {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         })?;
+        if let Some(time) = undefined {
+            return Err(Stopped::new(time, Cause::Guard));
+        }
         Ok(Arrival {
             time,
             state,

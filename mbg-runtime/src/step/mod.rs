@@ -89,6 +89,8 @@ pub enum Cause {
     TooManySteps,
     /// The stages of an implicit method were not found; a shorter step may help.
     Diverged,
+    /// The guard of an event is not a number.
+    Guard,
     /// The simulation was not set up properly.
     Argument(&'static str),
 }
@@ -110,6 +112,7 @@ impl fmt::Display for Cause {
             Self::TooManySteps => formatter.write_str("more steps than allowed"),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),
+            Self::Guard => formatter.write_str("the guard of the event is not a number"),
             Self::Argument(what) => formatter.write_str(what),
         }
     }
@@ -127,7 +130,7 @@ impl Stopped {
 }
 
 /// The number, seen as `f64`; of several lanes the first.
-fn seen<T: Real>(number: T) -> f64 {
+pub(crate) fn seen<T: Real>(number: T) -> f64 {
     number.find(|_| true).unwrap_or(f64::NAN)
 }
 
@@ -145,7 +148,9 @@ fn piece_end<T: Real, const M: usize>(
     match input.next_jump(from) {
         Some(jump) if !less(from, jump) => Err(Stopped::new(
             from,
-            Cause::Argument("the input's next jump is not later than the one before"),
+            Cause::Argument(
+                "the input's next jump is not later than the one before, or not a number",
+            ),
         )),
         Some(jump) if less(jump, end) && !is_met(jump, (from, end)) => Ok(jump),
         _ => Ok(end),

@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, SMatrix, SVector};
 
-use crate::step::{Complex as Number, Factors};
+use crate::step::{Complex as Number, Element, Factors};
 use crate::{Convertible, Dual, Real, System, Trouble};
 
 /// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
@@ -84,29 +84,28 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
 
     /// The frequency response `C (jω I − A)⁻¹ B + D`: amplitudes and phases of outputs to inputs that swing with `frequency`
     /// in rad/s. None where it is not finite: a pole lies there.
+    #[must_use]
     pub fn response(&self, frequency: T) -> Option<SMatrix<Complex<T>, P, M>> {
         let zero = T::from_f64(0.0);
         let mut factors = Factors::<Number<T>, N>::empty();
         factors.factorise(|row, column| Number {
-            real: -self.state[(row, column)],
+            real: -*self.state.get((row, column)).unwrap_or(&zero),
             imaginary: if row == column { frequency } else { zero },
         });
-        let swings: [[Number<T>; N]; M] = core::array::from_fn(|input| {
-            let column = core::array::from_fn(|row| Number {
-                real: self.input[(row, input)],
-                imaginary: zero,
-            });
-            factors.solve(column)
-        });
-        let response = SMatrix::<_, P, M>::from_fn(|output, input| {
-            let mut sum = Complex::new(self.feedthrough[(output, input)], zero);
-            for (state, swing) in swings[input].iter().enumerate() {
-                let weight = self.output[(output, state)];
-                sum.re += weight * swing.real;
-                sum.im += weight * swing.imaginary;
+        let mut response = self.feedthrough.map(|part| Complex::new(part, zero));
+        for (mut response, input) in response.column_iter_mut().zip(self.input.column_iter()) {
+            let mut right = [Number::zero(); N];
+            for (right, part) in right.iter_mut().zip(input.iter()) {
+                right.real = *part;
             }
-            sum
-        });
+            let swings = factors.solve(right);
+            for (swing, weights) in swings.iter().zip(self.output.column_iter()) {
+                for (sum, weight) in response.iter_mut().zip(weights.iter()) {
+                    sum.re += *weight * swing.real;
+                    sum.im += *weight * swing.imaginary;
+                }
+            }
+        }
         let is_finite = |it: &Complex<T>| (it.re.magnitude() + it.im.magnitude()).is_finite();
         response.iter().all(is_finite).then_some(response)
     }

@@ -53,8 +53,11 @@ impl<E: Element, const N: usize> Shifted<E, N> {
     ) where
         S: System<E::Part, N, M, P>,
     {
+        let zero = E::Part::from_f64(0.0);
         let entry = |row: usize, column: usize| {
-            let element = E::from_part(-(scale * matrix[(row, column)]));
+            // Where this is not written out, a check of the place stays: it must not panic.
+            let element = matrix.get((row, column)).copied().unwrap_or(zero);
+            let element = E::from_part(-(scale * element));
             if row == column {
                 element + diagonal
             } else {

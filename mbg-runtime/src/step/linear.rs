@@ -260,9 +260,11 @@ impl<E: Element, const N: usize> Factors<E, N> {
             }
         }
         for k in (0..N).rev() {
-            if order[k] != k {
+            let pivot = order[k];
+            // Compared to their number, so that no check is left that panics.
+            if pivot != k && pivot < N {
                 for row in rows.iter_mut() {
-                    row.swap(k, order[k]);
+                    row.swap(k, pivot);
                 }
             }
         }
@@ -286,7 +288,9 @@ impl<E: Element, const N: usize> Factors<E, N> {
     fn substituted(&self, right: [E; N]) -> [E; N] {
         let mut x = right;
         for (k, pivot) in self.order.iter().enumerate() {
-            x.swap(k, *pivot);
+            if *pivot < N {
+                x.swap(k, *pivot);
+            }
         }
         for i in 1..N {
             for j in 0..i {
@@ -314,7 +318,7 @@ fn exchange<E: Element, const N: usize>(rows: &mut [[E; N]; N], column: usize) -
             (pivot, largest) = (i, size);
         }
     }
-    if pivot != column {
+    if pivot != column && pivot < N {
         rows.swap(column, pivot);
     }
     pivot
@@ -323,8 +327,9 @@ fn exchange<E: Element, const N: usize>(rows: &mut [[E; N]; N], column: usize) -
 /// Writes entries to a matrix, without a copy of it.
 #[inline(always)]
 fn fill<E: Element, const N: usize>(rows: &mut [[E; N]; N], entry: impl Fn(usize, usize) -> E) {
-    for (i, row) in rows.iter_mut().enumerate() {
-        for (j, element) in row.iter_mut().enumerate() {
+    // Counted, so that no check of a place is left in what gives the entries.
+    for (i, row) in (0..N).zip(rows) {
+        for (j, element) in (0..N).zip(row) {
             *element = entry(i, j);
         }
     }
@@ -334,20 +339,25 @@ fn fill<E: Element, const N: usize>(rows: &mut [[E; N]; N], entry: impl Fn(usize
 /// matrix, nor where products may leave the range of the numbers. Whether it came to that.
 #[inline(always)]
 fn by_cofactors<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[E; N]; N]) -> bool {
-    let cofactor = |row: usize, column: usize| match N {
-        1 => E::from_part(E::Part::from_f64(1.0)),
-        2 if row == column => rows[1 - row][1 - column],
-        2 => E::zero() - rows[1 - row][1 - column],
-        _ => {
-            let [below, above] = [1, 2].map(|step| &rows[(row + step) % N]);
-            let [right, left] = [1, 2].map(|step| (column + step) % N);
-            below[right] * above[left] - below[left] * above[right]
-        }
+    let zero = E::zero();
+    let found: &[E] = match *rows.as_flattened() {
+        [_] => &[E::from_part(E::Part::from_f64(1.0))],
+        [a, b, c, d] => &[d, zero - c, zero - b, a],
+        [a, b, c, d, e, f, g, h, i] => &[
+            e * i - f * h,
+            f * g - d * i,
+            d * h - e * g,
+            c * h - b * i,
+            a * i - c * g,
+            b * g - a * h,
+            b * f - c * e,
+            c * d - a * f,
+            a * e - b * d,
+        ],
+        _ => return false,
     };
-    let mut cofactors = [[E::zero(); N]; N];
-    fill(&mut cofactors, cofactor);
-    let terms = (0..N).map(|column| rows[0][column] * cofactors[0][column]);
-    let determinant = terms.fold(E::zero(), |sum, term| sum + term);
+    let first_rows = rows.as_flattened().iter().zip(found).take(N);
+    let determinant = first_rows.fold(zero, |sum, (element, cofactor)| sum + *element * *cofactor);
     let size = determinant.size();
     let small = E::Part::EPSILON * E::Part::EPSILON;
     let small = small * small;
@@ -355,7 +365,9 @@ fn by_cofactors<E: Element, const N: usize>(rows: &[[E; N]; N], columns: &mut [[
         return false;
     }
     let reciprocal = determinant.reciprocal();
-    fill(columns, |row, column| cofactors[row][column] * reciprocal);
+    for (element, cofactor) in columns.as_flattened_mut().iter_mut().zip(found) {
+        *element = *cofactor * reciprocal;
+    }
     true
 }
 

@@ -117,8 +117,8 @@ impl<T: Real, const N: usize, const G: usize> Slopes<T, N, G> {
 /// through memory, in other parts than it is read by what comes next, which has to wait for that.
 pub struct Stages<A, T: Real, const N: usize, const S: usize, const G: usize> {
     steps: [Slopes<T, N, G>; 2],
-    /// Which of them was tried last.
-    tried: usize,
+    /// Whether the second of them was tried last.
+    is_second: bool,
     method: PhantomData<A>,
 }
 
@@ -139,7 +139,7 @@ where
         };
         Self {
             steps: [none; 2],
-            tried: 0,
+            is_second: false,
             method: PhantomData,
         }
     }
@@ -228,7 +228,8 @@ where
 {
     /// The polynomial over the step that was tried last.
     fn between(&self, start: &Start<T, N>, end: &SVector<T, N>) -> Polynomial<T, N> {
-        let tried = &self.steps[self.tried];
+        let [first, second] = &self.steps;
+        let tried = if self.is_second { second } else { first };
         let slopes: [SVector<T, N>; S] = array::from_fn(|node| match node {
             0 => tried.first,
             _ => at::<T, N, G>(node, &tried.others),
@@ -246,13 +247,13 @@ where
     /// The last step that was taken, and the place of the one that is to be tried.
     fn next(&mut self, again: bool) -> (&Slopes<T, N, G>, &mut Slopes<T, N, G>) {
         if !again {
-            self.tried = 1 - self.tried;
+            self.is_second = !self.is_second;
         }
         let [first, second] = &mut self.steps;
-        if self.tried == 0 {
-            (second, first)
-        } else {
+        if self.is_second {
             (first, second)
+        } else {
+            (second, first)
         }
     }
 
@@ -382,7 +383,7 @@ mod tests {
     ) -> Stages<A, f64, N, S, G> {
         Stages {
             steps: [slopes; 2],
-            tried: 0,
+            is_second: false,
             method: PhantomData,
         }
     }

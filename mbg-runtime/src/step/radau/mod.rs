@@ -80,6 +80,9 @@ const FAST: f64 = 1e-3;
 /// Steps may become so long that a sweep reduces the error by this; the factor is about in proportion to the length.
 const SLOW: f64 = 0.2;
 
+/// The length of a step and the coefficients of its polynomial.
+type Taken<T, const N: usize, const S: usize> = (T, [SVector<T, N>; S]);
+
 /// What a step leaves for the next.
 pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     jacobian: SMatrix<T, N, N>,
@@ -88,9 +91,9 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     factors: Factors<T, N, PAIRS>,
     /// Lengths of two steps and the coefficients of their polynomials, in turns the last one and that which is tried; no
     /// length at the start and behind a jump.
-    steps: [(T, [SVector<T, N>; S]); 2],
-    /// Which of them is tried.
-    tried: usize,
+    steps: [Taken<T, N, S>; 2],
+    /// Whether the second of them is tried.
+    is_second: bool,
     /// How fast sweeps converge, from step to step.
     rate: f64,
     rejected: bool,
@@ -120,11 +123,11 @@ impl<T: Real, const N: usize, const PAIRS: usize> Factors<T, N, PAIRS> {
     fn shift<const S: usize>(&mut self, length: T, tableau: &Tableau<S, PAIRS>) {
         let inverse = T::from_f64(1.0) / length;
         let by = |number: f64| inverse * T::from_f64(number);
-        self.real.0 = by(tableau.real);
         for ((shift, _), pair) in self.pairs.iter_mut().zip(&tableau.pairs) {
             let [real, imaginary] = pair.map(by);
             *shift = Complex { real, imaginary };
         }
+        self.real.0 = by(tableau.real);
     }
 
     /// Whether factors serve a step of this length: theirs may differ by the rounding of time, since sweeps then converge as
@@ -149,7 +152,7 @@ where
             theta: f64::INFINITY,
             factors: Factors::empty(),
             steps: [(zero, [SVector::from_element(zero); S]); 2],
-            tried: 0,
+            is_second: false,
             rate: 1.0,
             rejected: false,
             method: PhantomData,
@@ -168,7 +171,7 @@ where
     {
         let length = start.span.length;
         if !start.again {
-            self.tried = 1 - self.tried;
+            self.is_second = !self.is_second;
         }
         let mut stages = self.predict(length);
         self.factorise(problem, start, &stages);
@@ -189,7 +192,7 @@ where
             newton.error(&stages, tolerance, self.rejected || self.last().is_none())
         });
         self.rejected = error.is_nan() || error > 1.0;
-        self.steps[self.tried] = (length, transformed(const { &A::TABLEAU.dense }, &stages));
+        *self.tried() = (length, transformed(const { &A::TABLEAU.dense }, &stages));
         Trial {
             change: stages[S - 1],
             slope: None,
@@ -209,7 +212,7 @@ where
         I: Input<T, M>,
     {
         let mut polynomial = Polynomial::line(&start.x, end);
-        let found = self.steps[self.tried].1.iter().skip(1);
+        let found = self.tried().1.iter().skip(1);
         for (coefficient, found) in polynomial.coefficients.iter_mut().skip(1).zip(found) {
             *coefficient = *found;
         }
@@ -260,8 +263,16 @@ where
     }
 
     /// The last step.
-    fn last(&self) -> Option<&(T, [SVector<T, N>; S])> {
-        Some(&self.steps[1 - self.tried]).filter(|(length, _)| *length != T::from_f64(0.0))
+    fn last(&self) -> Option<&Taken<T, N, S>> {
+        let [first, second] = &self.steps;
+        let last = if self.is_second { first } else { second };
+        Some(last).filter(|(length, _)| *length != T::from_f64(0.0))
+    }
+
+    /// The one that is tried.
+    fn tried(&mut self) -> &mut Taken<T, N, S> {
+        let [first, second] = &mut self.steps;
+        if self.is_second { second } else { first }
     }
 
     /// The stages as the last step continues.

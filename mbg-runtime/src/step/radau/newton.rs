@@ -109,18 +109,21 @@ where
         let (shift, factors) = &self.factors.real;
         let right = combined([(-*shift, &inner[0])], &weights[0], slopes);
         changes[0] = factors.solved::<Y, M, P>(&right);
-        for (pair, (shift, factors)) in self.factors.pairs.iter().enumerate() {
+        let known = pairs(inner).iter().zip(pairs(weights));
+        let known = self.factors.pairs.iter().zip(known);
+        for (change, ((shift, factors), ([b, c], [of_real, of_imaginary]))) in
+            pairs_mut(&mut changes).iter_mut().zip(known)
+        {
             let Complex { real, imaginary } = *shift;
-            let [first, second] = [1, 2].map(|place| place + 2 * pair);
-            let [b, c] = [&inner[first], &inner[second]];
-            let reals = combined([(-real, b), (imaginary, c)], &weights[first], slopes);
-            let imaginaries = combined([(-imaginary, b), (-real, c)], &weights[second], slopes);
+            let reals = combined([(-real, b), (imaginary, c)], of_real, slopes);
+            let imaginaries = combined([(-imaginary, b), (-real, c)], of_imaginary, slopes);
             let mut right = [Complex::zero(); N];
             for (row, right) in right.iter_mut().enumerate() {
                 (right.real, right.imaginary) = (reals[row], imaginaries[row]);
             }
+            let [first, second] = change;
             for (row, both) in factors.solve::<Y, M, P>(right).iter().enumerate() {
-                (changes[first][row], changes[second][row]) = (both.real, both.imaginary);
+                (first[row], second[row]) = (both.real, both.imaginary);
             }
         }
         changes
@@ -216,4 +219,16 @@ where
         let slope = self.problem.slope(span.start, &(x + estimate));
         measure.norm(&real.solved::<Y, M, P>(&(sum + slope)))
     }
+}
+
+/// All but the first, two by two: what belongs to pairs of eigenvalues.
+#[inline(always)]
+fn pairs<E>(of_all: &[E]) -> &[[E; 2]] {
+    of_all.get(1..).unwrap_or_default().as_chunks().0
+}
+
+/// The same to write to.
+#[inline(always)]
+fn pairs_mut<E>(of_all: &mut [E]) -> &mut [[E; 2]] {
+    of_all.get_mut(1..).unwrap_or_default().as_chunks_mut().0
 }

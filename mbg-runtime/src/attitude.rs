@@ -10,6 +10,7 @@ use crate::Real;
 /// `R = Rx(a) Ry(b) Rz(c)` of the angles `[a, b, c]` in rad: about x first, then about the new y, then the newest z.
 ///
 /// The columns are the body's axes after the three turns, seen from the axes before them.
+#[must_use]
 pub fn rotation_xyz<T: Real>(angles: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
     let [[a, b, c]] = angles.data.0;
     let (sa, ca) = a.sin_cos();
@@ -40,6 +41,7 @@ pub fn rotation_xyz<T: Real>(angles: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
 /// let angles: SVector<f64, 3> = SVector::from([0.3, -1.2, 2.0]);
 /// assert!((euler_xyz(&rotation_xyz(&angles)) - angles).norm() < 1e-15);
 /// ```
+#[must_use]
 pub fn euler_xyz<T: Real>(rotation: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
     let [[_, r21, r31], [_, r22, r32], [r13, r23, r33]] = rotation.data.0;
     let a = (-r23).atan2(r33);
@@ -54,6 +56,7 @@ pub fn euler_xyz<T: Real>(rotation: &SMatrix<T, 3, 3>) -> SVector<T, 3> {
 ///
 /// The quaternion is divided by its length, so that a drift of the length turns nothing. A quaternion of zeros gives
 /// NaN.
+#[must_use]
 pub fn rotation_from_quaternion<T: Real>(quaternion: &SVector<T, 4>) -> SMatrix<T, 3, 3> {
     let [[w, x, y, z]] = quaternion.data.0;
     let one = T::from_f64(1.0);
@@ -95,6 +98,7 @@ const CORRECTIONS: usize = 32;
 /// let quaternion: SMatrix<f64, 1, 4> = SMatrix::from([[3.0], [0.0], [4.0], [0.0]]);
 /// assert!((orthonormal(&quaternion) - quaternion / 5.0).norm() < 1e-15);
 /// ```
+#[must_use]
 pub fn orthonormal<T: Real, const R: usize, const C: usize>(
     matrix: &SMatrix<T, R, C>,
 ) -> SMatrix<T, R, C> {

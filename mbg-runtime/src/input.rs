@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::step::less;
+use crate::step::{less, seen};
 use crate::{Dual, Real};
 
 /// An input `u(t)` that is smooth but for jumps at times known in advance.
@@ -24,25 +24,30 @@ pub trait Input<T: Real, const M: usize> {
     ///
     /// `since` is not later than `t`, and no jump lies between the two, though `t` may be the end of the piece or,
     /// by rounding, a little behind it; there the piece is continued.
+    #[must_use]
     fn value(&self, t: T, since: T) -> SVector<T, M>;
 
-    /// The first jump later than `t`.
+    /// The first jump later than `t`. Runs refuse one that is not later, or not a number.
+    #[must_use]
     fn next_jump(&self, t: T) -> Option<T>;
 
     /// The time derivative at `t` on the piece that begins at `since` and does not end within the time `ahead`.
     ///
     /// Methods for stiff problems ask for it. Unless it is given, it is a difference quotient over five values ahead,
     /// whose error falls with the fourth power of `ahead`, the length of the step. Of [`Differentiable`] it is exact.
+    #[must_use]
     fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
         quotient(t, ahead, |t| self.value(t, since))
     }
 
     /// Whether the value stays the same between jumps; if it does, nobody looks for jumps that are not declared.
+    #[must_use]
     fn is_constant_between_jumps(&self) -> bool {
         false
     }
 
     /// The value at `t`; at a jump, the one behind it.
+    #[must_use]
     fn at(&self, t: T) -> SVector<T, M> {
         self.value(t, t)
     }
@@ -142,7 +147,11 @@ impl<T: Real, const M: usize> Input<T, M> for Pulse<T, M> {
     }
 
     fn next_jump(&self, t: T) -> Option<T> {
-        if !less(self.start, self.end) {
+        // What is not a number is no time; runs refuse it.
+        let is_no_time = |time: &T| seen(*time).is_nan();
+        if let Some(jump) = [self.start, self.end].into_iter().find(is_no_time) {
+            Some(jump)
+        } else if !less(self.start, self.end) {
             None
         } else if less(t, self.start) {
             Some(self.start)
@@ -242,7 +251,8 @@ impl<T: Real, const M: usize, A: Input<T, M>, B: Input<T, M>> Input<T, M> for Su
 
     fn next_jump(&self, t: T) -> Option<T> {
         match (self.0.next_jump(t), self.1.next_jump(t)) {
-            (Some(a), Some(b)) => Some(if less(b, a) { b } else { a }),
+            // One that is not a number comes first, so that it is refused.
+            (Some(a), Some(b)) => Some(if less(b, a) || seen(b).is_nan() { b } else { a }),
             (a, b) => a.or(b),
         }
     }
@@ -316,6 +326,25 @@ mod tests {
         };
         assert_eq!([0.0, 1.5, 3.0].map(|t| pulse.at(t)[0]), [0.0; 3]);
         assert_eq!([0.0, 1.5, 3.0].map(|t| pulse.next_jump(t)), [None; 3]);
+    }
+
+    #[test]
+    fn a_pulse_of_no_time_is_told() {
+        let pulse = |start, end| Pulse {
+            amplitude: SVector::from([3.0]),
+            start,
+            end,
+        };
+        let is_refused = |jump: Option<f64>| jump.is_some_and(f64::is_nan);
+        assert!(is_refused(pulse(f64::NAN, 1.0).next_jump(0.0)));
+        assert!(is_refused(pulse(1.0, f64::NAN).next_jump(0.0)));
+        for sum in [
+            Sum(pulse(1.0, 2.0), pulse(f64::NAN, 2.0)),
+            Sum(pulse(f64::NAN, 2.0), pulse(1.0, 2.0)),
+        ] {
+            assert!(is_refused(Input::<f64, 1>::next_jump(&sum, 0.0)));
+        }
+        assert_eq!(pulse(f64::INFINITY, f64::INFINITY).next_jump(0.0), None);
     }
 
     #[test]

@@ -39,6 +39,7 @@ pub trait Lanes: Real {
 }
 
 /// Columns side by side. Where there are fewer than lanes, the last is repeated; without any all is zero.
+#[must_use]
 pub fn pack<L: Lanes, const N: usize>(columns: &[SVector<L::Lane, N>]) -> SVector<L, N> {
     let last = columns.len().saturating_sub(1);
     SVector::from_fn(|row, _| {

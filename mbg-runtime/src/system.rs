@@ -35,9 +35,11 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     type Conditioning: AsRef<[T]> + Copy;
 
     /// The state at the start, from the model's `initial:` values.
+    #[must_use]
     fn initial_state(&self) -> SVector<T, N>;
 
     /// Time derivative of the state.
+    #[must_use]
     fn derivative(
         &self,
         t: T,
@@ -65,6 +67,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ///
     /// Generated models without nonlinear loops evaluate all four at once where the scalar has lanes. Unless it is
     /// given, one stage follows the other.
+    #[must_use]
     fn derivatives(
         &self,
         t: T::Stages,
@@ -81,6 +84,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     }
 
     /// Outputs.
+    #[must_use]
     fn output(
         &self,
         t: T,
@@ -90,6 +94,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ) -> SVector<T, P>;
 
     /// `∂f/∂x`, exact.
+    #[must_use]
     fn jacobian_state(
         &self,
         t: T,
@@ -100,6 +105,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// [`derivative`](Self::derivative) and [`jacobian_state`](Self::jacobian_state) at once; a generated model works out
     /// once what both need.
+    #[must_use]
     fn derivative_and_jacobian(
         &self,
         t: T,
@@ -127,6 +133,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     }
 
     /// `∂f/∂u`, exact.
+    #[must_use]
     fn jacobian_input(
         &self,
         t: T,
@@ -140,6 +147,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// Generated models give it exactly. Unless it is given, it is zero where the model is [`AUTONOMOUS`](Self::AUTONOMOUS),
     /// else a difference quotient over five evaluations of [`System::derivative`] ahead, whose error falls with the fourth
     /// power of `ahead`, the length of the step.
+    #[must_use]
     fn derivative_time(
         &self,
         t: T,
@@ -155,10 +163,12 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     }
 
     /// Energy stored, in joule when the model is in SI units.
+    #[must_use]
     fn energy(&self, t: T, x: &SVector<T, N>) -> T;
 
     /// Power supplied by the sources and dissipated by the resistors: `dH/dt = supplied − dissipated`, where the energy of
     /// each storage depends on its own state alone; [`Meta::notes`] names those where it does not.
+    #[must_use]
     fn power(
         &self,
         t: T,
@@ -169,6 +179,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero.
+    #[must_use]
     fn conditioning(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Self::Conditioning;
 
     /// Why the last evaluation at this state must not be trusted, if there is a reason.
@@ -176,6 +187,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// A block is too near its singular set when its normalised determinant is below the square root of the
     /// scalar's precision. A nonlinear algebraic loop is in trouble when its last solve did not converge. Steppers ask
     /// once a step.
+    #[must_use]
     fn trouble(
         &self,
         t: T,
@@ -236,6 +248,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     fn substitute<E: Element>(_rows: &[[E; N]; N], _x: &mut [E; N]) {}
 
     /// The first algebraic loop whose last solve did not converge.
+    #[must_use]
     fn unsolved(memory: &Self::Memory) -> Option<Trouble> {
         let (number, residual) = memory.unsolved()?;
         let iterated = |found: &&Loop| matches!(found.solver, Solver::Newton { .. });

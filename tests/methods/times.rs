@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Adaptive, Auto, Cause, Dop853, Estimating, Fixed, Input, Integrator, Pirk8, Pirk16, Radau5,
-    Radau9, Rk4, Rodas4, Rodas5P, Ros2, Stopped, Tsit5, Variable, Verner9,
+    Radau9, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Stopped, Tsit5, Variable, Verner9,
 };
 use nalgebra::SVector;
 
@@ -101,7 +101,11 @@ fn counted(solver: impl Integrator<1>, start: f64, end: f64) -> Result<f64, Stop
 fn no_run_is_too_short() {
     let adaptive = Adaptive::new(Tsit5, 1e-6, 1e-6);
     for start in [0.0, 1.0, -1e9, 1e9_f64] {
-        let next = if start == 0.0 { 1e-300 } else { start.next_up() };
+        let next = if start == 0.0 {
+            1e-300
+        } else {
+            start.next_up()
+        };
         let after = next.next_up().next_up();
         for end in [next, after, start + 1e-5] {
             let way = end - start;
@@ -173,4 +177,24 @@ fn times_that_cannot_be_stepped_through_are_refused() {
     let first = Some(1e-300);
     let found = counted(Adaptive { first, ..solver }, 1.0, 2.0).unwrap();
     assert!((found - 1.0).abs() < 1e-12);
+}
+
+/// Nobody tells of this pulse: no step may be longer than half of it.
+#[test]
+fn the_longest_step_of_an_automatic_choice_sees_a_short_pulse() {
+    let length = 1e-3;
+    let within = move |t: f64| (5.0..5.0 + length).contains(&t);
+    let input = Smooth(move |t| SVector::from([if within(t) { 1.0 / length } else { 0.0 }]));
+    let mut last = SVector::from([0.0, 0.0]);
+    let solver = Auto {
+        longest: 0.5 * length,
+        ..Auto::new(1e-6, 1e-6)
+    };
+    solver
+        .integrate(&Written(Oscillator), &input, 0.0, 10.0, last, |step| {
+            last = *step.state()
+        })
+        .unwrap();
+    let error = last[0] - f64::sin(5.0 - 0.5 * length);
+    assert!(error.abs() < 1e-3, "{error}");
 }

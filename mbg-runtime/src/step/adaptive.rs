@@ -79,6 +79,7 @@ pub struct Adaptive<'a, Method> {
 
 impl<M> Adaptive<'_, M> {
     /// A method with these relative and absolute tolerances, no limit to the step and at most a million steps.
+    #[must_use]
     pub const fn new(method: M, relative: f64, absolute: f64) -> Self {
         Self {
             method,
@@ -133,12 +134,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
-        let first = match self.first {
-            Some(first) => first,
-            None => self.starting_step(problem, (start, end), (&x, &slope), &tolerance),
-        };
-        // No shorter than time resolves; it grows from there.
-        let first = first.max(T::EPSILON * start.magnitude());
+        let first = self.first_step(problem, (start, end), (&x, &slope), &tolerance);
         problem.probes.enter(seen(start), first);
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
         let smallest =
@@ -150,10 +146,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             if taken.saturating_add(problem.statistics.rejected) >= self.most {
                 return Err(Stopped::new(t, Cause::TooManySteps));
             }
-            let (span, last) = next_span(t, end, control.length.min(self.longest));
-            if !less(t, span.end) {
-                return Err(Stopped::new(t, Cause::StepTooSmall));
-            }
+            let (span, last) = next_span(t, end, control.length.min(self.longest))?;
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
                 control.shorten(0.5 * seen(span.length));
@@ -218,6 +211,26 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
 }
 
 impl<M: Estimating> Adaptive<'_, M> {
+    /// The first step, no shorter than time resolves: it grows from there.
+    fn first_step<T, S, I, const N: usize, const K: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, K, P>,
+        (start, end): (T, T),
+        at_start: (&SVector<T, N>, &SVector<T, N>),
+        tolerance: &Tolerance<N>,
+    ) -> f64
+    where
+        T: Real,
+        S: System<T, N, K, P>,
+        I: Input<T, K>,
+    {
+        let first = match self.first {
+            Some(first) => first,
+            None => self.starting_step(problem, (start, end), at_start, tolerance),
+        };
+        first.max(T::EPSILON * start.magnitude())
+    }
+
     /// A step for which an explicit step of Euler's method is accurate, and the second derivative at its end.
     fn starting_step<T, S, I, const N: usize, const K: usize, const P: usize>(
         &self,
@@ -263,12 +276,15 @@ impl<M: Estimating> Adaptive<'_, M> {
 /// A step of this length, or up to the end where that is hardly farther; and whether it is the last.
 ///
 /// It is as long as its times are apart, or the rounding of all times would add up to a state of another time.
-fn next_span<T: Real>(start: T, end: T, length: f64) -> (Span<T>, bool) {
+fn next_span<T: Real>(start: T, end: T, length: f64) -> Result<(Span<T>, bool), Stopped> {
     let ahead = start + T::from_f64(length);
     let last = 1.01 * length >= seen(end - start) || !less(ahead, end);
     let end = if last { end } else { ahead };
+    if !less(start, end) {
+        return Err(Stopped::new(start, Cause::StepTooSmall));
+    }
     let length = end - start;
-    (Span { start, end, length }, last)
+    Ok((Span { start, end, length }, last))
 }
 
 #[cfg(test)]

@@ -38,6 +38,8 @@ pub struct Auto<'a> {
     pub absolute: f64,
     /// Nominal sizes of the states, in their order; a state without one has size 1.
     pub nominal: &'a [f64],
+    /// No step is longer, as of [`Adaptive::longest`].
+    pub longest: f64,
 }
 
 /// A method and why it was picked.
@@ -112,12 +114,14 @@ impl fmt::Display for Choice {
 }
 
 impl Auto<'_> {
-    /// Picks methods for these relative and absolute tolerances.
+    /// Picks methods for these relative and absolute tolerances, with no limit to the step.
+    #[must_use]
     pub const fn new(relative: f64, absolute: f64) -> Self {
         Self {
             relative,
             absolute,
             nominal: &[],
+            longest: f64::INFINITY,
         }
     }
 
@@ -192,6 +196,7 @@ impl Auto<'_> {
     fn with<M>(&self, method: M) -> Adaptive<'_, M> {
         Adaptive {
             nominal: self.nominal,
+            longest: self.longest,
             ..Adaptive::new(method, self.relative, self.absolute)
         }
     }

@@ -44,6 +44,7 @@ pub struct Fixed<Method> {
 
 impl<M: Method> Fixed<M> {
     /// A method at steps of this length.
+    #[must_use]
     pub const fn new(method: M, step: f64) -> Self {
         Self {
             method,
@@ -198,6 +199,7 @@ impl Rk4 {
     /// [`FUSED`](crate::FUSED) does not hold.
     ///
     /// Nothing is checked: ask [`System::trouble`] and look at the state where it matters.
+    #[must_use]
     #[inline]
     pub fn step<T, S, const N: usize, const M: usize, const P: usize>(
         system: &S,
@@ -215,6 +217,7 @@ impl Rk4 {
     }
 
     /// [`Rk4::step`] with compensated sums: `lost` is zero before the first step and goes from each step to the next.
+    #[must_use]
     #[inline]
     pub fn compensated_step<T, S, const N: usize, const M: usize, const P: usize>(
         system: &S,

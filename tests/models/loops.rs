@@ -519,9 +519,9 @@ fn metadata_tells_how_each_loop_is_solved() {
 fn next_solve_begins_where_the_last_one_ended() {
     let (model, _) = both!(TwoDiodes, TwoDiodesParameters);
     let (mut memory, x) = (Default::default(), model.initial_state());
-    model.derivative(0.0, &x, &SVector::from([2.0]), &mut memory);
+    let _ = model.derivative(0.0, &x, &SVector::from([2.0]), &mut memory);
     let cold = memory.outcomes()[0].iterations;
-    model.derivative(0.0, &x, &SVector::from([2.001]), &mut memory);
+    let _ = model.derivative(0.0, &x, &SVector::from([2.001]), &mut memory);
     let warm = memory.outcomes()[0].iterations;
     assert!(warm <= 4 && cold > 2 * warm, "{cold} {warm}");
 }

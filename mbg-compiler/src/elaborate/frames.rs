@@ -103,13 +103,12 @@ impl<'a> Builder<'a> {
 
     /// The definition by which another component at the same frame tells a quantity there.
     fn tells(&self, teller: &Frame, frame: &Frame, quantity: &str) -> Option<usize> {
-        let told = format!("{quantity}_{}", teller.port);
         let [own, other] = [frame, teller].map(|it| self.scopes[it.scope].prefix.as_str());
-        if teller.junction != frame.junction
-            || own.starts_with(other)
-            || other.starts_with(own)
-            || teller.component.parameters().any(|it| it.name == told)
-        {
+        if teller.junction != frame.junction || own.starts_with(other) || other.starts_with(own) {
+            return None;
+        }
+        let told = format!("{quantity}_{}", teller.port);
+        if teller.component.parameters().any(|it| it.name == told) {
             return None;
         }
         match self.scopes[teller.scope].names.get(&told) {

@@ -11,10 +11,7 @@ use crate::diagnostics::error;
 use crate::graph::{Junction, JunctionId, component_name};
 use crate::symbolic::Symbol;
 use crate::syntax::ast::{self, Statement};
-use crate::syntax::dump;
-
-/// More components than these get no parameters of their own in a message.
-const MOST_PARTS: usize = 6;
+use crate::syntax::dump::{self, MOST_PARTS};
 
 impl<'a> Builder<'a> {
     /// Declares the names of junctions, parameters, inputs, values and loops.

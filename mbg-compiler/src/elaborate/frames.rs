@@ -37,6 +37,16 @@ pub(super) struct LeftOut<'a> {
     pub(super) parameter: &'a ast::Parameter,
 }
 
+/// A parameter that is left to its default, and what another component tells that it is.
+pub(super) struct Told<'a> {
+    definition: usize,
+    /// Scope of the component that tells it.
+    teller: usize,
+    /// Scope of the one with the parameter.
+    scope: usize,
+    parameter: &'a ast::Parameter,
+}
+
 impl<'a> Builder<'a> {
     /// Notes what a port of a component is connected to.
     pub(super) fn at_frame(
@@ -56,49 +66,56 @@ impl<'a> Builder<'a> {
 
     /// Reports a parameter that is left to its default where another component tells something else.
     pub(super) fn check_default(&mut self, definition: usize, value: &Value) -> Result<()> {
-        let Some((told, report)) = self.told(definition) else {
+        let Some(told) = self.told(definition) else {
             return Ok(());
         };
-        match &self.definitions[told].progress {
+        match &self.definitions[told.definition].progress {
             Progress::Known(other) if is_same(self.pool, value, other) => return Ok(()),
             Progress::Known(_) => {}
-            Progress::Unread => self.missing = Some(Missing::Definition(told)),
+            Progress::Unread => self.missing = Some(Missing::Definition(told.definition)),
             Progress::Failed => self.missing = Some(Missing::Broken),
         }
-        Err(report)
+        Err(self.not_given(&told))
     }
 
-    /// Where a parameter is left to its default: the definition by which another component tells what it is, and the
-    /// mistake if that is something else.
-    pub(super) fn told(&self, definition: usize) -> Option<(usize, Box<Diagnostic>)> {
-        let number = self
-            .defaults
-            .binary_search_by_key(&definition, |it| it.definition);
-        let left = &self.defaults[number.ok()?];
+    /// What another component tells of a parameter that is left to its default.
+    pub(super) fn told(&self, definition: usize) -> Option<Told<'a>> {
+        let defaults = &self.defaults;
+        let number = defaults.binary_search_by_key(&definition, |it| it.definition);
+        let left = &defaults[number.ok()?];
         let name = left.parameter.name.to_string();
-        let (frame, quantity) = self.frames.iter().find_map(|frame| {
+        let mut own = self.frames.iter().filter(|it| it.scope == left.scope);
+        let (frame, quantity) = own.find_map(|frame| {
             let quantity = name.strip_suffix(&frame.port)?.strip_suffix('_')?;
-            (frame.scope == left.scope).then_some((frame, quantity))
+            Some((frame, quantity))
         })?;
-        if self.is_moved_by_source(frame.junction.0) || self.is_weightless(quantity) {
-            return None;
-        }
         let tells = |other: &Frame| Some((self.tells(other, frame, quantity)?, other.scope));
-        let (told, teller) = self.frames.iter().find_map(tells)?;
-        let [own, whole] = [left.scope, teller].map(|scope| self.name_of(scope));
+        let (definition, teller) = self.frames.iter().find_map(tells)?;
+        let is_given = self.is_moved_by_source(frame.junction.0) || self.is_weightless(quantity);
+        (!is_given).then_some(Told {
+            definition,
+            teller,
+            scope: left.scope,
+            parameter: left.parameter,
+        })
+    }
+
+    fn not_given(&self, told: &Told) -> Box<Diagnostic> {
+        let [own, whole] = [told.scope, told.teller].map(|scope| self.name_of(scope));
         let near = match (whole.rsplit_once('.'), own.rsplit_once('.')) {
             (Some((around, name)), Some((same, _))) if around == same => name,
             _ => whole,
         };
+        let name = &told.parameter.name;
         let message = format!("`{own}` is at a frame of `{near}` and is not given `{name}`");
-        let default = left.parameter.default.to_token_stream();
-        let value = &self.definitions[told].name;
-        let report = error(codes::MISSING_DEFAULT, left.parameter.name.span(), message)
+        let default = told.parameter.default.to_token_stream();
+        let value = self.definitions[told.definition].name;
+        let report = error(codes::MISSING_DEFAULT, name.span(), message)
             .help(format!("write `{name}: {near}.{value}`"))
             .help(format!(
                 "write `{name}: {default}` where that of the world is meant"
             ));
-        Some((told, Box::new(report)))
+        Box::new(report)
     }
 
     /// The definition by which another component at the same frame tells a quantity there.

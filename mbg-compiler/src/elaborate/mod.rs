@@ -8,6 +8,7 @@ mod advice;
 mod attitude;
 mod blame;
 mod bonds;
+mod branches;
 mod check;
 pub mod claims;
 mod conditions;
@@ -46,13 +47,13 @@ use self::claims::Claims;
 use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
+use self::frames::{Frame, LeftOut};
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::graph::{BondGraph, Causality, ElementId, JunctionId, Origins};
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, Statement};
-use frames::{Frame, LeftOut};
 
 /// Elaborates one model; none if anything was reported.
 #[must_use]

@@ -3,10 +3,14 @@
 
 pub(crate) mod dual;
 
+use std::fmt::Write;
+
 use mbg_compiler::compile::{Compiled, compile};
 use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::elaborate::{self, Elaborated};
-use mbg_compiler::symbolic::Pool;
+use mbg_compiler::graph::BondId;
+use mbg_compiler::symbolic::print::Printer;
+use mbg_compiler::symbolic::{Pool, Symbol};
 use mbg_compiler::syntax::ast::{Item, Model, Source};
 use mbg_compiler::syntax::parse;
 
@@ -35,6 +39,43 @@ pub(crate) fn attempted(text: &str) -> Result<Compiled, Vec<&'static str>> {
         compile(model, &elaborate::component_table(source), diagnostics)
     });
     model.ok_or_else(|| diagnostics.list().iter().map(|it| it.code.text).collect())
+}
+
+/// Errors of a model with one mass around the statements given.
+pub(crate) fn mistake(statements: &str) -> String {
+    let text =
+        format!("model M {{ param n = 3.0; 1 a[3] {{ I m {{ inertia: 1.0 }} }}\n{statements} }}");
+    elaborated(&text).err().unwrap_or_default()
+}
+
+/// Bonds, initial states and outputs of the flat graph.
+pub(crate) fn flat(text: &str) -> String {
+    let (model, pool) = elaborated(text).unwrap_or_else(|reported| panic!("{reported}"));
+    let mut text = String::new();
+    for bond in 0..model.graph.bonds.len() {
+        let dimension = model.graph.bonds[bond].dimension;
+        writeln!(
+            text,
+            "{} [{dimension}]",
+            model.graph.bond_name(BondId(bond))
+        )
+        .unwrap();
+    }
+    let name = |symbol| match symbol {
+        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
+        Symbol::State(index) => model.states[index].variable.name.clone(),
+        other => format!("{other:?}"),
+    };
+    let printer = Printer::new(&pool, &name);
+    for state in &model.states {
+        let (name, initial) = (&state.variable.name, printer.text(state.initial));
+        writeln!(text, "state {name} = {initial}").unwrap();
+    }
+    for output in &model.outputs {
+        let (name, value) = (&output.variable.name, printer.text(output.value));
+        writeln!(text, "output {name} = {value}").unwrap();
+    }
+    text
 }
 
 fn stage<T>(

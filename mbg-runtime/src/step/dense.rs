@@ -217,7 +217,7 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
         Ok(None)
     }
 
-    /// Leaves the part of the step up to a time in it.
+    /// Leaves the part of the step up to a time in it. Its length stays that of the polynomial, which is over the whole step.
     pub(super) fn cut(&mut self, end: T) {
         self.state = self.at(end);
         self.span.end = end;

@@ -1,0 +1,362 @@
+//! Laws of elements: what they are, what they store, and what is said of mistakes in them.
+#![allow(clippy::unwrap_used)]
+
+mod models;
+
+use mbg_compiler::compile::Routines;
+use mbg_compiler::graph::Law;
+use mbg_compiler::program::{self, Arguments};
+use mbg_compiler::symbolic::Symbol;
+use mbg_compiler::symbolic::print::Printer;
+use models::{attempted, compiled, elaborated, flat, mistake};
+
+#[test]
+fn mistakes_in_laws_are_told() {
+    insta::assert_snapshot!(mistake("1 v[2] { EJS wheel { momentum: [0.0, 1.0] } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 2 [MBG0204]");
+    insta::assert_snapshot!(mistake("1 v[4] { EJS wheel { momentum: 1.0 } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 4 [MBG0204]");
+    insta::assert_snapshot!(mistake("input f; 1 v { I b { inertia: 1.0 } Se s { effort: 2.0 * f } }"), @"
+    2:58 `f` is a variable of `s` in its law, and declared as another value [MBG0202]
+      help: declare the other value by a longer name than `f`
+    ");
+    insta::assert_snapshot!(mistake("1 v[2] { C c { effort: [q.x + q.y, 2.0 * q.y] } I b { inertia: 1.0 } }"), @"
+    2:24 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
+      help: write `energy: …`, from which the law follows by differentiation
+    ");
+    insta::assert_snapshot!(mistake("1 v { C c { stiffness: 1.0 + f } I b { inertia: 2.0 + e * e } }"), @"
+    2:30 `c` stores energy by its own `q` alone, and its law reads `f` [MBG0213]
+      help: write `effort: …` or `energy: …` as a function of `q`
+    2:55 `b` stores energy by its own `p` alone, and its law reads `e` [MBG0213]
+      help: write `flow: …` or `energy: …` as a function of `p`
+    ");
+    insta::assert_snapshot!(mistake("1 v[2] { C c { stiffness: diag(1.0 + q.y, 1.0) } I b { inertia: 1.0 } }"), @"
+    2:27 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
+      help: write `energy: …`, from which the law follows by differentiation
+    ");
+    insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0, initial: 2.0, initial_flow: 3.0 } }"), @"
+    2:41 `b` is given both a momentum and a flow at the start [MBG0104]
+      help: remove `initial` or `initial_flow`: one follows from the other
+    ");
+    insta::assert_snapshot!(mistake("1 v[3] { I b { inertia: [1.0, 2.0, 3.0] } }"), @"
+    2:25 expected a number or a 3×3 matrix, found a vector of 3 [MBG0204]
+      help: write `diag(…)` for a matrix with these on its diagonal
+    ");
+    insta::assert_snapshot!(mistake("1 v[2] { I b { inertia: [[1.0, 2.0], [2.0, 1.0]] } }"), @"2:25 the inertia of `b` is not positive definite: the determinant of its first 2 rows and columns is -3 [MBG0216]");
+    insta::assert_snapshot!(mistake("1 v { I b { inerta: 1.0 } R r { effort: Sin(f) } }"), @"
+    2:13 `I` does not know `inerta` [MBG0207]
+      help: did you mean `inertia`?
+      help: its words are `inertia`, `flow`, `energy`, `initial`, `initial_flow`, `gyroscopic`
+    2:9 `b` has no law [MBG0205]
+      help: write `I b { inertia: … }`
+    2:41 `Sin` is not a function of the language [MBG0203]
+      help: did you mean `sin`?
+      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of
+    ");
+    insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0 } } v -> v;"), @"
+    2:32 `v -> v` joins a junction to itself, which says nothing [MBG0209]
+      help: remove it, or lead it through a `TF` or a `GY`
+    ");
+    insta::assert_snapshot!(mistake("1 w[2]; a.x -> w[0];"), @"
+    2:3 junction `w[1]` has no bond [MBG0208]
+      help: write an arrow to it: `w[1] -> …;`
+    ");
+}
+
+/// A law that takes its vector apart, or the square of its length, is one of the whole vector.
+#[test]
+fn laws_of_whole_vectors_are_no_laws_of_components() {
+    let force = |law: &str| {
+        let (model, pool) = elaborated(&format!(
+            "model M {{ 1 v[2] {{ C c {{ {law} }} I m {{ inertia: 1.0 }} }} }}"
+        ))
+        .unwrap_or_else(|reported| panic!("{reported}"));
+        let Law::Storage(storage) = &model.graph.elements[0].law else {
+            panic!("a storage was written")
+        };
+        let name = |symbol| match symbol {
+            Symbol::State(index) => model.states[index].variable.name.clone(),
+            other => format!("{other:?}"),
+        };
+        let printer = Printer::new(&pool, &name);
+        let text = storage.coenergy.iter().map(|value| printer.text(*value));
+        text.collect::<Vec<_>>().join("\n")
+    };
+    insta::assert_snapshot!(force("effort: q * (transpose(q) * q)"), @"
+    (c.q.x c.q.x + c.q.y c.q.y) c.q.x
+    (c.q.x c.q.x + c.q.y c.q.y) c.q.y
+    ");
+    insta::assert_snapshot!(force("energy: 0.25 * powi(transpose(q) * q, 2)"), @"
+    0.25 2 c.q.x 2 (c.q.x c.q.x + c.q.y c.q.y)
+    0.25 2 (c.q.x c.q.x + c.q.y c.q.y) 2 c.q.y
+    ");
+    insta::assert_snapshot!(force("effort: 3.0 * powi(q, 3)"), @"
+    3 c.q.x c.q.x c.q.x
+    3 c.q.y c.q.y c.q.y
+    ");
+    insta::assert_snapshot!(force("energy: q[0] * q.y"), @"
+    c.q.y
+    c.q.x
+    ");
+    // A junction of that name is no variable of the element.
+    let law = "1 q[2] { I g { inertia: 1.0 } } 1 v[2] { I b { inertia: 1.0 } R r { effort: q.f.x * powi(f, 3) } }";
+    assert_eq!(mistake(law), "");
+}
+
+/// A law that multiplies is a resistance, whatever word gives it, and so has both causalities.
+#[test]
+fn a_law_that_multiplies_is_a_coefficient() {
+    let model = |resistor: &str| {
+        let text = format!(
+            "model M {{ param k = 2.0; 1 a {{ I m {{ inertia: 1.0 }} }}
+             0 b {{ C c {{ stiffness: 3.0 }} {resistor} }} a -> b; }}"
+        );
+        let model = compiled(&text);
+        let arguments = Arguments {
+            parameters: &[2.0],
+            time: 0.0,
+            state: &[0.5, 0.7],
+            input: &[],
+        };
+        program::evaluate(&model.program, Routines::DERIVATIVE, &arguments)
+    };
+    let expected = model("R r { resistance: k }");
+    assert_eq!(model("R r { effort: k * f }"), expected);
+    assert_eq!(model("R r { flow: e / k }"), expected);
+    let itself = |law| mistake(&format!("1 v {{ I b {{ inertia: 1.0 }} R r {{ {law} }} }}"));
+    insta::assert_snapshot!(itself("effort: 2.0 * e"), @"
+    2:42 the law of `r` gives its effort `e`, and reads it [MBG0218]
+      help: write it as a function of `f`
+    ");
+}
+
+/// A law that jumps has the same slope on both sides, and yet two values.
+#[test]
+fn laws_that_jump_keep_both_sides() {
+    let force = |law: &str, momentum: f64| {
+        let text =
+            format!("model M {{ 1 v {{ I m {{ inertia: 2.0 }} {law} }} output force = m.e; }}");
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[momentum],
+            input: &[],
+        };
+        program::evaluate(&compiled(&text).program, Routines::OUTPUT, &arguments)[0]
+    };
+    let cases = [
+        ("R r { effort: 5.0 * sign(f) }", -5.0, 5.0),
+        ("R r { effort: 5.0 * sign(f) + 0.1 * f }", -5.15, 5.15),
+        (
+            "R r { effort: if f > 0.0 { 5.0 } else { -2.0 } }",
+            -5.0,
+            2.0,
+        ),
+        (
+            "R r { effort: if f > 0.0 { 5.0 + f } else { f } }",
+            -6.5,
+            1.5,
+        ),
+        (
+            "Se s { effort: if v.f < 1.0 { 2.0 } else { 0.5 } }",
+            0.5,
+            2.0,
+        ),
+    ];
+    for (law, forward, backward) in cases {
+        assert_eq!(
+            [3.0, -3.0].map(|momentum| force(law, momentum)),
+            [forward, backward],
+            "{law}"
+        );
+    }
+    // Such a law has no inverse, which a dependent storage would need.
+    let text = "#[derivative] model M { 0 n { C a { stiffness: 2.0 } C b { effort: q + sign(q) } } \
+                1 v { I m { inertia: 1.0 } } n -> v; }";
+    assert_eq!(attempted(text).err(), Some(vec!["MBG0403"]));
+}
+
+/// A stiffness that changes with the displacement it multiplies is a law `k(q) q`, whose energy is its integral.
+#[test]
+fn coefficients_may_change_with_the_state_they_multiply() {
+    let energy = |storage: &str, state: f64| {
+        let text = format!("model M {{ 1 v {{ {storage} R r {{ resistance: 1.0 }} }} }}");
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[state],
+            input: &[],
+        };
+        program::evaluate(&compiled(&text).program, Routines::ENERGY, &arguments)[0]
+    };
+    let cases = [
+        // ½ · 50 q² + ¼ · 400 q⁴
+        ("C c { stiffness: 50.0 + 400.0 * q * q }", 3.06),
+        // ∫ p / (2 + p) dp = p − 2 ln(1 + p / 2)
+        ("I m { inertia: 2.0 + p }", 0.3 - 2.0 * 1.15_f64.ln()),
+        // ∫ q √(1 + q) dq, with s = √(1 + q): 2 (s⁵ / 5 − s³ / 3)
+        (
+            "C c { compliance: 1.0 / sqrt(1.0 + q) }",
+            2.0 * (1.3_f64.powf(2.5) / 5.0 - 1.3_f64.powf(1.5) / 3.0 + 2.0 / 15.0),
+        ),
+        // Gas, a chemical potential, play
+        (
+            "C c { effort: 2.0 * exp(1.4 * ln(1.0 / (1.0 - q))) }",
+            5.0 * (0.7_f64.powf(-0.4) - 1.0),
+        ),
+        ("C c { effort: 2.0 * ln(q) }", 0.6 * (0.3_f64.ln() - 1.0)),
+        ("C c { effort: 3.0 / q }", 3.0 * 0.3_f64.ln()),
+        (
+            "C c { effort: if q > 0.1 { 100.0 * (q - 0.1) } else { 0.0 } }",
+            2.0,
+        ),
+        (
+            "C c { effort: tanh(50.0 * q) }",
+            15.0_f64.cosh().ln() / 50.0,
+        ),
+    ];
+    for (storage, expected) in cases {
+        let found = energy(storage, 0.3);
+        assert!(
+            (found - expected).abs() < 1e-13,
+            "{storage}: {found}, not {expected}"
+        );
+    }
+}
+
+/// What its energy is changed by besides its own state is no port, so that the balance lacks that power.
+#[test]
+fn energies_that_are_modulated_are_noted() {
+    let notes = |stiffness: &str| {
+        let model = format!(
+            "model M {{ param k = 5.0; 1 v {{ I m {{ inertia: 1.0 }} C c {{ stiffness: {stiffness} }} }} output y = c.q; }}"
+        );
+        compiled(&model).notes.join("\n")
+    };
+    assert_eq!(notes("k"), "");
+    insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
+    insta::assert_snapshot!(notes("exp(-q * q)"), @"the energy of `c` is a quadrature of its law, good to rounding where that is smooth");
+}
+
+/// The value of an expression of constants.
+fn value(expression: &str) -> f64 {
+    let text = format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} output y = {expression}; }}");
+    let (model, pool) = elaborated(&text).unwrap_or_else(|reported| panic!("{reported}"));
+    pool.constant_value(model.outputs[0].value).unwrap()
+}
+
+/// What the help on the only mistake of an expression says to write.
+fn instead(expression: &str) -> String {
+    let text = format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} output y = {expression}; }}");
+    let reported = elaborated(&text).err().unwrap_or_default();
+    let [_, help] = reported.lines().collect::<Vec<_>>()[..] else {
+        panic!("one mistake with one help, found {reported}")
+    };
+    help.split('`').nth(1).unwrap().to_owned()
+}
+
+#[test]
+fn words_of_other_languages_are_answered_with_what_has_their_value() {
+    let cases = [
+        ("atan(0.7)", 0.7_f64.atan()),
+        ("arctan(0.7)", 0.7_f64.atan()),
+        ("arctan2(0.7, 0.2)", 0.7_f64.atan2(0.2)),
+        ("arcsin(0.7)", 0.7_f64.asin()),
+        ("arccos(0.7)", 0.7_f64.acos()),
+        ("sinh(0.5 + 0.2)", 0.7_f64.sinh()),
+        ("cosh(0.7)", 0.7_f64.cosh()),
+        ("log(0.7)", 0.7_f64.ln()),
+        ("log10(0.7)", 0.7_f64.log10()),
+        ("log2(0.7)", 0.7_f64.log2()),
+        ("hypot(0.7, 0.2)", 0.7_f64.hypot(0.2)),
+        ("sgn(-0.7)", -1.0),
+        ("(-0.7).signum()", -1.0),
+        ("fabs(-0.7)", 0.7),
+        ("clamp(0.7, -1.0, 0.5)", 0.5),
+        ("clamp(0.7 - 2.0, -1.0, 0.5)", -1.0),
+        ("norm([3.0, 4.0])", 5.0),
+        ("dot([3.0, 4.0], [1.0, 2.0])", 11.0),
+        ("radians(90)", std::f64::consts::FRAC_PI_2),
+        ("pow(0.7, 2)", 0.49),
+        ("powf(0.7, 2.0)", 0.49),
+        ("pow(0.2 + 0.5, -1)", 0.7_f64.recip()),
+        ("powf(0.7, 0.5)", 0.7_f64.sqrt()),
+        ("powf(0.7, 1.5)", 0.7_f64.powf(1.5)),
+        ("powi(0.7, 1.5)", 0.7_f64.powf(1.5)),
+        ("pow(0.7, 1.0 + 0.5)", 0.7_f64.powf(1.5)),
+        ("0.7 ^ 2", 0.49),
+        ("0.7 ** 2", 0.49),
+        ("0.7 ** 1.5", 0.7_f64.powf(1.5)),
+        ("pi", std::f64::consts::PI),
+        ("std::f64::consts::PI", std::f64::consts::PI),
+        ("TAU", std::f64::consts::TAU),
+    ];
+    for (typed, expected) in cases {
+        let found = value(&instead(typed));
+        assert!(
+            (found - expected).abs() < 1e-15 * (1.0 + expected.abs()),
+            "{typed}: {found}"
+        );
+    }
+    assert_eq!(instead("time"), "t");
+    assert_eq!(instead("cross(a.f, 2.0 + a.f)"), "skew(a.f) * (2.0 + a.f)");
+}
+
+#[test]
+fn mistakes_in_powers_and_functions_are_told() {
+    // What stands beside the sign was meant, whatever Rust takes for its operands.
+    insta::assert_snapshot!(mistake("1 v { R r { effort: 3.0 * f ** 2 + f } }"), @"
+    2:29 `**` is not a power; Rust has no sign for it [MBG0212]
+      help: write `powi(f, 2)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: 2.0 + f ^ 2 * 3.0 } }"), @"
+    2:29 `^` is not a power; in Rust it is the exclusive or [MBG0212]
+      help: write `powi(f, 2)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: powi(f, n) } }"), @"
+    2:29 expected an integer exponent between -64 and 64 [MBG0213]
+      help: write `exp(n * ln(f))`, where `f` is positive
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: atan(f) } }"), @"
+    2:21 `atan` is not a function of the language [MBG0203]
+      help: write `atan2(f, 1.0)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: clamp(f) } }"), @"
+    2:21 `clamp` is not a function of the language [MBG0203]
+      help: for `clamp(x, a, b)` write `min(max(x, a), b)`
+    ");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: sin(f, f) } }"), @"2:21 `sin` takes 1 argument, found 2 [MBG0213]");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: n * (f > 0.0) } }"), @"2:28 expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{` [MBG0213]");
+}
+
+#[test]
+fn conditions_of_laws_are_joined() {
+    let holds = |condition: &str| value(&format!("if {condition} {{ 1.0 }} else {{ 2.0 }}")) == 1.0;
+    for a in ["0.5 < 1.0", "0.5 > 1.0", "1 < 2", "1 > 2"] {
+        assert_eq!(holds(&format!("!({a})")), !holds(a));
+        for b in ["2.0 <= 2.0", "2.5 <= 2.0", "2 >= 2", "2 >= 3"] {
+            let (first, second) = (holds(a), holds(b));
+            assert_eq!(holds(&format!("{a} && {b}")), first && second, "{a} && {b}");
+            assert_eq!(holds(&format!("{a} || {b}")), first || second, "{a} || {b}");
+            assert_eq!(
+                holds(&format!("{a} && !({b})")),
+                first && !second,
+                "{a} && !({b})"
+            );
+            let both = format!("0.5 > 1.0 || {a} && {b}");
+            assert_eq!(holds(&both), first && second, "{both}");
+        }
+    }
+    let text = "model M {
+        1 a { I m { inertia: 1.0 } C c { effort: if q > 0.0 && q < 1.0 || q < -3.0 { 2.0 * q } else { q } } }
+        output y = if a.f > 0.0 && a.f < 1.0 { 1.0 } else { 0.0 };
+    }";
+    assert!(compiled(text).notes.is_empty());
+    insta::assert_snapshot!(flat(text), @"
+    a -> m [1]
+    a -> c [1]
+    state m.p = 0
+    state c.q = 0
+    output y = select_less(0, Signal(0), select_less(Signal(0), 1, 1, 0), 0)
+    ");
+    insta::assert_snapshot!(mistake("output y = if a.f.x > 0.0 && a.f.y == 1.0 { 1.0 } else { 0.0 };"), @"2:36 expected a comparison with < <= > or >= [MBG0213]");
+    insta::assert_snapshot!(mistake("output y = if a.f.x { 1.0 } else { 0.0 };"), @"2:15 expected a comparison with < <= > or >= [MBG0213]");
+}

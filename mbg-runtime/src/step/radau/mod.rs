@@ -104,7 +104,7 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
 struct Factors<T, const N: usize, const PAIRS: usize> {
     /// None where there are no factors of the present Jacobian.
     length: Option<T>,
-    /// The real `λ/h` of the present step, with factors at a length that is nearly its own.
+    /// The real `λ/h` with its factors.
     real: (T, Shifted<T, N>),
     /// One of each pair of others.
     pairs: [(Complex<T>, Shifted<Complex<T>, N>); PAIRS],
@@ -128,13 +128,6 @@ impl<T: Real, const N: usize, const PAIRS: usize> Factors<T, N, PAIRS> {
             *shift = Complex { real, imaginary };
         }
         self.real.0 = by(tableau.real);
-    }
-
-    /// Whether factors serve a step of this length: theirs may differ by the rounding of time, since sweeps then converge as
-    /// fast all the same.
-    fn serve(&self, length: T) -> bool {
-        self.length
-            .is_some_and(|own| (own - length).magnitude() <= T::SINGULAR * length.magnitude())
     }
 }
 
@@ -248,11 +241,11 @@ where
             self.jacobian = problem.jacobian(t, &(x + stages[S / 2]));
             self.factors.length = None;
         }
-        self.factors.shift(span.length, &A::TABLEAU);
-        if self.factors.serve(span.length) {
+        if self.factors.length == Some(span.length) {
             return;
         }
         self.factors.length = Some(span.length);
+        self.factors.shift(span.length, &A::TABLEAU);
         problem.statistics.factorisations += 1 + PAIRS as u64;
         let one = T::from_f64(1.0);
         for (shift, factors) in &mut self.factors.pairs {

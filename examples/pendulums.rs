@@ -21,12 +21,10 @@ mbg! {
         links: for k in 0..rods {
             1 top[3];
             1 middle[3];
-            let angle_before = if k == 0 { 0.0 } else { links[k-1].hinge.angle_b };
-            let start[2] = if k == 0 { rail.position_b } else { links[k-1].rod.position_b };
-            hinge: PlanarRevolute { angle_a: angle_before } (ends[k].end, top);
-            half: PlanarOffset { angle: hinge.angle_b, x: 0.5, position_a: start } (top, middle);
+            hinge: PlanarRevolute {} (ends[k].end, top);
+            half: PlanarOffset { x: 0.5 } (top, middle);
             body: PlanarBody { mass: 1.0, inertia: 1.0 / 12.0 } (middle);
-            rod: PlanarOffset { angle: hinge.angle_b, x: 1.0, position_a: start } (top, ends[k+1].end);
+            rod: PlanarOffset { x: 1.0 } (top, ends[k+1].end);
             let heights = half.position_b.y + if k == 0 { 0.0 } else { links[k-1].heights };
         }
         output cart: m = rail.travel;

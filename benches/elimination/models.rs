@@ -68,11 +68,10 @@ mbg! {
         Sf fixed[3] { flow: 0.0 } -> ends[0].end;
         rods: for k in 0..count {
             1 foot[3]; 1 middle[3];
-            let before = if k == 0 { 0.0 } else { rods[k-1].hinge.angle_b };
-            hinge: PlanarRevolute { initial: 0.3, angle_a: before } (ends[k].end, foot);
-            half: PlanarOffset { angle: hinge.angle_b, x: 0.5 } (foot, middle);
+            hinge: PlanarRevolute { initial: 0.3 } (ends[k].end, foot);
+            half: PlanarOffset { x: 0.5 } (foot, middle);
             body: PlanarBody { mass: 1.0, inertia: 1.0 / 12 } (middle);
-            rod: PlanarOffset { angle: hinge.angle_b, x: 1.0 } (foot, ends[k+1].end);
+            rod: PlanarOffset { x: 1.0 } (foot, ends[k+1].end);
         }
     }
 

@@ -36,13 +36,11 @@ macro_rules! chain {
                 Sf fixed[6] { flow: 0.0 } -> ends[0].end;
                 links: for k in 0..rods {
                     1 rod[6];
-                    let down[3] = if k == 0 { gravity } else { links[k-1].hinge.gravity_b };
-                    hinge: Revolute { axis: k % 2, damping: 0.1, torque: torque[k], gravity_a: down } (ends[k].end, rod);
+                    hinge: Revolute { axis: k % 2, damping: 0.1, torque: torque[k] } (ends[k].end, rod);
                     body: Body {
                         mass: 1.0,
                         inertia: diag(0.08395833333333334, 0.08395833333333334, 0.00125),
-                        centre: [0.0, 0.0, -0.5],
-                        gravity_at: hinge.gravity_b
+                        centre: [0.0, 0.0, -0.5]
                     } (rod);
                     length: Offset { by: [0.0, 0.0, -1.0] } (rod, ends[k+1].end);
                 }
@@ -69,14 +67,13 @@ mbg! {
             mass: 1.0, inertia: 0.0075, centre: [0.15, 0.0], end: [0.3, 0.0], damping: 0.01, torque: torque
         } (pivot_a, hinge_b);
         coupler: PlanarLink {
-            mass: 2.0, inertia: 0.135, centre: [0.45, 0.0], end: [0.9, 0.0], damping: 0.01,
-            angle_a: crank.angle_b, position_a: crank.position_b
+            mass: 2.0, inertia: 0.135, centre: [0.45, 0.0], end: [0.9, 0.0], damping: 0.01
         } (hinge_b, tip_coupler);
         rocker: PlanarLink {
             mass: 1.5, inertia: 0.06125, centre: [0.35, 0.0], end: [0.7, 0.0], damping: 0.01,
             position_a: [1.0, 0.0]
         } (pivot_d, tip_rocker);
-        cut: PlanarCut { position_a: coupler.position_b, position_b: rocker.position_b } (tip_coupler, tip_rocker);
+        cut: PlanarCut {} (tip_coupler, tip_rocker);
         output angle: rad = crank.angle_b;
     }
 }

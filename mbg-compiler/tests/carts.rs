@@ -30,11 +30,10 @@ model Cart {
     links: for k in 0..rods {
         1 top[3];
         1 middle[3];
-        let before = if k == 0 { 0.0 } else { links[k-1].hinge.angle_b };
-        hinge: PlanarRevolute { angle_a: before } (ends[k].end, top);
-        half: PlanarOffset { angle: hinge.angle_b, x: 0.5 } (top, middle);
+        hinge: PlanarRevolute {} (ends[k].end, top);
+        half: PlanarOffset { x: 0.5 } (top, middle);
         body: PlanarBody { mass: 1.0, inertia: 1.0 / 12.0 } (middle);
-        whole: PlanarOffset { angle: hinge.angle_b, x: 1.0 } (top, ends[k+1].end);
+        whole: PlanarOffset { x: 1.0 } (top, ends[k+1].end);
         output angle: rad = hinge.angle_b;
         output rate: rad/s = hinge.rate.f;
     }

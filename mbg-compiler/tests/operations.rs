@@ -21,13 +21,11 @@ fn chain(links: usize) -> String {
             Sf fixed[6] {{ flow: 0.0 }} -> ends[0].end;
             links: for k in 0..rods {{
                 1 rod[6];
-                let down[3] = if k == 0 {{ gravity }} else {{ links[k-1].hinge.gravity_b }};
-                hinge: Revolute {{ axis: k % 2, damping: 0.1, torque: tau[k], gravity_a: down }} (ends[k].end, rod);
+                hinge: Revolute {{ axis: k % 2, damping: 0.1, torque: tau[k] }} (ends[k].end, rod);
                 body: Body {{
                     mass: 1.0,
                     inertia: diag(0.08395833333333334, 0.08395833333333334, 0.00125),
-                    centre: [0.0, 0.0, -0.5],
-                    gravity_at: hinge.gravity_b
+                    centre: [0.0, 0.0, -0.5]
                 }} (rod);
                 length: Offset {{ by: [0.0, 0.0, -1.0] }} (rod, ends[k+1].end);
             }}
@@ -99,12 +97,11 @@ fn a_turning_body_costs_less_than_its_vectors() {
             Sf fixed[6] { flow: 0.0 } -> base;
             one: Revolute { axis: 0, torque: torque[0] } (base, first);
             length: Offset { by: [0.0, 0.3, -1.0] } (first, middle);
-            two: Revolute { axis: 1, torque: torque[1], gravity_a: one.gravity_b } (middle, second);
+            two: Revolute { axis: 1, torque: torque[1] } (middle, second);
             body: Body {
                 mass: 2.0,
                 inertia: [[3.0, 0.1, 0.2], [0.1, 5.0, 0.3], [0.2, 0.3, 7.0]],
-                centre: [0.4, 0.5, -0.6],
-                gravity_at: two.gravity_b
+                centre: [0.4, 0.5, -0.6]
             } (second);
             output angle = two.angle;
         }",

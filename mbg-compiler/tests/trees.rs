@@ -47,21 +47,13 @@ fn text(tree: &[Body]) -> String {
     let mut text = String::from(
         "#[derivative]\nmodel Tree {\n    gravity [0.0, 0.0, -9.81];\n    1 ground[6] { Sf fixed { flow: 0.0 } }\n",
     );
-    // Gravity in the axes of each frame.
-    let mut down: Vec<String> = Vec::new();
     for (k, body) in tree.iter().enumerate() {
-        let (frame, above) = match body.parent {
-            Some(parent) => (format!("frame{parent}"), down[parent].clone()),
-            None => ("ground".to_owned(), "gravity".to_owned()),
+        let frame = match body.parent {
+            Some(parent) => format!("frame{parent}"),
+            None => "ground".to_owned(),
         };
-        let (word, axis, own) = match body.slides {
-            true => ("Prismatic", format!("axis: {}", body.axis), above),
-            false => (
-                "Revolute",
-                format!("axis: {}, gravity_a: {above}", body.axis),
-                format!("joint{k}.gravity_b"),
-            ),
-        };
+        let word = if body.slides { "Prismatic" } else { "Revolute" };
+        let axis = body.axis;
         let inertia = vector(&body.inertia)
             .replace('[', "diag(")
             .replace(']', ")");
@@ -71,8 +63,8 @@ fn text(tree: &[Body]) -> String {
             "    1 base{k}[6];
     1 frame{k}[6];
     offset{k}: Offset {{ by: {by} }} ({frame}, base{k});
-    joint{k}: {word} {{ {axis}, damping: {DAMPING:?} }} (base{k}, frame{k});
-    body{k}: Body {{ mass: {mass:?}, inertia: {inertia}, centre: {centre}, gravity_at: {own} }} (frame{k});
+    joint{k}: {word} {{ axis: {axis}, damping: {DAMPING:?} }} (base{k}, frame{k});
+    body{k}: Body {{ mass: {mass:?}, inertia: {inertia}, centre: {centre} }} (frame{k});
     output force{k}[3] = body{k}.force.e;
     output turning{k}[3] = body{k}.spin.e;
 "
@@ -86,7 +78,6 @@ fn text(tree: &[Body]) -> String {
             )
             .expect("a string grows");
         }
-        down.push(own);
     }
     text.push_str("    output held[6] = fixed.e;\n}\n");
     text

@@ -15,12 +15,42 @@ struct Part {
 /// Links that fixed joints hold together.
 struct Rigid {
     body: Option<Body>,
-    /// The 1-junction of its frame's flow.
+    /// Its frame.
+    frame: Frame,
+}
+
+/// A frame.
+#[derive(Clone)]
+struct Frame {
+    /// The 1-junction of its flow.
     junction: String,
-    /// Gravity in axes of its frame, and the frame in the world, as expressions.
-    gravity: String,
-    orientation: String,
-    position: String,
+    /// What leads to it; nothing to the base.
+    joint: Option<String>,
+}
+
+impl Frame {
+    /// What holds in the frame, such as its `position` in the world.
+    fn told(&self, quantity: &str) -> String {
+        match &self.joint {
+            Some(joint) => format!("{joint}.{quantity}_b"),
+            None => format!("{quantity}_base"),
+        }
+    }
+
+    /// An argument for what holds in the frame at a port: only what holds at the base is not handed on by itself.
+    fn given(&self, quantity: &str, port: &str) -> String {
+        match &self.joint {
+            Some(_) => String::new(),
+            None => format!(", {quantity}_{port}: {}", self.told(quantity)),
+        }
+    }
+
+    /// Arguments for all that holds in the frame at port `a`.
+    fn all_given(&self) -> String {
+        ["gravity", "orientation", "position"]
+            .map(|it| self.given(it, "a"))
+            .concat()
+    }
 }
 
 /// What has been printed, and what later text needs of it.
@@ -57,10 +87,10 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
     });
     printer.rigid.push(Rigid {
         body: robot.links[robot.root].body,
-        junction: "base".to_owned(),
-        gravity: "gravity_base".to_owned(),
-        orientation: "orientation_base".to_owned(),
-        position: "position_base".to_owned(),
+        frame: Frame {
+            junction: "base".to_owned(),
+            joint: None,
+        },
     });
     for joint in &robot.joints {
         printer.joint(joint);
@@ -181,11 +211,10 @@ impl<'a> Printer<'a> {
         let foot = self.moved(&name, above, &at.of(&in_joint));
         let junction = self.names.take(&self.robot.links[child].name);
         self.text += &format!("    1 {junction}[6];\n");
-        let after = match joint.motion {
-            Motion::Slide => self.slide(joint, &name, (&foot, &junction), axis),
+        match joint.motion {
             Motion::Float | Motion::Plane => self.several(joint, &name, (&foot, &junction), axis),
-            _ => self.turn(joint, &name, (&foot, &junction), axis),
-        };
+            _ => self.single(joint, &name, (&foot, &junction), axis),
+        }
         if has_friction(joint) {
             let friction = self.names.take(&format!("{name}_friction"));
             self.text += &format!(
@@ -195,9 +224,15 @@ impl<'a> Printer<'a> {
             );
         }
         if joint.motion.is_single() {
-            self.single.push((joint, name));
+            self.single.push((joint, name.clone()));
         }
-        self.rigid.push(after);
+        self.rigid.push(Rigid {
+            body: None,
+            frame: Frame {
+                junction,
+                joint: Some(name),
+            },
+        });
         let back = Pose {
             place: [0.0; 3],
             turn: transposed(&turn),
@@ -217,94 +252,56 @@ impl<'a> Printer<'a> {
     }
 
     /// The frame of a rigid body moved to a pose in it, before the joint `name`.
-    fn moved(&mut self, name: &str, rigid: usize, pose: &Pose) -> Rigid {
-        let above = &self.rigid[rigid];
-        let mut frame = Rigid {
-            body: None,
-            junction: above.junction.clone(),
-            gravity: above.gravity.clone(),
-            orientation: above.orientation.clone(),
-            position: above.position.clone(),
-        };
+    fn moved(&mut self, name: &str, rigid: usize, pose: &Pose) -> Frame {
+        let mut frame = self.rigid[rigid].frame.clone();
         if pose.place != [0.0; 3] {
-            let [place, junction] =
-                ["place", "foot"].map(|it| self.names.take(&format!("{name}_{it}")));
-            self.text += &format!(
-                "    1 {junction}[6];\n    {place}: Offset {{ by: {}, orientation: {}, position_a: {} }} ({}, {junction});\n",
-                column(&pose.place),
-                frame.orientation,
-                frame.position,
-                frame.junction
+            let by = column(&pose.place);
+            frame = self.step(
+                &frame,
+                "Offset",
+                &by,
+                [&format!("{name}_place"), &format!("{name}_foot")],
             );
-            frame.position = format!("{place}.position_b");
-            frame.junction = junction;
         }
         if pose.turn != IDENTITY {
-            let [axes, junction] =
-                ["axes", "seat"].map(|it| self.names.take(&format!("{name}_{it}")));
-            self.text += &format!(
-                "    1 {junction}[6];\n    {axes}: Turn {{\n        by: {},\n        gravity_a: {},\n        orientation_a: {}\n    }} ({}, {junction});\n",
-                matrix(&pose.turn),
-                frame.gravity,
-                frame.orientation,
-                frame.junction
+            let by = matrix(&pose.turn);
+            frame = self.step(
+                &frame,
+                "Turn",
+                &by,
+                [&format!("{name}_axes"), &format!("{name}_seat")],
             );
-            frame.gravity = format!("{axes}.gravity_b");
-            frame.orientation = format!("{axes}.orientation_b");
-            frame.junction = junction;
         }
         frame
     }
 
-    fn turn(
-        &mut self,
-        joint: &Joint,
-        name: &str,
-        (foot, junction): (&Rigid, &str),
-        axis: usize,
-    ) -> Rigid {
+    /// A part of the library from a frame to another one of the same body.
+    fn step(&mut self, from: &Frame, kind: &str, by: &str, names: [&str; 2]) -> Frame {
+        let [step, junction] = names.map(|it| self.names.take(it));
         self.text += &format!(
-            "    {name}: Revolute {{\n        axis: {axis}, {}{},\n        \
-             gravity_a: {}, orientation_a: {}\n    }} ({}, {junction});\n",
-            self.start(joint, "torque"),
-            damping(joint),
-            foot.gravity,
-            foot.orientation,
-            foot.junction
+            "    1 {junction}[6];\n    {step}: {kind} {{ by: {by}{} }} ({}, {junction});\n",
+            from.all_given(),
+            from.junction
         );
-        Rigid {
-            body: None,
-            junction: junction.to_owned(),
-            gravity: format!("{name}.gravity_b"),
-            orientation: format!("{name}.orientation_b"),
-            position: foot.position.clone(),
+        Frame {
+            junction,
+            joint: Some(step),
         }
     }
 
-    fn slide(
-        &mut self,
-        joint: &Joint,
-        name: &str,
-        (foot, junction): (&Rigid, &str),
-        axis: usize,
-    ) -> Rigid {
-        let reached = self.names.take(&format!("{name}_reached"));
+    /// A joint of one coordinate.
+    fn single(&mut self, joint: &Joint, name: &str, (foot, junction): (&Frame, &str), axis: usize) {
+        let (kind, effort) = match joint.motion {
+            Motion::Slide => ("Prismatic", "force"),
+            _ => ("Revolute", "torque"),
+        };
         self.text += &format!(
-            "    {name}: Prismatic {{ axis: {axis}, {}{} }} ({}, {junction});\n    \
-             let {reached}[3] = {} + {} * {name}.arm;\n",
-            self.start(joint, "force"),
+            "    {name}: {kind} {{ axis: {axis}, {}{}{} }} ({}, {junction});\n",
+            self.start(joint, effort),
             damping(joint),
-            foot.junction,
-            foot.position,
-            foot.orientation
+            foot.all_given(),
+            foot.junction
         );
-        Rigid {
-            body: None,
-            junction: junction.to_owned(),
-            gravity: foot.gravity.clone(),
-            orientation: foot.orientation.clone(),
-            position: reached,
-        }
     }
 
     /// A joint of several coordinates, with parameters of its own for how it starts.
@@ -312,33 +309,27 @@ impl<'a> Printer<'a> {
         &mut self,
         joint: &Joint,
         name: &str,
-        (foot, junction): (&Rigid, &str),
+        (foot, junction): (&Frame, &str),
         axis: usize,
-    ) -> Rigid {
+    ) {
         let (kind, choice, starts) = match joint.motion {
             Motion::Float => ("Free", "orientation: quaternion".to_owned(), FLOATING),
             _ => ("Planar", format!("axis: {axis}"), PLANAR),
         };
-        self.text += &format!("    {name}: {kind} {{\n        {choice},\n");
+        self.text += &format!("    {name}: {kind} {{\n        {choice}");
         for (argument, ending, size, meaning) in starts {
             let parameter = self.names.take(&format!("{name}_{ending}"));
-            self.text += &format!("        {argument}: {parameter},\n");
+            self.text += &format!(",\n        {argument}: {parameter}");
             self.parameters += &format!(
                 "    /// {meaning}, of `{}` at the start.\n    param {parameter}{size} = 0.0;\n",
                 joint.name
             );
         }
         self.text += &format!(
-            "        gravity_a: {}, orientation_a: {}, position_a: {}\n    }} ({}, {junction});\n",
-            foot.gravity, foot.orientation, foot.position, foot.junction
+            "{}\n    }} ({}, {junction});\n",
+            foot.all_given(),
+            foot.junction
         );
-        Rigid {
-            body: None,
-            junction: junction.to_owned(),
-            gravity: format!("{name}.gravity_b"),
-            orientation: format!("{name}.orientation_b"),
-            position: format!("{name}.position_b"),
-        }
     }
 
     /// How a joint starts and what drives it. One that mimics another starts as that does, whichever rate is the state.
@@ -398,15 +389,15 @@ impl<'a> Printer<'a> {
     }
 
     fn body(&mut self, rigid: usize, body: &Body) {
-        let rigid = &self.rigid[rigid];
-        let name = self.names.take(&format!("{}_body", rigid.junction));
+        let frame = &self.rigid[rigid].frame;
+        let name = self.names.take(&format!("{}_body", frame.junction));
         self.text += &format!(
-            "    {name}: Body {{\n        mass: {:?},\n        centre: {},\n        inertia: {},\n        gravity_at: {}\n    }} ({});\n",
+            "    {name}: Body {{\n        mass: {:?},\n        centre: {},\n        inertia: {}{}\n    }} ({});\n",
             body.mass,
             column(&body.centre),
             matrix(&body.inertia),
-            rigid.gravity,
-            rigid.junction
+            frame.given("gravity", "at"),
+            frame.junction
         );
     }
 
@@ -415,27 +406,24 @@ impl<'a> Printer<'a> {
         if body.mass == 0.0 {
             return;
         }
-        let rigid = &self.rigid[rigid];
-        let name = |ending: &str| format!("{}_{ending}", rigid.junction);
-        let mut junction = rigid.junction.clone();
+        let mut frame = self.rigid[rigid].frame.clone();
+        let [arm, centre, mass] =
+            ["arm", "centre", "mass"].map(|ending| format!("{}_{ending}", frame.junction));
         if body.centre != [0.0; 3] {
-            let [centre, arm] = ["centre", "arm"].map(|it| self.names.take(&name(it)));
-            self.text += &format!(
-                "    1 {centre}[6];\n    {arm}: Offset {{ by: {} }} ({junction}, {centre});\n",
-                column(&body.centre)
-            );
-            junction = centre;
+            frame = self.step(&frame, "Offset", &column(&body.centre), [&arm, &centre]);
         }
-        let name = self.names.take(&name("mass"));
+        let mass = self.names.take(&mass);
         self.text += &format!(
-            "    {name}: PointMass {{ mass: {:?}, gravity_at: {} }} ({junction});\n",
-            body.mass, rigid.gravity
+            "    {mass}: PointMass {{ mass: {:?}{} }} ({});\n",
+            body.mass,
+            frame.given("gravity", "at"),
+            frame.junction
         );
     }
 
     /// An inertia beside a point mass or alone.
     fn inertia(&mut self, rigid: usize, inertia: &Matrix, parts: &[(f64, Vector)]) {
-        let junction = self.rigid[rigid].junction.clone();
+        let junction = self.rigid[rigid].frame.junction.clone();
         match parts.len() {
             0 => {}
             3 => {
@@ -475,9 +463,9 @@ impl<'a> Printer<'a> {
         self.text += "\n    // Where the links are in the world, and how their axes lie.\n";
         for (link, part) in self.robot.links.iter().zip(&self.parts) {
             let Some(part) = part else { continue };
-            let rigid = &self.rigid[part.rigid];
+            let frame = &self.rigid[part.rigid].frame;
             let (mut position, mut orientation) =
-                (rigid.position.clone(), rigid.orientation.clone());
+                (frame.told("position"), frame.told("orientation"));
             if part.pose.place != [0.0; 3] {
                 position += &format!(" + {orientation} * {}", column(&part.pose.place));
             }

@@ -19,8 +19,7 @@ mbg! {
             mass: 1.0, inertia: 0.0075, centre: [0.15, 0.0], end: [0.3, 0.0], initial: 1.0, damping: damping
         } (base, crank_tip);
         coupler: PlanarLink {
-            mass: 2.0, inertia: 0.135, centre: [0.45, 0.0], end: [0.9, 0.0], damping: damping,
-            angle_a: crank.angle_b, position_a: crank.position_b
+            mass: 2.0, inertia: 0.135, centre: [0.45, 0.0], end: [0.9, 0.0], damping: damping
         } (crank_tip, coupler_tip);
         rocker: PlanarLink {
             mass: 1.5, inertia: 0.06125, centre: [0.35, 0.0], end: [0.7, 0.0], initial: 1.2, damping: damping,

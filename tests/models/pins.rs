@@ -15,7 +15,7 @@ mbg! {
         1 ground[3] { Sf fixed { flow: 0.0 } }
         1 foot[3]; 1 end[3];
         pin: PlanarRevolute { initial: 3.141592653589793 } (ground, foot);
-        rod: PlanarOffset { angle: pin.angle_b, x: 1.0 } (foot, end);
+        rod: PlanarOffset { x: 1.0 } (foot, end);
         mass: PlanarPointMass { mass: 1.0 } (end);
         output place[2]: m = rod.position_b;
         output speed[2]: m/s = end.f[1..3];

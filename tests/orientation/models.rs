@@ -76,7 +76,7 @@ mbg! {
         1 other[6];
         ball: Spherical { orientation: orientation, initial: [0.5, 0.0, 0.0] } (ground, frame);
         body: Body {
-            mass: 2.0, inertia: diag(0.4, 0.3, 0.5), centre: [0.5, 0.2, -0.7], gravity_at: ball.gravity_b
+            mass: 2.0, inertia: diag(0.4, 0.3, 0.5), centre: [0.5, 0.2, -0.7]
         } (frame);
         edge: Offset { by: [1.0, 0.0, 0.0] } (frame, other);
         other[3..6] -> MTF world { flow: ball.turn } -> tip;
@@ -120,7 +120,7 @@ mbg! {
         1 corner[6];
         hinge: Revolute { axis: 0, initial: 0.5 } (ground, corner);
         plate: Body {
-            mass: 2.0, inertia: diag(0.4, 0.3, 0.5), centre: [0.5, 0.2, -0.7], gravity_at: hinge.gravity_b
+            mass: 2.0, inertia: diag(0.4, 0.3, 0.5), centre: [0.5, 0.2, -0.7]
         } (corner);
         output angle: rad = hinge.angle;
     }

@@ -117,8 +117,7 @@ pub fn claims(
     let mut unheard = Diagnostics::new();
     let mut builder = Builder::new(model, components, pool, &mut unheard);
     builder.claims = Some(Claims::default());
-    builder.declare(0, &model.statements);
-    builder.declare_integrals();
+    builder.declare_all(&model.statements);
     builder.resolve_laws();
     let signals = builder.signals;
     Claims {

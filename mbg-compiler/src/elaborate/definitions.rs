@@ -143,8 +143,9 @@ impl<'a> Builder<'a> {
         let signals = self.signals.clone();
         for definition in 0..self.definitions.len() {
             let names = self.definitions[definition].scope;
-            // Where nothing needs a parameter, it may be left to its default.
-            if self.told(definition).is_none() && self.scopes[names].library.is_none() {
+            // Where nothing needs a parameter, nobody needs to know it.
+            let is_known = !self.unknown.contains_key(&definition);
+            if is_known && self.scopes[names].library.is_none() {
                 self.define(definition);
             }
         }
@@ -159,6 +160,7 @@ impl<'a> Builder<'a> {
             value: expression,
             ..
         } = self.definitions[definition];
+        self.check_known(definition)?;
         let value = self.evaluate(scope, expression)?;
         let value = match (dimension, &value) {
             (None, _) => value,
@@ -171,7 +173,6 @@ impl<'a> Builder<'a> {
                 Value::column(entries.map_err(|report| about_gravity(report, expression, size))?)
             }
         };
-        self.check_default(definition, &value)?;
         Ok(self.claim_definition(definition, value))
     }
 

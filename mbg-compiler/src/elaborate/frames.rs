@@ -1,50 +1,66 @@
-//! What is known at a frame, and must be handed on.
+//! What is known at a frame, and goes on from component to component.
 //!
 //! A component tells what holds at its port `b` by a value whose name ends so, such as `gravity_b`, and asks what holds
-//! at its port `a` by a parameter such as `gravity_a`. Its default holds in the world. Where another component at the
-//! same frame tells otherwise, a parameter that is needed must be given.
+//! at its port `a` by a parameter such as `gravity_a`. Left out, the parameter is what another component tells of the
+//! same frame; where nobody does, its default holds, which is that of the world.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use quote::ToTokens;
 
 use super::Builder;
-use super::definitions::{Missing, Progress};
-use super::expressions::{Result, Value};
+use super::expressions::Result;
 use super::scope::{Entity, GRAVITY};
+use super::spread::{Place, Spread, Teller};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::graph::{ElementKind, End, JunctionId};
-use crate::symbolic::{Matrix, Pool};
+use crate::graph::{ElementKind, End, JunctionId, JunctionKind};
 use crate::syntax::ast;
 
-/// A port of a component in use, and what it is connected to.
+/// Components of a frame in space: those of its angular velocity and of its velocity.
+const IN_SPACE: usize = 6;
+
+/// A port of a component in use, and where it is connected.
 pub(super) struct Frame<'a> {
-    /// The component's scope.
-    scope: usize,
     component: &'a ast::Component,
     /// Name of the port.
     port: String,
-    junction: (JunctionId, Range<usize>),
+    place: Place,
 }
 
-/// A parameter that is left to its default.
+/// A parameter that is left out.
+#[derive(Clone, Copy)]
 pub(super) struct LeftOut<'a> {
-    /// Number of its definition.
+    /// Number of the definition that has its default.
     pub(super) definition: usize,
     /// Scope of its component.
     pub(super) scope: usize,
     pub(super) parameter: &'a ast::Parameter,
 }
 
-/// A parameter that is left to its default, and what another component tells that it is.
-pub(super) struct Told<'a> {
-    definition: usize,
-    /// Scope of the component that tells it.
-    teller: usize,
-    /// Scope of the one with the parameter.
-    scope: usize,
+/// A parameter that is left out and whose default is no good.
+pub(super) struct Unknown<'a> {
     parameter: &'a ast::Parameter,
+    /// Scope of its component.
+    scope: usize,
+    is_in_space: bool,
+    /// Scope of a component that leads from its frame to one that is known.
+    backwards: Option<usize>,
+}
+
+impl<'a> Frame<'a> {
+    /// The quantity that a parameter asks for at this port.
+    fn asked(&self, parameter: &'a ast::Parameter) -> Option<String> {
+        let name = parameter.name.to_string();
+        let quantity = name.strip_suffix(&self.port)?.strip_suffix('_')?;
+        Some(quantity.to_owned())
+    }
+
+    fn asks(&self, quantity: &str) -> bool {
+        let mut asked = self.component.parameters();
+        asked.any(|parameter| self.asked(parameter).as_deref() == Some(quantity))
+    }
 }
 
 impl<'a> Builder<'a> {
@@ -54,119 +70,165 @@ impl<'a> Builder<'a> {
         scope: usize,
         component: &'a ast::Component,
         port: &ast::Port,
-        junction: (JunctionId, Range<usize>),
+        (junction, range): (JunctionId, Range<usize>),
     ) {
-        self.frames.push(Frame {
-            scope,
+        self.frames.entry(scope).or_default().push(Frame {
             component,
             port: port.name.to_string(),
-            junction,
+            place: (junction, range.start, range.len()),
         });
     }
 
-    /// Reports a parameter that is left to its default where another component tells something else.
-    pub(super) fn check_default(&mut self, definition: usize, value: &Value) -> Result<()> {
-        let Some(told) = self.told(definition) else {
-            return Ok(());
-        };
-        match &self.definitions[told.definition].progress {
-            Progress::Known(other) if is_same(self.pool, value, other) => return Ok(()),
-            Progress::Known(_) => {}
-            Progress::Unread => self.missing = Some(Missing::Definition(told.definition)),
-            Progress::Failed => self.missing = Some(Missing::Broken),
+    /// Lets every parameter that is left out stand for what is told of its frame.
+    pub(super) fn hand_on(&mut self) {
+        let first = self.joined();
+        for frame in self.frames.values_mut().flatten() {
+            frame.place.0 = first[frame.place.0.0];
         }
-        Err(self.not_given(&told))
+        let held = self.held(&first);
+        let mut asked: BTreeMap<String, Vec<(LeftOut<'a>, Place)>> = BTreeMap::new();
+        for left in &self.left_out {
+            let mut own = self.frames.get(&left.scope).into_iter().flatten();
+            let question = own.find_map(|it| Some((it.asked(left.parameter)?, it.place)));
+            if let Some((quantity, place)) = question {
+                asked.entry(quantity).or_default().push((*left, place));
+            }
+        }
+        // Without gravity there is none at any frame.
+        let weightless = matches!(self.scopes[0].names.get(GRAVITY), Some(Entity::Value(_)));
+        asked.retain(|quantity, _| quantity != GRAVITY || !weightless);
+        for (quantity, asked) in asked {
+            let scopes = asked.iter().map(|(left, _)| left.scope).collect();
+            let spread = Spread::new(self.tellers(&quantity, &scopes), &held);
+            for (left, place) in asked {
+                self.hand(left, place, &quantity, &spread);
+            }
+        }
     }
 
-    /// What another component tells of a parameter that is left to its default.
-    pub(super) fn told(&self, definition: usize) -> Option<Told<'a>> {
-        let defaults = &self.defaults;
-        let number = defaults.binary_search_by_key(&definition, |it| it.definition);
-        let left = &defaults[number.ok()?];
-        let name = left.parameter.name.to_string();
-        let mut own = self.frames.iter().filter(|it| it.scope == left.scope);
-        let (frame, quantity) = own.find_map(|frame| {
-            let quantity = name.strip_suffix(&frame.port)?.strip_suffix('_')?;
-            Some((frame, quantity))
-        })?;
-        let tells = |other: &Frame| Some((self.tells(other, frame, quantity)?, other.scope));
-        let (definition, teller) = self.frames.iter().find_map(tells)?;
-        let is_given = self.is_moved_by_source(frame.junction.0) || self.is_weightless(quantity);
-        (!is_given).then_some(Told {
+    /// Lets a parameter stand for what is told of its place, or notes that it must be given.
+    fn hand(&mut self, left: LeftOut<'a>, place: Place, quantity: &str, spread: &Spread) {
+        let LeftOut {
             definition,
-            teller,
-            scope: left.scope,
-            parameter: left.parameter,
-        })
+            scope,
+            parameter,
+        } = left;
+        if let Some(told) = spread.told(place) {
+            if self.definitions[told].dimension == parameter.dimension {
+                let name = parameter.name.to_string();
+                let told = Entity::Definition(told);
+                self.scopes[scope].names.insert(name, told);
+            }
+            return;
+        }
+        // A frame that nothing holds and nobody leads to may be anywhere.
+        let is_told_elsewhere = !spread.tellers.is_empty() || quantity == GRAVITY;
+        if is_told_elsewhere && !spread.is_held(place) {
+            let unknown = Unknown {
+                parameter,
+                scope,
+                is_in_space: place.2 == IN_SPACE,
+                backwards: spread.backwards(place),
+            };
+            self.unknown.insert(definition, unknown);
+        }
     }
 
-    fn not_given(&self, told: &Told) -> Box<Diagnostic> {
-        let [own, whole] = [told.scope, told.teller].map(|scope| self.name_of(scope));
-        let near = match (whole.rsplit_once('.'), own.rsplit_once('.')) {
-            (Some((around, name)), Some((same, _))) if around == same => name,
-            _ => whole,
+    /// The components that tell a quantity, given those that are not given it.
+    fn tellers(&self, quantity: &str, not_given: &BTreeSet<usize>) -> Vec<Teller> {
+        let mut tellers = Vec::new();
+        for (&scope, frames) in &self.frames {
+            let (asking, telling): (Vec<&Frame>, Vec<&Frame>) =
+                frames.iter().partition(|frame| frame.asks(quantity));
+            for frame in telling {
+                let told = format!("{quantity}_{}", frame.port);
+                if let Some(Entity::Definition(definition)) = self.scopes[scope].names.get(&told) {
+                    tellers.push(Teller {
+                        scope,
+                        definition: *definition,
+                        at: frame.place,
+                        asks: asking.iter().map(|frame| frame.place).collect(),
+                        is_given: !not_given.contains(&scope),
+                    });
+                }
+            }
+        }
+        tellers
+    }
+
+    /// The first junction of the frame that each belongs to: a bond between 1-junctions makes one frame of theirs.
+    fn joined(&self) -> Vec<JunctionId> {
+        let mut first: Vec<JunctionId> = (0..self.graph.junctions.len()).map(JunctionId).collect();
+        let is_whole = |id: &JunctionId, range: &Range<usize>| {
+            let junction = &self.graph.junctions[id.0];
+            junction.kind == JunctionKind::One && range.len() == junction.dimension
         };
-        let name = &told.parameter.name;
-        let message = format!("`{own}` is at a frame of `{near}` and is not given `{name}`");
-        let default = told.parameter.default.to_token_stream();
-        let value = self.definitions[told.definition].name;
-        let report = error(codes::MISSING_DEFAULT, name.span(), message)
-            .help(format!("write `{name}: {near}.{value}`"))
-            .help(format!(
-                "write `{name}: {default}` where that of the world is meant"
-            ));
-        Box::new(report)
+        for bond in &self.graph.bonds {
+            if let (End::Junction(a, of_a), End::Junction(b, of_b)) = (&bond.from, &bond.to)
+                && is_whole(a, of_a)
+                && is_whole(b, of_b)
+            {
+                let (kept, gone) = (first[a.0], first[b.0]);
+                let members = first.iter_mut().filter(|own| **own == gone);
+                members.for_each(|own| *own = kept);
+            }
+        }
+        first
     }
 
-    /// The definition by which another component at the same frame tells a quantity there.
-    fn tells(&self, teller: &Frame, frame: &Frame, quantity: &str) -> Option<usize> {
-        let [own, other] = [frame, teller].map(|it| self.scopes[it.scope].prefix.as_str());
-        if teller.junction != frame.junction || own.starts_with(other) || other.starts_with(own) {
-            return None;
+    /// Places that sources move in all components: their user knows how.
+    fn held(&self, first: &[JunctionId]) -> BTreeSet<Place> {
+        let mut moved: BTreeMap<JunctionId, usize> = BTreeMap::new();
+        for bond in &self.graph.bonds {
+            if let (End::OnePort(element), End::Junction(id, range))
+            | (End::Junction(id, range), End::OnePort(element)) = (&bond.from, &bond.to)
+                && self.graph.elements[element.0].kind == ElementKind::Sf
+            {
+                *moved.entry(first[id.0]).or_default() += range.len();
+            }
         }
-        let told = format!("{quantity}_{}", teller.port);
-        if teller.component.parameters().any(|it| it.name == told) {
-            return None;
-        }
-        match self.scopes[teller.scope].names.get(&told) {
-            Some(Entity::Definition(definition)) => Some(*definition),
-            _ => None,
-        }
-    }
-
-    /// A source that moves a frame knows how.
-    fn is_moved_by_source(&self, junction: JunctionId) -> bool {
-        let is_source = |end: &End| match end {
-            End::OnePort(id) => self.graph.elements[id.0].kind == ElementKind::Sf,
-            _ => false,
+        let is_held = |(id, ..): &Place| {
+            let dimension = self.graph.junctions[id.0].dimension;
+            moved.get(id).is_some_and(|count| *count >= dimension)
         };
-        let is_here = |end: &End| matches!(end, End::Junction(id, _) if *id == junction);
-        self.graph.bonds.iter().any(|bond| {
-            (is_source(&bond.from) && is_here(&bond.to))
-                || (is_here(&bond.from) && is_source(&bond.to))
-        })
+        let places = self.frames.values().flatten().map(|frame| frame.place);
+        places.filter(is_held).collect()
     }
 
-    /// Without gravity there is none at any frame.
-    fn is_weightless(&self, quantity: &str) -> bool {
-        quantity == GRAVITY && matches!(self.scopes[0].names.get(GRAVITY), Some(Entity::Value(_)))
+    /// Reports a parameter that is left out, needed and not known.
+    pub(super) fn check_known(&self, definition: usize) -> Result<()> {
+        match self.unknown.get(&definition) {
+            Some(unknown) => Err(Box::new(self.not_known(unknown))),
+            None => Ok(()),
+        }
+    }
+
+    fn not_known(&self, unknown: &Unknown) -> Diagnostic {
+        let own = self.name_of(unknown.scope);
+        let name = &unknown.parameter.name;
+        let message = format!("`{own}` needs `{name}`, which nothing tells at its frame");
+        let report = error(codes::MISSING_DEFAULT, name.span(), message);
+        let joint = unknown.backwards.map(|scope| self.name_of(scope));
+        let report = report.help(match (joint, unknown.is_in_space) {
+            (Some(joint), _) => {
+                format!(
+                    "exchange the frames of `{joint}`: it hands on from the first to the second"
+                )
+            }
+            (None, true) => {
+                "let a joint lead to it from a frame that an `Sf` holds, such as a `Free`"
+                    .to_owned()
+            }
+            (None, false) => "let a joint lead to it from a frame that an `Sf` holds".to_owned(),
+        });
+        let default = unknown.parameter.default.to_token_stream();
+        report.help(format!(
+            "write `{name}: {default}` where that of the world is meant"
+        ))
     }
 
     /// Path of the component in use with this scope.
     fn name_of(&self, scope: usize) -> &str {
         self.scopes[scope].prefix.trim_end_matches('.')
     }
-}
-
-/// Whether two values are the same function; a number stands for its multiple of a unit matrix.
-fn is_same(pool: &mut Pool, a: &Value, b: &Value) -> bool {
-    let mut matrix = |value: &Value, other: &Value| match (value, other) {
-        (Value::Matrix(product), _) => product.to_matrix(pool),
-        (Value::Scalar(number), Value::Matrix(other)) => {
-            Matrix::diagonal(&vec![*number; other.rows()])
-        }
-        (Value::Scalar(number), Value::Scalar(_)) => Matrix::diagonal(&[*number]),
-    };
-    let (a, b) = (matrix(a, b), matrix(b, a));
-    a == b
 }

@@ -134,7 +134,7 @@ impl<'a> Builder<'a> {
                     self.definition(inner, name, shape, (scope, argument))
                 }
                 (None, Some(default)) => {
-                    self.defaults.push(LeftOut {
+                    self.left_out.push(LeftOut {
                         definition: self.definitions.len(),
                         scope: inner,
                         parameter,

@@ -29,6 +29,7 @@ mod quadrature;
 mod references;
 mod scope;
 mod size;
+mod spread;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -47,7 +48,7 @@ use self::claims::Claims;
 use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
-use self::frames::{Frame, LeftOut};
+use self::frames::{Frame, LeftOut, Unknown};
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
@@ -67,8 +68,7 @@ pub fn elaborate(
         return None;
     }
     let mut builder = Builder::new(model, components, pool, diagnostics);
-    builder.declare(0, &model.statements);
-    builder.declare_integrals();
+    builder.declare_all(&model.statements);
     builder.read_defaults(&model.statements);
     builder.resolve_laws();
     builder.check(model.name.span());
@@ -94,8 +94,7 @@ pub fn sizes(model: &ast::Model, components: &BTreeMap<String, &ast::Component>)
         return Sizes::default();
     }
     let mut builder = Builder::new(model, components, &mut pool, &mut unheard);
-    builder.declare(0, &model.statements);
-    builder.declare_integrals();
+    builder.declare_all(&model.statements);
     let outputs = builder.pending.iter().map(|pending| match pending {
         Pending::Output { output, .. } => output.dimension,
         _ => 0,
@@ -205,9 +204,11 @@ struct Builder<'a> {
     inputs: Vec<Variable>,
     outputs: Vec<Output>,
     signals: Signals,
-    frames: Vec<Frame<'a>>,
-    /// Parameters that are left to their defaults.
-    defaults: Vec<LeftOut<'a>>,
+    /// Ports of components in use by their scopes.
+    frames: BTreeMap<usize, Vec<Frame<'a>>>,
+    left_out: Vec<LeftOut<'a>>,
+    /// Parameters that must be given where they are needed.
+    unknown: BTreeMap<usize, Unknown<'a>>,
     assumptions: Vec<Assumption>,
     pending: Vec<Pending<'a>>,
     integrals: Vec<(usize, &'a Statement)>,
@@ -254,13 +255,21 @@ impl<'a> Builder<'a> {
             inputs: Vec::new(),
             outputs: Vec::new(),
             signals: Signals::default(),
-            frames: Vec::new(),
-            defaults: Vec::new(),
+            frames: BTreeMap::new(),
+            left_out: Vec::new(),
+            unknown: BTreeMap::new(),
             assumptions: Vec::new(),
             pending: Vec::new(),
             integrals: Vec::new(),
             claims: None,
         }
+    }
+
+    /// Declares everything in the model, so that all names are known.
+    fn declare_all(&mut self, statements: &'a [Statement]) {
+        self.declare(0, statements);
+        self.declare_integrals();
+        self.hand_on();
     }
 
     /// Declares everything in a scope: first what may be referred to from anywhere, then the rest in order.

@@ -70,10 +70,9 @@ mod tests {
                 Sf fixed[6] {{ flow: 0.0 }} -> ends[0].end;
                 links: for k in 0..{links} {{
                     1 rod[6];
-                    let down[3] = if k == 0 {{ gravity }} else {{ links[k-1].hinge.gravity_b }};
-                    hinge: Revolute {{ axis: k % 2, gravity_a: down }} (ends[k].end, rod);
+                    hinge: Revolute {{ axis: k % 2 }} (ends[k].end, rod);
                     body: Body {{
-                        mass: 2.0, inertia: diag(0.3, 0.4, 0.5), centre: [0.1, 0.2, -0.5], gravity_at: hinge.gravity_b
+                        mass: 2.0, inertia: diag(0.3, 0.4, 0.5), centre: [0.1, 0.2, -0.5]
                     }} (rod);
                     length: Offset {{ by: [0.0, 0.0, -1.0] }} (rod, ends[k+1].end);
                 }}

@@ -57,16 +57,14 @@ impl Scene {
         };
         let carrier = if planar {
             "carrier: PlanarRevolute (ground, foot);
-             reach: PlanarOffset { angle: carrier.angle, x: 0.4, y: 0.3 } (foot, a);"
+             reach: PlanarOffset { x: 0.4, y: 0.3 } (foot, a);"
         } else {
             "carrier: Universal { first: 0, second: 2, offset: [0.1, 0.2, 0.3] } (ground, foot);
-             reach: Offset {
-                by: [0.3, -0.5, 0.2], orientation: carrier.orientation_b, position_a: carrier.position_b
-             } (foot, a);"
+             reach: Offset { by: [0.3, -0.5, 0.2] } (foot, a);"
         };
         let known = match joint {
             "PlanarRevolute" => "angle_a: carrier.angle",
-            "PlanarPrismatic" => "angle: carrier.angle, position_a: reach.position_b",
+            "PlanarPrismatic" => "angle_a: carrier.angle, position_a: reach.position_b",
             _ => {
                 "gravity_a: carrier.gravity_b, orientation_a: carrier.orientation_b, position_a: reach.position_b"
             }

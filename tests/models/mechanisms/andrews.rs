@@ -22,8 +22,7 @@ mbg! {
             initial: -0.06171389001427645, torque: 33e-3
         } (ground, end1);
         k2: PlanarLink {
-            mass: 0.00365, inertia: 4.410e-7, centre: [-115e-4, 0.0], end: [-28e-3, 0.0],
-            angle_a: k1.angle_b, position_a: k1.position_b
+            mass: 0.00365, inertia: 4.410e-7, centre: [-115e-4, 0.0], end: [-28e-3, 0.0]
         } (end1, end2);
         k3: PlanarLink {
             mass: 0.02373, inertia: 5.255e-6, centre: [1874e-5, 1043e-5], end: [0.0, -35e-3],
@@ -35,7 +34,7 @@ mbg! {
         } (ground, end5);
         k4: PlanarLink {
             mass: 0.00706, inertia: 5.667e-7, centre: [0.0, -579e-5], end: [0.0, -2e-2],
-            initial: 0.22266839016588588, angle_a: k5.angle_b, position_a: k5.position_b
+            initial: 0.22266839016588588
         } (end5, end4);
         k7: PlanarLink {
             mass: 0.05498, inertia: 1.912e-5, centre: [1228e-5, 449e-5], end: [0.0, -4e-2],
@@ -43,7 +42,7 @@ mbg! {
         } (ground, end7);
         k6: PlanarLink {
             mass: 0.00706, inertia: 5.667e-7, centre: [579e-5, 0.0], end: [2e-2, 0.0],
-            initial: -0.22266839016588588, angle_a: k7.angle_b, position_a: k7.position_b
+            initial: -0.22266839016588588
         } (end7, end6);
 
         let open3 = k2.position_b - k3.position_b;
@@ -55,7 +54,7 @@ mbg! {
 
         // The spring supplies its force as a function of the place, so that its energy is no state.
         1 hook[3];
-        arm: PlanarOffset { angle: k3.angle_b, x: 2e-2, y: -18e-3, position_a: pivot } (k3.foot, hook);
+        arm: PlanarOffset { x: 2e-2, y: -18e-3 } (k3.foot, hook);
         let drawn = arm.position_b - [0.014, 0.072];
         let length = sqrt(powi(drawn.x, 2) + powi(drawn.y, 2));
         Se spring[2] { effort: 4530.0 * (0.07785 / length - 1.0) * drawn } -> hook[1..3];

@@ -19,8 +19,7 @@ mbg! {
         Sf fixed[3] { flow: 0.0 } -> ground;
         crank: PlanarLink { mass: 1.0, inertia: 1.0 / 12, centre: [0.5, 0.0], end: [1.0, 0.0] } (ground, elbow);
         rod: PlanarLink {
-            mass: 1.0, inertia: 1.0 / 12, centre: [0.5, 0.0], end: [1.0, 0.0],
-            angle_a: crank.angle_b, position_a: crank.position_b
+            mass: 1.0, inertia: 1.0 / 12, centre: [0.5, 0.0], end: [1.0, 0.0]
         } (elbow, tip);
         slide: PlanarPrismatic { initial: 2.0 } (ground, block);
         slide.rate -> I slider { inertia: 1.0 };

@@ -15,6 +15,8 @@ mod hard;
 mod orders;
 #[path = "methods/parallel.rs"]
 mod parallel;
+#[path = "methods/sampled.rs"]
+mod sampled;
 #[path = "methods/stability.rs"]
 mod stability;
 #[path = "methods/times.rs"]

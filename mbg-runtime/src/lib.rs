@@ -6,6 +6,7 @@
 //! | see what models do | `docs/gallery.md` of the repository, a picture of each |
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; or [`Auto`], which picks them; [`Input`] |
+//! | drive it by a recorded log | [`Sampled`] |
 //! | design a controller for it | [`Linearised`]: its matrices and frequency response |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | run batches on any processor | `batch` with the feature `dispatch` |
@@ -49,7 +50,7 @@ pub use columns::Columns;
 pub use convertible::Convertible;
 pub use dual::Dual;
 pub use four::Four;
-pub use input::{Constant, Differentiable, Input, Pulse, Smooth, Sum};
+pub use input::{Constant, Differentiable, Input, Pulse, SampleError, Sampled, Smooth, Sum};
 pub use linearised::Linearised;
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
 pub use real::{FUSED, Real};

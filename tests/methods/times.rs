@@ -10,7 +10,7 @@ use crate::problems::{Law, Oscillator, Written};
 
 /// `ẋ = u`.
 #[derive(Clone, Copy)]
-struct Sum;
+pub(super) struct Sum;
 
 impl Law<1, 1> for Sum {
     const STATES: &'static [Variable] = &[Variable {

@@ -1,9 +1,13 @@
 //! Inputs over time.
 
+mod sampled;
+
 use nalgebra::SVector;
 
 use crate::step::{less, seen};
 use crate::{Dual, Real};
+
+pub use sampled::{SampleError, Sampled};
 
 /// An input `u(t)` that is smooth but for jumps at times known in advance.
 ///
@@ -17,6 +21,7 @@ use crate::{Dual, Real};
 /// | [`Pulse`] | a constant for a time, zero else |
 /// | [`Smooth`] | a function of time without jumps |
 /// | [`Differentiable`] | the same on dual numbers, with its exact time derivative |
+/// | [`Sampled`] | values at times, held or joined by lines |
 /// | [`Sum`] | two inputs added |
 /// | `&I` | what `I` is |
 pub trait Input<T: Real, const M: usize> {
@@ -34,7 +39,8 @@ pub trait Input<T: Real, const M: usize> {
     /// The time derivative at `t` on the piece that begins at `since` and does not end within the time `ahead`.
     ///
     /// Methods for stiff problems ask for it. Unless it is given, it is a difference quotient over five values ahead,
-    /// whose error falls with the fourth power of `ahead`, the length of the step. Of [`Differentiable`] it is exact.
+    /// whose error falls with the fourth power of `ahead`, the length of the step. Of [`Differentiable`] and [`Sampled`] it
+    /// is exact.
     #[must_use]
     fn rate(&self, t: T, since: T, ahead: T) -> SVector<T, M> {
         quotient(t, ahead, |t| self.value(t, since))

@@ -27,6 +27,7 @@ mod models {
     mod behaviour;
     mod closed;
     mod columns;
+    mod curves;
     mod dependent;
     mod energy;
     mod floating;

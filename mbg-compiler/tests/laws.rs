@@ -49,7 +49,7 @@ fn mistakes_in_laws_are_told() {
       help: write `I b { inertia: … }`
     2:41 `Sin` is not a function of the language [MBG0203]
       help: did you mean `sin`?
-      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of
+      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of
     ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0 } } v -> v;"), @"
     2:32 `v -> v` joins a junction to itself, which says nothing [MBG0209]
@@ -272,6 +272,8 @@ fn words_of_other_languages_are_answered_with_what_has_their_value() {
         ("fabs(-0.7)", 0.7),
         ("clamp(0.7, -1.0, 0.5)", 0.5),
         ("clamp(0.7 - 2.0, -1.0, 0.5)", -1.0),
+        ("interp(0.5, [0.0, 2.0], [1.0, 5.0])", 2.0),
+        ("interp1([0.0, 2.0], [1.0, 5.0], 0.5)", 2.0),
         ("norm([3.0, 4.0])", 5.0),
         ("dot([3.0, 4.0], [1.0, 2.0])", 11.0),
         ("radians(90)", std::f64::consts::FRAC_PI_2),

@@ -105,6 +105,21 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "`n -> b` joins efforts: `N` before it, `V` after it",
     ),
     (
+        "output y = interpolate(a.f, [0, mass], [0.0, 1.0]);",
+        "interpolate(",
+        "`a.f` is `m/s` and `mass` is `kg`",
+    ),
+    (
+        "output y = interpolate(t, [0, 1], [mass, mass * a.f]);",
+        "interpolate(",
+        "`mass` is `kg` and",
+    ),
+    (
+        "output y: m = interpolate(a.f, [0, 1], [0, mass]);",
+        "interpolate(",
+        "`y` is declared in `m`, and this is `kg`",
+    ),
+    (
         "param x: m = 1.0; param y: s = 1.0; output z = atan2(x, y);",
         "atan2(",
         "`x` is `m` and `y` is `s`",
@@ -136,6 +151,10 @@ fn models_whose_units_agree_are_silent() {
         &mass("output energy: J = mass * powi(a.f, 2) / 2; output twice: N*s = 2 * m.p;"),
         // A root halves the powers.
         &mass("param k: N/m = 1.0; output w: rad/s = sqrt(k / mass); output e: J = sqrt(mass * mass) * powi(a.f, 2);"),
+        // Points of a curve have the units of what is looked up and of what is found, counted or not.
+        &mass("param knee: m/s = 2.0; let forces = [-3.0, 0, 4, 9.81 * mass];
+            a -> R r { effort: interpolate(f, [-1, 0, knee, 5.0], forces) };
+            output force: N = interpolate(a.f, [0, 1], [0, 1]);"),
         // What is not declared follows.
         &mass("param k = 1.0; a -> C c { stiffness: k }; output x: m = c.q; output force: N = k * c.q;"),
         // Half radians are none.

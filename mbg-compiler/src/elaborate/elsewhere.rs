@@ -32,6 +32,16 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("signum", &["x"], "sign(x)"),
     ("fabs", &["x"], "abs(x)"),
     ("clamp", &["x", "a", "b"], "min(max(x, a), b)"),
+    (
+        "interp",
+        &["x", "places", "values"],
+        "interpolate(x, places, values)",
+    ),
+    (
+        "interp1",
+        &["places", "values", "x"],
+        "interpolate(x, places, values)",
+    ),
     ("cross", &["a", "b"], "skew(a) * b"),
     ("dot", &["a", "b"], "(transpose(a) * b)"),
     ("norm", &["a"], "sqrt(transpose(a) * a)"),

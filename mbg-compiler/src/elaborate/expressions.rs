@@ -5,6 +5,7 @@ use syn::spanned::Spanned;
 use syn::{BinOp, Expr, Lit, Member, RangeLimits, UnOp};
 
 use super::elsewhere;
+use super::model::Assumption;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product, Rate};
@@ -23,7 +24,7 @@ pub enum Value {
 pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
 
 /// Functions, as messages list them.
-const FUNCTIONS: [&str; 27] = [
+const FUNCTIONS: [&str; 28] = [
     "sin",
     "cos",
     "tan",
@@ -39,6 +40,7 @@ const FUNCTIONS: [&str; 27] = [
     "min",
     "max",
     "powi",
+    "interpolate",
     "diag",
     "transpose",
     "skew",
@@ -91,6 +93,14 @@ pub trait Names {
 
     /// Is told the value of each operator, function and `if`, with the place of its sign or name.
     fn seen(&mut self, _pool: &mut Pool, _place: Span, _value: &Value) {}
+
+    /// Remembers what must hold of parameters; false if it is not of parameters alone.
+    fn assume(&mut self, pool: &Pool, assumption: Assumption) -> bool;
+
+    /// Whether the value is asked for its unit alone.
+    fn reads_units(&self) -> bool {
+        false
+    }
 
     /// What a number with a decimal point stands for, which may carry a unit.
     fn measured(&mut self, _pool: &mut Pool, value: Expression, _text: &str) -> Expression {
@@ -546,6 +556,12 @@ impl<N: Names> Evaluator<'_, N> {
             "powi" => {
                 count(2)?;
                 self.power(arguments)
+            }
+            "interpolate" => {
+                let [x, places, values] = arguments else {
+                    return fail(name.span(), "expected `interpolate(x, places, values)`");
+                };
+                self.curve(x, places, values)
             }
             "transpose" => {
                 count(1)?;

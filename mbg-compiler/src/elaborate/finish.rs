@@ -207,6 +207,7 @@ impl<'a> Builder<'a> {
             signals: &mut self.signals,
             own: None,
             claims: self.claims.as_mut(),
+            assumptions: &mut self.assumptions,
         };
         (self.pool, lookup)
     }

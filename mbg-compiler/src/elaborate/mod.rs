@@ -13,6 +13,7 @@ mod check;
 pub mod claims;
 mod conditions;
 mod constants;
+mod curves;
 mod declare;
 mod definitions;
 mod elsewhere;

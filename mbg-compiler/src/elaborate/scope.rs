@@ -11,11 +11,11 @@ use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, OWN, Result, Step, Value, fail};
-use super::model::{Place, Quantity, Signals};
+use super::model::{Assumption, Place, Quantity, Signals};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
-use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Symbol};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate, Symbol};
 
 /// The acceleration of free fall: a name of the model that every component sees.
 pub(super) const GRAVITY: &str = "gravity";
@@ -220,6 +220,8 @@ pub(super) struct Lookup<'a, 'm> {
     pub(super) own: Option<Own>,
     /// What the checker of units is told, while it is asked for.
     pub(super) claims: Option<&'a mut Claims>,
+    /// What `new` checks of parameters.
+    pub(super) assumptions: &'a mut Vec<Assumption>,
 }
 
 impl Names for Lookup<'_, '_> {
@@ -280,6 +282,18 @@ impl Names for Lookup<'_, '_> {
     fn is_by_component(&self) -> bool {
         let own = self.own.as_ref();
         own.is_some_and(|own| own.component.is_some() && own.dimension > 1)
+    }
+
+    fn assume(&mut self, pool: &Pool, assumption: Assumption) -> bool {
+        let is_known = pool.rate(assumption.expression) == Rate::Parameter;
+        if is_known && !self.assumptions.contains(&assumption) {
+            self.assumptions.push(assumption);
+        }
+        is_known
+    }
+
+    fn reads_units(&self) -> bool {
+        self.claims.is_some()
     }
 
     fn seen(&mut self, pool: &mut Pool, place: Span, value: &Value) {

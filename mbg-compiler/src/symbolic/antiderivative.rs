@@ -8,7 +8,7 @@ use super::substitute::{Substitution, symbols};
 /// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
 /// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root,
 /// hyperbolic tangent, absolute value and sign of what is affine in the symbol, powers `exp(c ln(…))` of such or of its
-/// reciprocal, and choices between them by what is affine.
+/// reciprocal, choices between them by what is affine, and functions of such choices.
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,
@@ -46,7 +46,10 @@ impl Integration<'_> {
                 let sine = self.pool.sine(angle);
                 self.inner(angle, sine)
             }
-            Operation::Call(function, arguments) => self.call(function, &arguments),
+            Operation::Call(function, arguments) => {
+                let found = self.call(function, &arguments);
+                found.or_else(|| self.call_of_choice(function, &arguments))
+            }
         };
         found.map(|it| it.flipped(expression.is_negative()))
     }
@@ -230,6 +233,32 @@ impl Integration<'_> {
         let second = self.share(product, 1, 2)?;
         let value = self.pool.subtract(first, second);
         self.inner(u, value)
+    }
+
+    /// A function of a choice is a choice between functions, such as `min(b, max(u, a))` of `min(b, u)` and `min(b, a)`.
+    fn call_of_choice(
+        &mut self,
+        function: Function,
+        arguments: &[Expression],
+    ) -> Option<Expression> {
+        for (place, argument) in arguments.iter().enumerate() {
+            let Operation::Call(inner, of) = self.pool.operation(*argument).clone() else {
+                continue;
+            };
+            let [a, b, c, d] = match (inner, &of[..]) {
+                (Function::Min, &[a, b]) => [a, b, a, b],
+                (Function::Max, &[a, b]) => [a, b, b, a],
+                (Function::SelectLess, &[a, b, c, d]) => [a, b, c, d],
+                _ => continue,
+            };
+            let [c, d] = [c, d].map(|value| {
+                let mut chosen = arguments.to_vec();
+                chosen[place] = value.flipped(argument.is_negative());
+                self.pool.call(function, &chosen)
+            });
+            return self.choice(a, b, c, d);
+        }
+        None
     }
 
     /// Of `c` where `a < b`, else of `d`; both are counted from where they meet.

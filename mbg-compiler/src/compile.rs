@@ -10,7 +10,7 @@ use crate::diagnostics::{Diagnostics, error};
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
-use crate::graph::{Element, ElementId, ElementKind, Junction, Law, Storage};
+use crate::graph::{Causality, Element, ElementId, ElementKind, Junction, Law, Storage};
 use crate::jacobians;
 use crate::network::Network;
 use crate::program::{self, Program, Request};
@@ -122,6 +122,12 @@ pub fn compile(
     let scalars = equations::form(&elaborated, &network, &mut pool);
     let first = structure::solve(&scalars, Formulation::Articulated, &mut pool);
     let soluble = !matches!(first, Err(Failure::Singular));
+    // What nothing holds would be told as storages that depend on each other.
+    let uniform = elaborated.graph.causality == Causality::Uniform;
+    if uniform && !soluble && structure::report_floating(&elaborated, &scalars, &pool, diagnostics)
+    {
+        return None;
+    }
     let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
     let solved = structure::resolve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
     let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;

@@ -57,6 +57,8 @@ pub struct Scalars {
     pub names: Vec<String>,
     /// Effort and flow of every component of every wire, wire by wire.
     pub wires: Vec<Vec<[usize; 2]>>,
+    /// What the bonds at each junction share, by component: the effort of a 0-junction, the flow of a 1-junction.
+    pub common: Vec<Vec<usize>>,
     /// Flows of the junctions marked `coordinate`, by component.
     pub coordinates: Vec<(JunctionId, usize, usize)>,
     /// For unknowns of a reduced system: the place of each in the order of elimination.
@@ -464,7 +466,8 @@ impl Former<'_> {
         for equation in &mut equations {
             linearise(self.pool, equation, &signals);
         }
-        let names = self.names(&ports);
+        let common = self.common(&ports);
+        let names = self.names(&ports, &common);
         let coordinates = self.coordinates(&ports);
         let closures = self.closures();
         let live = |pair: &[usize; 2]| pair.iter().all(|class| *class != usize::MAX);
@@ -482,6 +485,7 @@ impl Former<'_> {
             ports,
             names,
             wires,
+            common,
             coordinates,
             turns: vec![None; self.classes.count],
             rate_of: BTreeMap::new(),
@@ -576,18 +580,26 @@ impl Former<'_> {
         }
     }
 
-    fn names(&self, ports: &BTreeMap<ElementId, Port>) -> Vec<String> {
+    fn common(&self, ports: &BTreeMap<ElementId, Port>) -> Vec<Vec<usize>> {
+        let junctions = self.model.graph.junctions.iter().enumerate();
+        let common = junctions.map(|(id, junction)| {
+            let (quantity, _) = shared(junction.kind);
+            let place = Place::Junction(JunctionId(id));
+            let components = 0..junction.dimension;
+            let unknowns =
+                components.map(|component| self.signal((quantity, place, component), ports).0);
+            unknowns.collect()
+        });
+        common.collect()
+    }
+
+    fn names(&self, ports: &BTreeMap<ElementId, Port>, common: &[Vec<usize>]) -> Vec<String> {
         let mut names = vec![String::new(); self.classes.count];
-        for (id, junction) in self.model.graph.junctions.iter().enumerate() {
-            let (quantity, letter) = match junction.kind {
-                JunctionKind::Zero => (Quantity::Effort, "e"),
-                JunctionKind::One => (Quantity::Flow, "f"),
-            };
-            for component in 0..junction.dimension {
-                let place = Place::Junction(crate::graph::JunctionId(id));
-                let (unknown, _) = self.signal((quantity, place, component), ports);
+        for (junction, unknowns) in self.model.graph.junctions.iter().zip(common) {
+            let (_, letter) = shared(junction.kind);
+            for (component, unknown) in unknowns.iter().enumerate() {
                 put(
-                    &mut names[unknown],
+                    &mut names[*unknown],
                     &junction.name,
                     letter,
                     component,
@@ -615,6 +627,14 @@ impl Former<'_> {
             }
         }
         names
+    }
+}
+
+/// What the bonds at a junction share, and its letter.
+fn shared(kind: JunctionKind) -> (Quantity, &'static str) {
+    match kind {
+        JunctionKind::Zero => (Quantity::Effort, "e"),
+        JunctionKind::One => (Quantity::Flow, "f"),
     }
 }
 

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::floating::report_floating;
 use crate::codes;
 use crate::compile::text;
 use crate::diagnostics::{Diagnostics, error, listing};
@@ -13,16 +14,20 @@ use crate::symbolic::{Expression, Pool, field};
 /// A sum of unknowns over the field, or of equations.
 type Combination = BTreeMap<usize, u64>;
 
-/// Reports the first mesh of gain one, if there is one, or else that the structure leaves something undetermined.
+/// Reports a part that floats, or else the first mesh of gain one, or else that the structure leaves something
+/// undetermined.
 pub(super) fn report(
     model: &Elaborated,
     scalars: &Scalars,
     pool: &Pool,
     diagnostics: &mut Diagnostics,
 ) {
+    if report_floating(model, scalars, pool, diagnostics) {
+        return;
+    }
     let message = "the junction structure leaves efforts or flows undetermined";
     let mut report = error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
-    if let Some(mesh) = first(scalars, pool) {
+    if let Some(mesh) = all(scalars, pool).into_iter().next() {
         let unknowns = mesh
             .iter()
             .flat_map(|row| scalars.equations[*row].terms.keys());
@@ -57,8 +62,9 @@ pub(super) fn report(
     diagnostics.report(report);
 }
 
-/// The equations of the first row of the structure that is a combination of others, itself included.
-fn first(scalars: &Scalars, pool: &Pool) -> Option<Vec<usize>> {
+/// For each row of the structure that is a combination of others, the equations of all of them, itself included.
+pub(super) fn all(scalars: &Scalars, pool: &Pool) -> Vec<Vec<usize>> {
+    let mut found = Vec::new();
     let mut leads: BTreeMap<usize, (Combination, Combination)> = BTreeMap::new();
     let equations = scalars.equations.iter().enumerate();
     for (number, equation) in equations.filter(|(_, it)| it.owner == Owner::Structure) {
@@ -75,10 +81,10 @@ fn first(scalars: &Scalars, pool: &Pool) -> Option<Vec<usize>> {
         }
         match row.first_key_value() {
             Some((&lead, _)) => drop(leads.insert(lead, (row, origin))),
-            None => return Some(origin.into_keys().collect()),
+            None => found.push(origin.into_keys().collect()),
         }
     }
-    None
+    found
 }
 
 fn subtract(row: &mut Combination, other: &Combination, factor: u64) {

@@ -11,6 +11,7 @@ pub mod blocks;
 mod carried;
 mod congruence;
 mod eliminate;
+mod floating;
 mod formulation;
 mod levels;
 pub mod matching;
@@ -32,6 +33,7 @@ use crate::elaborate::Condition;
 use crate::equations::{Equation, Inertia, Scalars};
 use crate::symbolic::{Expression, Matrix, Pool};
 
+pub use floating::report_floating;
 pub use formulation::Formulation;
 pub use reduction::{Reduction, reduce};
 pub use resolve::{Solved, resolve};

@@ -1,0 +1,98 @@
+//! Parts of a model that nothing holds: the efforts of 0-junctions that can change together without any effect, as the
+//! potentials of a circuit without ground, or the flows of such 1-junctions.
+//!
+//! Balances that say the same thing twice are such a part: by the balance of power, their factors are a change of efforts
+//! or flows that does no work anywhere. A source at one of the junctions adds what is missing.
+
+use std::collections::BTreeSet;
+
+use super::mesh;
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error, listing};
+use crate::elaborate::Elaborated;
+use crate::equations::{Owner, Scalars};
+use crate::graph::{BondGraph, End, JunctionId, JunctionKind};
+use crate::symbolic::Pool;
+
+/// A component of a junction.
+type Node = (JunctionId, usize);
+
+/// Reports the first part that floats; the answer is whether there is one.
+pub fn report_floating(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) -> bool {
+    let graph = &model.graph;
+    let meshes = mesh::all(scalars, pool).into_iter();
+    let parts: Vec<Vec<Node>> = meshes
+        .map(|mesh| nodes(graph, scalars, &mesh))
+        .filter(|part| part.len() > 1)
+        .collect();
+    let Some(part) = parts.first() else {
+        return false;
+    };
+    let depth = |id: JunctionId| graph.junctions[id.0].name.matches('.').count();
+    let outermost = part.iter().rev().min_by_key(|(id, _)| depth(*id));
+    let Some((place, component)) = outermost.copied() else {
+        return false;
+    };
+    let junction = &graph.junctions[place.0];
+    let all: BTreeSet<&Node> = parts.iter().flatten().collect();
+    let whole = (0..junction.dimension).all(|component| all.contains(&(place, component)));
+    let range = if whole {
+        0..junction.dimension
+    } else {
+        component..component + 1
+    };
+    let size = match range.len() {
+        1 => String::new(),
+        size => format!("[{size}]"),
+    };
+    let (symbol, word, shared, field) = match junction.kind {
+        JunctionKind::Zero => ("Se", "earth", "efforts", "effort"),
+        JunctionKind::One => ("Sf", "wall", "flows", "flow"),
+    };
+    let names: BTreeSet<JunctionId> = part.iter().map(|(id, _)| *id).collect();
+    let names = listing(names.iter().map(|id| graph.junctions[id.0].name.clone()));
+    let message =
+        format!("nothing holds {names}: their {shared} can change together without any effect");
+    let source = free_name(graph, word);
+    let help = format!(
+        "hold one of them: `{symbol} {source}{size} {{ {field}: 0.0 }} -> {};`",
+        graph.end_name(&End::Junction(place, range))
+    );
+    let span = graph.origins.span(junction.origin);
+    diagnostics.report(
+        error(codes::SINGULAR_JUNCTIONS, span, message)
+            .help(help)
+            .help("or, if two of them are joined twice where once is meant, take one of the bonds away"),
+    );
+    true
+}
+
+/// The junctions whose balances are in a mesh, in order of declaration.
+fn nodes(graph: &BondGraph, scalars: &Scalars, mesh: &[usize]) -> Vec<Node> {
+    let balances = mesh.iter().map(|row| &scalars.equations[*row]);
+    let balances = balances.filter(|it| it.owner == Owner::Structure && it.about[0] == it.about[1]);
+    let common: BTreeSet<usize> = balances.map(|it| it.about[0]).collect();
+    let junctions = graph.junctions.iter().enumerate();
+    let all = junctions.flat_map(|(id, it)| (0..it.dimension).map(move |k| (JunctionId(id), k)));
+    all.filter(|(id, component)| common.contains(&scalars.common[id.0][*component]))
+        .collect()
+}
+
+/// A name for a source that nothing has yet.
+fn free_name(graph: &BondGraph, word: &str) -> String {
+    let is_taken = |name: &str| {
+        let junctions = graph.junctions.iter().map(|it| &it.name);
+        let mut names = junctions.chain(graph.elements.iter().map(|it| &it.name));
+        names.any(|known| known == name)
+    };
+    let numbered = (2..).map(|number| format!("{word}{number}"));
+    let mut names = std::iter::once(word.to_owned()).chain(numbered);
+    names
+        .find(|name| !is_taken(name))
+        .unwrap_or_else(|| word.to_owned())
+}

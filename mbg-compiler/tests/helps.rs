@@ -86,3 +86,41 @@ fn a_ring_of_junctions_is_opened() {
     let help = "take one bond of the mesh away: what it says follows from the others";
     assert_eq!(helps, [help]);
 }
+
+/// A body that spins about the one axis that a source leaves, the source, and where it acts.
+const HELD: [(&str, &str, &str); 2] = [
+    (
+        "1 body[3] { I rotor { inertia: diag(1.0, 2.0, 3.0), gyroscopic } }",
+        "Sf held[2] { flow: 0.0 }",
+        "body[0..2]",
+    ),
+    (
+        "1 body[3] { EJS wheel { momentum: [0.0, 0.0, 1.0] } I rotor { inertia: 1.0 } }
+         1 shaft[2]; shaft -> body[0..2];",
+        "Sf held[2] { flow: 0.0 }",
+        "shaft",
+    ),
+];
+
+#[test]
+fn a_body_held_about_two_axes_keeps_the_third() {
+    for (body, source, place) in HELD {
+        let text = format!("model M {{ {body} {source} -> {place}; }}");
+        let helps = helps(&text, codes::NO_ASSIGNMENT);
+        assert_eq!(helps.len(), 2, "{helps:?}");
+        compiles(&followed(&text, &helps[0]));
+        let driven = text.replace(&format!("-> {place}"), "-> driven");
+        assert!(helps[1].starts_with(
+            "remove `held`, or let it act through a spring: bond it to `1 driven[2];`"
+        ));
+        compiles(&followed(&driven, &helps[1]));
+    }
+}
+
+#[test]
+fn a_flow_that_nothing_gives_is_given() {
+    let text = "model M { 1 a { I m { inertia: 1.0 } } 1 b { Se s { effort: 1.0 } } }";
+    for help in helps(text, codes::NO_ASSIGNMENT) {
+        compiles(&followed(text, &help));
+    }
+}

@@ -125,6 +125,24 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
     let place = end
         .as_ref()
         .map_or_else(|| "junction".to_owned(), |end| graph.end_name(end));
+    let uneven = match (conflict.code, &end) {
+        (codes::NO_ASSIGNMENT, Some(place)) => storage_over(graph, place),
+        _ => None,
+    };
+    if let Some(storage) = uneven {
+        helps.push(if soluble {
+            COMPONENTWISE.to_owned()
+        } else {
+            let storage = &graph.elements[storage.0];
+            format!(
+                "{COMPONENTWISE}; what is imposed on `{}` is no state then: {}",
+                storage.name,
+                storage.acceptance()
+            )
+        });
+        helps.extend(through(graph, &elements));
+        return helps;
+    }
     let imposed = match conflict.code {
         codes::RECTANGULAR_INVERSE => through(graph, &elements),
         _ => None,
@@ -148,7 +166,26 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
     helps
 }
 
-/// Where a source imposes what a transformer gives: how the source can act without imposing it.
+/// A storage that would give a place what it lacks, but not with one stroke: elsewhere on its bond that is imposed.
+fn storage_over(graph: &BondGraph, place: &End) -> Option<ElementId> {
+    let End::Junction(junction, components) = place else {
+        return None;
+    };
+    let gives = match graph.junctions[junction.0].kind {
+        JunctionKind::Zero => Rule::PreferEffortOut,
+        JunctionKind::One => Rule::PreferFlowOut,
+    };
+    let covers = |end: &End| matches!(end, End::Junction(id, range) if id == junction && range.contains(&components.start));
+    graph.bonds.iter().find_map(|bond| {
+        let element = match (&bond.from, &bond.to) {
+            (other, End::OnePort(id)) | (End::OnePort(id), other) if covers(other) => *id,
+            _ => return None,
+        };
+        (graph.elements[element.0].rule == gives).then_some(element)
+    })
+}
+
+/// Where a source imposes what something else would give: how the source can act without imposing it.
 fn through(graph: &BondGraph, elements: &[ElementId]) -> Option<String> {
     elements.iter().find_map(|id| {
         let element = &graph.elements[id.0];

@@ -1,9 +1,9 @@
 //! Stage 5c, checks: what `new` asks of the parameters.
 
-use crate::compile::text;
+use crate::divisors;
 use crate::elaborate::{Condition, Elaborated};
 use crate::equations::Scalars;
-use crate::graph::Law;
+use crate::graph::{Element, Law};
 use crate::structure::Solution;
 use crate::symbolic::{Expression, Operation, Pool, Rate};
 
@@ -29,7 +29,7 @@ pub fn of(
     let mut add = |expression: Expression, condition: Condition, reason: String| {
         if pool.rate(expression) == Rate::Parameter && !checked.contains(&expression) {
             checks.push(Check {
-                name: text(model, scalars, pool, expression),
+                name: divisors::name(model, scalars, pool, expression),
                 condition,
                 reason,
             });
@@ -50,43 +50,37 @@ pub fn of(
             "the chosen causality divides by it".to_owned(),
         );
     }
-    for divisor in divisors(model, pool) {
-        add(
-            divisor,
-            Condition::NonZero,
-            "a law divides by it".to_owned(),
-        );
+    for (divisor, element) in of_laws(model, pool) {
+        let reason = format!("the law of `{}` divides by it", element.name);
+        add(divisor, Condition::NonZero, reason);
     }
     (checks, checked)
 }
 
-/// Divisors of parameters alone in the laws of storages.
-fn divisors(model: &Elaborated, pool: &Pool) -> Vec<Expression> {
-    let mut roots: Vec<Expression> = Vec::new();
-    for element in &model.graph.elements {
-        match &element.law {
-            Law::Storage(storage) => roots.extend(&storage.coenergy),
-            Law::Source(values) | Law::EffortLaw(values) | Law::FlowLaw(values) => {
-                roots.extend(values)
-            }
-            Law::Resistance(matrix) | Law::Conductance(matrix) => roots.extend(&matrix.entries),
-            _ => {}
-        }
-    }
+/// Divisors of parameters alone in the laws of elements, each with the first element that has it.
+fn of_laws<'a>(model: &'a Elaborated, pool: &Pool) -> Vec<(Expression, &'a Element)> {
     let mut found = Vec::new();
     let mut seen = vec![false; pool.len()];
-    while let Some(current) = roots.pop() {
-        if std::mem::replace(&mut seen[current.node()], true) {
-            continue;
+    for element in &model.graph.elements {
+        let mut roots: Vec<Expression> = match &element.law {
+            Law::Storage(storage) => storage.coenergy.clone(),
+            Law::Source(values) | Law::EffortLaw(values) | Law::FlowLaw(values) => values.clone(),
+            Law::Resistance(matrix) | Law::Conductance(matrix) => matrix.entries.clone(),
+            _ => Vec::new(),
+        };
+        while let Some(current) = roots.pop() {
+            if std::mem::replace(&mut seen[current.node()], true) {
+                continue;
+            }
+            let operation = pool.operation(current);
+            if let Operation::Divide(_, divisor) = operation
+                && pool.rate(*divisor) == Rate::Parameter
+            {
+                found.push((divisor.magnitude(), element));
+            }
+            roots.extend(operation.operands());
         }
-        let operation = pool.operation(current);
-        if let Operation::Divide(_, divisor) = operation
-            && pool.rate(*divisor) == Rate::Parameter
-        {
-            found.push(divisor.magnitude());
-        }
-        roots.extend(operation.operands());
     }
-    found.sort_unstable();
+    found.sort_by_key(|(divisor, _)| *divisor);
     found
 }

@@ -7,6 +7,7 @@ use crate::checks::{self, Check};
 use crate::closures;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
+use crate::divisors;
 use crate::drawing::{self, Drawn};
 use crate::elaborate::{self, Elaborated, State};
 use crate::equations::{self, Owner, Scalars};
@@ -153,7 +154,9 @@ fn finish(
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
     let conditioning = solution.conditioning.iter().map(|it| it.normalised);
     let conditioning: Vec<Expression> = conditioning.collect();
-    start::check(&model, scalars, &conditioning, &pool, diagnostics);
+    let named = divisors::names(&model, scalars, solution, &pool);
+    let divisors: Vec<_> = conditioning.iter().copied().zip(&named).collect();
+    start::check(&model, &divisors, &pool, diagnostics);
     if diagnostics.any() {
         return None;
     }
@@ -206,7 +209,7 @@ fn finish(
     notes.extend(approximate_energies(&model));
     Some(Compiled {
         program,
-        conditioning: conditioning.iter().map(written).collect(),
+        conditioning: named,
         loops: loops(&model, scalars, solution),
         eliminated: eliminated.collect(),
         attitudes,

@@ -25,6 +25,7 @@ pub mod closures;
 pub mod codes;
 pub mod compile;
 pub mod diagnostics;
+mod divisors;
 pub mod drawing;
 pub mod elaborate;
 pub mod emit;

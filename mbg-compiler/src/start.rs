@@ -6,10 +6,8 @@
 use std::collections::BTreeMap;
 
 use crate::codes;
-use crate::compile::text;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::Elaborated;
-use crate::equations::Scalars;
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Evaluation, Expression, Pool, Symbol};
 
@@ -18,21 +16,20 @@ const SINGULAR: f64 = 1.5e-8;
 /// What is proposed in place of a start at which a determinant is zero.
 const PROPOSED: f64 = 0.5;
 
-/// Reports normalised determinants that are zero with initial values and default parameters, without inputs.
+/// Reports normalised determinants, given with their names, that are zero with initial values and default parameters, without inputs.
 pub fn check(
     model: &Elaborated,
-    scalars: &Scalars,
-    conditioning: &[Expression],
+    conditioning: &[(Expression, &String)],
     pool: &Pool,
     diagnostics: &mut Diagnostics,
 ) {
     let start = Start::of(model, pool);
     let unchanged = |symbol| start.symbol(symbol, &BTreeMap::new());
     let mut evaluation = Evaluation::new(&unchanged);
-    for divisor in conditioning {
+    for (divisor, name) in conditioning {
         // One without a value depends on what only an iteration finds.
         if evaluation.value(pool, *divisor).abs() < SINGULAR {
-            report(model, scalars, &start, *divisor, pool, diagnostics);
+            report(&start, *divisor, name, pool, diagnostics);
         }
     }
 }
@@ -71,13 +68,13 @@ impl<'a> Start<'a> {
 }
 
 fn report(
-    model: &Elaborated,
-    scalars: &Scalars,
     start: &Start,
     divisor: Expression,
+    name: &str,
     pool: &Pool,
     diagnostics: &mut Diagnostics,
 ) {
+    let model = start.model;
     let read: Vec<usize> = symbols(pool, &[divisor])
         .into_iter()
         .filter_map(|symbol| match symbol {
@@ -94,8 +91,7 @@ fn report(
     let Some(state) = read.iter().find(leads_away).or(read.first()) else {
         return;
     };
-    let written = text(model, scalars, pool, divisor);
-    let message = format!("the model starts where {written} is zero, which it divides by");
+    let message = format!("the model starts where {name} is zero, which it divides by");
     let report = error(codes::SINGULAR_START, model.states[*state].span, message)
         .note("rates are not finite there: this is the edge of the model's singular set");
     diagnostics.report(report.help(proposal(model, start, *state)));

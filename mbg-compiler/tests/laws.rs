@@ -362,3 +362,35 @@ fn conditions_of_laws_are_joined() {
     insta::assert_snapshot!(mistake("output y = if a.f.x > 0.0 && a.f.y == 1.0 { 1.0 } else { 0.0 };"), @"2:36 expected a comparison with < <= > or >= [MBG0213]");
     insta::assert_snapshot!(mistake("output y = if a.f.x { 1.0 } else { 0.0 };"), @"2:15 expected a comparison with < <= > or >= [MBG0213]");
 }
+
+/// A formula that nobody would read as a name gives way to what it is for.
+#[test]
+fn what_is_divided_by_has_a_short_name() {
+    let model = compiled(
+        "model M { param a = 1.0; param b = 2.0; param c = 0.1; param d = 3.0;
+           1 gimbals[3] { C spring { stiffness: 1.0, initial: [0.1, 0.2, 0.3] } }
+           1 body[3] {
+             I rotor { inertia: [[a + b * d, c, c * a], [c, b + a * d, c * d], [c * a, c * d, d * a + d]] }
+             R bearing { resistance: 1.0 / (a * b - 0.5) }
+           }
+           gimbals -> MTF jacobian { flow: [
+             [1.0 + a * spring.q.x * spring.q.y, sin(spring.q.z) * b, 0.2 * spring.q.x],
+             [0.3 * a, cos(spring.q.y), 0.2],
+             [0.5 * b * spring.q.z, 0.1 * a, cos(spring.q.x)],
+           ] } -> body; }",
+    );
+    let checks = model.checks.iter();
+    let checks: Vec<String> = checks
+        .map(|it| format!("{}: {}", it.name, it.reason))
+        .collect();
+    insta::assert_snapshot!(checks.join("\n"), @"
+    a + b d: it is the inertia of `rotor`
+    (a + b d) (b + a d) - c c: it is the determinant of the first 2 rows and columns of the inertia of `rotor`
+    a formula in a, b, d, c: it is the determinant of the first 3 rows and columns of the inertia of `rotor`
+    a b - 0.5: the law of `bearing` divides by it
+    ");
+    insta::assert_snapshot!(model.conditioning.join("\n"), @"
+    a formula in a, spring.q.x, spring.q.y, b and 1 more
+    the determinant for gimbals.f.x, gimbals.f.y, gimbals.f.z
+    ");
+}

@@ -536,6 +536,7 @@ impl Reader<'_, '_, '_> {
 
     /// Leading principal minors are positive.
     fn positive(&mut self, matrix: &Matrix, span: Span) -> Result<Vec<Assumption>> {
+        let owner = self.lookup.graph.elements[self.own.element.0].name.clone();
         let mut assumptions: Vec<Assumption> = Vec::new();
         let is_diagonal = matrix.is_diagonal();
         for size in 1..=matrix.rows {
@@ -543,6 +544,11 @@ impl Reader<'_, '_, '_> {
                 matrix.at(size - 1, size - 1)
             } else {
                 matrix.leading(size).determinant(self.pool)
+            };
+            let whole = if is_diagonal || size == 1 {
+                String::new()
+            } else {
+                format!("the determinant of the first {size} rows and columns of ")
             };
             match self.pool.constant_value(expression) {
                 Some(value) if value > 0.0 => {}
@@ -564,10 +570,7 @@ impl Reader<'_, '_, '_> {
                 None => assumptions.push(Assumption {
                     expression,
                     condition: Condition::Positive,
-                    reason: format!(
-                        "it is the inertia of `{}`",
-                        self.lookup.graph.elements[self.own.element.0].name
-                    ),
+                    reason: format!("it is {whole}the inertia of `{owner}`"),
                 }),
             }
         }

@@ -63,10 +63,12 @@ pub struct Loop {
 }
 
 /// A block whose determinant varies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inverted {
     /// Its determinant over the norms of its rows.
     pub normalised: Expression,
+    /// What it is inverted for, by number.
+    pub unknowns: Vec<usize>,
 }
 
 /// Why there is no solution.

@@ -42,9 +42,11 @@ pub(super) fn blocks(
         known: vec![false; scalars.unknowns],
         signals_of: signals_of(scalars),
         substitution: Substitution::new(),
+        current: Vec::new(),
     };
     for block in order {
         let unknowns: Vec<usize> = block.iter().map(|equation| unknown_of[*equation]).collect();
+        solver.current.clone_from(&unknowns);
         solver.block(block, &unknowns)?;
     }
     Ok(solver.solution)
@@ -100,6 +102,8 @@ pub(super) struct Solver<'a> {
     known: Vec<bool>,
     signals_of: Vec<Vec<(usize, bool)>>,
     substitution: Substitution,
+    /// The unknowns of the block that is being solved.
+    current: Vec<usize>,
 }
 
 impl Solver<'_> {
@@ -420,11 +424,14 @@ impl Solver<'_> {
                         normalised = quotient;
                     }
                 }
-                let inverted = Inverted {
-                    normalised: normalised.magnitude(),
-                };
-                if !self.solution.conditioning.contains(&inverted) {
-                    self.solution.conditioning.push(inverted);
+                let normalised = normalised.magnitude();
+                let known = &mut self.solution.conditioning;
+                if known.iter().all(|it| it.normalised != normalised) {
+                    let unknowns = self.current.clone();
+                    known.push(Inverted {
+                        normalised,
+                        unknowns,
+                    });
                 }
             }
         }

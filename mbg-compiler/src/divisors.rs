@@ -1,0 +1,77 @@
+//! Names of what a model divides by: the formula where it is short, and else what it is for or what it reads.
+
+use crate::compile::text;
+use crate::elaborate::Elaborated;
+use crate::equations::Scalars;
+use crate::structure::{Inverted, Solution, block_names};
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Expression, Pool};
+
+/// Longest formula that serves as a name.
+const LONGEST: usize = 60;
+
+/// Most variables in one name.
+const MOST: usize = 4;
+
+/// The names of the inverted blocks, no two alike.
+pub(crate) fn names(
+    model: &Elaborated,
+    scalars: &Scalars,
+    solution: &Solution,
+    pool: &Pool,
+) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for Inverted {
+        normalised,
+        unknowns,
+    } in &solution.conditioning
+    {
+        let written = text(model, scalars, pool, *normalised);
+        let solved = block_names(scalars, unknowns);
+        let name = if is_short(&written) {
+            written
+        } else if solved.is_empty() {
+            read(model, pool, *normalised)
+        } else {
+            format!("the determinant for {}", list(&solved))
+        };
+        let numbered = (2..).map(|number| format!("{name}, number {number}"));
+        let mut all = std::iter::once(name.clone()).chain(numbered);
+        names.extend(all.find(|name| !names.contains(name)));
+    }
+    names
+}
+
+/// The name of a divisor of parameters.
+pub(crate) fn name(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    divisor: Expression,
+) -> String {
+    let written = text(model, scalars, pool, divisor);
+    if is_short(&written) {
+        written
+    } else {
+        read(model, pool, divisor)
+    }
+}
+
+fn is_short(written: &str) -> bool {
+    written.chars().count() <= LONGEST
+}
+
+/// `a formula in a, b and 3 more`.
+fn read(model: &Elaborated, pool: &Pool, divisor: Expression) -> String {
+    let read = symbols(pool, &[divisor]);
+    let names: Vec<String> = read.into_iter().map(|it| model.symbol_text(it)).collect();
+    format!("a formula in {}", list(&names))
+}
+
+fn list(names: &[String]) -> String {
+    let named = names[..names.len().min(MOST)].join(", ");
+    match names.len().saturating_sub(MOST) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
+}

@@ -336,7 +336,9 @@ fn heat_flow_times_temperature_is_no_power() {
     let (place, told_of) = told(&format!("{text} }}"));
     assert!(place.starts_with("wall {"), "{place}");
     assert!(
-        told_of.ends_with("help: write `0 wall pseudo` where effort times flow is no power"),
+        told_of.ends_with(
+            "help: write `0 wall pseudo` where effort times flow is no power, as temperature times heat flow"
+        ),
         "{told_of}"
     );
     let (place, told_of) = told(&format!("{text} output temperature: K = wall.e; }}"));
@@ -345,6 +347,48 @@ fn heat_flow_times_temperature_is_no_power() {
         told_of.starts_with("`temperature` is declared in `K`, and this is"),
         "{told_of}"
     );
+}
+
+/// Wherever the units first contradict each other, the junctions to mark are named; marked so, the model is sound.
+#[test]
+fn temperature_with_heat_flow_is_told_to_be_pseudo() {
+    let values = "param capacity: J/K = 50.0; param loss: W/K = 0.8; param weather: K = 293.0; input power: W;";
+    for (body, junctions) in [
+        (
+            "0 case { C metal { compliance: capacity } Sf heat { flow: power } }",
+            vec!["0 case"],
+        ),
+        (
+            "0 case { C metal { compliance: capacity, initial: capacity * weather } } 0 air { Se w { effort: weather } }
+             1 wall { R r { conductance: loss } } case -> wall; wall -> air;",
+            vec!["0 case", "0 air", "1 wall"],
+        ),
+        (
+            "0 case[2] { C metal { compliance: 5.0 } Sf heat { flow: [power, power] } } output t[2]: K = case.e;",
+            vec!["0 case[2]"],
+        ),
+        (
+            "0 case pseudo; 0 air; Se w { effort: weather } -> air; metal: HeatCapacity { capacity: capacity } (case);
+             surface: Conduction { conductance: loss } (case, air);",
+            vec!["0 air"],
+        ),
+    ] {
+        let text = format!("model M {{ {values} {body} }}");
+        let list: Vec<String> = junctions.iter().map(|it| format!("`{it} pseudo`")).collect();
+        let help = format!("help: write {} where effort times flow", list.join(", "));
+        let told: Vec<String> = diagnose(&text).iter().map(Diagnostic::text).collect();
+        assert!(!told.is_empty() && told.iter().all(|it| it.contains(&help)), "{told:#?}");
+        let marked = junctions.iter().fold(text, |text, junction| {
+            text.replacen(junction, &format!("{junction} pseudo"), 1)
+        });
+        let told: Vec<String> = diagnose(&marked).iter().map(Diagnostic::text).collect();
+        assert!(told.is_empty(), "{marked}: {told:#?}");
+    }
+    // What differs elsewhere is no matter of bonds.
+    let (_, text) = told(&mass(
+        "param hot: K = 300.0; output heat: W = 2.0 * hot * (a.f / a.f); output x: K = m.p;",
+    ));
+    assert!(!text.contains("pseudo"), "{text}");
 }
 
 #[test]

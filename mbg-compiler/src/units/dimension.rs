@@ -155,6 +155,12 @@ impl Dimension {
         self.0.iter().any(|(_, exponent)| exponent.denominator != 1)
     }
 
+    /// Whether it is a power of the kelvin, other than a pure number.
+    #[must_use]
+    pub(super) fn is_power_of_kelvin(&self) -> bool {
+        matches!(self.0[..], [(Factor::Base(base), _)] if BASES[base] == "K")
+    }
+
     /// Whether no unknown unit is in it.
     #[must_use]
     pub(super) fn is_known(&self) -> bool {

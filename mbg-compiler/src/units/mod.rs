@@ -12,6 +12,7 @@ mod dimension;
 mod inference;
 mod names;
 mod ports;
+mod pseudo;
 mod report;
 mod spellings;
 
@@ -26,7 +27,7 @@ use self::report::Reporter;
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::claims::{self, Claim, Claims, Subject};
 use crate::elaborate::{Elaborated, Quantity};
-use crate::graph::{BondGraph, ElementId, ElementKind, End};
+use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId};
 use crate::symbolic::{Expression, Pool, Symbol};
 use crate::syntax::ast::{self, Unit};
 
@@ -186,13 +187,13 @@ impl Checker<'_> {
 
     /// A junction whose units could only be roots is one where effort times flow is no power.
     fn roots(&mut self) {
-        for (junction, pairs) in self.model.graph.junctions.iter().zip(&self.ports.junctions) {
+        for (id, pairs) in self.ports.junctions.iter().enumerate() {
             let units = pairs
                 .iter()
                 .map(|pair| self.inference.unknowns.reduce(&pair[0]));
             let root = units.filter(Dimension::is_known).find(Dimension::has_roots);
             if let Some(unit) = root {
-                self.reporter.root(junction, &unit);
+                self.reporter.root(JunctionId(id), &unit);
             }
         }
     }
@@ -242,8 +243,8 @@ impl Checker<'_> {
             Subject::Declared(name, unit) => {
                 let wanted = names::dimension(unit).unwrap_or_default();
                 let found = self.first_other(&measures, &vec![wanted; measures.len()]);
-                if let Some((_, found)) = found {
-                    self.reporter.declared(claim, name, &unit.text, &found);
+                if let Some((wanted, found)) = found {
+                    self.reporter.declared(claim, name, unit, [&wanted, &found]);
                 }
             }
             Subject::Word(id, word) => self.word(claim, *id, word, &measures),

@@ -3,13 +3,14 @@
 use super::dimension::Dimension;
 use super::inference::Mismatch;
 use super::ports::Mistake;
-use super::{expression_text, names};
+use super::{expression_text, names, pseudo};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::claims::{Claim, Claims, Site};
 use crate::elaborate::{Elaborated, Place, Quantity, Signal};
-use crate::graph::{Junction, JunctionKind, OriginId, component_name};
+use crate::graph::{JunctionId, OriginId, component_name};
 use crate::symbolic::{Expression, Operation, Pool, Symbol};
+use crate::syntax::ast::Unit;
 
 /// How a pure number gets a unit.
 const FACTOR: &str =
@@ -130,15 +131,29 @@ impl<'a> Reporter<'a> {
                 (message, true)
             }
         };
-        self.report(place, message, None, pure);
+        // A factor may be all that is missing.
+        let help = pure.then(|| FACTOR.to_owned());
+        self.report(place, message, None, help);
     }
 
     /// A name with a declared unit and another value.
-    pub(super) fn declared(&mut self, claim: &Claim, name: &str, unit: &str, found: &Dimension) {
+    pub(super) fn declared(
+        &mut self,
+        claim: &Claim,
+        name: &str,
+        unit: &Unit,
+        units: [&Dimension; 2],
+    ) {
+        let found = units[1];
         let text = unit_text(found);
-        let message = format!("`{name}` is declared in `{unit}`, and this is {text}");
+        let message = format!(
+            "`{name}` is declared in `{}`, and this is {text}",
+            unit.text
+        );
         let mut report = error(codes::UNIT_MISMATCH, claim.place.span, message);
-        if found.is_pure() {
+        if let Some(advice) = self.no_power(claim, units) {
+            report = report.help(advice);
+        } else if found.is_pure() {
             report = report.help("an angle is declared in `rad`").help(FACTOR);
         }
         self.tell(&claim.place, report);
@@ -149,23 +164,39 @@ impl<'a> Reporter<'a> {
         &mut self,
         claim: &Claim,
         what: &str,
-        [wanted, found]: [&Dimension; 2],
+        units: [&Dimension; 2],
         note: Option<String>,
     ) {
-        let pure = wanted.is_pure() || found.is_pure();
-        let (wanted, found) = self.both([wanted, found]);
+        let help = match self.no_power(claim, units) {
+            None if units.iter().any(|unit| unit.is_pure()) => Some(FACTOR.to_owned()),
+            advice => advice,
+        };
+        let (wanted, found) = self.both(units);
         let message = format!("{what} must be {wanted} here, and this is {found}");
-        self.report(&claim.place, message, note, pure);
+        self.report(&claim.place, message, note, help);
     }
 
-    /// Reports units that do not agree; where one of them is that of a pure number, a factor may be all that is missing.
-    fn report(&mut self, place: &Site, message: String, note: Option<String>, pure: bool) {
+    /// What to type where units differ because temperature times heat flow is taken for power.
+    fn no_power(&self, claim: &Claim, units: [&Dimension; 2]) -> Option<String> {
+        let places = pseudo::places(self.model, self.claims, self.pool, claim);
+        let advice = || pseudo::advice(&self.model.graph, &places);
+        pseudo::is_thermal(units).then(advice)?
+    }
+
+    /// Reports units that do not agree.
+    fn report(
+        &mut self,
+        place: &Site,
+        message: String,
+        note: Option<String>,
+        help: Option<String>,
+    ) {
         let mut report = error(codes::UNIT_MISMATCH, place.span, message);
         if let Some(note) = note {
             report = report.note(note);
         }
-        if pure {
-            report = report.help(FACTOR);
+        if let Some(help) = help {
+            report = report.help(help);
         }
         self.tell(place, report);
     }
@@ -179,7 +210,11 @@ impl<'a> Reporter<'a> {
             "`{}` joins {variable}: {left} before it, {right} after it",
             origins.path(origin)
         );
-        let help = "a transformer or a gyrator goes between two domains: `a -> TF gear { flow: ratio } -> b;`";
+        let advice = || pseudo::advice(&self.model.graph, &pseudo::ends(&self.model.graph, origin));
+        let help = pseudo::is_thermal([&mistake.units[0], &mistake.units[1]]).then(advice);
+        let help = help.flatten().unwrap_or_else(|| {
+            "a transformer or a gyrator goes between two domains: `a -> TF gear { flow: ratio } -> b;`".to_owned()
+        });
         let report = error(codes::UNIT_MISMATCH, origins.span(origin), message).help(help);
         let place = Site {
             span: origins.span(origin),
@@ -194,22 +229,17 @@ impl<'a> Reporter<'a> {
     }
 
     /// A junction whose effort could only be in a root of units.
-    pub(super) fn root(&mut self, junction: &Junction, unit: &Dimension) {
-        let (name, span) = (
-            &junction.name,
-            self.model.graph.origins.span(junction.origin),
-        );
-        let unit = unit_text(unit);
+    pub(super) fn root(&mut self, id: JunctionId, unit: &Dimension) {
+        let graph = &self.model.graph;
+        let junction = &graph.junctions[id.0];
+        let span = graph.origins.span(junction.origin);
         let message = format!(
-            "the effort of `{name}` could only be in {unit}, if effort times flow is power"
+            "the effort of `{}` could only be in {}, if effort times flow is power",
+            junction.name,
+            unit_text(unit)
         );
-        let digit = match junction.kind {
-            JunctionKind::Zero => 0,
-            JunctionKind::One => 1,
-        };
-        let own = name.rsplit('.').next().unwrap_or(name);
-        let help = format!("write `{digit} {own} pseudo` where effort times flow is no power");
-        let report = error(codes::UNIT_MISMATCH, span, message).help(help);
+        let mut report = error(codes::UNIT_MISMATCH, span, message);
+        report.helps.extend(pseudo::advice(graph, &[id]));
         self.tell(
             &Site {
                 span,
@@ -226,8 +256,11 @@ impl<'a> Reporter<'a> {
             "`{}` joins a junction of pseudo bonds to one of true bonds",
             origins.path(origin)
         );
-        let help = "write `pseudo` at both, `0 name pseudo;`, or at neither";
-        let report = error(codes::UNIT_MISMATCH, origins.span(origin), message).help(help);
+        let mut report = error(codes::UNIT_MISMATCH, origins.span(origin), message);
+        let ends = pseudo::ends(&self.model.graph, origin);
+        report
+            .helps
+            .extend(pseudo::advice(&self.model.graph, &ends));
         let place = Site {
             span: origins.span(origin),
             library: None,

@@ -269,6 +269,7 @@ fn a_unit_in_another_spelling_is_answered_with_the_text_to_type() {
         ("kgm", "kgm", "write `kg*m`"),
         ("kgm^2", "kgm", "write `kg*m^2`"),
         ("J/kgK", "kgK", "write `J/kg/K`"),
+        ("W/m2K", "m2K", "write `W/m^2/K`"),
         ("W/Km", "Km", "write `W/K/m`"),
         ("kNm", "kNm", "write `N*m`, and each value times 1000"),
         ("mNm", "mNm", "write `N*m`, and each value times 0.001"),
@@ -296,6 +297,35 @@ fn a_unit_in_another_spelling_is_answered_with_the_text_to_type() {
             "{text}"
         );
     }
+}
+
+/// `mK` below a stroke, and a digit with the unit behind it, which are one token.
+#[test]
+fn metres_and_kelvins_side_by_side_are_told_apart() {
+    for (unit, first, second) in [
+        ("W/mK", "`W/m/K`", "`W/K`, and each value times 1000"),
+        ("W/(mK)", "`W/m/K`", "`W/K`, and each value times 1000"),
+        ("mW/mK", "`W/m/K`, and each value times 0.001", "`W/K`"),
+    ] {
+        let (found, text) = told(&mass(&format!("param x: {unit} = 1.0;")));
+        assert!(found.starts_with("mK"), "{unit}: at `{found}`");
+        let helps = format!("help: write {first}\n  help: write {second} where `mK` is one unit");
+        assert!(text.ends_with(&helps), "{text}");
+    }
+    for (unit, written) in [("W/m^2K", "W/m^2/K"), ("m^3s", "m^3*s")] {
+        let (_, text) = told(&mass(&format!("param x: {unit} = 1.0;")));
+        assert!(
+            text.ends_with(&format!("help: write `{written}`")),
+            "{text}"
+        );
+        let mended = diagnose(&mass(&format!("param x: {written} = 1.0;")));
+        assert!(mended.is_empty(), "{mended:#?}");
+    }
+    let (_, text) = told(&mass("param x: mK = 1.0;"));
+    assert!(
+        text.ends_with("help: write `K`, and each value times 0.001"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -81,7 +81,7 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
         }
         cursor.advance(1);
         unit.text.push_str(&spelling);
-        let exponent = exponent(cursor, unit)?;
+        let exponent = exponent(cursor, unit, sign)?;
         unit.factors.push((name, sign * exponent));
         return Ok(());
     }
@@ -109,7 +109,7 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
     }
     unit.text.push(')');
     let place = cursor.position();
-    let exponent = exponent(cursor, unit)?;
+    let exponent = exponent(cursor, unit, sign)?;
     for (_, power) in &mut unit.factors[first..] {
         *power *= exponent;
         if power.abs() > LARGEST_EXPONENT {
@@ -119,8 +119,8 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
     Ok(())
 }
 
-/// Reads `^n`, 1 when it is not there.
-fn exponent(cursor: &mut Cursor, unit: &mut Unit) -> Parsed<i32> {
+/// Reads `^n`, 1 when it is not there, of a factor above or below a stroke.
+fn exponent(cursor: &mut Cursor, unit: &mut Unit, stroke: i32) -> Parsed<i32> {
     if !cursor.take_punct('^') {
         return Ok(1);
     }
@@ -134,11 +134,19 @@ fn exponent(cursor: &mut Cursor, unit: &mut Unit) -> Parsed<i32> {
         Some(TokenTree::Literal(literal)) => syn::parse_str::<LitInt>(&literal.to_string()).ok(),
         _ => None,
     };
-    let Some(number) = number.filter(|number| number.suffix().is_empty()) else {
+    let Some(number) = number else {
         let report = *cursor.expected_with(codes::UNIT, "an integer exponent");
         let help = "a quantity whose unit has a root, such as the coefficient of an orifice, is declared without a unit";
         return Err(Box::new(report.help(help)));
     };
+    if !number.suffix().is_empty() {
+        // A digit and the next unit, as in `W/m^2K`, are one token.
+        let mark = if stroke < 0 { '/' } else { '*' };
+        let (digits, next) = (number.base10_digits(), number.suffix());
+        let help = format!("write `{}{digits}{mark}{next}`", unit.text);
+        let report = *cursor.expected_with(codes::UNIT, "an integer exponent");
+        return Err(Box::new(report.help(help)));
+    }
     cursor.advance(1);
     match number.base10_parse::<i32>() {
         Ok(value) if value <= LARGEST_EXPONENT => {

@@ -164,8 +164,8 @@ const SPELLINGS: &[&[(&str, i32)]] = &[
 ///
 /// A name that is not of SI, or that would scale the values.
 pub(super) fn dimension(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
-    let mut whole = Known::default();
-    let (mut misspelt, mut scaling) = (None, None);
+    let (mut whole, mut apart) = (Known::default(), Known::default());
+    let (mut misspelt, mut scaling, mut beside) = (None, None, None);
     for (name, exponent) in &unit.factors {
         let text = name.to_string();
         let known = lookup(&text).map(|known| known.to_power(*exponent));
@@ -179,7 +179,16 @@ pub(super) fn dimension(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
         if meant.scales() {
             scaling = scaling.or(Some(name));
         }
+        let both = spellings::side_by_side(&text, *exponent);
+        beside = beside.or(both.is_some().then_some(name));
+        apart.multiply(both.unwrap_or_else(|| meant.clone()));
         whole.multiply(meant);
+    }
+    if let (None, Some(name)) = (misspelt, beside) {
+        let message = format!("`{name}` below a stroke may be one unit or two");
+        let report = error(codes::UNIT_SCALE, name.span(), message);
+        let second = format!("{} where `{name}` is one unit", whole.instead());
+        return Err(Box::new(report.help(apart.instead()).help(second)));
     }
     match (misspelt, scaling) {
         (Some(name), _) => Err(Box::new(no_unit(name).help(whole.instead()))),
@@ -199,6 +208,7 @@ pub(super) fn dimension(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
 type Factors = &'static [(&'static str, i32)];
 
 /// What names stand for: coherent units with their exponents, and by which power of ten and which factor they scale them.
+#[derive(Clone)]
 pub(super) struct Known {
     tens: i32,
     scale: f64,

@@ -43,6 +43,16 @@ pub(super) fn meant(name: &str, exponent: i32) -> Option<Known> {
         .or_else(|| together(name, exponent))
 }
 
+/// The two units of `W/mK`, which is hardly ever a watt per millikelvin.
+pub(super) fn side_by_side(name: &str, exponent: i32) -> Option<Known> {
+    if name != "mK" || exponent >= 0 {
+        return None;
+    }
+    let mut both = lookup("m")?.to_power(-1);
+    both.multiply(lookup("K")?.to_power(exponent));
+    Some(both)
+}
+
 /// `sec`, `Ohms`, `radians`.
 fn word(name: &str) -> Option<Known> {
     let lower = name.to_lowercase();

@@ -87,6 +87,26 @@ fn a_ring_of_junctions_is_opened() {
     assert_eq!(helps, [help]);
 }
 
+#[test]
+fn of_storages_that_depend_on_each_other_a_linear_one_is_eliminated() {
+    let text = |law: &str| {
+        let first = "C first { effort: q + powi(q, 3) }";
+        format!(
+            "model M {{ 0 node {{ {first} #[derivative] C last {{ {law} }} R r {{ resistance: 1.0 }} }} }}"
+        )
+    };
+    compiles(&text("stiffness: 2.0"));
+    let nonlinear = text("effort: 2.0 * q + powi(q, 3)");
+    let helps = helps(&nonlinear, codes::ORDER_LOST_UNSUPPORTED);
+    assert_eq!(helps[1], "put a resistor between them");
+    let (node, last) = ("0 node {", "#[derivative] C last");
+    let between =
+        "0 other { C last { effort: 2.0 * q + powi(q, 3) } } 1 path { R s { resistance: 1.0 } }
+                   node -> path; path -> other; 0 node {";
+    let apart = nonlinear.replace(&format!("{last} {{ effort: 2.0 * q + powi(q, 3) }}"), "");
+    compiles(&apart.replace(node, between));
+}
+
 /// A body that spins about the one axis that a source leaves, the source, and where it acts.
 const HELD: [(&str, &str, &str); 2] = [
     (

@@ -110,8 +110,15 @@ impl Reducer<'_> {
                 element.name
             );
             let span = model.graph.origins.span(element.origin);
-            let help = "put `#[derivative]` before another of the storages, so that this one stays a state";
-            diagnostics.report(error(codes::ORDER_LOST_UNSUPPORTED, span, message).help(help));
+            let report = error(codes::ORDER_LOST_UNSUPPORTED, span, message);
+            diagnostics.report(
+                report
+                    .help(
+                        "put `#[derivative]` before another of the storages, whose law is linear, so that this one stays \
+                         a state",
+                    )
+                    .help(apart(element.kind)),
+            );
         }
         inverses
     }
@@ -696,6 +703,14 @@ impl Linear {
         let scaled = pool.multiply(other.constant, factor);
         self.constant = pool.add(self.constant, scaled);
         self.input = self.input.or(other.input);
+    }
+}
+
+/// What keeps storages of a kind from depending on each other.
+fn apart(kind: ElementKind) -> &'static str {
+    match kind {
+        ElementKind::I => "or put a spring and a damper between them",
+        _ => "or put a resistor between them",
     }
 }
 

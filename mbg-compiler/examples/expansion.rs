@@ -18,13 +18,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("{:<40} {:>9} {:>10}", "file", "time / ms", "text / kB");
     for path in paths {
-        let tokens = source::read(&path)?;
+        let tokens = source::tokens(&path)?;
         let mut times = [0.0; RUNS];
         let mut size = 0;
         for time in &mut times {
             let tokens = tokens.clone();
             let begin = Instant::now();
-            let items = mbg_compiler::items(tokens, &mut Diagnostics::new());
+            let mut ignored = Diagnostics::new();
+            let items = mbg_compiler::expansion(tokens, &source::included, &mut ignored);
             *time = 1e3 * begin.elapsed().as_secs_f64();
             size = items.to_string().len();
         }

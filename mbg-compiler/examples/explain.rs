@@ -6,8 +6,9 @@ use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: explain FILE")?;
-    let tokens = source::read(&path)?;
+    let tokens = source::tokens(&path)?;
     let place = |span| source::place(&path, span);
-    print!("{}", mbg_compiler::explain::explain(tokens, &place));
+    let text = mbg_compiler::explain::explain(tokens, &source::included, &place);
+    print!("{text}");
     Ok(())
 }

@@ -10,6 +10,7 @@ use crate::compile::{self, Compiled, Routines};
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::{self, Elaborated};
 use crate::equations::{self, Scalars};
+use crate::inclusion::Read;
 use crate::network::Network;
 use crate::structure::{self, Formulation, Solution};
 use crate::symbolic::{Expression, Method, Pool};
@@ -17,11 +18,20 @@ use crate::syntax::ast::{Component, Item, Model};
 use crate::{drawing, program, syntax};
 
 /// Prints what each stage makes of the tokens between the braces of `mbg! { … }`, and at the end what is wrong, with its
-/// place as the caller spells it.
+/// place as the caller spells it. What they include is read by `read`.
 #[must_use]
-pub fn explain(tokens: TokenStream, place: &dyn Fn(Span) -> String) -> String {
+pub fn explain(tokens: TokenStream, read: &Read<'_>, place: &dyn Fn(Span) -> String) -> String {
     let mut diagnostics = Diagnostics::new();
-    let source = syntax::parse(tokens, &mut diagnostics);
+    let (mut text, _) = crate::located(tokens, read, &mut diagnostics, &all_stages);
+    for diagnostic in diagnostics.list() {
+        let report = format!("{}: {}", place(diagnostic.span), diagnostic.text());
+        text += &section("error", &report);
+    }
+    text
+}
+
+fn all_stages(tokens: TokenStream, diagnostics: &mut Diagnostics) -> String {
+    let source = syntax::parse(tokens, diagnostics);
     let mut text = section("syntax", &syntax::dump(&source));
     let components = elaborate::component_table(&source);
     let sound = !diagnostics.any();
@@ -31,13 +41,9 @@ pub fn explain(tokens: TokenStream, place: &dyn Fn(Span) -> String) -> String {
             continue;
         }
         text += &stages(model, &components);
-        if let Some(compiled) = compile::compile(model, &components, &mut diagnostics) {
+        if let Some(compiled) = compile::compile(model, &components, diagnostics) {
             text += &programs(&compiled);
         }
-    }
-    for diagnostic in diagnostics.list() {
-        let report = format!("{}: {}", place(diagnostic.span), diagnostic.text());
-        text += &section("error", &report);
     }
     text
 }

@@ -66,16 +66,27 @@ pub fn expansion(
     read: &Read<'_>,
     diagnostics: &mut Diagnostics,
 ) -> TokenStream {
-    let inclusion = Inclusion::of(tokens, read, diagnostics);
-    let before = diagnostics.clone();
-    let mut output = items(inclusion.tokens(), diagnostics);
-    inclusion.locate(before.list().len(), diagnostics, &|tokens| {
-        let mut again = before.clone();
-        let _ = items(tokens, &mut again);
-        again
-    });
+    let (mut output, inclusion) = located(tokens, read, diagnostics, &items);
     output.extend(inclusion.dependencies());
     output
+}
+
+/// What `run` makes of tokens and of the files that they include; its errors in a file are told with their place there.
+fn located<R>(
+    tokens: TokenStream,
+    read: &Read<'_>,
+    diagnostics: &mut Diagnostics,
+    run: &dyn Fn(TokenStream, &mut Diagnostics) -> R,
+) -> (R, Inclusion) {
+    let inclusion = Inclusion::of(tokens, read, diagnostics);
+    let before = diagnostics.clone();
+    let output = run(inclusion.tokens(), diagnostics);
+    inclusion.locate(before.list().len(), diagnostics, &|tokens| {
+        let mut again = before.clone();
+        let _ = run(tokens, &mut again);
+        again
+    });
+    (output, inclusion)
 }
 
 /// As [`expansion`], of tokens that include nothing.

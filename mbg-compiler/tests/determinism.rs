@@ -26,7 +26,7 @@ fn expansions() -> String {
         format!(
             "{}\n{}\n",
             expand(tokens.clone(), &no_file),
-            explain(tokens, &|_| String::new())
+            explain(tokens, &no_file, &|_| String::new())
         )
     });
     both.collect()

@@ -4,9 +4,11 @@
 use std::io;
 
 use mbg_compiler::diagnostics::Diagnostics;
+use mbg_compiler::explain::explain;
 use mbg_compiler::inclusion::{Inclusion, no_file};
 use mbg_compiler::syntax::library;
 use mbg_compiler::{expand, expansion};
+use proc_macro2::Span;
 use proptest::prelude::*;
 
 /// A damper of its own.
@@ -111,6 +113,23 @@ fn mistakes_in_files_are_told_at_their_place() {
     for (brake, expected) in cases {
         assert_eq!(reported_in_brake(&brake), expected);
     }
+}
+
+#[test]
+fn the_stages_are_told_with_the_place_in_the_file() {
+    let brake = BRAKE.replace("strength }", "strenght }");
+    let read = |_: &str| Ok(brake.clone());
+    let place = |span: Span| format!("cart.mbg:{}", span.start().line);
+    let text = explain(CART.parse().unwrap(), &read, &place);
+    let (_, mistake) = text.split_once("==== error\n").unwrap();
+    let lines: Vec<&str> = mistake.lines().take(2).collect();
+    assert_eq!(
+        lines,
+        [
+            "cart.mbg:1: `strenght` is not declared [MBG0203]",
+            "  in brake.mbg:4:31"
+        ]
+    );
 }
 
 #[test]

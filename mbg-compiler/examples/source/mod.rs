@@ -1,14 +1,12 @@
 //! Models in files, for the tools beside the compiler.
 
 use std::error::Error;
+use std::io;
 
-use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::inclusion::Inclusion;
 use proc_macro2::{Delimiter, LexError, Span, TokenStream, TokenTree};
 
-/// What a file says, with what it includes in place. It holds what stands between the braces of `mbg! { … }`, or Rust
-/// source with one such call in it; included files are looked for from the current directory.
-pub(crate) fn read(path: &str) -> Result<TokenStream, Box<dyn Error>> {
+/// What a file says: what stands between the braces of `mbg! { … }`, or Rust source with one such call in it.
+pub(crate) fn tokens(path: &str) -> Result<TokenStream, Box<dyn Error>> {
     let text = std::fs::read_to_string(path)?;
     let tokens = text.parse::<TokenStream>();
     let tokens = tokens.map_err(|mistake: LexError| {
@@ -17,14 +15,12 @@ pub(crate) fn read(path: &str) -> Result<TokenStream, Box<dyn Error>> {
             "{place}: this is no token of Rust, or a bracket or a quotation mark has no partner"
         )
     })?;
-    let inner = between_braces(tokens.clone()).unwrap_or(tokens);
-    let mut diagnostics = Diagnostics::new();
-    let included = |path: &str| std::fs::read_to_string(path);
-    let inclusion = Inclusion::of(inner, &included, &mut diagnostics);
-    for diagnostic in diagnostics.list() {
-        eprintln!("{}: {}", place(path, diagnostic.span), diagnostic.text());
-    }
-    Ok(inclusion.tokens())
+    Ok(between_braces(tokens.clone()).unwrap_or(tokens))
+}
+
+/// A file that is included, by its path from the current directory.
+pub(crate) fn included(path: &str) -> io::Result<String> {
+    std::fs::read_to_string(path)
 }
 
 /// `file:line:column`, as editors and terminals follow it.

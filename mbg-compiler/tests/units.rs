@@ -421,6 +421,33 @@ fn temperature_with_heat_flow_is_told_to_be_pseudo() {
     assert!(!text.contains("pseudo"), "{text}");
 }
 
+/// A law without units says least of what units are: where it contradicts others, it is told and not they.
+#[test]
+fn a_law_of_numbers_is_the_last_to_say_what_units_are() {
+    let text = |law: &str, rest: &str| {
+        format!(
+            "model M {{ param way: m = 1.0; 1 a {{ I m {{ inertia: 1.0 }} R drag {{ {law} }} }} {rest} }}"
+        )
+    };
+    let speed = "output speed: m/s = a.f;";
+    let (place, told_of) = told(&text("effort: f * abs(f)", speed));
+    assert!(place.starts_with("f * abs(f)"), "{place}");
+    insta::assert_snapshot!(told_of, @"
+    `effort` of `drag` must be `N` here, and this is `m^2/s^2` [MBG0501]
+      the effort is `N` and the flow `m/s` there
+      help: a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts
+    ");
+    assert!(diagnose(&text("effort: 1.0 * f * abs(f)", speed)).is_empty());
+    let told_of = diagnose(&text("effort: tanh(f)", speed));
+    assert!(
+        told_of[0].text().contains("`drag.f` is `m/s`"),
+        "{told_of:#?}"
+    );
+    assert!(diagnose(&text("effort: 1.0 * tanh(1.0 * f)", speed)).is_empty());
+    // Where nothing else is said, neither is a domain.
+    assert!(diagnose(&text("effort: f * abs(f)", "output speed = a.f;")).is_empty());
+}
+
 #[test]
 fn an_angle_declared_in_another_unit_is_answered_with_its_own() {
     let text = |unit: &str, value: &str| {

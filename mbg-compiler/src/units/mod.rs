@@ -145,6 +145,8 @@ enum Phase {
     TwoPorts,
     Bonds,
     Answers,
+    /// Laws of numbers alone: a factor of one is not written, so that their units are no more than a guess.
+    Numeric,
 }
 
 struct Checker<'a> {
@@ -161,10 +163,14 @@ impl Checker<'_> {
             Phase::TwoPorts,
             Phase::Bonds,
             Phase::Answers,
+            Phase::Numeric,
         ] {
             if phase == Phase::Bonds {
                 self.junction_bonds();
                 continue;
+            }
+            if phase == Phase::Numeric && !self.reporter.any() {
+                self.roots();
             }
             let mut start = 0;
             for (position, claim) in claims.iter().enumerate() {
@@ -179,9 +185,6 @@ impl Checker<'_> {
                 }
                 start = position + 1;
             }
-        }
-        if !self.reporter.any() {
-            self.roots();
         }
     }
 
@@ -201,6 +204,7 @@ impl Checker<'_> {
     fn phase(&self, claim: &Claim) -> Phase {
         match &claim.subject {
             Subject::Word(id, _) if is_two_port(&self.model.graph, *id) => Phase::TwoPorts,
+            Subject::Word(..) if self.reporter.is_numeric(claim) => Phase::Numeric,
             Subject::Word(..) | Subject::Declared(..) => Phase::OnePorts,
             _ => Phase::Answers,
         }

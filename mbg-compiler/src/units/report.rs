@@ -1,12 +1,14 @@
 //! What the user reads about units.
 
+use std::collections::BTreeSet;
+
 use super::dimension::Dimension;
 use super::inference::Mismatch;
 use super::ports::Mistake;
 use super::{expression_text, names, pseudo};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
-use crate::elaborate::claims::{Claim, Claims, Site};
+use crate::elaborate::claims::{Claim, Claims, Site, Subject};
 use crate::elaborate::{Elaborated, Place, Quantity, Signal};
 use crate::graph::{JunctionId, OriginId, component_name};
 use crate::symbolic::{Expression, Operation, Pool, Symbol};
@@ -21,6 +23,8 @@ pub(super) struct Reporter<'a> {
     model: &'a Elaborated,
     claims: &'a Claims,
     pool: &'a Pool,
+    /// Symbols with a declared unit.
+    declared: BTreeSet<Symbol>,
     diagnostics: &'a mut Diagnostics,
     before: usize,
 }
@@ -67,6 +71,7 @@ impl<'a> Reporter<'a> {
             model,
             claims,
             pool,
+            declared: claims.units.iter().map(|(symbol, ..)| *symbol).collect(),
             diagnostics,
             before,
         }
@@ -90,6 +95,25 @@ impl<'a> Reporter<'a> {
             Operation::Symbol(Symbol::Unknown(index)) => self.claims.hidden[*index].number,
             _ => false,
         }
+    }
+
+    /// Whether a law is one of numbers alone: it reads no name with a declared unit.
+    pub(super) fn is_numeric(&self, claim: &Claim) -> bool {
+        if !matches!(claim.subject, Subject::Word(..)) {
+            return false;
+        }
+        let mut open = claim.entries.clone();
+        let mut seen = BTreeSet::new();
+        while let Some(current) = open.pop() {
+            let operation = self.pool.operation(current);
+            if matches!(operation, Operation::Symbol(symbol) if self.declared.contains(symbol)) {
+                return false;
+            }
+            if seen.insert(current.node()) {
+                open.extend(operation.operands());
+            }
+        }
+        true
     }
 
     /// Two units, or by what they differ where one of them is not known.
@@ -168,7 +192,9 @@ impl<'a> Reporter<'a> {
         note: Option<String>,
     ) {
         let help = match self.no_power(claim, units) {
-            None if units.iter().any(|unit| unit.is_pure()) => Some(FACTOR.to_owned()),
+            None if self.is_numeric(claim) || units.iter().any(|unit| unit.is_pure()) => {
+                Some(FACTOR.to_owned())
+            }
             advice => advice,
         };
         let (wanted, found) = self.both(units);

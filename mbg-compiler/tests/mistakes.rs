@@ -1,13 +1,9 @@
-//! Mistakes in models: each is answered with its code at a token, and the macro never panics.
+//! Mistakes in models: each is answered with its code at a token.
 #![allow(clippy::unwrap_used)]
-
-mod tokens;
 
 use mbg_compiler::codes::{self, ALL};
 use mbg_compiler::diagnostics::{Code, Diagnostics};
 use mbg_compiler::items;
-use proptest::prelude::*;
-use tokens::{SOUP, flat, matched};
 
 /// What is reported for the text between the braces.
 fn diagnose(text: &str) -> Diagnostics {
@@ -326,69 +322,6 @@ fn a_model_over_the_limit_is_answered_with_limit_and_count() {
         diagnostics.list()[0].message,
         "`M` has 5001 vector bonds, the limit is 4096"
     );
-}
-
-/// Models without a mistake.
-const SOUND: [&str; 6] = [
-    include_str!("syntax/oscillator.mbg"),
-    include_str!("syntax/ins.mbg"),
-    include_str!("stages/rotor.mbg"),
-    include_str!("stages/slide.mbg"),
-    include_str!("stages/classic_joints.mbg"),
-    "component Slope(port a) { a -> R r { flow: abs(e) * e }; }
-     model Small {
-        causality componentwise; param k = 2.0; input u[2];
-        1 a[2] { C c { stiffness: [[k, 0.0], [0.0, 1.0]] } R l { resistance: k } }
-        Se push { effort: u } -> a;
-        a.x -> GY g { effort: k } -> b;
-        0 b { C d { effort: tanh(q) } I m { energy: if p < 0.0 { p * p } else { powi(p, 4) } } }
-        s: Slope (b);
-        integral x = m.f, initial: 1.0;
-        output y = x * c.q.y;
-     }",
-];
-
-#[test]
-fn sound_models_have_no_errors() {
-    for text in SOUND {
-        assert_eq!(found(text), [""; 0], "{text}");
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn a_changed_model_never_panics_and_its_errors_are_at_tokens(
-        text in prop::sample::select(&SOUND[..]),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..5_usize), 1..4),
-    ) {
-        let mut words = Vec::new();
-        flat(text.parse().expect("tokens"), &mut words);
-        for (at, other, change) in changes {
-            let (at, word) = (at.index(words.len()), words[other.index(words.len())].clone());
-            match change {
-                0 => drop(words.remove(at)),
-                1 => words.insert(at, words[at].clone()),
-                2 => words[at] = word,
-                3 => words[at] = other.get(SOUP).to_string(),
-                _ => {
-                    let other = other.index(words.len());
-                    words.swap(at, other);
-                }
-            }
-        }
-        let text = matched(words.iter().map(String::as_str));
-        if let Ok(tokens) = text.parse() {
-            let mut diagnostics = Diagnostics::new();
-            let expansion = items(tokens, &mut diagnostics);
-            for diagnostic in diagnostics.list() {
-                let (start, end) = (diagnostic.span.start(), diagnostic.span.end());
-                prop_assert!(start != end, "{} has no place in {text}", diagnostic.text());
-            }
-            prop_assert!(syn::parse2::<syn::File>(expansion).is_ok(), "the expansion is no Rust: {text}");
-        }
-    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Texts as flat lists of tokens, so that tests can change them at random.
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// Words that tend to meet the grammar half way.
 pub(crate) const SOUP: &[&str] = &[
@@ -64,9 +64,14 @@ pub(crate) const SOUP: &[&str] = &[
     "99999999999999999999",
 ];
 
-/// All tokens of the valid models with their brackets flat.
+/// All tokens of a text with their brackets flat; signs that stand together are one word.
 pub(crate) fn flat(tokens: TokenStream, into: &mut Vec<String>) {
+    let mut joint = false;
     for token in tokens {
+        let continues = std::mem::replace(
+            &mut joint,
+            matches!(&token, TokenTree::Punct(sign) if sign.spacing() == Spacing::Joint),
+        );
         match token {
             TokenTree::Group(group) => {
                 let (open, close) = match group.delimiter() {
@@ -79,7 +84,13 @@ pub(crate) fn flat(tokens: TokenStream, into: &mut Vec<String>) {
                 flat(group.stream(), into);
                 into.push(close.to_owned());
             }
-            other => into.push(other.to_string()),
+            other => {
+                let word = other.to_string();
+                match into.last_mut().filter(|_| continues) {
+                    Some(sign) => sign.push_str(&word),
+                    None => into.push(word),
+                }
+            }
         }
     }
 }
@@ -99,11 +110,8 @@ pub(crate) fn matched<'a>(words: impl Iterator<Item = &'a str>) -> String {
         } else if matches!(word, "}" | ")" | "]") && open.pop_if(|last| *last == word).is_none() {
             continue;
         }
-        // A minus and a bracket stand together as they stood, and an arrow is two characters.
         text.push_str(word);
-        if !matches!(word, "-" | "." | "=") {
-            text.push(' ');
-        }
+        text.push(' ');
     }
     open.iter().rev().for_each(|close| text.push_str(close));
     text

@@ -96,17 +96,18 @@ pub(crate) fn mutation() -> impl Strategy<Value = Mutation> {
             select(LAWS).prop_map(Word::Language),
         ]
     };
+    // Of other numbers and names more is accepted than of other tokens.
     let change = prop_oneof![
-        Just(Change::Remove),
-        Just(Change::Repeat),
-        word().prop_map(Change::Replace),
-        word().prop_map(Change::Insert),
-        Just(Change::Swap),
-        Just(Change::Rename),
-        select(NUMBERS).prop_map(Change::Renumber),
-        Just(Change::RemoveStatement),
-        Just(Change::RepeatStatement),
-        Just(Change::MoveStatement),
+        1 => Just(Change::Remove),
+        1 => Just(Change::Repeat),
+        1 => word().prop_map(Change::Replace),
+        1 => word().prop_map(Change::Insert),
+        1 => Just(Change::Swap),
+        3 => Just(Change::Rename),
+        8 => select(NUMBERS).prop_map(Change::Renumber),
+        2 => Just(Change::RemoveStatement),
+        2 => Just(Change::RepeatStatement),
+        2 => Just(Change::MoveStatement),
     ];
     (change, any::<Index>(), any::<Index>()).prop_map(|(change, at, other)| Mutation {
         change,

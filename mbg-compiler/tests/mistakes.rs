@@ -488,6 +488,18 @@ fn mistakes_in_parameters_and_inputs_are_told() {
     }
 }
 
+/// Through the library, whose calls have no place in the text.
+#[test]
+fn a_component_that_the_library_calls_from_inside_it_is_told_at_its_call() {
+    let text =
+        "component Bearing(port at) { rack: Rack { radius: 0.1, blocked: compliant } (at, at); }
+model M { 1 a { I m { inertia: 1.0 } } seat: Bearing (a); }";
+    insta::assert_snapshot!(told(text), @"
+    1:30 component `Bearing` contains itself [MBG0215]
+      this is inside `Rack`, a component of the library
+    ");
+}
+
 #[test]
 fn mistakes_at_ports_are_told() {
     let told = |body: &str| {

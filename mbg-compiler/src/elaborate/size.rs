@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::{Ident, Span};
+use proc_macro2::Span;
 
 use super::constants::Constants;
 use crate::codes;
@@ -30,17 +30,12 @@ pub(super) fn check(
         Ok(size) if size.bonds <= LIMIT => return true,
         Ok(size) => format!("{} vector bonds", size.bonds),
         Err(Stop::Scopes) => "too many instances and iterations of loops".to_owned(),
-        Err(Stop::Undecided(report)) => {
+        Err(Stop::Mistake(report)) => {
             diagnostics.report(*report);
             return false;
         }
         // Elaboration tells which bound of a loop is no whole number.
         Err(Stop::Unknown) => return true,
-        Err(Stop::Recursion(name)) => {
-            let message = format!("component `{name}` contains itself");
-            diagnostics.error(codes::RECURSION, name.span(), message);
-            return false;
-        }
     };
     let message = format!("`{}` has {found}, the limit is {LIMIT}", model.name);
     let report = error(codes::TOO_LARGE, model.name.span(), message);
@@ -75,10 +70,8 @@ enum Stop {
     Scopes,
     /// A bound of a loop or a condition is not known.
     Unknown,
-    /// A condition is not known, which is the mistake that this reports.
-    Undecided(Box<Diagnostic>),
-    /// A component contains itself.
-    Recursion(Ident),
+    /// A condition is not known, or a component contains itself.
+    Mistake(Box<Diagnostic>),
 }
 
 struct Counter<'a> {
@@ -122,7 +115,9 @@ impl Counter<'_> {
     fn instance(&mut self, instance: &Instance, constants: &Constants) -> Result<Size, Stop> {
         let name = instance.component.to_string();
         if self.open.contains(&name) {
-            return Err(Stop::Recursion(instance.component.clone()));
+            let message = format!("component `{name}` contains itself");
+            let report = error(codes::RECURSION, instance.component.span(), message);
+            return Err(self.mistake(report));
         }
         let Some(component) = self.components.get(&name) else {
             return Ok(Size::default());
@@ -152,11 +147,16 @@ impl Counter<'_> {
         match constants.branch(conditional) {
             Ok(branch) => self.count(branch, constants),
             Err(_) if self.probing => Err(Stop::Unknown),
-            Err(report) => Err(Stop::Undecided(Box::new(match &self.library {
-                Some((component, instance)) => report.inside(component, *instance),
-                None => *report,
-            }))),
+            Err(report) => Err(self.mistake(*report)),
         }
+    }
+
+    /// A mistake, which inside a component of the library is told at the instance.
+    fn mistake(&self, report: Diagnostic) -> Stop {
+        Stop::Mistake(Box::new(match &self.library {
+            Some((component, instance)) => report.inside(component, *instance),
+            None => report,
+        }))
     }
 
     /// All iterations at once where they are alike; otherwise one after the other, as far as the limit.

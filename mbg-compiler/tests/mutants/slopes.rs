@@ -10,9 +10,6 @@ const WIDEST: f64 = 1e-2;
 /// Each step is a quarter of that before. The narrowest is 4e-11: the current of a diode changes within 1e-6 of its voltage.
 const STEPS: i32 = 15;
 
-/// How many of the narrowest show the rounding.
-const ROUNDED: usize = 5;
-
 /// The error of a quotient that is taken for the slope, of the function's size. Where laws have kinks or are steeper than the
 /// narrowest step, none is as good, and nothing is said.
 const RESOLVED: f64 = 1e-5;
@@ -188,8 +185,9 @@ impl Place<'_> {
             .find_map(|along| {
                 let found = self.quotients(Routines::DERIVATIVE, &along);
                 let told = jacobian.chunks(count).map(|row| {
-                    let terms = row.iter().zip(&along).map(|(entry, part)| entry * part);
-                    terms.sum::<f64>()
+                    // An entry beside the direction may be infinite.
+                    let terms = row.iter().zip(&along).filter(|(_, part)| **part != 0.0);
+                    terms.map(|(entry, part)| entry * part).sum::<f64>()
                 });
                 let mut rows = found.iter().zip(told).zip(rates);
                 let wrong = rows
@@ -220,6 +218,7 @@ impl Place<'_> {
             self.run_at(routine, &moved)
         };
         let here = at(0.0);
+        let size = largest(&here);
         let steps = (0..STEPS).map(|number| WIDEST * 0.25_f64.powi(number));
         let samples = steps.map(|step| (step, at(step), at(-step)));
         let samples: Vec<(f64, Vec<f64>, Vec<f64>)> = samples.collect();
@@ -230,7 +229,7 @@ impl Place<'_> {
                 ahead: ahead[result],
                 behind: behind[result],
             };
-            quotient(&samples.iter().map(one).collect::<Vec<_>>())
+            quotient(&samples.iter().map(one).collect::<Vec<_>>(), size)
         });
         results.collect()
     }
@@ -255,19 +254,21 @@ impl Sample {
     }
 }
 
-/// The quotient of least error, by steps that become a quarter each.
-fn quotient(samples: &[Sample]) -> Quotient {
-    // Over the narrowest steps nothing bends but for rounding, which is that of what terms cancel in.
-    let narrowest = samples.iter().rev().take(ROUNDED);
-    let rounding = narrowest.fold(f64::EPSILON * samples[0].here.abs(), |most, it| {
-        most.max(it.bend().abs())
-    });
+/// The quotient of least error, by steps that become a quarter each; values beside this one have a size.
+fn quotient(samples: &[Sample], size: f64) -> Quotient {
     let mut found = Quotient {
         value: f64::NAN,
         error: f64::INFINITY,
     };
-    for pair in samples.windows(2) {
-        let [wide, narrow] = pair else { continue };
+    for first in 0..samples.len() {
+        let [wide, narrow, _, narrower @ ..] = &samples[first..] else {
+            break;
+        };
+        // Rounding is that of the terms that cancel inside: it shows in narrower steps, over which little else bends.
+        let least = f64::EPSILON * size;
+        let rounding = narrower
+            .iter()
+            .fold(least, |most, it| most.max(it.bend().abs()));
         // From step to step the quotient stays, but for what it leaves out, and the second difference becomes a sixteenth, but
         // for kinks.
         let value = narrow.slope();

@@ -16,7 +16,8 @@ const SINGULAR: f64 = 1.5e-8;
 /// What is proposed in place of a start at which a determinant is zero.
 const PROPOSED: f64 = 0.5;
 
-/// Reports normalised determinants, given with their names, that are zero with initial values and default parameters, without inputs.
+/// Reports normalised determinants, given with their names, that are zero with initial values and default parameters,
+/// without inputs.
 pub fn check(
     model: &Elaborated,
     conditioning: &[(Expression, &String)],

@@ -145,7 +145,7 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
       help: let a joint lead to it from a frame that an `Sf` holds, such as a `Free`
       help: write `gravity_at: gravity` where that of the world is meant
     ");
-    // Held in some components alone, a frame turns as it likes.
+    // Where it is held alone, a frame turns as it likes.
     let pinned = "Sf pin[3] { flow: 0.0 } -> a[3..6];";
     insta::assert_snapshot!(floating(&format!("{pinned} {body}")), @"
     7:49 `body` needs `gravity_at`, which nothing tells at its frame [MBG0214]
@@ -153,8 +153,8 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
       help: let a joint lead to it from a frame that an `Sf` holds, such as a `Free`
       help: write `gravity_at: gravity` where that of the world is meant
     ");
-    let spun = "Sf spin[3] { flow: 1.0 } -> a[0..3];";
-    assert_eq!(floating(&format!("{pinned} {spun} {body}")), "");
+    let upright = "Sf upright[3] { flow: [0.0, 0, 0.0] } -> a[0..3];";
+    assert_eq!(floating(&format!("{upright} {body}")), "");
     let given = body.replace("1.0 }", "1.0, gravity_at: gravity }");
     assert_eq!(floating(&given), "");
     let plane = "model M { 1 a[3]; 1 b[3]; body: PlanarBody { mass: 1.0, inertia: 1.0 } (a); rod: PlanarOffset { x: 1.0 } (a, b); }";
@@ -167,6 +167,129 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     // Without weight nobody asks where a joint is.
     let weightless = "model M { 1 a[6]; 1 b[6]; body: Body { mass: 1.0, inertia: 1.0 } (a); hinge: Revolute { axis: 0 } (a, b); }";
     assert_eq!(told(weightless), "");
+}
+
+/// A slide on something tilted, with a body on it, the first of whose derivatives is the acceleration of the slide.
+fn tilted(components: &str, tilt: &str) -> Vec<f64> {
+    let slide = "slide: Prismatic { axis: 2 } (b, s); body: Body { mass: 1.0, inertia: 1.0 } (s);";
+    let scene = scene("b[6]; 1 s[6]", &format!("{tilt} {slide}"));
+    values(&format!("{components} {scene}"))
+}
+
+#[test]
+fn what_is_told_has_the_dimension_that_is_asked_for() {
+    let tilt = |dimension: &str| {
+        format!(
+            "component Tilt(port a[6], port b[6]) {{
+                param gravity_a[3] = gravity;
+                let gravity_b{dimension} = rot_x(1.0) * gravity_a;
+                turn: Turn {{ by: rot_x(-1.0) }} (a, b);
+            }}"
+        )
+    };
+    let turn = tilted("", "turn: Turn { by: rot_x(-1.0) } (ground, b);");
+    for dimension in ["", "[3]"] {
+        let own = tilted(&tilt(dimension), "tilt: Tilt (ground, b);");
+        assert_eq!(own, turn);
+    }
+    let text = scene(
+        "b[6]",
+        "tilt: Tilt (ground, b); body: Body { mass: 1.0, inertia: 1.0 } (b);",
+    );
+    let flat = tilt("").replace("rot_x(1.0) * gravity_a", "[1.0, 2.0]");
+    insta::assert_snapshot!(told(&format!("{flat} {text}")), @"
+    11:37 `gravity_at` has dimension 3, found a vector of 2 [MBG0204]
+      it is what `tilt.gravity_b` tells
+      this is inside `Body`, a component of the library
+    ");
+}
+
+#[test]
+fn a_component_with_one_port_knows_where_that_is() {
+    let wall = "component Wall(port b[6]) {
+        Sf hold[6] { flow: 0.0 } -> b;
+        let gravity_b[3] = rot_x(1.0) * gravity;
+    }";
+    let turn = tilted("", "turn: Turn { by: rot_x(-1.0) } (ground, b);");
+    assert_eq!(
+        tilted(
+            wall,
+            "wall: Wall (b); ground -> R idle { resistance: 1.0 };"
+        ),
+        turn
+    );
+}
+
+/// The name of one port ends in that of the other.
+#[test]
+fn a_parameter_asks_at_the_port_whose_whole_name_it_has() {
+    let bob = "component Bob(port a[6], port tool_a[6]) {
+        param gravity_tool_a[3] = gravity;
+        body: Body { mass: 1.0, inertia: 1.0, gravity_at: gravity_tool_a } (tool_a);
+        a -> R air { resistance: 1.0 };
+    }";
+    let on = |bob: &str| {
+        let hinge = "1 b[6]; hinge: Revolute { axis: 0 } (ground, b);";
+        scene(
+            "a[6]",
+            &format!("{hinge} Sf fixed_a[6] {{ flow: 0.0 }} -> a; {bob}"),
+        )
+    };
+    let own = values(&format!("{bob} {}", on("bob: Bob (a, b);")));
+    let plain = "body: Body { mass: 1.0, inertia: 1.0 } (b); a -> R air { resistance: 1.0 };";
+    assert_eq!(own, values(&on(plain)));
+}
+
+#[test]
+fn what_a_source_moves_is_known_by_what_leads_to_it() {
+    let driven = |given: &str| {
+        scene(
+            "tool[6]; 1 bob[6]",
+            &format!(
+                "Sf drive[6] {{ flow: [0.3, 0.0, 0.0, 0.0, 0.0, 0.0] }} -> tool;
+             free: Free {{ orientation: matrix }} (ground, tool);
+             hinge: Revolute {{ axis: 0{given} }} (tool, bob);
+             body: Body {{ mass: 1.0, inertia: 0.1, centre: [0.0, 0.0, -1.0] }} (bob);"
+            ),
+        )
+    };
+    assert_eq!(
+        values(&driven("")),
+        values(&driven(", gravity_a: free.gravity_b"))
+    );
+    let base = |flow: &str, output: &str| {
+        told(&format!(
+            "model M {{ 1 base[3]; 1 s[3]; Sf turn[3] {{ flow: {flow} }} -> base;
+             slide: PlanarPrismatic {{ initial: 1.0 }} (base, s); body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (s); {output} }}"
+        ))
+    };
+    insta::assert_snapshot!(base("[0.5, 0.0, 0.0]", ""), @"
+    2:14 `slide` needs `angle_a`, which nothing tells at its frame [MBG0214]
+      this is inside `PlanarPrismatic`, a component of the library
+      help: let a joint lead to it from a frame that an `Sf` holds
+      help: write `angle_a: 0.0` where that of the world is meant
+    ");
+    // What does not turn keeps its angle, wherever it goes.
+    assert_eq!(base("[0.0, sin(t), 0.0]", ""), "");
+    insta::assert_snapshot!(base("[0.0, sin(t), 0.0]", "output place[2] = slide.position_b;"), @"
+    2:14 `slide` needs `position_a`, which nothing tells at its frame [MBG0214]
+      this is inside `PlanarPrismatic`, a component of the library
+      help: let a joint lead to it from a frame that an `Sf` holds
+      help: write `position_a: 0.0` where that of the world is meant
+    ");
+}
+
+/// Not the world's, but that of another one.
+#[test]
+fn gravity_may_be_given_at_one_frame_alone() {
+    let moon = |given: &str| {
+        let joint = format!("slide: Prismatic {{ axis: 2{given} }} (ground, b);");
+        let body = "body: Body { mass: 1.0, inertia: 1.0 } (b);";
+        let scene = scene("b[6]", &format!("{joint} {body}"));
+        values(&scene.replace("gravity [0.5, 1.0, -9.81];", ""))
+    };
+    assert!(moon(", gravity_a: [0.0, 0.0, -1.62]").contains(&-1.62));
+    assert!(!moon("").contains(&-1.62));
 }
 
 #[test]
@@ -188,6 +311,25 @@ fn a_joint_that_leads_the_wrong_way_is_told() {
     9:10 `load` needs `orientation_at`, which nothing tells at its frame [MBG0214]
       this is inside `Load`, a component of the library
       help: exchange the frames of `rod`: it hands on from the first to the second
+      help: write `orientation_at: 1.0` where that of the world is meant
+    ");
+}
+
+#[test]
+fn what_only_the_library_asks_must_be_known() {
+    let hinge = "component Hinge(port a[6], port b[6]) {
+        1 rate { I drum { inertia: 1.0 } }
+        0 moment[3];
+        a[0..3] -> moment;
+        rate -> moment.x;
+        moment -> b[0..3];
+        a[3..6] -> b[3..6];
+    }";
+    let load = "hinge: Hinge (ground, b); load: Load { axes: world, moment: [0.0, 0.0, 1.0] } (b);";
+    insta::assert_snapshot!(told(&format!("{hinge} {}", scene("b[6]", load))), @"
+    14:39 `load` needs `orientation_at`, which nothing tells at its frame [MBG0214]
+      this is inside `Load`, a component of the library
+      help: let a joint lead to it from a frame that an `Sf` holds, such as a `Free`
       help: write `orientation_at: 1.0` where that of the world is meant
     ");
 }

@@ -77,16 +77,17 @@ impl Builder<'_> {
                 let Ok(Some((Entity::Definition(id), _))) = self.scopes.follow(scope, path) else {
                     continue;
                 };
-                let definition = &self.definitions[*id];
+                let id = self.definitions[*id].told.unwrap_or(*id);
+                let definition = &self.definitions[id];
                 let is_known = matches!(definition.progress, Progress::Known(_));
                 // What has the dimension that it declares has the right shape.
                 let fits =
                     code == codes::WRONG_DIMENSION && is_known && definition.dimension.is_some();
-                if fits || !seen.insert(*id) {
+                if fits || !seen.insert(id) {
                     continue;
                 }
                 if self.scopes[definition.scope].library.is_none() {
-                    found.insert(*id);
+                    found.insert(id);
                 } else {
                     open.push((definition.scope, mentioned(definition.value)));
                 }

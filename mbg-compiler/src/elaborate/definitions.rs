@@ -31,6 +31,8 @@ pub(super) struct Definition<'a> {
     pub(super) value: &'a Expr,
     /// The parameter whose argument or default it is.
     pub(super) parameter: Option<&'a Parameter>,
+    /// The definition that another component tells in place of a default.
+    pub(super) told: Option<usize>,
     /// How far it is.
     pub(super) progress: Progress,
 }
@@ -74,6 +76,7 @@ impl<'a> Builder<'a> {
             unit,
             value,
             parameter: None,
+            told: None,
             progress: Progress::Unread,
         });
         Entity::Definition(self.definitions.len() - 1)
@@ -125,8 +128,11 @@ impl<'a> Builder<'a> {
                 (Some(Missing::Broken), _) => break,
                 (None, Ok(value)) => self.definitions[current].progress = Progress::Known(value),
                 (None, Err(report)) => {
-                    let Definition { scope, value, .. } = self.definitions[current];
-                    self.tell_of(scope, *report, &[value]);
+                    let Definition {
+                        scope, value, told, ..
+                    } = self.definitions[current];
+                    let own: &[&Expr] = if told.is_none() { &[value] } else { &[] };
+                    self.tell_of(scope, *report, own);
                     break;
                 }
             }
@@ -143,9 +149,10 @@ impl<'a> Builder<'a> {
         let signals = self.signals.clone();
         for definition in 0..self.definitions.len() {
             let names = self.definitions[definition].scope;
-            // Where nothing needs a parameter, nobody needs to know it.
-            let is_known = !self.unknown.contains_key(&definition);
-            if is_known && self.scopes[names].library.is_none() {
+            // What a frame is asked for is asked where it is needed.
+            let is_own = self.definitions[definition].told.is_none()
+                && !self.unknown.contains_key(&definition);
+            if is_own && self.scopes[names].library.is_none() {
                 self.define(definition);
             }
         }
@@ -158,22 +165,36 @@ impl<'a> Builder<'a> {
             name,
             dimension,
             value: expression,
+            told,
             ..
         } = self.definitions[definition];
         self.check_known(definition)?;
-        let value = self.evaluate(scope, expression)?;
-        let value = match (dimension, &value) {
-            (None, _) => value,
-            // Nothing has the same components along all axes, but for zero.
-            (Some(dimension), Value::Scalar(number)) if *number == Expression::ZERO => {
-                Value::column(vec![*number; dimension])
-            }
-            (Some(size), _) => {
-                let entries = self.entries(&value, size, name);
-                Value::column(entries.map_err(|report| about_gravity(report, expression, size))?)
+        let value = match told {
+            Some(told) => self.value_of(scope, told, name)?,
+            None => self.evaluate(scope, expression)?,
+        };
+        let value = match dimension {
+            None => value,
+            Some(size) => {
+                let column = self.column(value, size, name);
+                column.map_err(|report| match told {
+                    Some(told) => Box::new(report.note(format!(
+                        "it is what `{}` tells",
+                        self.definitions[told].path
+                    ))),
+                    None => about_gravity(report, expression, size),
+                })?
             }
         };
         Ok(self.claim_definition(definition, value))
+    }
+
+    /// A value as a vector of some size, called `name`. Nothing has the same components along all axes, but for zero.
+    fn column(&mut self, value: Value, size: usize, name: &Ident) -> Result<Value> {
+        Ok(Value::column(match value {
+            Value::Scalar(number) if number == Expression::ZERO => vec![number; size],
+            _ => self.entries(&value, size, name)?,
+        }))
     }
 
     fn report_cycle(&mut self, open: &[usize], needed: usize) {

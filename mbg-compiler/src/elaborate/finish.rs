@@ -222,6 +222,17 @@ impl<'a> Builder<'a> {
         .evaluate(expression)
     }
 
+    /// The value of a definition, for what is called `name` in a scope.
+    pub(super) fn value_of(
+        &mut self,
+        scope: usize,
+        definition: usize,
+        name: &Ident,
+    ) -> Result<Value> {
+        let (pool, mut lookup) = self.lookup(scope);
+        lookup.plain(pool, &Entity::Definition(definition), name)
+    }
+
     pub(super) fn vector(
         &mut self,
         scope: usize,

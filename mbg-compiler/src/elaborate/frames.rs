@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use quote::ToTokens;
+use syn::{Expr, ExprLit, Lit};
 
 use super::Builder;
 use super::expressions::Result;
@@ -18,8 +19,13 @@ use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{ElementKind, End, JunctionId, JunctionKind};
 use crate::syntax::ast;
 
-/// Components of a frame in space: those of its angular velocity and of its velocity.
+/// Components of a frame in space: those of its angular velocity, then those of its velocity.
 const IN_SPACE: usize = 6;
+/// The same in a plane.
+const IN_PLANE: usize = 3;
+
+/// What a translation changes, too.
+const POSITION: &str = "position";
 
 /// A port of a component in use, and where it is connected.
 pub(super) struct Frame<'a> {
@@ -49,17 +55,21 @@ pub(super) struct Unknown<'a> {
     backwards: Option<usize>,
 }
 
-impl<'a> Frame<'a> {
+impl Frame<'_> {
+    /// The parameter that asks for a quantity at this port, and the value that tells it.
+    fn word(&self, quantity: &str) -> String {
+        format!("{quantity}_{}", self.port)
+    }
+
     /// The quantity that a parameter asks for at this port.
-    fn asked(&self, parameter: &'a ast::Parameter) -> Option<String> {
-        let name = parameter.name.to_string();
-        let quantity = name.strip_suffix(&self.port)?.strip_suffix('_')?;
+    fn asked(&self, parameter: &str) -> Option<String> {
+        let quantity = parameter.strip_suffix(&self.port)?.strip_suffix('_')?;
         Some(quantity.to_owned())
     }
 
     fn asks(&self, quantity: &str) -> bool {
-        let mut asked = self.component.parameters();
-        asked.any(|parameter| self.asked(parameter).as_deref() == Some(quantity))
+        let word = self.word(quantity);
+        self.component.parameters().any(|it| it.name == word)
     }
 }
 
@@ -85,20 +95,20 @@ impl<'a> Builder<'a> {
         for frame in self.frames.values_mut().flatten() {
             frame.place.0 = first[frame.place.0.0];
         }
-        let held = self.held(&first);
         let mut asked: BTreeMap<String, Vec<(LeftOut<'a>, Place)>> = BTreeMap::new();
         for left in &self.left_out {
-            let mut own = self.frames.get(&left.scope).into_iter().flatten();
-            let question = own.find_map(|it| Some((it.asked(left.parameter)?, it.place)));
-            if let Some((quantity, place)) = question {
+            let name = left.parameter.name.to_string();
+            let own = self.frames.get(&left.scope).into_iter().flatten();
+            let own = own.filter_map(|it| Some((it.asked(&name)?, it.place)));
+            // The name of one port may end in that of another.
+            if let Some((quantity, place)) = own.min_by_key(|(quantity, _)| quantity.len()) {
                 asked.entry(quantity).or_default().push((*left, place));
             }
         }
-        // Without gravity there is none at any frame.
-        let weightless = matches!(self.scopes[0].names.get(GRAVITY), Some(Entity::Value(_)));
-        asked.retain(|quantity, _| quantity != GRAVITY || !weightless);
+        let still = self.still(&first);
         for (quantity, asked) in asked {
             let scopes = asked.iter().map(|(left, _)| left.scope).collect();
+            let held = self.held(&quantity, &still);
             let spread = Spread::new(self.tellers(&quantity, &scopes), &held);
             for (left, place) in asked {
                 self.hand(left, place, &quantity, &spread);
@@ -108,29 +118,23 @@ impl<'a> Builder<'a> {
 
     /// Lets a parameter stand for what is told of its place, or notes that it must be given.
     fn hand(&mut self, left: LeftOut<'a>, place: Place, quantity: &str, spread: &Spread) {
-        let LeftOut {
-            definition,
-            scope,
-            parameter,
-        } = left;
-        if let Some(told) = spread.told(place) {
-            if self.definitions[told].dimension == parameter.dimension {
-                let name = parameter.name.to_string();
-                let told = Entity::Definition(told);
-                self.scopes[scope].names.insert(name, told);
-            }
-            return;
-        }
+        let told = spread.told(place);
+        self.definitions[left.definition].told = told;
+        // Without gravity there is none at any frame.
+        let weightless = matches!(self.scopes[0].names.get(GRAVITY), Some(Entity::Value(_)));
+        let matters = match quantity {
+            GRAVITY => !weightless,
+            _ => !spread.tellers.is_empty() || self.scopes[left.scope].library.is_some(),
+        };
         // A frame that nothing holds and nobody leads to may be anywhere.
-        let is_told_elsewhere = !spread.tellers.is_empty() || quantity == GRAVITY;
-        if is_told_elsewhere && !spread.is_held(place) {
+        if matters && told.is_none() && !spread.is_held(place) {
             let unknown = Unknown {
-                parameter,
-                scope,
+                parameter: left.parameter,
+                scope: left.scope,
                 is_in_space: place.2 == IN_SPACE,
                 backwards: spread.backwards(place),
             };
-            self.unknown.insert(definition, unknown);
+            self.unknown.insert(left.definition, unknown);
         }
     }
 
@@ -141,12 +145,13 @@ impl<'a> Builder<'a> {
             let (asking, telling): (Vec<&Frame>, Vec<&Frame>) =
                 frames.iter().partition(|frame| frame.asks(quantity));
             for frame in telling {
-                let told = format!("{quantity}_{}", frame.port);
-                if let Some(Entity::Definition(definition)) = self.scopes[scope].names.get(&told) {
+                let names = &self.scopes[scope].names;
+                if let Some(Entity::Definition(definition)) = names.get(&frame.word(quantity)) {
                     tellers.push(Teller {
                         scope,
                         definition: *definition,
                         at: frame.place,
+                        is_alone: frames.len() == 1,
                         asks: asking.iter().map(|frame| frame.place).collect(),
                         is_given: !not_given.contains(&scope),
                     });
@@ -176,20 +181,33 @@ impl<'a> Builder<'a> {
         first
     }
 
-    /// Places that sources move in all components: their user knows how.
-    fn held(&self, first: &[JunctionId]) -> BTreeSet<Place> {
-        let mut moved: BTreeMap<JunctionId, usize> = BTreeMap::new();
+    /// The components of junctions that sources keep at zero.
+    fn still(&self, first: &[JunctionId]) -> BTreeSet<(JunctionId, usize)> {
+        let mut still = BTreeSet::new();
         for bond in &self.graph.bonds {
             if let (End::OnePort(element), End::Junction(id, range))
             | (End::Junction(id, range), End::OnePort(element)) = (&bond.from, &bond.to)
                 && self.graph.elements[element.0].kind == ElementKind::Sf
+                && let Some((_, element)) = self.written.get(element)
             {
-                *moved.entry(first[id.0]).or_default() += range.len();
+                let zero = |place: usize| element.values().all(|flow| is_zero(flow, place));
+                let zeros = range.clone().enumerate().filter(|(place, _)| zero(*place));
+                still.extend(zeros.map(|(_, component)| (first[id.0], component)));
             }
         }
-        let is_held = |(id, ..): &Place| {
-            let dimension = self.graph.junctions[id.0].dimension;
-            moved.get(id).is_some_and(|count| *count >= dimension)
+        still
+    }
+
+    /// Places where a quantity is that of the world, as sources let nothing move that changes it.
+    fn held(&self, quantity: &str, still: &BTreeSet<(JunctionId, usize)>) -> BTreeSet<Place> {
+        let is_held = |&(id, start, size): &Place| {
+            let changing = match (quantity, size) {
+                (POSITION, _) => size,
+                (_, IN_SPACE) => 3,
+                (_, IN_PLANE) => 1,
+                _ => size,
+            };
+            (start..start + changing).all(|component| still.contains(&(id, component)))
         };
         let places = self.frames.values().flatten().map(|frame| frame.place);
         places.filter(is_held).collect()
@@ -209,6 +227,11 @@ impl<'a> Builder<'a> {
         let message = format!("`{own}` needs `{name}`, which nothing tells at its frame");
         let report = error(codes::MISSING_DEFAULT, name.span(), message);
         let joint = unknown.backwards.map(|scope| self.name_of(scope));
+        let default = unknown.parameter.default.to_token_stream();
+        let keep = format!("write `{name}: {default}`");
+        if self.scopes[unknown.scope].library.is_none() && joint.is_none() {
+            return report.help(format!("{keep} to keep its default"));
+        }
         let report = report.help(match (joint, unknown.is_in_space) {
             (Some(joint), _) => {
                 format!(
@@ -221,14 +244,27 @@ impl<'a> Builder<'a> {
             }
             (None, false) => "let a joint lead to it from a frame that an `Sf` holds".to_owned(),
         });
-        let default = unknown.parameter.default.to_token_stream();
-        report.help(format!(
-            "write `{name}: {default}` where that of the world is meant"
-        ))
+        report.help(format!("{keep} where that of the world is meant"))
     }
 
     /// Path of the component in use with this scope.
     fn name_of(&self, scope: usize) -> &str {
         self.scopes[scope].prefix.trim_end_matches('.')
+    }
+}
+
+/// Whether a component of a flow is written as zero.
+fn is_zero(flow: &Expr, component: usize) -> bool {
+    match flow {
+        Expr::Array(entries) => {
+            let entry = entries.elems.get(component);
+            entry.is_some_and(|entry| is_zero(entry, 0))
+        }
+        Expr::Lit(ExprLit { lit, .. }) => match lit {
+            Lit::Float(number) => number.base10_parse().is_ok_and(|number: f64| number == 0.0),
+            Lit::Int(number) => number.base10_parse().is_ok_and(|number: u64| number == 0),
+            _ => false,
+        },
+        _ => false,
     }
 }

@@ -324,7 +324,13 @@ impl Names for Lookup<'_, '_> {
 const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
 
 impl Lookup<'_, '_> {
-    fn plain(&mut self, pool: &mut Pool, entity: &Entity, name: &Ident) -> Result<Value> {
+    /// The value of what one name stands for.
+    pub(super) fn plain(
+        &mut self,
+        pool: &mut Pool,
+        entity: &Entity,
+        name: &Ident,
+    ) -> Result<Value> {
         match entity {
             Entity::Value(value) => Ok(value.clone()),
             Entity::Definition(id) => match &self.definitions[*id].progress {

@@ -16,6 +16,8 @@ pub(super) struct Teller {
     pub(super) at: Place,
     /// Where it asks for the quantity.
     pub(super) asks: Vec<Place>,
+    /// Whether it has no other port.
+    pub(super) is_alone: bool,
     /// Whether all that it asks for is given.
     pub(super) is_given: bool,
 }
@@ -36,25 +38,27 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Follows tellers from the places that sources hold, by the shortest way, so that no loop of them is defined by
-    /// itself; then from those that are given what they ask for, then from where nobody leads to.
+    /// Follows tellers that stand alone; then from the places that sources hold, by the shortest way, so that no loop is
+    /// defined by itself; then those that are given what they ask for; then from where nobody leads to.
     pub(super) fn new(tellers: Vec<Teller>, held: &BTreeSet<Place>) -> Self {
         let told: BTreeSet<Place> = tellers.iter().map(|teller| teller.at).collect();
         let asked = tellers.iter().flat_map(|teller| teller.asks.clone());
         let (loops, ends): (Vec<Place>, Vec<Place>) = asked.partition(|place| told.contains(place));
-        let given = tellers
-            .iter()
-            .enumerate()
-            .filter(|(_, teller)| teller.is_given);
-        let given: Vec<_> = given
-            .map(|(number, teller)| (teller.at, Some(number)))
-            .collect();
+        let free = ends.into_iter().chain(loops).map(|place| (place, None));
+        let number = |sound: fn(&Teller) -> bool| -> Vec<(Place, Option<usize>)> {
+            let numbered = tellers.iter().enumerate();
+            let sound = numbered.filter(|(_, teller)| sound(teller));
+            sound
+                .map(|(number, teller)| (teller.at, Some(number)))
+                .collect()
+        };
+        let (alone, given) = (number(|it| it.is_alone), number(|it| it.is_given));
+        let held = held.iter().map(|place| (*place, None));
         let mut spread = Self {
             tellers,
             known: BTreeMap::new(),
         };
-        spread.follow(held.iter().map(|place| (*place, None)).collect(), true);
-        let free = ends.into_iter().chain(loops).map(|place| (place, None));
+        spread.follow(alone.into_iter().chain(held).collect(), true);
         for start in given.into_iter().chain(free) {
             spread.follow(vec![start], false);
         }

@@ -8,10 +8,13 @@ use super::{Input, zero};
 use crate::Real;
 use crate::step::{less, seen};
 
+/// How many samples are looked at for the next jump, so that short runs over a long log take no longer than over a short one.
+const NEAR: usize = 64;
+
 /// Values at times: a recorded log, a schedule, set points.
 ///
 /// Before the first time the first value holds, behind the last time the last one. Steps end where a held value changes
-/// and where a line may have a kink; samples that repeat the value before them end no step.
+/// and where a line may have a kink; of samples that repeat the value before them only each 64th ends a step.
 ///
 /// # Example
 ///
@@ -202,9 +205,10 @@ impl<T: Real, const M: usize> Input<T, M> for Sampled<'_, T, M> {
 
     fn next_jump(&self, t: T) -> Option<T> {
         let next = self.passed(t);
-        let later = self.times.iter().enumerate().skip(next);
-        let mut jumps = later.filter(|(index, _)| self.is_jump(*index));
-        jumps.next().map(|(_, time)| *time)
+        let mut near = self.times.iter().enumerate().skip(next).take(NEAR);
+        let jump = near.clone().find(|(index, _)| self.is_jump(*index));
+        let last = || near.nth(NEAR - 1);
+        jump.or_else(last).map(|(_, time)| *time)
     }
 
     fn rate(&self, _t: T, since: T, _ahead: T) -> SVector<T, M> {
@@ -311,6 +315,19 @@ mod tests {
         );
         let both = Sum(input, Sampled::held(&times[2..], &values[2..]).unwrap());
         assert_eq!(both.value(1.0, 0.5)[0], 7.0);
+    }
+
+    #[test]
+    fn no_more_than_a_few_samples_are_looked_at() {
+        let times: [f64; 200] = core::array::from_fn(|index| index as f64);
+        let mut values = values([1.0; 200]);
+        values[150][0] = 2.0;
+        let input = Sampled::held(&times, &values).unwrap();
+        let jumps = [0.0, 64.0, 100.0, 150.0, 151.0].map(|t| input.next_jump(t));
+        assert_eq!(
+            jumps,
+            [Some(64.0), Some(128.0), Some(150.0), Some(151.0), None]
+        );
     }
 
     #[test]

@@ -24,8 +24,8 @@ const IN_SPACE: usize = 6;
 /// The same in a plane.
 const IN_PLANE: usize = 3;
 
-/// What a translation changes, too.
-const POSITION: &str = "position";
+/// What a translation leaves as it is.
+const OF_AXES: [&str; 3] = [GRAVITY, "orientation", "angle"];
 
 /// A port of a component in use, and where it is connected.
 pub(super) struct Frame<'a> {
@@ -201,10 +201,9 @@ impl<'a> Builder<'a> {
     /// Places where a quantity is that of the world, as sources let nothing move that changes it.
     fn held(&self, quantity: &str, still: &BTreeSet<(JunctionId, usize)>) -> BTreeSet<Place> {
         let is_held = |&(id, start, size): &Place| {
-            let changing = match (quantity, size) {
-                (POSITION, _) => size,
-                (_, IN_SPACE) => 3,
-                (_, IN_PLANE) => 1,
+            let changing = match size {
+                IN_SPACE if OF_AXES.contains(&quantity) => 3,
+                IN_PLANE if OF_AXES.contains(&quantity) => 1,
                 _ => size,
             };
             (start..start + changing).all(|component| still.contains(&(id, component)))

@@ -85,26 +85,41 @@ fn curves_have_the_slopes_of_their_lines() {
     }
 }
 
+/// Laws of a displacement with curves in them.
+type Law = (&'static str, fn(f64) -> f64);
+
 #[test]
 fn energies_of_curves_are_in_closed_form() {
-    let text = format!(
-        "model M {{ 1 v {{ C c {{ effort: interpolate(2.0 * q + 0.5, {CURVE}) }} R r {{ resistance: 1.0 }} }} }}"
-    );
-    assert!(compiled(&text).notes.is_empty());
-    let area = |x: f64| {
-        let count = 100_000;
-        let step = x / f64::from(count);
-        // The midpoints of short pieces: exact but for those with a point inside.
-        let values = (0..count).map(|k| lines(&POINTS, 2.0 * step * (f64::from(k) + 0.5) + 0.5));
-        values.sum::<f64>() * step
-    };
-    for x in [-3.0, -1.0, -0.5, 0.0, 0.1, 0.5, 1.0, 3.0] {
-        let found = evaluated(&text, Routines::ENERGY, &[], &[x])[0];
-        let expected = area(x);
-        assert!(
-            (found - expected).abs() < 1e-8 * (1.0 + expected.abs()),
-            "{x}: {found}, not {expected}"
-        );
+    let laws: [Law; 4] = [
+        ("interpolate(2.0 * q + 0.5, …)", |q| {
+            lines(&POINTS, 2.0 * q + 0.5)
+        }),
+        ("q * interpolate(q, …)", |q| q * lines(&POINTS, q)),
+        ("sign(q) * interpolate(abs(q), …)", |q| {
+            q.signum() * lines(&POINTS, q.abs())
+        }),
+        ("max(-0.1, interpolate(q, …))", |q| {
+            lines(&POINTS, q).max(-0.1)
+        }),
+    ];
+    for (law, effort) in laws {
+        let law = law.replace('…', CURVE);
+        let text =
+            format!("model M {{ 1 v {{ C c {{ effort: {law} }} R r {{ resistance: 1.0 }} }} }}");
+        assert!(compiled(&text).notes.is_empty(), "{law}");
+        for x in [-3.0, -1.0, -0.5, 0.0, 0.1, 0.5, 1.0, 3.0] {
+            let count = 100_000;
+            let step = x / f64::from(count);
+            // The midpoints of short pieces: exact but for those with a point inside.
+            let expected: f64 = (0..count)
+                .map(|k| step * effort(step * (f64::from(k) + 0.5)))
+                .sum();
+            let found = evaluated(&text, Routines::ENERGY, &[], &[x])[0];
+            assert!(
+                (found - expected).abs() < 1e-8 * (1.0 + expected.abs()),
+                "{law} at {x}: {found}, not {expected}"
+            );
+        }
     }
 }
 

@@ -51,7 +51,7 @@ pub fn linear_part(
 /// What decides between the values of functions that jump.
 fn conditions(pool: &Pool, expression: Expression) -> Vec<Expression> {
     let mut found = Vec::new();
-    visit(pool, &[expression], |operation| match operation {
+    visit(pool, &[expression], |_, operation| match operation {
         Operation::Call(Function::Sign, arguments) => found.extend(arguments),
         Operation::Call(Function::SelectLess, arguments) => found.extend(&arguments[..2]),
         _ => {}

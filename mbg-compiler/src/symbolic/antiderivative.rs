@@ -3,28 +3,36 @@
 use super::affine::affine;
 use super::expression::{Expression, Function, Operation, Symbol};
 use super::pool::Pool;
-use super::substitute::{Substitution, symbols};
+use super::substitute::{Substitution, replace, symbols, visit};
+
+/// Most expressions that are tried, where choices in choices double them.
+const MOST: usize = 4000;
 
 /// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
-/// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root,
-/// hyperbolic tangent, absolute value and sign of what is affine in the symbol, powers `exp(c ln(…))` of such or of its
-/// reciprocal, choices between them by what is affine, and functions of such choices.
+/// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root and
+/// hyperbolic tangent of what is affine in the symbol, powers `exp(c ln(…))` of such or of its reciprocal, products of sums
+/// that are a polynomial when they are multiplied out, and all of these with choices, absolute values and signs of what is
+/// affine anywhere in them.
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,
     expression: Expression,
     symbol: Symbol,
 ) -> Option<Expression> {
-    Integration { pool, symbol }.of(expression)
+    let left = MOST;
+    Integration { pool, symbol, left }.of(expression)
 }
 
 struct Integration<'a> {
     pool: &'a mut Pool,
     symbol: Symbol,
+    /// How many more expressions are tried.
+    left: usize,
 }
 
 impl Integration<'_> {
     fn of(&mut self, expression: Expression) -> Option<Expression> {
+        self.left = self.left.checked_sub(1)?;
         if self.is_free(expression) {
             let symbol = self.pool.symbol(self.symbol);
             return Some(self.pool.multiply(expression, symbol));
@@ -46,11 +54,9 @@ impl Integration<'_> {
                 let sine = self.pool.sine(angle);
                 self.inner(angle, sine)
             }
-            Operation::Call(function, arguments) => {
-                let found = self.call(function, &arguments);
-                found.or_else(|| self.call_of_choice(function, &arguments))
-            }
+            Operation::Call(function, arguments) => self.call(function, &arguments),
         };
+        let found = found.or_else(|| self.split(expression.magnitude()));
         found.map(|it| it.flipped(expression.is_negative()))
     }
 
@@ -78,8 +84,29 @@ impl Integration<'_> {
                 return Some(self.pool.multiply(factor, rest));
             }
         }
-        let (base, exponent) = self.base(a, b)?;
-        self.power(base, exponent)
+        match self.base(a, b) {
+            Some((base, exponent)) => self.power(base, exponent),
+            None => self.distributed(a, b).or_else(|| self.distributed(b, a)),
+        }
+    }
+
+    /// A factor times a sum, or times a multiple of one.
+    fn distributed(&mut self, factor: Expression, sum: Expression) -> Option<Expression> {
+        let found = match self.pool.operation(sum).clone() {
+            Operation::Add(a, b) => {
+                let [a, b] = [a, b].map(|term| self.pool.multiply(factor, term));
+                let (a, b) = (self.of(a)?, self.of(b)?);
+                self.pool.add(a, b)
+            }
+            Operation::Multiply(a, b) if self.is_free(a) || self.is_free(b) => {
+                let (multiple, rest) = if self.is_free(a) { (a, b) } else { (b, a) };
+                let rest = self.pool.multiply(factor, rest);
+                let rest = self.of(rest)?;
+                self.pool.multiply(multiple, rest)
+            }
+            _ => return None,
+        };
+        Some(found.flipped(sum.is_negative()))
     }
 
     /// Base and exponent of a product of equal factors.
@@ -235,30 +262,21 @@ impl Integration<'_> {
         self.inner(u, value)
     }
 
-    /// A function of a choice is a choice between functions, such as `min(b, max(u, a))` of `min(b, u)` and `min(b, a)`.
-    fn call_of_choice(
-        &mut self,
-        function: Function,
-        arguments: &[Expression],
-    ) -> Option<Expression> {
-        for (place, argument) in arguments.iter().enumerate() {
-            let Operation::Call(inner, of) = self.pool.operation(*argument).clone() else {
-                continue;
-            };
-            let [a, b, c, d] = match (inner, &of[..]) {
-                (Function::Min, &[a, b]) => [a, b, a, b],
-                (Function::Max, &[a, b]) => [a, b, b, a],
-                (Function::SelectLess, &[a, b, c, d]) => [a, b, c, d],
-                _ => continue,
-            };
-            let [c, d] = [c, d].map(|value| {
-                let mut chosen = arguments.to_vec();
-                chosen[place] = value.flipped(argument.is_negative());
-                self.pool.call(function, &chosen)
-            });
-            return self.choice(a, b, c, d);
-        }
-        None
+    /// A choice inside an expression is one between two expressions: `u |u|` is `-u²` where `u < 0`, else `u²`.
+    fn split(&mut self, expression: Expression) -> Option<Expression> {
+        let mut parts = Vec::new();
+        visit(self.pool, &[expression], |part, operation| {
+            if let Some(choice) = choice_of(operation) {
+                parts.push((part, choice));
+            }
+        });
+        let (part, [a, b, c, d]) = parts.into_iter().find(|(_, [a, b, ..])| {
+            let difference = self.pool.subtract(*a, *b);
+            self.is_free(difference) || self.slope(difference).is_some()
+        })?;
+        let c = replace(self.pool, expression, part, c)?;
+        let d = replace(self.pool, expression, part, d)?;
+        self.choice(a, b, c, d)
     }
 
     /// Of `c` where `a < b`, else of `d`; both are counted from where they meet.
@@ -287,6 +305,26 @@ impl Integration<'_> {
                 .call(Function::SelectLess, &[a, b, parts[0], parts[1]]),
         )
     }
+}
+
+/// `[a, b, c, d]` of what is `c` where `a < b`, else `d`.
+fn choice_of(operation: &Operation) -> Option<[Expression; 4]> {
+    let Operation::Call(function, arguments) = operation else {
+        return None;
+    };
+    Some(match (function, &arguments[..]) {
+        (Function::Min, &[a, b]) => [a, b, a, b],
+        (Function::Max, &[a, b]) => [a, b, b, a],
+        (Function::SelectLess, &[a, b, c, d]) => [a, b, c, d],
+        (Function::Abs, &[u]) => [u, Expression::ZERO, u.negated(), u],
+        (Function::Sign, &[u]) => [
+            u,
+            Expression::ZERO,
+            Expression::ONE.negated(),
+            Expression::ONE,
+        ],
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
@@ -389,6 +427,43 @@ mod tests {
             pool.subtract(larger, smaller)
         };
         assert_integral(largest, [-1.0, 3.0]);
+    }
+
+    /// `3 min(1/2, max(u, −1/4)) + u`.
+    fn bent(pool: &mut Pool, u: Expression) -> Expression {
+        let [low, high] = ["0.25", "0.5"].map(|it| pool.literal(it).expect("a number"));
+        let raised = pool.call(Function::Max, &[u, low.negated()]);
+        let inside = pool.call(Function::Min, &[high, raised]);
+        let slope = pool.integer(3);
+        let steep = pool.multiply(slope, inside);
+        pool.add(steep, u)
+    }
+
+    #[test]
+    fn choices_are_taken_apart_wherever_they_are() {
+        assert_integral(
+            |pool, x| {
+                let bent = bent(pool, x);
+                pool.multiply(x, bent)
+            },
+            [-1.0, 1.0],
+        );
+        assert_integral(
+            |pool, x| {
+                let size = pool.call(Function::Abs, &[x]);
+                let (sign, bent) = (pool.call(Function::Sign, &[x]), bent(pool, size));
+                pool.multiply(sign, bent)
+            },
+            [-1.0, 1.0],
+        );
+        assert_integral(
+            |pool, x| {
+                let inner = bent(pool, x);
+                let outer = bent(pool, inner);
+                pool.multiply(outer, inner)
+            },
+            [-1.0, 1.0],
+        );
     }
 
     #[test]

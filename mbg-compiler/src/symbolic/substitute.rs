@@ -43,6 +43,22 @@ impl Substitution {
     }
 }
 
+/// An expression with one of its parts replaced; none if that divides by zero.
+#[must_use]
+pub(super) fn replace(
+    pool: &mut Pool,
+    whole: Expression,
+    part: Expression,
+    by: Expression,
+) -> Option<Expression> {
+    let none = FxHashMap::default();
+    let mut known = Rewritten::default();
+    known.set(part, by);
+    known.rewrite(pool, whole, |pool, known, whole, operation| {
+        rebuild(pool, &none, known, whole, operation)
+    })
+}
+
 fn rebuild(
     pool: &mut Pool,
     values: &FxHashMap<Symbol, Expression>,
@@ -72,7 +88,7 @@ fn rebuild(
 #[must_use]
 pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
     let mut found = Vec::new();
-    visit(pool, expressions, |operation| {
+    visit(pool, expressions, |_, operation| {
         if let Operation::Symbol(symbol) = operation {
             found.push(*symbol);
         }
@@ -84,7 +100,7 @@ pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
 #[must_use]
 pub fn operations(pool: &Pool, expressions: &[Expression]) -> usize {
     let mut count = 0;
-    visit(pool, expressions, |operation| {
+    visit(pool, expressions, |_, operation| {
         let free = matches!(operation, Operation::Symbol(_) | Operation::Constant(_));
         count += usize::from(!free);
     });
@@ -95,7 +111,7 @@ pub fn operations(pool: &Pool, expressions: &[Expression]) -> usize {
 pub(super) fn visit<'a>(
     pool: &'a Pool,
     expressions: &[Expression],
-    mut each: impl FnMut(&'a Operation),
+    mut each: impl FnMut(Expression, &'a Operation),
 ) {
     let mut seen = vec![false; pool.len()];
     let mut pending: Vec<Expression> = expressions.iter().rev().copied().collect();
@@ -103,7 +119,7 @@ pub(super) fn visit<'a>(
         if std::mem::replace(&mut seen[current.node()], true) {
             continue;
         }
-        each(pool.operation(current));
+        each(current.magnitude(), pool.operation(current));
         pending.extend(pool.causes(current).into_iter().rev());
     }
 }

@@ -103,6 +103,9 @@ const OTHERS: [&str; 7] = [
             C rise { effort: exp(q) - 1.0 } C logarithm { effort: ln(q + 1.5) } C root { effort: sqrt(q + 2.0) }
             C cube { effort: powi(q + 1.0, 3) } C pole { effort: 3.0 / (q + 2.0) } C size { effort: abs(q - 0.1) }
             C play { effort: if q < 0.2 { q } else { 3.0 * q - 0.4 } } C edge { effort: max(q, 0.1) }
+            C curve { effort: interpolate(q, [-1.0, 0.3, 2.0], [-1.0, 0.1, 0.4]) }
+            C odd { effort: q * interpolate(abs(q), [0.0, 0.5, 1.0], [0.3, 1.0, 4.0]) }
+            C table { stiffness: interpolate(q, [-1.0, 0.3, 2.0], [1.0, 2.0, 3.0]) }
             C gas { effort: exp(1.4 * ln(1.0 / (2.0 - q))) } C bowl { energy: powi(q, 4) + cos(q) }
         }
     }",

@@ -26,15 +26,12 @@ pub(crate) fn names(
         unknowns,
     } in &solution.conditioning
     {
-        let written = text(model, scalars, pool, *normalised);
-        let solved = block_names(scalars, unknowns);
-        let name = if is_short(&written) {
-            written
-        } else if solved.is_empty() {
-            read(model, pool, *normalised)
-        } else {
-            format!("the determinant for {}", list(&solved))
-        };
+        let name = short(model, scalars, pool, *normalised).unwrap_or_else(|| {
+            match &block_names(scalars, unknowns)[..] {
+                [] => read(model, pool, *normalised),
+                solved => format!("the determinant for {}", list(solved)),
+            }
+        });
         let numbered = (2..).map(|number| format!("{name}, number {number}"));
         let mut all = std::iter::once(name.clone()).chain(numbered);
         names.extend(all.find(|name| !names.contains(name)));
@@ -49,16 +46,17 @@ pub(crate) fn name(
     pool: &Pool,
     divisor: Expression,
 ) -> String {
-    let written = text(model, scalars, pool, divisor);
-    if is_short(&written) {
-        written
-    } else {
-        read(model, pool, divisor)
-    }
+    short(model, scalars, pool, divisor).unwrap_or_else(|| read(model, pool, divisor))
 }
 
-fn is_short(written: &str) -> bool {
-    written.chars().count() <= LONGEST
+/// The formula, where it can serve as a name.
+fn short(
+    model: &Elaborated,
+    scalars: &Scalars,
+    pool: &Pool,
+    divisor: Expression,
+) -> Option<String> {
+    Some(text(model, scalars, pool, divisor)).filter(|it| it.chars().count() <= LONGEST)
 }
 
 /// `a formula in a, b and 3 more`.

@@ -165,11 +165,7 @@ impl<N: Names> Evaluator<'_, N> {
 /// Where an entry of a vector stands: in the vector as it is written, or under its name.
 fn entry(list: &Expr, index: usize) -> Span {
     match list {
-        Expr::Array(array) => array
-            .elems
-            .iter()
-            .nth(index)
-            .map_or(list.span(), Spanned::span),
+        Expr::Array(array) => array.elems.get(index).map_or(list.span(), Spanned::span),
         _ => list.span(),
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! A component tells what holds at its port `b` by a value whose name ends so, such as `gravity_b`, and asks what holds
 //! at its port `a` by a parameter such as `gravity_a`. Left out, the parameter is what another component tells of the
-//! same frame; where nobody does, its default holds, which is that of the world.
+//! same frame. Where nobody does, its default holds if sources keep the frame at rest, as the default is that of the
+//! world; otherwise it must be given.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

@@ -142,7 +142,7 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     insta::assert_snapshot!(floating(body), @"
     7:13 `body` needs `gravity_at`, which nothing tells at its frame [MBG0214]
       this is inside `Body`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` holds, such as a `Free`
+      help: let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest
       help: write `gravity_at: gravity` where that of the world is meant
     ");
     // Where it is held alone, a frame turns as it likes.
@@ -150,7 +150,7 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     insta::assert_snapshot!(floating(&format!("{pinned} {body}")), @"
     7:49 `body` needs `gravity_at`, which nothing tells at its frame [MBG0214]
       this is inside `Body`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` holds, such as a `Free`
+      help: let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest
       help: write `gravity_at: gravity` where that of the world is meant
     ");
     let upright = "Sf upright[3] { flow: [0.0, 0, 0.0] } -> a[0..3];";
@@ -161,9 +161,12 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     insta::assert_snapshot!(told(plane), @"
     1:77 `rod` needs `angle_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarOffset`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` holds
+      help: let a joint lead to it from a frame that an `Sf` keeps at rest
       help: write `angle_a: 0.0` where that of the world is meant
     ");
+    // In a ring one joint that is given it is enough.
+    let ring = "first: Revolute { axis: 0, gravity_a: gravity } (a, b); back: Revolute { axis: 0 } (b, a);";
+    assert_eq!(told(&scene("a[6]; 1 b[6]", &format!("{ring} {body}"))), "");
     // Without weight nobody asks where a joint is.
     let weightless = "model M { 1 a[6]; 1 b[6]; body: Body { mass: 1.0, inertia: 1.0 } (a); hinge: Revolute { axis: 0 } (a, b); }";
     assert_eq!(told(weightless), "");
@@ -225,7 +228,7 @@ fn a_component_with_one_port_knows_where_that_is() {
 fn a_parameter_asks_at_the_port_whose_whole_name_it_has() {
     let bob = "component Bob(port a[6], port tool_a[6]) {
         param gravity_tool_a[3] = gravity;
-        body: Body { mass: 1.0, inertia: 1.0, gravity_at: gravity_tool_a } (tool_a);
+        body: Body { mass: 1.0, inertia: 1.0, centre: [0.0, 0.0, -1.0], gravity_at: gravity_tool_a } (tool_a);
         a -> R air { resistance: 1.0 };
     }";
     let on = |bob: &str| {
@@ -236,7 +239,7 @@ fn a_parameter_asks_at_the_port_whose_whole_name_it_has() {
         )
     };
     let own = values(&format!("{bob} {}", on("bob: Bob (a, b);")));
-    let plain = "body: Body { mass: 1.0, inertia: 1.0 } (b); a -> R air { resistance: 1.0 };";
+    let plain = "body: Body { mass: 1.0, inertia: 1.0, centre: [0.0, 0.0, -1.0] } (b); a -> R air { resistance: 1.0 };";
     assert_eq!(own, values(&on(plain)));
 }
 
@@ -266,7 +269,7 @@ fn what_a_source_moves_is_known_by_what_leads_to_it() {
     insta::assert_snapshot!(base("[0.5, 0.0, 0.0]", ""), @"
     2:14 `slide` needs `angle_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarPrismatic`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` holds
+      help: let a joint lead to it from a frame that an `Sf` keeps at rest
       help: write `angle_a: 0.0` where that of the world is meant
     ");
     // What does not turn keeps its angle, wherever it goes.
@@ -274,7 +277,7 @@ fn what_a_source_moves_is_known_by_what_leads_to_it() {
     insta::assert_snapshot!(base("[0.0, sin(t), 0.0]", "output place[2] = slide.position_b;"), @"
     2:14 `slide` needs `position_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarPrismatic`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` holds
+      help: let a joint lead to it from a frame that an `Sf` keeps at rest
       help: write `position_a: 0.0` where that of the world is meant
     ");
 }
@@ -329,7 +332,7 @@ fn what_only_the_library_asks_must_be_known() {
     insta::assert_snapshot!(told(&format!("{hinge} {}", scene("b[6]", load))), @"
     14:39 `load` needs `orientation_at`, which nothing tells at its frame [MBG0214]
       this is inside `Load`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` holds, such as a `Free`
+      help: let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest
       help: write `orientation_at: 1.0` where that of the world is meant
     ");
 }

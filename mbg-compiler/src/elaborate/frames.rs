@@ -239,10 +239,12 @@ impl<'a> Builder<'a> {
                 )
             }
             (None, true) => {
-                "let a joint lead to it from a frame that an `Sf` holds, such as a `Free`"
+                "let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest"
                     .to_owned()
             }
-            (None, false) => "let a joint lead to it from a frame that an `Sf` holds".to_owned(),
+            (None, false) => {
+                "let a joint lead to it from a frame that an `Sf` keeps at rest".to_owned()
+            }
         });
         report.help(format!("{keep} where that of the world is meant"))
     }

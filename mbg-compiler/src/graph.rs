@@ -234,11 +234,25 @@ pub struct Storage {
 }
 
 impl Element {
+    /// Path of the component in use that it belongs to, if it is not written in the model itself. A loop is no component: what
+    /// it makes has a number.
+    fn instance(&self) -> Option<&str> {
+        let mut path = self.name.as_str();
+        while let Some((outer, _)) = path.rsplit_once('.') {
+            if !outer.ends_with(']') {
+                return Some(outer);
+            }
+            path = outer;
+        }
+        None
+    }
+
     /// What to type so that its derivative causality is accepted.
     #[must_use]
     pub fn acceptance(&self) -> String {
-        let Some((instance, _)) = self.name.rsplit_once('.') else {
-            let written = format!("{:?} {}", self.kind, self.name);
+        let own = self.name.rsplit('.').next().unwrap_or(&self.name);
+        let Some(instance) = self.instance() else {
+            let written = format!("{:?} {own}", self.kind);
             return format!(
                 "write `#[derivative]` before `{written}` to accept it: `#[derivative] {written} {{ … }}`"
             );

@@ -144,3 +144,25 @@ fn a_flow_that_nothing_gives_is_given() {
         compiles(&followed(text, &help));
     }
 }
+
+#[test]
+fn what_a_loop_makes_is_marked_where_it_is_written() {
+    let element = "model M { Se air { effort: 1.0 } -> cells[0].node;
+                   cells: for k in 0..1 { 0 node { C heat { compliance: 1.0 } } } }";
+    let help = helps(element, codes::STORAGE_DERIVATIVE).remove(0);
+    assert!(
+        help.contains("before `C heat` to accept it: `#[derivative] C heat { … }`"),
+        "{help}"
+    );
+    compiles(&followed(element, &help));
+
+    let component =
+        "component Cell(port p) { 0 node { C heat { compliance: 1.0 } } p -> node; }
+                     model M { 0 air { Se s { effort: 1.0 } } cells: for k in 0..1 { cell: Cell (air); } }";
+    let help = helps(component, codes::STORAGE_DERIVATIVE).remove(0);
+    assert!(
+        help.contains("before `cell: …`, which makes `cells[0].cell`"),
+        "{help}"
+    );
+    compiles(&component.replace("cell: Cell", "#[derivative] cell: Cell"));
+}

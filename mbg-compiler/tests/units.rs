@@ -402,6 +402,13 @@ fn temperature_with_heat_flow_is_told_to_be_pseudo() {
              surface: Conduction { conductance: loss } (case, air);",
             vec!["0 air"],
         ),
+        (
+            "cells: for k in 0..9 { 0 cell { C heat { compliance: capacity } } }
+             links: for k in 0..8 { 1 flow { R r { conductance: loss } } cells[k].cell -> flow -> cells[k + 1].cell; }
+             0 air { Se w { effort: weather } } 1 wall { R r { conductance: loss } }
+             air -> wall -> cells[0].cell;",
+            vec!["0 cell", "1 flow", "0 air", "1 wall"],
+        ),
     ] {
         let text = format!("model M {{ {values} {body} }}");
         let list: Vec<String> = junctions.iter().map(|it| format!("`{it} pseudo`")).collect();

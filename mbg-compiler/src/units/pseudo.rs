@@ -1,6 +1,8 @@
 //! Pseudo bonds that are drawn as true ones: temperature times heat flow is no power, so that their units come out
 //! wrong by powers of a kelvin.
 
+use std::collections::BTreeSet;
+
 use super::dimension::Dimension;
 use crate::diagnostics::listing;
 use crate::elaborate::claims::{Claim, Claims, Subject};
@@ -44,7 +46,9 @@ pub(super) fn advice(graph: &BondGraph, junctions: &[JunctionId]) -> Option<Stri
         };
         format!("{digit} {own}{size} pseudo")
     });
-    let written = listing(written);
+    // A junction in a loop or in a component is written once, however many there are.
+    let mut seen = BTreeSet::new();
+    let written = listing(written.filter(|it| seen.insert(it.clone())));
     (!reached.is_empty()).then(|| {
         format!(
             "write {written} where effort times flow is no power, as temperature times heat flow"

@@ -41,5 +41,6 @@ mod models {
     mod navigation;
     mod parameters;
     mod pins;
+    mod pivots;
     mod stages;
 }

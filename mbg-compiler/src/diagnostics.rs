@@ -30,6 +30,8 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What to do about it, with the text to type.
     pub helps: Vec<String>,
+    /// How many more there are that differ in numbers alone, as a loop makes them.
+    pub alike: usize,
 }
 
 impl Diagnostic {
@@ -73,12 +75,38 @@ impl Diagnostic {
             text.push_str("\n  ");
             text.push_str(note);
         }
+        if self.alike > 0 {
+            text += &format!("\n  and {} more, which differ in their numbers", self.alike);
+        }
         for help in &self.helps {
             text.push_str("\n  help: ");
             text.push_str(help);
         }
         text
     }
+
+    /// Whether a mistake at the same place differs in the numbers of its names alone.
+    fn is_alike(&self, other: &Self) -> bool {
+        self.code == other.code
+            && self.message != other.message
+            && without_numbers(&self.message) == without_numbers(&other.message)
+            && place(self) == place(other)
+    }
+}
+
+/// What tells places apart.
+fn place(diagnostic: &Diagnostic) -> String {
+    format!("{:?}", diagnostic.span)
+}
+
+/// A text without the numbers in brackets.
+fn without_numbers(text: &str) -> String {
+    let mut is_number = false;
+    let kept = text.chars().filter(|character| {
+        is_number = *character == '[' || is_number && character.is_ascii_digit();
+        !is_number
+    });
+    kept.collect()
 }
 
 /// The sink into which every stage reports.
@@ -97,20 +125,25 @@ impl Diagnostics {
         Self::default()
     }
 
-    /// Reports one mistake.
+    /// Reports one mistake; those that a loop makes of it are counted.
     pub fn report(&mut self, diagnostic: Diagnostic) {
         debug_assert!(
             !diagnostic.message.ends_with('.'),
             "house style: no full stop"
         );
-        self.calls.push(self.places.len());
+        let call = self.places.len();
         self.places.push(diagnostic.span);
-        self.list.push(diagnostic);
+        match self.list.iter_mut().find(|it| it.is_alike(&diagnostic)) {
+            Some(known) => known.alike += 1,
+            None => {
+                self.calls.push(call);
+                self.list.push(diagnostic);
+            }
+        }
     }
 
     /// Reports one mistake, unless the same was told at the same place since there were `before`.
     pub fn report_once(&mut self, diagnostic: Diagnostic, before: usize) {
-        let place = |report: &Diagnostic| format!("{:?}", report.span);
         let told = self.list[before..].iter().any(|known| {
             known.message == diagnostic.message
                 && known.notes == diagnostic.notes
@@ -176,6 +209,7 @@ pub fn error(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
         message: message.into(),
         notes: Vec::new(),
         helps: Vec::new(),
+        alike: 0,
     }
 }
 

@@ -674,3 +674,17 @@ fn a_hinge_that_carries_nothing_is_told_so() {
     );
     assert!(!diagnose(&with_body).any(), "the help works");
 }
+
+#[test]
+fn what_a_loop_makes_is_told_once() {
+    let text = "model M { cells: for k in 0..20 { 0 x; 0 m { C c { compliance: 1.0 } } } }";
+    let diagnostics = diagnose(text);
+    let list = diagnostics.list();
+    assert_eq!(list.len(), 1, "{list:#?}");
+    let told = list[0].text();
+    assert!(
+        told.starts_with("junction `cells[0].x` has no bond")
+            && told.contains("and 19 more, which differ in their numbers"),
+        "{told}"
+    );
+}

@@ -5,6 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::symbolic::linear::{Elimination, back_substitute};
 use crate::symbolic::{Expression, Matrix, Pool, Rate, Substitution};
 
+/// A constant that is smaller than this beside others is no pivot.
+const SMALL: f64 = 1e-3;
+
 /// Linear equations by rows, which shrink as unknowns are eliminated.
 pub(super) struct System {
     rows: Vec<BTreeMap<usize, Expression>>,
@@ -87,8 +90,8 @@ impl System {
     ) -> Option<(usize, usize)> {
         let mut best = None;
         for row in rows {
-            for (column, value) in &self.rows[row] {
-                let rate = pool.rate(*value);
+            for column in self.rows[row].keys() {
+                let rate = self.rate(pool, row, *column);
                 if !admitted(rate, row, *column) {
                     continue;
                 }
@@ -103,6 +106,26 @@ impl System {
             }
         }
         best.map(|(_, _, row, column)| (row, column))
+    }
+
+    /// How often an entry changes, as a pivot: a constant that is small beside others in its row and in its column counts as if
+    /// it varied. What is divided by it carries their rounding errors, as many times larger.
+    pub(super) fn rate(&self, pool: &Pool, row: usize, column: usize) -> Rate {
+        let size = |row: usize, column: usize| {
+            let value = pool.constant_value(self.entry(row, column));
+            value.map_or(0.0, f64::abs)
+        };
+        let own = size(row, column);
+        let is_small_beside = |other: f64| own < SMALL * other;
+        let is_small = || {
+            let mut others = self.rows[row].keys().map(|it| size(row, *it));
+            let mut above = self.rows_with(column).map(|it| size(it, column));
+            others.any(is_small_beside) && above.any(is_small_beside)
+        };
+        match pool.rate(self.entry(row, column)) {
+            Rate::Constant if own < SMALL && is_small() => Rate::Varying,
+            rate => rate,
+        }
     }
 
     /// How many entries a pivot there fills in at most.

@@ -197,9 +197,9 @@ impl Tearing<'_> {
         for row in self.system.open() {
             let linear = self.held[*row].is_empty();
             let homogeneous = self.system.right(*row) == Expression::ZERO;
-            for (column, coefficient) in self.system.row(*row) {
+            for (column, _) in self.system.row(*row) {
                 let enters = entering.contains(&column);
-                let class = match (pool.rate(coefficient), linear, enters) {
+                let class = match (self.system.rate(pool, *row, column), linear, enters) {
                     // A law gives its result more exactly than a balance of large numbers does.
                     (Rate::Constant, false, false) if self.laws.contains(row) => 0,
                     (Rate::Constant, true, false) => 1,

@@ -8,11 +8,14 @@ use super::solve::{Solver, places};
 use super::tree::Tree;
 use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::{
-    Expression, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest, RestSolver, Symbol,
+    self, Expression, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest, RestSolver, Symbol,
 };
 
-/// Up to this size a determinant is expanded by minors, which divides by nothing.
+/// Up to this size a determinant is expanded by minors.
 const LAPLACE: usize = 6;
+/// Up to this size nothing is divided by for a determinant, whose steps grow with the fourth power. Larger ones divide by
+/// what may vanish before they do.
+const UNDIVIDED: usize = 16;
 
 impl Solver<'_> {
     /// What is left when no level has it, solved as a whole: the rest and its values.
@@ -70,7 +73,10 @@ impl Solver<'_> {
             && let Some((row, column)) =
                 system.pivot(self.pool, system.open().iter().copied(), &steady)
         {
-            *divisor = self.pool.multiply(*divisor, system.entry(row, column));
+            let pivot = system.entry(row, column);
+            // In the determinant of the whole it may cancel.
+            self.note(pivot, &[]);
+            *divisor = self.pool.multiply(*divisor, pivot);
             system.eliminate(self.pool, row, column)?;
         }
         let rows: Vec<usize> = system.open().iter().copied().collect();
@@ -109,6 +115,8 @@ impl Solver<'_> {
         let mut determinant = Expression::ONE;
         if matrix.rows <= LAPLACE {
             determinant = matrix.determinant(self.pool);
+        } else if matrix.rows <= UNDIVIDED {
+            determinant = symbolic::determinant(self.pool, matrix);
         } else {
             dense(self.pool, matrix, right, &mut determinant).ok_or(Failure::Singular)?;
         }

@@ -6,6 +6,7 @@
 //! costs nothing.
 
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
@@ -20,6 +21,14 @@ struct Node {
     operation: Operation,
     image: Image,
     rate: Rate,
+}
+
+/// How many right angles a number is that is as near to them as its digits allow: their sines and cosines are exact, and a
+/// rounding error in the place of a zero would be divided by.
+fn quadrants(angle: f64) -> Option<i64> {
+    let quadrants = (angle / FRAC_PI_2).round();
+    let is_near = (angle - quadrants * FRAC_PI_2).abs() <= 2.0 * f64::EPSILON * angle.abs();
+    (is_near && angle.abs() < 100.0).then_some(quadrants as i64)
 }
 
 /// Unknowns that are none of the graph are numbered from here.
@@ -330,7 +339,12 @@ impl Pool {
         function: fn(f64) -> f64,
     ) -> Expression {
         match self.constant_value(angle) {
-            Some(value) => self.constant(function(value), image),
+            Some(value) => match quadrants(value) {
+                Some(quadrants) => {
+                    self.integer(function(quadrants as f64 * FRAC_PI_2).round() as i64)
+                }
+                None => self.constant(function(value), image),
+            },
             None => self.intern(operation, image),
         }
     }
@@ -342,7 +356,15 @@ impl Pool {
         self.angle_parts(angle, 1, &mut parts);
         let mut whole = (Image::ONE, Image::ZERO);
         for (base, multiple) in parts {
-            let (cosine, sine) = Image::circle(self.image(base));
+            let (cosine, sine) = match self.constant_value(base).and_then(quadrants) {
+                Some(quadrants) => {
+                    let angle = quadrants as f64 * FRAC_PI_2;
+                    let [cosine, sine] = [angle.cos(), angle.sin()];
+                    let image = |value: f64| Image::integer(value.round() as i64);
+                    (image(cosine), image(sine))
+                }
+                None => Image::circle(self.image(base)),
+            };
             let sine = if multiple < 0 { sine.negated() } else { sine };
             for _ in 0..multiple.unsigned_abs() {
                 whole = (

@@ -1,0 +1,135 @@
+//! What is divided by where frames stand at right angles or at rest: no rounding error, and nothing that vanishes there.
+
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System, mbg};
+use nalgebra::SVector;
+
+use crate::references::errors::apart;
+
+mbg! {
+    /// A body on two slides and a hinge, held at a point 1 m from its centre: a pendulum that stands on its head.
+    #[derivative]
+    pub(crate) model Held {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        1 ground[3]; 1 frame[3]; 1 tip[3]; 1 slide[3]; 1 lift[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        x: PlanarPrismatic { initial: 0.5 } (ground, slide);
+        y: PlanarPrismatic { direction: 1.5707963267948966, initial: 0.8660254037844386 } (slide, lift);
+        turn: PlanarRevolute { initial: 0.5235987755982988 } (lift, frame);
+        body: PlanarBody { mass: 2.0, inertia: 0.1 } (frame);
+        arm: PlanarOffset { y: -1.0 } (frame, tip);
+        Sf still[2] { flow: 0.0 } -> tip[1..3];
+        output angle: rad = turn.angle;
+        output rate: rad/s = turn.rate.f;
+    }
+
+    /// A body that is free, held at a point, and turned about no axis at the start.
+    #[derivative]
+    pub(crate) model Top {
+        causality componentwise;
+        1 ground[6]; 1 frame[6]; 1 tip[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        free: Free { } (ground, frame);
+        body: Body { mass: 2.0, inertia: 0.1 } (frame);
+        arm: Offset { by: [0.0, 0.0, -0.3] } (frame, tip);
+        Sf still[3] { flow: 0.0 } -> tip[3..6];
+        output rates[3] = [body.spin.f.x, body.spin.f.y, body.spin.f.z];
+    }
+}
+
+/// A crank and a rod on a block that slides along an axis: a ring of joints without a cut.
+macro_rules! slider_crank {
+    ($name:ident, { $($parameter:tt)* }, $direction:expr, $start:literal) => {
+        mbg! {
+            /// The direction is an angle to the horizontal.
+            #[derivative]
+            pub(crate) model $name {
+                causality componentwise;
+                gravity [0.0, -9.81];
+                $($parameter)*
+                1 ground[3]; 1 crank[3]; 1 pin[3]; 1 rod[3]; 1 end[3]; 1 block[3];
+                Sf fixed[3] { flow: 0.0 } -> ground;
+                h1: PlanarRevolute { initial: 0.9 } (ground, crank);
+                o1: PlanarOffset { x: 1.0 } (crank, pin);
+                m1: PlanarBody { mass: 1.0, inertia: 0.3 } (pin);
+                slide: PlanarPrismatic { direction: $direction, initial: $start } (ground, block);
+                m3: PlanarPointMass { mass: 0.5 } (block);
+                h3: PlanarRevolute { initial: 0.7 } (block, rod);
+                o3: PlanarOffset { y: -2.0 } (rod, end);
+                m2: PlanarBody { mass: 1.0, inertia: 0.3 } (rod);
+                pin[1..3] -> end[1..3];
+                output rates[3] = [h1.rate.f, h3.rate.f, slide.rate.f];
+            }
+        }
+    };
+}
+slider_crank!(Right, {}, 0.0, -2.0);
+slider_crank!(Left, {}, 3.141592653589793, 2.0);
+slider_crank!(Across, { param direction: rad = 3.0; }, direction, 2.0);
+
+/// The outputs at some times, started as the model says.
+fn outputs<S, const N: usize, const M: usize, const P: usize>(
+    model: &S,
+    times: &[f64],
+) -> Vec<SVector<f64, P>>
+where
+    S: System<f64, N, M, P>,
+{
+    let (still, mut found) = (SVector::zeros(), Vec::new());
+    Adaptive::new(Dop853, 1e-12, 1e-14)
+        .sample(
+            model,
+            &Constant(still),
+            0.0,
+            model.initial_state(),
+            times,
+            |t, x| {
+                found.push(model.output(t, x, &still, &mut Default::default()));
+            },
+        )
+        .unwrap();
+    found
+}
+
+#[test]
+fn what_slides_at_right_angles_swings_as_a_pendulum() {
+    let model = Held::new(HeldParameters::default()).unwrap();
+    for found in outputs(&model, &[0.1, 0.3, 0.5]) {
+        let [angle, rate] = found.into();
+        let fallen = 0.5235987755982988_f64.cos() - f64::cos(angle);
+        let expected = (2.0 * 2.0 * 9.81 * fallen / 2.1).sqrt();
+        assert!((rate.abs() - expected).abs() < 1e-9, "{rate} {expected}");
+    }
+}
+
+#[test]
+fn a_slide_may_point_either_way() {
+    let times = [0.1, 0.2, 0.3];
+    let right = outputs(&Right::new(RightParameters::default()).unwrap(), &times);
+    let left = outputs(&Left::new(LeftParameters::default()).unwrap(), &times);
+    for (right, left) in right.into_iter().zip(left) {
+        let turned = SVector::from([left[0], left[1], -left[2]]);
+        let error = apart(turned.as_slice(), right.as_slice());
+        assert!(error < 1e-8 && right.amax() > 0.05, "{error:e} {right}");
+    }
+}
+
+#[test]
+fn a_parameter_that_is_divided_by_is_checked() {
+    let across = |direction| Across::<f64>::new(AcrossParameters { direction });
+    across(3.0).unwrap();
+    let told = across(0.0).map(|_| ()).unwrap_err().to_string();
+    assert!(told.contains("sin(direction)"), "{told}");
+}
+
+#[test]
+fn a_body_that_is_held_at_a_point_starts_where_no_angle_is_turned() {
+    let model = Top::new(TopParameters::default()).unwrap();
+    let found = outputs(&model, &[0.5]);
+    assert!(found[0].iter().all(|rate| rate.abs() < 1e-12), "{found:?}");
+    let conditioning = model.conditioning(0.0, &model.initial_state(), &SVector::zeros());
+    assert!(
+        conditioning.iter().all(|it| it.is_finite()),
+        "{conditioning:?}"
+    );
+}

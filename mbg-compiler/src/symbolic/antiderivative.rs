@@ -8,30 +8,40 @@ use super::substitute::{Substitution, replace, symbols, visit};
 /// Most expressions that are tried, where choices in choices double them.
 const MOST: usize = 4000;
 
+/// Most inner functions that are tried, each of which takes a walk through what it is in.
+const MOST_INNER: usize = 500;
+
 /// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
 /// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root and
 /// hyperbolic tangent of what is affine in the symbol, powers `exp(c ln(…))` of such or of its reciprocal, products of sums
 /// that are a polynomial when they are multiplied out, and all of these with choices, absolute values and signs of what is
-/// affine anywhere in them.
+/// affine anywhere in them. Products of the derivative of a function with a function of it are integrated by that one.
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,
     expression: Expression,
     symbol: Symbol,
 ) -> Option<Expression> {
-    let left = MOST;
-    Integration { pool, symbol, left }.of(expression)
+    let mut integration = Integration {
+        pool,
+        symbol,
+        left: MOST,
+        inner_left: MOST_INNER,
+    };
+    integration.of(expression)
 }
 
-struct Integration<'a> {
-    pool: &'a mut Pool,
-    symbol: Symbol,
+pub(super) struct Integration<'a> {
+    pub(super) pool: &'a mut Pool,
+    pub(super) symbol: Symbol,
     /// How many more expressions are tried.
     left: usize,
+    /// How many more inner functions are tried.
+    pub(super) inner_left: usize,
 }
 
 impl Integration<'_> {
-    fn of(&mut self, expression: Expression) -> Option<Expression> {
+    pub(super) fn of(&mut self, expression: Expression) -> Option<Expression> {
         self.left = self.left.checked_sub(1)?;
         if self.is_free(expression) {
             let symbol = self.pool.symbol(self.symbol);
@@ -56,16 +66,18 @@ impl Integration<'_> {
             }
             Operation::Call(function, arguments) => self.call(function, &arguments),
         };
-        let found = found.or_else(|| self.split(expression.magnitude()));
+        let found = found
+            .or_else(|| self.split(expression.magnitude()))
+            .or_else(|| self.by_substitution(expression.magnitude()));
         found.map(|it| it.flipped(expression.is_negative()))
     }
 
-    fn is_free(&self, expression: Expression) -> bool {
+    pub(super) fn is_free(&self, expression: Expression) -> bool {
         !symbols(self.pool, &[expression]).contains(&self.symbol)
     }
 
     /// The slope of what is affine in the symbol, and not free of it.
-    fn slope(&mut self, expression: Expression) -> Option<Expression> {
+    pub(super) fn slope(&mut self, expression: Expression) -> Option<Expression> {
         let symbol = self.symbol;
         let (slope, _) = affine(self.pool, expression, symbol, |it| *it == symbol)?;
         (slope != Expression::ZERO).then_some(slope)
@@ -274,8 +286,8 @@ impl Integration<'_> {
             let difference = self.pool.subtract(*a, *b);
             self.is_free(difference) || self.slope(difference).is_some()
         })?;
-        let c = replace(self.pool, expression, part, c)?;
-        let d = replace(self.pool, expression, part, d)?;
+        let c = replace(self.pool, expression, &[(part, c)])?;
+        let d = replace(self.pool, expression, &[(part, d)])?;
         self.choice(a, b, c, d)
     }
 

@@ -5,6 +5,7 @@
 pub mod affine;
 pub mod antiderivative;
 mod arithmetic;
+mod chain_rule;
 pub mod dense;
 pub mod determinant;
 pub mod differentiate;

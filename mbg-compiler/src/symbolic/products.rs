@@ -14,7 +14,7 @@ use super::field::{self, Image};
 use super::pool::Pool;
 use super::uses::Uses;
 
-/// Largest numerator and denominator of a number by which what is there is multiplied.
+/// Largest numerator and denominator of a number that is told by its image.
 const LARGEST: u64 = 10_000;
 
 /// How many ends of values are told apart.
@@ -175,15 +175,20 @@ impl Known {
         let others = self.multiples.get(&ratio)?.iter();
         let other = others.copied().find(|it| is_there(*it))?;
         let ratio = image.times(pool.image(other).inverted()?);
-        let is_constant = ratio.0.iter().all(|it| *it == ratio.0[0]);
-        let (numerator, denominator) = field::fraction(ratio.0[0], LARGEST)?;
-        if !is_constant {
-            return None;
-        }
-        let number = pool.constant(numerator as f64 / denominator as f64, ratio);
-        // Something may always have this value and still be no number to the pool.
-        pool.constant_value(number).map(|_| (number, other))
+        number(pool, ratio).map(|number| (number, other))
     }
+}
+
+/// The fraction of small numbers that has this image.
+pub(super) fn number(pool: &mut Pool, image: Image) -> Option<Expression> {
+    let is_constant = image.0.iter().all(|it| *it == image.0[0]);
+    let (numerator, denominator) = field::fraction(image.0[0], LARGEST)?;
+    if !is_constant {
+        return None;
+    }
+    let number = pool.constant(numerator as f64 / denominator as f64, image);
+    // Something may always have this value and still be no number to the pool.
+    pool.constant_value(number).map(|_| number)
 }
 
 /// Divisors with a bit each, and the bits of what each node of the pool depends on: divisors, and unknowns that equations

@@ -43,17 +43,18 @@ impl Substitution {
     }
 }
 
-/// An expression with one of its parts replaced; none if that divides by zero.
+/// An expression with parts replaced by others; none if that divides by zero.
 #[must_use]
 pub(super) fn replace(
     pool: &mut Pool,
     whole: Expression,
-    part: Expression,
-    by: Expression,
+    parts: &[(Expression, Expression)],
 ) -> Option<Expression> {
     let none = FxHashMap::default();
     let mut known = Rewritten::default();
-    known.set(part, by);
+    for (part, by) in parts {
+        known.set(*part, *by);
+    }
     known.rewrite(pool, whole, |pool, known, whole, operation| {
         rebuild(pool, &none, known, whole, operation)
     })

@@ -19,5 +19,7 @@ mod parallel;
 mod sampled;
 #[path = "methods/stability.rs"]
 mod stability;
+#[path = "methods/stops.rs"]
+mod stops;
 #[path = "methods/times.rs"]
 mod times;

@@ -184,7 +184,9 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 again = true;
                 // Written so that a step of NaN is refused as well.
                 if control.length.is_nan() || control.length <= smallest(t) {
-                    check_result(problem.system, t, &trial.change, &tried)?;
+                    check_result(problem.system, t, &trial.change, &tried).map_err(|stopped| {
+                        problem.traced(stopped, t, work.place_of_jacobian(&from))
+                    })?;
                     return Err(Stopped::new(t, Cause::StepTooSmall));
                 }
                 continue;

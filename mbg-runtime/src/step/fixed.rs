@@ -113,7 +113,8 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
             };
             let trial = work.attempt(problem, &from, None);
             if !trial.error.is_finite() {
-                check_result(problem.system, t, &trial.change, &problem.memory)?;
+                check_result(problem.system, t, &trial.change, &problem.memory)
+                    .map_err(|stopped| problem.traced(stopped, t, work.place_of_jacobian(&from)))?;
                 return Err(Stopped::new(t, Cause::Diverged));
             }
             x = if self.compensated {
@@ -122,7 +123,9 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                 x + trial.change
             };
             t = span.end;
-            check_result(problem.system, t, &x, &problem.memory)?;
+            check_result(problem.system, t, &x, &problem.memory).map_err(|stopped| {
+                problem.traced(stopped, span.start, work.place_of_jacobian(&from))
+            })?;
             x = problem.close(t, x)?;
             problem.statistics.steps += 1;
             let mut dense = || work.polynomial(problem, &from, (&x, None));

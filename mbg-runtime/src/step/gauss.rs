@@ -193,6 +193,13 @@ where
     {
         between(&A::TABLEAU, &self.slopes, start, end)
     }
+
+    fn place_of_jacobian(&self, start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
+        match self.solve {
+            Solve::Newton(_) => Some((start.span.start, start.x)),
+            Solve::Sweeps(_) => None,
+        }
+    }
 }
 
 /// The polynomial over a step.

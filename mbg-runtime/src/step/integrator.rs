@@ -84,7 +84,8 @@ pub trait Integrator<const N: usize> {
     ///
     /// # Errors
     ///
-    /// A trouble, a state or derivative that is not finite, a step that became too small or failed, too many steps.
+    /// A trouble, a state, derivative or Jacobian that is not finite, a step that became too small or failed, too many
+    /// steps.
     fn integrate<T, S, I, const M: usize, const P: usize>(
         &self,
         system: &S,

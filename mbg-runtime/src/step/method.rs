@@ -112,6 +112,11 @@ pub trait Stepper<A, T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M>;
 
+    /// Where and when the step that has been tried last takes its Jacobian, if the method takes one.
+    fn place_of_jacobian(&self, _start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
+        None
+    }
+
     /// How many times longer the next step may be, whatever the error allows.
     fn growth(&self) -> f64 {
         f64::INFINITY

@@ -25,7 +25,7 @@ mod watch;
 
 use core::fmt;
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::{Input, Real, System, Trouble};
 
@@ -83,6 +83,13 @@ pub enum Cause {
         /// The first such state, as [`Meta::states`](crate::Meta::states) names it.
         state: &'static str,
     },
+    /// An entry of the Jacobian that an implicit method takes is infinite or NaN, where state and derivative are finite.
+    JacobianNotFinite {
+        /// The state whose derivative it belongs to, as [`Meta::states`](crate::Meta::states) names it.
+        of: &'static str,
+        /// The state by which that is differentiated.
+        by: &'static str,
+    },
     /// The step is so small that time does not advance by it; the problem is stiff or has a singularity there.
     StepTooSmall,
     /// More steps than allowed.
@@ -108,6 +115,10 @@ impl fmt::Display for Cause {
             Self::NotFinite { state } => {
                 write!(formatter, "state `{state}` or its derivative is not finite")
             }
+            Self::JacobianNotFinite { of, by } => write!(
+                formatter,
+                "the Jacobian is not finite: the derivative of `{of}` by `{by}`"
+            ),
             Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
             Self::TooManySteps => formatter.write_str("more steps than allowed"),
             Self::Diverged => formatter
@@ -215,8 +226,34 @@ where
     S: System<T, N, M, P>,
 {
     let index = x.iter().position(|component| !is_finite(component));
-    let state = index.and_then(|index| S::META.states.get(index));
-    state.map_or("?", |state| state.name)
+    index.map_or("?", name_of_state::<T, S, N, M, P>)
+}
+
+/// The first entry of a Jacobian that is not finite, as a cause.
+fn first_entry_not_finite<T, S, const N: usize, const M: usize, const P: usize>(
+    jacobian: &SMatrix<T, N, N>,
+) -> Option<Cause>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    let mut columns = jacobian.data.0.iter().enumerate();
+    columns.find_map(|(column, entries)| {
+        let row = entries.iter().position(|entry| !is_finite(entry))?;
+        Some(Cause::JacobianNotFinite {
+            of: name_of_state::<T, S, N, M, P>(row),
+            by: name_of_state::<T, S, N, M, P>(column),
+        })
+    })
+}
+
+/// What [`Meta::states`](crate::Meta::states) calls a state.
+fn name_of_state<T, S, const N: usize, const M: usize, const P: usize>(index: usize) -> &'static str
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    S::META.states.get(index).map_or("?", |state| state.name)
 }
 
 #[inline]

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::probes::Probes;
-use super::{Cause, Statistics, Stopped, check_result, seen};
+use super::{Cause, Statistics, Stopped, check_result, first_entry_not_finite, seen};
 use crate::{Columns, Input, Real, System};
 
 /// What a run carries from step to step besides the state.
@@ -104,6 +104,29 @@ where
         }
         check_result(self.system, t, x, &self.memory)?;
         check_result(self.system, t, slope, &self.memory)
+    }
+
+    /// Why a step from this time failed, where it took its Jacobian at `place`: of what is not finite, that which made
+    /// the rest so.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn traced(
+        &mut self,
+        stopped: Stopped,
+        time: T,
+        place: Option<(T, SVector<T, N>)>,
+    ) -> Stopped {
+        let (Some((t, x)), Cause::NotFinite { .. }) = (place, stopped.cause) else {
+            return stopped;
+        };
+        // Where the derivative is not finite, the Jacobian is not either.
+        let slope = self.slope(t, &x);
+        if let Err(stopped) = check_result(self.system, time, &slope, &self.memory) {
+            return stopped;
+        }
+        let jacobian = self.jacobian(t, &x);
+        first_entry_not_finite::<T, S, N, M, P>(&jacobian)
+            .map_or(stopped, |cause| Stopped::new(time, cause))
     }
 
     /// Whether nothing but its state drives the model, until the input jumps.

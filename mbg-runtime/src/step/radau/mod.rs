@@ -212,6 +212,13 @@ where
         polynomial
     }
 
+    fn place_of_jacobian(&self, start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
+        Some(middle::<A, _, _, _, _>(
+            start,
+            &self.predict(start.span.length),
+        ))
+    }
+
     fn growth(&self) -> f64 {
         SLOW / self.theta
     }
@@ -235,10 +242,10 @@ where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let Start { span, x, .. } = start;
+        let span = &start.span;
         if self.theta > FAST {
-            let t = span.at(T::from_f64(A::TABLEAU.nodes[S / 2]));
-            self.jacobian = problem.jacobian(t, &(x + stages[S / 2]));
+            let (t, x) = middle::<A, _, _, _, _>(start, stages);
+            self.jacobian = problem.jacobian(t, &x);
             self.factors.length = None;
         }
         if self.factors.length == Some(span.length) {
@@ -280,6 +287,20 @@ where
         }
         stages
     }
+}
+
+/// Time and state of the middle one of these stages.
+#[inline]
+fn middle<A, T, const N: usize, const S: usize, const PAIRS: usize>(
+    start: &Start<T, N>,
+    stages: &[SVector<T, N>; S],
+) -> (T, SVector<T, N>)
+where
+    A: Tabulated<S, PAIRS>,
+    T: Real,
+{
+    let node = T::from_f64(A::TABLEAU.nodes[S / 2]);
+    (start.span.at(node), start.x + stages[S / 2])
 }
 
 /// What a polynomial adds to its end a part of its step behind it.

@@ -198,6 +198,10 @@ where
     {
         between(&A::TABLEAU, &self.stages, &start.x, end)
     }
+
+    fn place_of_jacobian(&self, start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
+        Some((start.span.start, start.x))
+    }
 }
 
 /// The polynomial over a step.

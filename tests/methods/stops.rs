@@ -1,0 +1,177 @@
+//! What runs tell that cannot go on.
+
+use mbg_runtime::{
+    Adaptive, Auto, Cause, Fixed, Gauss6, ImplicitMidpoint, Integrator, Picked, Radau5, Radau9,
+    Real, Rodas4, Rodas5P, Ros2, Stopped, System, Tsit5, Variable, mbg,
+};
+use nalgebra::SVector;
+
+use crate::problems::{Law, Written, state};
+
+mbg! {
+    /// Turbulent friction, whose slope at rest is zero, but the square root's is infinite.
+    model Throttled {
+        1 v { I b { inertia: 2.0 } R r { effort: f * sqrt(abs(f)) } Se s { effort: 1.0 } }
+        output y = v.f;
+    }
+}
+
+/// A level that rises from zero, and a pipe whose rate depends on it by a power of 3/2.
+#[derive(Clone, Copy)]
+struct Filling;
+
+impl Law<2, 0> for Filling {
+    const STATES: &'static [Variable] = &[state("level"), state("pipe")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let power = x[0] * x[0].abs().sqrt();
+        SVector::from([T::from_f64(1.0), power - x[1]])
+    }
+}
+
+/// A level that falls below zero, of which there is no root.
+#[derive(Clone, Copy)]
+struct Emptying;
+
+impl Law<2, 0> for Emptying {
+    const STATES: &'static [Variable] = &[state("level"), state("pipe")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        SVector::from([T::from_f64(-1.0), x[0].sqrt()])
+    }
+}
+
+/// A stiff state, and a level that falls below zero, where its outflow is zero with a slope that is no number.
+#[derive(Clone, Copy)]
+struct Drained;
+
+impl Law<2, 0> for Drained {
+    const STATES: &'static [Variable] = &[state("level"), state("fast")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let above = x[0].max(T::from_f64(0.0));
+        let outflow = above * above.sqrt();
+        SVector::from([T::from_f64(-1.0) - outflow, T::from_f64(-1e6) * x[1]])
+    }
+}
+
+/// What each implicit method tells, at steps of 0.2 s and, where it estimates errors, to a tolerance.
+fn stops<S, const N: usize, const P: usize>(
+    system: &S,
+    start: [f64; N],
+) -> Vec<(&'static str, Stopped)>
+where
+    S: System<f64, N, 0, P>,
+{
+    fn run<S, const N: usize, const P: usize>(
+        system: &S,
+        start: [f64; N],
+        solver: impl Integrator<N>,
+    ) -> Stopped
+    where
+        S: System<f64, N, 0, P>,
+    {
+        let start = SVector::from(start);
+        let run = solver.integrate(system, &(), 0.0, 1.0, start, |_| ());
+        run.unwrap_err()
+    }
+    macro_rules! each {
+        ($($solver:expr),*) => {
+            vec![$((stringify!($solver), run(system, start, $solver))),*]
+        };
+    }
+    each!(
+        Fixed::new(Ros2, 0.2),
+        Fixed::new(Rodas4, 0.2),
+        Fixed::new(Rodas5P, 0.2),
+        Fixed::new(Radau5, 0.2),
+        Fixed::new(Radau9, 0.2),
+        Fixed::new(ImplicitMidpoint::default(), 0.2),
+        Fixed::new(Ros2, 0.2).compensated(),
+        Adaptive::new(Ros2, 1e-6, 1e-6),
+        Adaptive::new(Rodas4, 1e-6, 1e-6),
+        Adaptive::new(Rodas5P, 1e-6, 1e-6),
+        Adaptive::new(Radau5, 1e-6, 1e-6),
+        Adaptive::new(Radau9, 1e-6, 1e-6)
+    )
+}
+
+#[test]
+fn a_jacobian_that_is_not_finite_is_told_as_such() {
+    let model = Throttled::new(ThrottledParameters::default()).unwrap();
+    for (solver, stopped) in stops(&model, [0.0]) {
+        assert_eq!(
+            stopped.to_string(),
+            "stopped at t = 0: the Jacobian is not finite: the derivative of `b.p` by `b.p`",
+            "{solver}"
+        );
+    }
+    // By the names of row and column.
+    for (solver, stopped) in stops(&Written(Filling), [0.0, 0.0]) {
+        let (of, by) = ("pipe", "level");
+        let cause = Cause::JacobianNotFinite { of, by };
+        assert_eq!((stopped.time, stopped.cause), (0.0, cause), "{solver}");
+    }
+}
+
+#[test]
+fn methods_without_a_jacobian_go_on_where_it_is_not_finite() {
+    fn end(solver: impl Integrator<1>) -> f64 {
+        let model = Throttled::new(ThrottledParameters::default()).unwrap();
+        let mut last = model.initial_state();
+        let run = solver.integrate(&model, &(), 0.0, 1.0, last, |step| last = *step.state());
+        run.unwrap();
+        last[0]
+    }
+    let expected = end(Adaptive::new(Tsit5, 1e-10, 1e-10));
+    assert!((end(Fixed::new(Gauss6::default(), 1e-2)) - expected).abs() < 1e-6);
+    assert!((end(Auto::new(1e-6, 1e-6)) - expected).abs() < 1e-6);
+}
+
+#[test]
+fn a_derivative_that_is_not_finite_is_told_before_its_jacobian() {
+    for (solver, stopped) in stops(&Written(Emptying), [-1.0, 0.0]) {
+        assert_eq!(
+            stopped.to_string(),
+            "stopped at t = 0: state `pipe` or its derivative is not finite",
+            "{solver}"
+        );
+    }
+    // At 0.4 s the level is still above zero, at a stage of the step from there it is below. The stages of Rosenbrock's
+    // methods share what is not finite; those of Radau's take their Jacobian there.
+    for (solver, stopped) in stops(&Written(Emptying), [0.45, 0.0]) {
+        if solver.contains("Radau") && solver.starts_with("Fixed") {
+            let cause = Cause::NotFinite { state: "pipe" };
+            assert_eq!((stopped.time, stopped.cause), (0.4, cause), "{solver}");
+        } else if solver.starts_with("Fixed") {
+            assert!(matches!(stopped.cause, Cause::NotFinite { .. }), "{solver}");
+        }
+    }
+}
+
+/// Methods of Radau take it at a stage ahead of where the step starts.
+#[test]
+fn a_jacobian_counts_where_the_method_takes_it() {
+    let (of, by) = ("level", "level");
+    for (solver, stopped) in stops(&Written(Drained), [0.5, 0.0]) {
+        let cause = Cause::JacobianNotFinite { of, by };
+        assert_eq!(stopped.cause, cause, "{solver}");
+        assert!(stopped.time > 0.3, "{solver}: {stopped}");
+    }
+}
+
+#[test]
+fn what_auto_picks_tells_the_same() {
+    let system = Written(Drained);
+    let start = SVector::from([0.5, 0.0]);
+    for (relative, picked) in [(1e-4, Picked::Rodas5P), (1e-6, Picked::Radau9)] {
+        let auto = Auto::new(relative, 1e-6);
+        let choice = auto.choose(&system, &(), 0.0, 1.0, start).unwrap();
+        assert_eq!(choice.method, picked);
+        let run = auto.integrate(&system, &(), 0.0, 1.0, start, |_| ());
+        let stopped = run.unwrap_err();
+        let (of, by) = ("level", "level");
+        assert_eq!(stopped.cause, Cause::JacobianNotFinite { of, by });
+        assert!(stopped.time > 0.3 && stopped.time < 0.5, "{stopped}");
+    }
+}

@@ -327,7 +327,8 @@ fn approximate_energies(model: &Elaborated) -> Vec<String> {
     let note = |element: &Element| {
         let name = &element.name;
         format!(
-            "the energy of `{name}` is a quadrature of its law, good to rounding where that is smooth"
+            "the energy of `{name}` is a quadrature of its law at sixteen points, good to rounding only where the law is \
+             that smooth"
         )
     };
     approximate.map(note).collect()

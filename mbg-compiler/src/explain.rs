@@ -134,6 +134,15 @@ fn programs(compiled: &Compiled) -> String {
         )
         + &section("output", &program::dump(&routines[Routines::OUTPUT]))
         + &section("operations", &operations(compiled))
+        + &notes(compiled)
+}
+
+/// What a user should know, if there is something.
+fn notes(compiled: &Compiled) -> String {
+    match compiled.notes.is_empty() {
+        true => String::new(),
+        false => section("notes", &compiled.notes.join("\n")),
+    }
 }
 
 /// What each function costs.

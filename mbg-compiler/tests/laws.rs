@@ -277,7 +277,7 @@ fn energies_that_are_modulated_are_noted() {
     };
     assert_eq!(notes("k"), "");
     insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
-    insta::assert_snapshot!(notes("exp(-powi(q, 3))"), @"the energy of `c` is a quadrature of its law, good to rounding where that is smooth");
+    insta::assert_snapshot!(notes("exp(-powi(q, 3))"), @"the energy of `c` is a quadrature of its law at sixteen points, good to rounding only where the law is that smooth");
 }
 
 /// The value of an expression of constants.

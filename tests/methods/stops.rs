@@ -55,6 +55,18 @@ impl Law<2, 0> for Drained {
     }
 }
 
+/// Levels that each rise from zero and drain by a square root.
+#[derive(Clone, Copy)]
+struct Rising;
+
+impl<const N: usize> Law<N, 0> for Rising {
+    const STATES: &'static [Variable] = &[state("level"), state("other")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, N>, _: &SVector<T, 0>) -> SVector<T, N> {
+        x.map(|level| T::from_f64(1.0) - level.sqrt())
+    }
+}
+
 /// What each implicit method tells, at steps of 0.2 s and, where it estimates errors, to a tolerance.
 fn stops<S, const N: usize, const P: usize>(
     system: &S,
@@ -110,6 +122,20 @@ fn a_jacobian_that_is_not_finite_is_told_as_such() {
     for (solver, stopped) in stops(&Written(Filling), [0.0, 0.0]) {
         let (of, by) = ("pipe", "level");
         let cause = Cause::JacobianNotFinite { of, by };
+        assert_eq!((stopped.time, stopped.cause), (0.0, cause), "{solver}");
+    }
+}
+
+/// What divides by an infinite entry would let the state stand still.
+#[test]
+fn a_jacobian_that_is_infinite_is_told_too() {
+    let cause = Cause::JacobianNotFinite {
+        of: "level",
+        by: "level",
+    };
+    let one = stops(&Written(Rising), [0.0]);
+    let two = stops(&Written(Rising), [0.0, 0.5]);
+    for (solver, stopped) in one.into_iter().chain(two) {
         assert_eq!((stopped.time, stopped.cause), (0.0, cause), "{solver}");
     }
 }

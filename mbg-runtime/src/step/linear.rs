@@ -21,7 +21,7 @@ pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     }
     /// `Σ column · factor`.
     fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N];
-    /// Its reciprocal.
+    /// Its reciprocal. That of what is infinite is NaN and not zero, by which a state would stand still unseen.
     fn reciprocal(self) -> Self;
     /// A size to choose pivots by; of several lanes the largest.
     fn size(self) -> f64;
@@ -51,7 +51,7 @@ impl<T: Real> Element for T {
     }
 
     fn reciprocal(self) -> Self {
-        T::from_f64(1.0) / self
+        T::from_f64(1.0) / self + T::from_f64(0.0) * self
     }
 
     fn size(self) -> f64 {
@@ -145,7 +145,7 @@ impl<T: Real> Element for Complex<T> {
         let one = T::from_f64(1.0);
         if self.real.magnitude() >= self.imaginary.magnitude() {
             let ratio = self.imaginary / self.real;
-            let scale = one / (self.real + self.imaginary * ratio);
+            let scale = one / (self.real + self.imaginary * ratio) + T::from_f64(0.0) * self.real;
             Self {
                 real: scale,
                 imaginary: -(ratio * scale),

@@ -49,7 +49,7 @@ fn mistakes_in_laws_are_told() {
       help: write `I b { inertia: … }`
     2:41 `Sin` is not a function of the language [MBG0203]
       help: did you mean `sin`?
-      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of
+      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
     ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0 } } v -> v;"), @"
     2:32 `v -> v` joins a junction to itself, which says nothing [MBG0209]

@@ -288,6 +288,14 @@ const BESIDE_A_MASS: &[(&str, &[&str])] = &[
     ("output y[3] = angles_of(2.0, 0, 1, 2);", &["MBG0204"]),
     ("output y[3] = angles_of(1.0);", &["MBG0213"]),
     (
+        "output y[3] = angles_of(diag(1.0, 1.0, 2.0), 0, 1, 2);",
+        &["MBG0221"],
+    ),
+    (
+        "output y[3] = rotation(0.5) * [1.0, 0.0, 0.0];",
+        &["MBG0204"],
+    ),
+    (
         "output y[4] = quaternion_of(matrix_of([1.0, 0.0]));",
         &["MBG0204"],
     ),
@@ -576,7 +584,7 @@ fn a_mistake_inside_a_component_is_told_at_the_argument_behind_it() {
       `torque`: Of the motor
     ");
     insta::assert_snapshot!(hinge("axis: 1, tilt: [0.0, 1.0, 0.0]"), @"
-    2:34 `tilt` does not fit in `Revolute`: `gravity_b` has dimension 3, found a 3×3 matrix [MBG0204]
+    2:34 `tilt` does not fit in `Revolute`: expected a 3×3 matrix, found a vector of 3 [MBG0204]
       `tilt`: Takes axes of the joint to axes of a, such as `rot_x(0.5)`
     ");
     insta::assert_snapshot!(hinge("axis: 1, initial: hinge.angle"), @"
@@ -687,4 +695,27 @@ fn what_a_loop_makes_is_told_once() {
             && told.contains("and 19 more, which differ in their numbers"),
         "{told}"
     );
+}
+
+#[test]
+fn a_tilt_is_a_rotation() {
+    let told = |tilt: &str| {
+        let model = format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 arm[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             hinge: Revolute {{ axis: 1, tilt: {tilt} }} (ground, arm); body: Body {{ mass: 1.0, inertia: 1.0 }} (arm); }}"
+        );
+        let list = diagnose(&model);
+        let told: Vec<String> = list.list().iter().map(|it| it.text()).collect();
+        told.join("\n")
+    };
+    for tilt in ["rot_x(0.5)", "diag(1.0, -1.0, -1.0)", "1.0"] {
+        assert_eq!(told(tilt), "");
+    }
+    let angle = told("0.5");
+    let expected = "`tilt` does not fit in `Revolute`: expected a 3×3 matrix, found a number";
+    assert!(angle.starts_with(expected), "{angle}");
+    assert!(angle.contains("such as `rot_x(0.5)`"), "{angle}");
+    let stretched = told("diag(1.0, 2.0, 3.0)");
+    let expected = "`tilt` does not fit in `Revolute`: this matrix is no rotation";
+    assert!(stretched.starts_with(expected), "{stretched}");
 }

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use proc_macro2::Span;
 use syn::Expr;
 use syn::spanned::Spanned;
 
 use super::Builder;
 use super::claims::Subject;
-use super::expressions::{Result, Value};
+use super::expressions::Result;
 use super::model::{Attitude, StateRate};
+use super::orientation::rotation;
 use super::scope::Entity;
 use crate::codes;
 use crate::diagnostics::error;
@@ -17,9 +17,6 @@ use crate::symbolic::field::Image;
 use crate::symbolic::{Expression, Function, Matrix, Symbol};
 use crate::syntax::ast::{self, Orientation};
 use crate::syntax::dump;
-
-/// How far the constants of an initial rotation matrix may be from one.
-const ROTATION: f64 = 1e-6;
 
 impl Builder<'_> {
     /// Puts the states of an attitude where they are a rotation exactly, and says what their name stands for.
@@ -167,45 +164,12 @@ impl Builder<'_> {
         scope: usize,
         attitude: &ast::Attitude,
     ) -> Result<Vec<Expression>> {
-        let unit = Matrix::diagonal(&[Expression::ONE; 3]);
-        let Some(value) = &attitude.initial else {
-            return Ok(unit.entries);
+        let value = match &attitude.initial {
+            Some(value) => value,
+            None => return Ok(Matrix::diagonal(&[Expression::ONE; 3]).entries),
         };
         let span = self.place(scope, value.span());
-        let matrix = match self.evaluate(scope, value)? {
-            Value::Scalar(Expression::ONE) => unit,
-            Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
-                product.to_matrix(self.pool)
-            }
-            found => {
-                let message = format!("expected a 3×3 matrix, found {}", found.shape());
-                return Err(Box::new(error(codes::WRONG_DIMENSION, span, message)));
-            }
-        };
-        self.check_rotation(&matrix, span)?;
-        Ok(matrix.entries)
-    }
-
-    fn check_rotation(&mut self, matrix: &Matrix, span: Span) -> Result<()> {
-        let gram = matrix.transpose().times(self.pool, matrix);
-        let determinant = matrix.determinant(self.pool);
-        let wanted = Matrix::diagonal(&[Expression::ONE; 3]);
-        let pairs = gram.entries.iter().zip(&wanted.entries);
-        let far = pairs
-            .chain([(&determinant, &Expression::ONE)])
-            .any(|(found, wanted)| {
-                let difference = self.pool.subtract(*found, *wanted);
-                let constant = self.pool.constant_value(difference);
-                constant.is_some_and(|difference| difference.abs() > ROTATION)
-            });
-        if !far {
-            return Ok(());
-        }
-        let message =
-            "this matrix is no rotation: its columns must be orthonormal and right-handed";
-        let report = error(codes::NO_ROTATION, span, message);
-        Err(Box::new(report.help(
-            "write a product of rotations, such as `initial: rot_z(0.5) * rot_x(0.1)`",
-        )))
+        let value = self.evaluate(scope, value)?;
+        Ok(rotation(self.pool, value, span)?.entries)
     }
 }

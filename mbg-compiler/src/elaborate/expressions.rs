@@ -24,7 +24,7 @@ pub enum Value {
 pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
 
 /// Functions, as messages list them.
-const FUNCTIONS: [&str; 28] = [
+const FUNCTIONS: [&str; 29] = [
     "sin",
     "cos",
     "tan",
@@ -53,6 +53,7 @@ const FUNCTIONS: [&str; 28] = [
     "matrix_of",
     "quaternion_of",
     "angles_of",
+    "rotation",
 ];
 
 /// A failed evaluation.

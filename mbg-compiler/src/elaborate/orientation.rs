@@ -1,15 +1,17 @@
 //! Functions of orientations in laws: rotations, and their conversions into each other.
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use syn::Expr;
 use syn::spanned::Spanned;
 
 use super::expressions::{Evaluator, Names, Result, Value, fail, mismatch};
+use crate::codes;
+use crate::diagnostics::error;
 use crate::symbolic::orientation::{angles_of, matrix_of, quaternion_of};
-use crate::symbolic::{Expression, Factor, Matrix, Product};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product};
 
 /// How each function is called.
-const USAGES: [&str; 9] = [
+const USAGES: [&str; 10] = [
     "rot_x(angle)",
     "rot_y(angle)",
     "rot_z(angle)",
@@ -19,7 +21,11 @@ const USAGES: [&str; 9] = [
     "matrix_of(quaternion)",
     "quaternion_of(matrix)",
     "angles_of(matrix, 0, 1, 2)",
+    "rotation(matrix)",
 ];
+
+/// Rounding in a rotation that is written as numbers.
+const ROUNDING: f64 = 1e-6;
 
 impl<N: Names> Evaluator<'_, N> {
     /// The value of a function of this file; none if it is another one.
@@ -42,6 +48,7 @@ impl<N: Names> Evaluator<'_, N> {
                 .rotation(matrix)
                 .map(|matrix| Value::column(quaternion_of(self.pool, &matrix).to_vec())),
             ("angles_of", [matrix, axes @ ..]) if axes.len() == 3 => self.angles_of(matrix, axes),
+            ("rotation", [matrix]) => self.rotation(matrix).and_then(|_| self.evaluate(matrix)),
             (known, _) => {
                 let usage = USAGES
                     .iter()
@@ -77,18 +84,10 @@ impl<N: Names> Evaluator<'_, N> {
         Ok(Value::column(angles_of(self.pool, &matrix, axes).to_vec()))
     }
 
-    /// A 3×3 matrix, or the number 1 for the unit matrix.
+    /// A rotation, or the number 1 for none.
     fn rotation(&mut self, matrix: &Expr) -> Result<Matrix> {
-        match self.evaluate(matrix)? {
-            Value::Scalar(Expression::ONE) => Ok(Matrix::diagonal(&[Expression::ONE; 3])),
-            Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
-                Ok(product.to_matrix(self.pool))
-            }
-            found => {
-                let message = format!("expected a 3×3 matrix, found {}", found.shape());
-                mismatch(matrix.span(), message)
-            }
-        }
+        let value = self.evaluate(matrix)?;
+        rotation(self.pool, value, matrix.span())
     }
 
     /// A vector of known dimension.
@@ -126,4 +125,45 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(axis.span(), "expected 0, 1 or 2 for the axis x, y or z"),
         }
     }
+}
+
+/// The entries of a 3×3 matrix, or of the number 1 for the unit matrix. What is constant must be that of a rotation.
+pub(super) fn rotation(pool: &mut Pool, value: Value, span: Span) -> Result<Matrix> {
+    match value {
+        Value::Scalar(Expression::ONE) => Ok(Matrix::diagonal(&[Expression::ONE; 3])),
+        Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
+            let is_turn = |factor: &Factor| matches!(factor, Factor::Rotation { .. });
+            let matrix = product.to_matrix(pool);
+            if product.factors.iter().all(is_turn) || is_rotation(pool, &matrix) {
+                return Ok(matrix);
+            }
+            let message =
+                "this matrix is no rotation: its columns must be orthonormal and right-handed";
+            let report = error(codes::NO_ROTATION, span, message);
+            Err(Box::new(report.help(
+                "write a product of rotations, such as `rot_z(0.5) * rot_x(0.1)`",
+            )))
+        }
+        found => mismatch(
+            span,
+            format!("expected a 3×3 matrix, found {}", found.shape()),
+        ),
+    }
+}
+
+/// Whether a matrix can be a rotation, by what is constant of its products.
+fn is_rotation(pool: &mut Pool, matrix: &Matrix) -> bool {
+    let gram = matrix.transpose().times(pool, matrix);
+    let determinant = matrix.determinant(pool);
+    let wanted = Matrix::diagonal(&[Expression::ONE; 3]);
+    let mut pairs = gram
+        .entries
+        .iter()
+        .zip(&wanted.entries)
+        .chain([(&determinant, &Expression::ONE)]);
+    pairs.all(|(found, wanted)| {
+        let difference = pool.subtract(*found, *wanted);
+        let constant = pool.constant_value(difference);
+        constant.is_none_or(|difference| difference.abs() <= ROUNDING)
+    })
 }

@@ -139,10 +139,10 @@ fn programs(compiled: &Compiled) -> String {
 
 /// What a user should know, if there is something.
 fn notes(compiled: &Compiled) -> String {
-    match compiled.notes.is_empty() {
-        true => String::new(),
-        false => section("notes", &compiled.notes.join("\n")),
+    if compiled.notes.is_empty() {
+        return String::new();
     }
+    section("notes", &compiled.notes.join("\n"))
 }
 
 /// What each function costs.

@@ -4,7 +4,9 @@
 mod models;
 
 use mbg_compiler::compile::Routines;
+use mbg_compiler::explain::explain;
 use mbg_compiler::graph::Law;
+use mbg_compiler::inclusion::no_file;
 use mbg_compiler::program::{self, Arguments};
 use mbg_compiler::symbolic::Symbol;
 use mbg_compiler::symbolic::print::Printer;
@@ -278,6 +280,12 @@ fn energies_that_are_modulated_are_noted() {
     assert_eq!(notes("k"), "");
     insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
     insta::assert_snapshot!(notes("exp(-powi(q, 3))"), @"the energy of `c` is a quadrature of its law at sixteen points, good to rounding only where the law is that smooth");
+    let text = "model M { 1 v { C c { effort: exp(-powi(q, 3)) } I m { inertia: 1.0 } } }";
+    let explained = explain(text.parse().unwrap(), &no_file, &|_| String::new());
+    assert!(
+        explained.contains("==== notes\nthe energy of `c` is a quadrature"),
+        "{explained}"
+    );
 }
 
 /// The value of an expression of constants.

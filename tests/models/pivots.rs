@@ -103,27 +103,20 @@ fn what_slides_at_right_angles_swings_as_a_pendulum() {
     }
 }
 
+/// Near the other way its sine is 5e-8, which no other entry is divided by.
 #[test]
 fn a_slide_may_point_either_way() {
     let times = [0.1, 0.2, 0.3];
     let right = outputs(&Right::new(RightParameters::default()).unwrap(), &times);
     let left = outputs(&Left::new(LeftParameters::default()).unwrap(), &times);
-    for (right, left) in right.into_iter().zip(left) {
-        let turned = SVector::from([left[0], left[1], -left[2]]);
-        let error = apart(turned.as_slice(), right.as_slice());
-        assert!(error < 1e-8 && right.amax() > 0.05, "{error:e} {right}");
-    }
-}
-
-/// Its sine is 5e-8, which no other entry is divided by.
-#[test]
-fn a_slide_may_point_almost_either_way() {
-    let times = [0.1, 0.2, 0.3];
-    let left = outputs(&Left::new(LeftParameters::default()).unwrap(), &times);
     let near = outputs(&Near::new(NearParameters::default()).unwrap(), &times);
-    for (left, near) in left.into_iter().zip(near) {
-        let error = apart(near.as_slice(), left.as_slice());
-        assert!(error < 1e-6, "{error:e}");
+    for ((right, left), near) in right.into_iter().zip(left).zip(near) {
+        let expected = [right[0], right[1], -right[2]];
+        assert!(right.amax() > 0.05, "{right}");
+        for (found, tolerance) in [(left, 1e-8), (near, 1e-6)] {
+            let error = apart(found.as_slice(), &expected);
+            assert!(error < tolerance, "{error:e} {found}");
+        }
     }
 }
 

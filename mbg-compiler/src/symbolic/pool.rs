@@ -23,12 +23,13 @@ struct Node {
     rate: Rate,
 }
 
-/// How many right angles a number is that is as near to them as its digits allow: their sines and cosines are exact, and a
-/// rounding error in the place of a zero would be divided by.
-fn quadrants(angle: f64) -> Option<i64> {
+/// Cosine and sine of a number that is as near to right angles as its digits allow. They are exact: a rounding error in the
+/// place of a zero would be divided by.
+fn right_angle(angle: f64) -> Option<(Image, Image)> {
     let quadrants = (angle / FRAC_PI_2).round();
     let is_near = (angle - quadrants * FRAC_PI_2).abs() <= 2.0 * f64::EPSILON * angle.abs();
-    (is_near && angle.abs() < 100.0).then_some(quadrants as i64)
+    let image = |value: f64| Image::integer(value.round() as i64);
+    (is_near && angle.abs() < 100.0).then(|| (image(angle.cos()), image(angle.sin())))
 }
 
 /// Unknowns that are none of the graph are numbered from here.
@@ -339,12 +340,8 @@ impl Pool {
         function: fn(f64) -> f64,
     ) -> Expression {
         match self.constant_value(angle) {
-            Some(value) => match quadrants(value) {
-                Some(quadrants) => {
-                    self.integer(function(quadrants as f64 * FRAC_PI_2).round() as i64)
-                }
-                None => self.constant(function(value), image),
-            },
+            // Of right angles these are found by their images.
+            Some(value) => self.constant(function(value), image),
             None => self.intern(operation, image),
         }
     }
@@ -356,15 +353,8 @@ impl Pool {
         self.angle_parts(angle, 1, &mut parts);
         let mut whole = (Image::ONE, Image::ZERO);
         for (base, multiple) in parts {
-            let (cosine, sine) = match self.constant_value(base).and_then(quadrants) {
-                Some(quadrants) => {
-                    let angle = quadrants as f64 * FRAC_PI_2;
-                    let [cosine, sine] = [angle.cos(), angle.sin()];
-                    let image = |value: f64| Image::integer(value.round() as i64);
-                    (image(cosine), image(sine))
-                }
-                None => Image::circle(self.image(base)),
-            };
+            let right = self.constant_value(base).and_then(right_angle);
+            let (cosine, sine) = right.unwrap_or_else(|| Image::circle(self.image(base)));
             let sine = if multiple < 0 { sine.negated() } else { sine };
             for _ in 0..multiple.unsigned_abs() {
                 whole = (

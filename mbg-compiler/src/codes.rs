@@ -37,6 +37,7 @@ codes! {
     WORD = "MBG0219", "a word that is none of those to choose from";
     CONDITION = "MBG0220", "a condition of statements that is not decided at compile time";
     NO_ROTATION = "MBG0221", "a matrix or quaternion that is no rotation";
+    JUNCTION_KIND = "MBG0222", "a junction of the kind that a port does not take";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";

@@ -233,6 +233,23 @@ pub struct Storage {
     pub is_exact: bool,
 }
 
+impl Junction {
+    /// Its declaration, were it of this kind: `1 wheel[3]`.
+    pub fn declaration(&self, kind: JunctionKind) -> String {
+        let own = self.name.rsplit('.').next().unwrap_or(&self.name);
+        declaration(kind, own, self.dimension)
+    }
+}
+
+/// The declaration of a junction: `1 wheel[3]`.
+pub fn declaration(kind: JunctionKind, name: &str, dimension: usize) -> String {
+    let digit = kind.digit();
+    match dimension {
+        1 => format!("{digit} {name}"),
+        _ => format!("{digit} {name}[{dimension}]"),
+    }
+}
+
 impl Element {
     /// Path of the component in use that it belongs to, if it is not written in the model itself. A loop is no component: what
     /// it makes has a number.
@@ -313,10 +330,7 @@ impl BondGraph {
     #[must_use]
     pub fn dump(&self) -> String {
         let junctions = self.junctions.iter().map(|junction| {
-            let kind = match junction.kind {
-                JunctionKind::Zero => 0,
-                JunctionKind::One => 1,
-            };
+            let kind = junction.kind.digit();
             format!("{kind} {}[{}]", junction.name, junction.dimension)
         });
         let elements = self.elements.iter().map(|element| {

@@ -109,6 +109,13 @@ const FIXTURES: &[(Code, &str)] = &[
         ),
     ),
     (
+        codes::JUNCTION_KIND,
+        beside_a_mass!(
+            "0 b { C c { compliance: 1.0 } } brake: Brake (b); }
+             component Brake(port 1 at) { at -> R r { resistance: 1.0 };"
+        ),
+    ),
+    (
         codes::STORAGE_DERIVATIVE,
         beside_a_mass!("a -> I n { inertia: 2.0 };"),
     ),
@@ -525,6 +532,34 @@ fn mistakes_at_ports_are_told() {
     insta::assert_snapshot!(told("stop: Stop (b, b);"), @"3:114 `Stop` has the port `at`, found 2 junctions [MBG0208]");
     insta::assert_snapshot!(told("tie: Tie (a.x, b);"), @"3:124 port `left` has dimension 3, and `a.x` has 1 [MBG0204]");
     assert_eq!(told("tie: Tie (a, b);"), "");
+}
+
+/// A motor's shaft on a 0-junction and a tank's node on a 1-junction would simulate other physics.
+#[test]
+fn a_port_takes_junctions_of_its_kind() {
+    let told = |wheel: &str, motor: &str| {
+        told(&format!(
+            "model M {{ 0 plus {{ Se battery {{ effort: 12.0 }} }} 0 earth {{ Se zero {{ effort: 0.0 }} }}
+             {wheel} motor: DcMotor {{ resistance: 1.0, inductance: 1e-3, constant: 0.1, inertia: 1e-3 }} {motor}; }}"
+        ))
+    };
+    insta::assert_snapshot!(told("0 wheel;", "(plus, earth, wheel)"), @"
+    2:120 port `shaft` takes a 1-junction, whose flow is common, and `wheel` is a 0-junction [MBG0222]
+      help: declare it as `1 wheel`
+      help: if its effort is common indeed, put one between: `1 shaft_motor; wheel -> shaft_motor;`, and give `shaft_motor`
+    ");
+    insta::assert_snapshot!(told("1 wheel[2]; 1 amps;", "(amps, earth, wheel[1])"), @"
+    2:118 port `a` takes a 0-junction, whose effort is common, and `amps` is a 1-junction [MBG0222]
+      help: declare it as `0 amps`
+      help: if its flow is common indeed, put one between: `0 a_motor; amps -> a_motor;`, and give `a_motor`
+    ");
+    let brake = "{ R brake { resistance: 0.1 } }";
+    let declared = told(&format!("1 wheel {brake}"), "(plus, earth, wheel)");
+    let between = told(
+        &format!("0 wheel {brake} 1 shaft_motor; wheel -> shaft_motor;"),
+        "(plus, earth, shaft_motor)",
+    );
+    assert_eq!((declared.as_str(), between.as_str()), ("", ""));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::frames::LeftOut;
 use super::scope::{Entity, Scope};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
-use crate::graph::{ElementId, End};
+use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
 use crate::syntax::{ast, dump, library};
 
 impl<'a> Builder<'a> {
@@ -57,7 +57,9 @@ impl<'a> Builder<'a> {
                 .get(position)
                 .and_then(|reference| self.resolve(scope, reference));
             let entity = match given {
-                Some((End::Junction(id, range), size)) if size == port.dimension => {
+                Some((End::Junction(id, range), size))
+                    if size == port.dimension && port.takes(self.graph.junctions[id.0].kind) =>
+                {
                     self.at_frame(inner, component, port, (id, range.clone()));
                     Entity::Junction(id, range)
                 }
@@ -65,6 +67,9 @@ impl<'a> Builder<'a> {
                     let reference = &instance.connections[position];
                     let report = match end {
                         End::OnePort(id) => self.no_junction(scope, reference, id),
+                        End::Junction(id, _) if size == port.dimension => {
+                            wrong_kind(port, &instance.name, reference, &self.graph.junctions[id.0])
+                        }
                         _ => wrong_size(port, reference, size),
                     };
                     self.tell(scope, report);
@@ -222,4 +227,33 @@ fn wrong_size(port: &ast::Port, reference: &ast::Reference, size: usize) -> Diag
     let text = dump::reference(reference);
     let message = format!("port `{name}` has dimension {dimension}, and `{text}` has {size}");
     error(codes::WRONG_DIMENSION, reference.span, message)
+}
+
+/// A junction of the kind that the port does not take.
+///
+/// The component would only simulate other physics there: a shaft with a common torque, a node with a common current.
+fn wrong_kind(
+    port: &ast::Port,
+    instance: &Ident,
+    reference: &ast::Reference,
+    junction: &Junction,
+) -> Diagnostic {
+    let (kind, common, common_here) = match junction.kind {
+        JunctionKind::Zero => (JunctionKind::One, "flow", "effort"),
+        JunctionKind::One => (JunctionKind::Zero, "effort", "flow"),
+    };
+    let text = dump::reference(reference);
+    let message = format!(
+        "port `{}` takes a {}-junction, whose {common} is common, and `{text}` is a {}-junction",
+        port.name,
+        kind.digit(),
+        junction.kind.digit(),
+    );
+    let between = format!("{}_{instance}", port.name);
+    error(codes::JUNCTION_KIND, reference.span, message)
+        .help(format!("declare it as `{}`", junction.declaration(kind)))
+        .help(format!(
+            "if its {common_here} is common indeed, put one between: `{}; {text} -> {between};`, and give `{between}`",
+            declaration(kind, &between, port.dimension),
+        ))
 }

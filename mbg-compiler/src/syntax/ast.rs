@@ -52,12 +52,21 @@ pub struct Component {
     pub statements: Vec<Statement>,
 }
 
-/// `port a[3]`: stands for the junction given at the call.
+/// `port a[3]` or `port 1 a[3]`: stands for the junction given at the call.
 pub struct Port {
+    /// The only kind of junction that it takes, where one is written.
+    pub kind: Option<JunctionKind>,
     /// Name inside the component.
     pub name: Ident,
     /// Dimension, 1 unless written.
     pub dimension: usize,
+}
+
+impl Port {
+    /// Whether a junction of this kind may be given for it.
+    pub fn takes(&self, kind: JunctionKind) -> bool {
+        self.kind.is_none_or(|own| own == kind)
+    }
 }
 
 /// One statement of a model or component.
@@ -302,6 +311,16 @@ pub enum JunctionKind {
     Zero,
     /// `1`: common flow, efforts sum to zero.
     One,
+}
+
+impl JunctionKind {
+    /// The digit that declares it.
+    pub fn digit(self) -> char {
+        match self {
+            Self::Zero => '0',
+            Self::One => '1',
+        }
+    }
 }
 
 /// `A -> B -> C;`

@@ -3,6 +3,7 @@
 use proc_macro2::{Delimiter, Group, Ident, Spacing, Span, TokenStream, TokenTree};
 use syn::LitInt;
 
+use super::ast::JunctionKind;
 use super::{LARGEST_DIMENSION, words};
 use crate::codes;
 use crate::diagnostics::{Code, Diagnostic, error};
@@ -109,6 +110,18 @@ impl Cursor {
     /// Whether the `0` or `1` of a junction stands `offset` places ahead.
     pub(super) fn junction_digit(&self, offset: usize) -> bool {
         matches!(self.peek(offset), Some(TokenTree::Literal(literal)) if matches!(literal.to_string().as_str(), "0" | "1"))
+    }
+
+    /// Steps over the `0` or `1` of a junction if it stands here.
+    pub(super) fn take_junction_kind(&mut self) -> Option<JunctionKind> {
+        let is_zero = self.found() == "`0`";
+        let stands = self.junction_digit(0);
+        self.at += usize::from(stands);
+        stands.then_some(if is_zero {
+            JunctionKind::Zero
+        } else {
+            JunctionKind::One
+        })
     }
 
     /// Steps over this character if it stands here.

@@ -8,7 +8,7 @@ use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, Visibility};
 
 use super::ast::{
     Chain, ChainNode, Choice, Closure, Component, Conditional, Element, Field, Instance, Item,
-    Junction, JunctionKind, Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
+    Junction, Loop, Model, Reference, Segment, Selection, Source, Statement, Unit,
 };
 use super::words;
 
@@ -79,7 +79,10 @@ fn write_component(text: &mut String, component: &Component) -> fmt::Result {
         mark(component.derivative.is_some())
     )?;
     for port in &component.ports {
-        writeln!(text, "  port {}[{}]", port.name, port.dimension)?;
+        let kind = port
+            .kind
+            .map_or(String::new(), |kind| format!("{} ", kind.digit()));
+        writeln!(text, "  port {kind}{}[{}]", port.name, port.dimension)?;
     }
     write_statements(text, &component.statements)
 }
@@ -198,10 +201,7 @@ fn write_documentation(
 }
 
 fn write_junction(text: &mut String, junction: &Junction) -> fmt::Result {
-    let digit = match junction.kind {
-        JunctionKind::Zero => '0',
-        JunctionKind::One => '1',
-    };
+    let digit = junction.kind.digit();
     let pseudo = if junction.pseudo { " pseudo" } else { "" };
     let coordinate = if junction.coordinate {
         " coordinate"

@@ -240,7 +240,7 @@ fn ports_in(group: &Group, sink: &mut Sink<'_>) -> Option<Vec<Port>> {
     whole.then_some(ports)
 }
 
-/// Reads one port and the comma after it.
+/// Reads `port a[3]` or `port 1 a[3]`, and the comma after it.
 fn port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Port> {
     Attributes::read(cursor, sink)?.unmarked("a port", sink);
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
@@ -254,12 +254,17 @@ fn port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Port> {
         return Err(Box::new(error));
     }
     cursor.advance(1);
-    let name = cursor.name("the name of the port after `port`")?;
+    let kind = cursor.take_junction_kind();
+    let name = cursor.name(&format!("the name of the port after {}", cursor.previous()))?;
     let dimension = cursor.dimension()?.unwrap_or(1);
     if !cursor.ended() && !cursor.take_punct(',') {
         return Err(cursor.expected(&format!("`,` or `)` after {}", cursor.previous())));
     }
-    Ok(Port { name, dimension })
+    Ok(Port {
+        kind,
+        name,
+        dimension,
+    })
 }
 
 /// Whether an item begins here.

@@ -453,16 +453,11 @@ fn causality(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
 /// Reads `1 name[n] coordinate { … }` or `0 name;`, given that the digit stands here.
 fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
     let span = cursor.span();
-    let kind = if cursor.found() == "`0`" {
-        JunctionKind::Zero
-    } else {
-        JunctionKind::One
-    };
-    let name = {
-        let digit = cursor.found();
-        cursor.advance(1);
-        cursor.name(&format!("the name of the junction after {digit}"))?
-    };
+    let kind = cursor.take_junction_kind().unwrap_or(JunctionKind::One);
+    let name = cursor.name(&format!(
+        "the name of the junction after `{}`",
+        kind.digit()
+    ))?;
     let (mut dimension, mut coordinate, mut pseudo) = (None, false, false);
     loop {
         if dimension.is_none() && cursor.group(0, Delimiter::Bracket).is_some() {

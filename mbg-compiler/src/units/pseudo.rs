@@ -7,7 +7,7 @@ use super::dimension::Dimension;
 use crate::diagnostics::listing;
 use crate::elaborate::claims::{Claim, Claims, Subject};
 use crate::elaborate::{Elaborated, Place, StateRate};
-use crate::graph::{BondGraph, ElementId, End, JunctionId, JunctionKind, OriginId};
+use crate::graph::{BondGraph, ElementId, End, JunctionId, OriginId};
 use crate::symbolic::{Operation, Pool, Symbol};
 
 /// Whether two units, or what they are but for others, differ as temperature and heat flow make them.
@@ -35,16 +35,7 @@ pub(super) fn advice(graph: &BondGraph, junctions: &[JunctionId]) -> Option<Stri
     reached.sort_unstable();
     let written = reached.iter().map(|id| {
         let junction = &graph.junctions[id.0];
-        let digit = match junction.kind {
-            JunctionKind::Zero => 0,
-            JunctionKind::One => 1,
-        };
-        let own = junction.name.rsplit('.').next().unwrap_or(&junction.name);
-        let size = match junction.dimension {
-            1 => String::new(),
-            size => format!("[{size}]"),
-        };
-        format!("{digit} {own}{size} pseudo")
+        format!("{} pseudo", junction.declaration(junction.kind))
     });
     // A junction in a loop or in a component is written once, however many there are.
     let mut seen = BTreeSet::new();

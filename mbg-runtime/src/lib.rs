@@ -2,7 +2,7 @@
 //!
 //! | to | look at |
 //! |---|---|
-//! | write a model | the [`language`], the [`joints`] of the library |
+//! | write a model | the [`language`], the [`joints`] of the library, all its components in the [`library`] |
 //! | see what models do | `docs/gallery.md` of the repository, a picture of each |
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; or [`Auto`], which picks them; [`Input`] |
@@ -35,6 +35,9 @@ pub mod language {}
 #[cfg(feature = "macros")]
 #[doc = include_str!("joints.md")]
 pub mod joints {}
+#[cfg(feature = "macros")]
+#[doc = include_str!("library.md")]
+pub mod library {}
 mod meta;
 mod real;
 mod scalar;

@@ -8,6 +8,8 @@ mod gears;
 #[path = "joints/loops.rs"]
 mod loops;
 mod models;
+#[path = "joints/reactions.rs"]
+mod reactions;
 #[path = "joints/scene.rs"]
 mod scene;
 #[path = "joints/scenes.rs"]

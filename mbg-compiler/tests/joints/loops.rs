@@ -1,8 +1,9 @@
 //! Cuts: a tree of joints that is closed by one moves as the joint of the same kind does.
 
-use mbg_compiler::compile::Routines;
+use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::program::{self, Arguments};
 
+use crate::models::attempted;
 use crate::rows;
 use crate::scene::{Scene, cross};
 
@@ -300,4 +301,81 @@ fn equations_that_say_nothing_close_a_loop_as_well() {
     let [flat, spatial] = [PARALLELOGRAM, IN_SPACE].map(|text| change(&Scene::of(text), &state));
     alike(&spatial, &flat);
     assert!(flat.iter().all(|slope| slope.abs() > 1.0), "{flat:?}");
+}
+
+/// A crank and a rod to a block that slides.
+fn slider_crank(last: &str) -> Scene {
+    Scene::of(&format!(
+        "#[derivative] model SliderCrank {{
+            causality componentwise;
+            gravity [0.0, -9.81];
+            1 ground[3]; 1 crank[3]; 1 pin[3]; 1 rod[3]; 1 end[3]; 1 block[3];
+            Sf fixed[3] {{ flow: 0.0 }} -> ground;
+            first: PlanarRevolute {{ initial: 0.9 }} (ground, crank);
+            long: PlanarOffset {{ x: 1.0 }} (crank, pin);
+            wheel: PlanarBody {{ mass: 1.0, inertia: 0.3 }} (crank);
+            second: PlanarRevolute {{ initial: -0.7 }} (pin, rod);
+            longer: PlanarOffset {{ x: 2.0 }} (rod, end);
+            bar: PlanarBody {{ mass: 1.0, inertia: 0.3 }} (rod);
+            slide: PlanarPrismatic {{ initial: 2.7 }} (ground, block);
+            body: PlanarPointMass {{ mass: 0.5 }} (block);
+            {last}
+            output gap[2] = longer.position_b - slide.position_b;
+        }}"
+    ))
+}
+
+#[test]
+fn a_ring_moves_with_its_gap_and_a_cut_closes_it() {
+    let ring = slider_crank("third: PlanarRevolute (block, end);");
+    assert_eq!((ring.velocities(), ring.displacements()), (1, 3));
+    assert_eq!(ring.model.closed.each_ref().map(Vec::len), [0; 2]);
+    let mut start = ring.start();
+    start[ring.place("first.rate.f")] = 1.3;
+    let gap = |state: &[f64]| ring.run(Routines::OUTPUT, state);
+    let (before, after) = (gap(&start), gap(&ring.after(start.clone(), 1e-3, 200)));
+    assert!(before[0].abs() > 0.1, "{before:?}");
+    for (before, after) in before.iter().zip(after) {
+        assert!((before - after).abs() < 1e-9, "{before} {after}");
+    }
+
+    let cut = slider_crank("third: PlanarCut (end, block);");
+    assert_eq!((cut.velocities(), cut.displacements()), (3, 3));
+    assert_eq!(cut.model.closed.each_ref().map(Vec::len), [2; 2]);
+}
+
+/// Three rods in space, all hinges about y.
+fn four_bar(last: &str) -> Result<Compiled, Vec<&'static str>> {
+    attempted(&format!(
+        "#[derivative] model FourBar {{
+            causality componentwise;
+            1 ground[6]; 1 far[6]; 1 a[6]; 1 b[6]; 1 c[6]; 1 a_end[6]; 1 b_end[6]; 1 c_end[6];
+            Sf fixed[6] {{ flow: 0.0 }} -> ground;
+            base: Offset {{ by: [1.0, 0.0, 0.0] }} (ground, far);
+            first: Revolute {{ axis: 1, initial: -1.0 }} (ground, a);
+            crank: Offset {{ by: [0.3, 0.0, 0.0] }} (a, a_end);
+            second: Revolute {{ axis: 1, initial: 0.9 }} (a_end, b);
+            coupler: Offset {{ by: [0.9, 0.0, 0.0] }} (b, b_end);
+            third: Revolute {{ axis: 1, initial: -1.2 }} (far, c);
+            rocker: Offset {{ by: [0.7, 0.0, 0.0] }} (c, c_end);
+            body: Body {{ mass: 1.0, inertia: 1.0 }} (b);
+            wheel: Body {{ mass: 1.0, inertia: 1.0 }} (a);
+            arm: Body {{ mass: 1.0, inertia: 1.0 }} (c);
+            {last}
+        }}"
+    ))
+}
+
+#[test]
+fn redundant_constraints_are_for_a_cut() {
+    let ring = four_bar("last: Revolute { axis: 1 } (b_end, c_end);");
+    assert!(ring.err().unwrap().contains(&"MBG0302"));
+    // Its hinge is about z of the frames.
+    let cut = four_bar(
+        "1 b_pin[6]; 1 c_pin[6];
+        b_turn: Turn { by: rot_x(-1.5707963267948966) } (b_end, b_pin);
+        c_turn: Turn { by: rot_x(-1.5707963267948966) } (c_end, c_pin);
+        last: Cut { joint: revolute } (b_pin, c_pin);",
+    );
+    assert_eq!(cut.unwrap().closed.each_ref().map(Vec::len), [5; 2]);
 }

@@ -162,7 +162,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         quotient(t, ahead, |t| self.derivative(t, x, u, memory))
     }
 
-    /// Energy stored, in joule when the model is in SI units.
+    /// Energy stored in `I` and `C`, in joule when the model is in SI units; weights are sources, and no part of it: see
+    /// [energy](crate::language#energy).
     #[must_use]
     fn energy(&self, t: T, x: &SVector<T, N>) -> T;
 

@@ -11,6 +11,25 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// attitude count as states, and so do all coordinates of loops that multipliers close: some poles are no motion of such a
 /// model.
 ///
+/// A model with a nonlinear algebraic loop is not [`Convertible`], and is refused while compiling:
+///
+/// ```compile_fail,E0277
+/// # use mbg_runtime::{Linearised, System, mbg};
+/// # use nalgebra::SVector;
+/// mbg! {
+///     model Bearings {
+///         1 shaft {
+///             Se motor { effort: 1.0 }
+///             R grease { effort: powi(f, 3) }
+///             R oil { resistance: 1.0 }
+///         }
+///         integral angle: rad = shaft.f;
+///     }
+/// }
+/// # let model = Bearings::<f64>::new(BearingsParameters::default()).unwrap();
+/// let refused = Linearised::of(&model, 0.0, &model.initial_state(), &SVector::zeros());
+/// ```
+///
 /// # Example
 ///
 /// ```
@@ -83,7 +102,8 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
     }
 
     /// The frequency response `C (jω I − A)⁻¹ B + D`: amplitudes and phases of outputs to inputs that swing with `frequency`
-    /// in rad/s. None where it is not finite: a pole lies there.
+    /// in rad/s. None where it is not finite: a pole lies there. At zero that is so, too, where displacements depend on each
+    /// other, as those of two springs at one junction: there a low frequency tells the response at rest.
     #[must_use]
     pub fn response(&self, frequency: T) -> Option<SMatrix<Complex<T>, P, M>> {
         let zero = T::from_f64(0.0);

@@ -40,7 +40,8 @@ pub struct Meta {
 pub struct Variable {
     /// Name, such as `hull.p.x`.
     pub name: &'static str,
-    /// Unit as written, empty when none was.
+    /// Unit as written, empty when none was. Of states only integrals have one that is written: it is empty for momenta,
+    /// displacements, flows of coordinates and attitudes.
     pub unit: &'static str,
 }
 

@@ -32,6 +32,14 @@ mbg! {
         output speed = mesh.f;
     }
 
+    /// Two springs whose strokes are one, but for where they start.
+    model Beside {
+        input force;
+        1 mesh { I mass { inertia: 2.0 } C soft { stiffness: 3.0 } C hard { stiffness: 5.0 } R oil { resistance: 1.0 } }
+        Se push { effort: force } -> mesh;
+        output place = soft.q;
+    }
+
     /// Pulled through the attitude in which its gimbals lock.
     model Locking {
         input torque[3]: N*m;
@@ -183,4 +191,13 @@ fn single_precision_agrees_with_double() {
         let found = Complex::new(f64::from(found.re), f64::from(found.im));
         assert!((found - expected).modulus() < 1e-5 * expected.modulus());
     }
+}
+
+#[test]
+fn what_depends_on_each_other_has_a_pole_at_rest() {
+    let model = Beside::<f64>::new(BesideParameters::default()).unwrap();
+    let linear = Linearised::of(&model, 0.0, &model.initial_state(), &SVector::zeros()).unwrap();
+    assert_eq!(linear.response(0.0), None);
+    let still = linear.response(1e-6).unwrap()[(0, 0)];
+    assert!((still - Complex::from(1.0 / 8.0)).modulus() < 1e-6);
 }

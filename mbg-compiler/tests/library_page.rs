@@ -6,8 +6,7 @@ use std::fs;
 
 use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::syntax::ast::{
-    ChainNode, Component, Conditional, Element, ElementKind, Item, JunctionKind, Port, Statement,
-    Unit,
+    ChainNode, Component, Conditional, Element, ElementKind, Item, Port, Statement, Unit,
 };
 use mbg_compiler::syntax::dump::expression;
 use mbg_compiler::syntax::{self, library};
@@ -21,8 +20,9 @@ const INTRODUCTION: &str = "\
 All components of the library, made of their files.
 
 `hinge: Revolute { axis: 2 } (ground, arm);` calls one: values of parameters by name, then a junction for each port, in
-order, see [`language`](crate::language). A port without a number has one component; `[3]` is a frame in a plane, or
-what only turns, `[6]` a frame in space, see [`joints`](crate::joints).
+order, see [`language`](crate::language). `port 1 a` takes a 1-junction, whose flow is common, `port 0 a` a 0-junction,
+whose effort is, and `port a` either. A port without a number in brackets has one component; `[3]` is a frame in a plane,
+or what only turns, `[6]` a frame in space, see [`joints`](crate::joints).
 
 - *Parameters.* One without a default must be given. One without a unit takes any that fits, one without a number in
   brackets any shape that fits. `gravity` is that of the scene. What ends in the name of a port, such as `gravity_a`, is
@@ -92,7 +92,10 @@ fn section(page: &mut String, component: &Component) {
 
 /// As a port is declared.
 fn port(port: &Port) -> String {
-    format!("port {}{}", port.name, brackets(Some(port.dimension)))
+    let kind = port
+        .kind
+        .map_or_else(String::new, |kind| format!("{} ", kind.digit()));
+    format!("port {kind}{}{}", port.name, brackets(Some(port.dimension)))
 }
 
 /// The row of a parameter.
@@ -163,7 +166,7 @@ impl Inside {
                     );
                 }
                 Statement::Junction(it) => {
-                    let (digit, size) = (digit(it.kind), brackets(Some(it.dimension)));
+                    let (digit, size) = (it.kind.digit(), brackets(Some(it.dimension)));
                     self.junctions
                         .push(given(format!("`{digit} {label}{}{size}`", it.name)));
                     it.elements
@@ -232,13 +235,6 @@ fn on(condition: &str) -> String {
         String::new()
     } else {
         format!(" if {condition}")
-    }
-}
-
-fn digit(kind: JunctionKind) -> char {
-    match kind {
-        JunctionKind::Zero => '0',
-        JunctionKind::One => '1',
     }
 }
 

@@ -38,6 +38,8 @@ codes! {
     CONDITION = "MBG0220", "a condition of statements that is not decided at compile time";
     NO_ROTATION = "MBG0221", "a matrix or quaternion that is no rotation";
     JUNCTION_KIND = "MBG0222", "a junction of the kind that a port does not take";
+    UNREAD = "MBG0223", "a name that nothing reads";
+    NO_EFFECT = "MBG0224", "an argument that has no effect";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";
@@ -50,6 +52,7 @@ codes! {
     NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop that does not determine its variables";
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
     SINGULAR_START = "MBG0404", "a model that starts where something it divides by is zero";
+    UNUSED_START = "MBG0405", "a value for the start that is not kept";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

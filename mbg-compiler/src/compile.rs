@@ -9,17 +9,17 @@ use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::divisors;
 use crate::drawing::{self, Drawn};
-use crate::elaborate::{self, Elaborated, State};
+use crate::elaborate::{self, Elaborated};
 use crate::equations::{self, Owner, Scalars};
-use crate::graph::{Causality, Element, ElementId, ElementKind, Junction, Law, Storage};
+use crate::graph::{Causality, ElementId, ElementKind};
 use crate::jacobians;
 use crate::network::Network;
+use crate::notes;
 use crate::program::{self, Program, Request};
 use crate::sparsity::{self, Pattern};
 use crate::start;
 use crate::structure::{self, Failure, Formulation, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
-use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Expression, Pool, Symbol, jacobian, products, share};
 use crate::syntax::ast;
 use crate::units;
@@ -203,10 +203,7 @@ fn finish(
         (name, written(value))
     });
     let mut notes = verdict.notes;
-    notes.extend(unused_initial_values(&model, &answers));
-    notes.extend(unused_initial_flows(&model));
-    notes.extend(modulated_energies(&model, &pool));
-    notes.extend(approximate_energies(&model));
+    notes.extend(notes::of(&model, solved, &answers, &pool, diagnostics));
     Some(Compiled {
         program,
         conditioning: named,
@@ -266,72 +263,6 @@ fn build(
         }
     }
     program::build(pool, requests, &place, &names)
-}
-
-/// Initial values that were given to states which are none.
-fn unused_initial_values(model: &Elaborated, answers: &Answers) -> Vec<String> {
-    let lost = answers
-        .eliminated
-        .iter()
-        .map(|(state, _)| &model.states[*state]);
-    let given = lost.filter(|state| state.initial != Expression::ZERO);
-    let note = |state: &State| {
-        let name = &state.variable.name;
-        format!("the initial value of `{name}` is not used: `{name}` follows from other states")
-    };
-    given.map(note).collect()
-}
-
-/// Flows at the start that were given to coordinates which are no states.
-fn unused_initial_flows(model: &Elaborated) -> Vec<String> {
-    let junctions = model.graph.junctions.iter();
-    let given = junctions.filter(|it| it.initial_flow.iter().any(|flow| *flow != Expression::ZERO));
-    let state = |name: &str| {
-        let flow = format!("{name}.f");
-        let mut names = model.states.iter().map(|state| &state.variable.name);
-        names.any(|name| *name == flow || name.starts_with(&format!("{flow}.")))
-    };
-    let unused = given.filter(|junction| !state(&junction.name));
-    let note = |junction: &Junction| {
-        let name = &junction.name;
-        format!("the initial flow of `{name}` is not used: it follows from other states")
-    };
-    unused.map(note).collect()
-}
-
-/// Storages whose energy changes with more than their own states.
-fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<String> {
-    let is_modulated = |storage: &Storage| {
-        let mut read = symbols(pool, &[storage.energy]).into_iter();
-        read.any(|symbol| match symbol {
-            Symbol::State(state) => !storage.states.contains(&state),
-            Symbol::Parameter(_) => false,
-            _ => true,
-        })
-    };
-    let elements = model.graph.elements.iter();
-    let modulated = elements.filter(|it| matches!(&it.law, Law::Storage(it) if is_modulated(it)));
-    let note = |element: &Element| {
-        let name = &element.name;
-        format!(
-            "the energy of `{name}` changes with more than its own state: the power of that is not in the balance"
-        )
-    };
-    modulated.map(note).collect()
-}
-
-/// Storages whose law has no integral in closed form.
-fn approximate_energies(model: &Elaborated) -> Vec<String> {
-    let elements = model.graph.elements.iter();
-    let approximate = elements.filter(|it| matches!(&it.law, Law::Storage(it) if !it.is_exact));
-    let note = |element: &Element| {
-        let name = &element.name;
-        format!(
-            "the energy of `{name}` is a quadrature of its law at sixteen points, good to rounding only where the law is \
-             that smooth"
-        )
-    };
-    approximate.map(note).collect()
 }
 
 /// An expression with the model's names.

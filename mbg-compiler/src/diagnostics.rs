@@ -3,8 +3,8 @@
 //! House style: the first line says what is wrong, in lower case, without a full stop, names in backticks; notes
 //! carry the causal chain; `help` says what to type. Every diagnostic has a code from [`crate::codes`].
 
-use proc_macro2::{Span, TokenStream};
-use quote::quote_spanned;
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{quote, quote_spanned};
 
 use crate::syntax::words::nearest;
 
@@ -116,6 +116,7 @@ pub struct Diagnostics {
     /// The place of every call, also of one that told what was told already; and the call by which each mistake came.
     places: Vec<Span>,
     calls: Vec<usize>,
+    warnings: Vec<Diagnostic>,
 }
 
 impl Diagnostics {
@@ -156,6 +157,22 @@ impl Diagnostics {
         }
     }
 
+    /// Warns of something, once at each place: each iteration of a loop has the same.
+    pub fn warn(&mut self, warning: Diagnostic) {
+        let is_known = |known: &Diagnostic| {
+            known.message == warning.message && place(known) == place(&warning)
+        };
+        if !self.warnings.iter().any(is_known) {
+            self.warnings.push(warning);
+        }
+    }
+
+    /// What a model that has no mistake should be looked at for.
+    #[must_use]
+    pub fn warnings(&self) -> &[Diagnostic] {
+        if self.any() { &[] } else { &self.warnings }
+    }
+
     /// Reports a mistake that needs no more than its message.
     pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
         self.report(error(code, span, message));
@@ -188,16 +205,28 @@ impl Diagnostics {
         &mut self.list[number]
     }
 
-    /// One `compile_error!` per mistake, each at its own token.
+    /// One `compile_error!` per mistake and one lint per warning, each at its own token.
     #[must_use]
     pub fn to_tokens(&self) -> TokenStream {
-        self.list
-            .iter()
-            .map(|diagnostic| {
-                let text = diagnostic.text();
-                quote_spanned!(diagnostic.span=> ::core::compile_error!(#text);)
-            })
-            .collect()
+        let errors = self.list.iter().map(|diagnostic| {
+            let text = diagnostic.text();
+            quote_spanned!(diagnostic.span=> ::core::compile_error!(#text);)
+        });
+        errors.chain(self.warnings().iter().map(lint)).collect()
+    }
+}
+
+/// A warning as a stable compiler lets a macro give one: the use of something deprecated.
+fn lint(warning: &Diagnostic) -> TokenStream {
+    let text = warning.text();
+    let name = Ident::new("mbg", warning.span);
+    quote! {
+        const _: () = {
+            #[deprecated(note = #text)]
+            #[allow(non_upper_case_globals)]
+            const #name: () = ();
+            #name
+        };
     }
 }
 

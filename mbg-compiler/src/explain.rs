@@ -27,6 +27,10 @@ pub fn explain(tokens: TokenStream, read: &Read<'_>, place: &dyn Fn(Span) -> Str
         let report = format!("{}: {}", place(diagnostic.span), diagnostic.text());
         text += &section("error", &report);
     }
+    for warning in diagnostics.warnings() {
+        let report = format!("{}: {}", place(warning.span), warning.text());
+        text += &section("warning", &report);
+    }
     text
 }
 
@@ -34,6 +38,7 @@ fn all_stages(tokens: TokenStream, diagnostics: &mut Diagnostics) -> String {
     let source = syntax::parse(tokens, diagnostics);
     let mut text = section("syntax", &syntax::dump(&source));
     let components = elaborate::component_table(&source);
+    elaborate::warn(&source, diagnostics);
     let sound = !diagnostics.any();
     for item in &source.items {
         let Item::Model(model) = item else { continue };

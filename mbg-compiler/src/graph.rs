@@ -234,6 +234,14 @@ pub struct Storage {
 }
 
 impl Junction {
+    /// The name of a component of its flow: `wheel.f`, `wheel.f.x`.
+    pub fn flow(&self, component: usize) -> String {
+        match self.dimension {
+            1 => format!("{}.f", self.name),
+            dimension => format!("{}.f.{}", self.name, component_name(component, dimension)),
+        }
+    }
+
     /// Its declaration, were it of this kind: `1 wheel[3]`.
     pub fn declaration(&self, kind: JunctionKind) -> String {
         let own = self.name.rsplit('.').next().unwrap_or(&self.name);

@@ -36,6 +36,7 @@ pub mod graph;
 pub mod inclusion;
 pub mod jacobians;
 pub mod network;
+mod notes;
 pub mod program;
 pub mod sparsity;
 pub mod start;
@@ -94,6 +95,7 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
     let source = syntax::parse(tokens, diagnostics);
     let sound = !diagnostics.any();
     let components = elaborate::component_table(&source);
+    elaborate::warn(&source, diagnostics);
     let mut output = TokenStream::new();
     for item in &source.items {
         let Item::Model(model) = item else { continue };

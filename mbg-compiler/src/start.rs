@@ -35,14 +35,15 @@ pub fn check(
     }
 }
 
-/// Parameters and states at the start.
-struct Start<'a> {
+/// Default parameters, and states at the start.
+pub(crate) struct Start<'a> {
     model: &'a Elaborated,
     states: Vec<f64>,
 }
 
 impl<'a> Start<'a> {
-    fn of(model: &'a Elaborated, pool: &Pool) -> Self {
+    /// The initial values, worked out.
+    pub(crate) fn of(model: &'a Elaborated, pool: &Pool) -> Self {
         let parameters = Self {
             model,
             states: Vec::new(),
@@ -55,6 +56,12 @@ impl<'a> Start<'a> {
             model,
             states: states.collect(),
         }
+    }
+
+    /// The value of an expression at the start, without inputs; NaN if it depends on what only an iteration finds.
+    pub(crate) fn value(&self, pool: &Pool, expression: Expression) -> f64 {
+        let symbol = |symbol| self.symbol(symbol, &BTreeMap::new());
+        Evaluation::new(&symbol).value(pool, expression)
     }
 
     /// What a symbol is at the start, but with some states changed.

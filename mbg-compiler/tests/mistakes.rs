@@ -14,7 +14,7 @@ fn diagnose(text: &str) -> Diagnostics {
 
 fn found(text: &str) -> Vec<&'static str> {
     let diagnostics = diagnose(text);
-    let list = diagnostics.list().iter();
+    let list = diagnostics.list().iter().chain(diagnostics.warnings());
     list.map(|diagnostic| diagnostic.code.text).collect()
 }
 
@@ -115,6 +115,13 @@ const FIXTURES: &[(Code, &str)] = &[
              component Brake(port 1 at) { at -> R r { resistance: 1.0 };"
         ),
     ),
+    (codes::UNREAD, beside_a_mass!("input u;")),
+    (
+        codes::NO_EFFECT,
+        beside_a_mass!(
+            "1 b { #[derivative] I n { inertia: 1.0 } } gear: Rack { radius: 0.1, blocked_stiffness: 1e5 } (a, b);"
+        ),
+    ),
     (
         codes::STORAGE_DERIVATIVE,
         beside_a_mass!("a -> I n { inertia: 2.0 };"),
@@ -172,6 +179,10 @@ const FIXTURES: &[(Code, &str)] = &[
             "1 b[3] { I n { inertia: 1.0 } } 1 c[3] { I o { inertia: 1.0 } }
              joint: Gimbal { first: 2, second: 0, third: 2 } (b, c);"
         ),
+    ),
+    (
+        codes::UNUSED_START,
+        beside_a_mass!("a -> #[derivative] I n { inertia: 2.0, initial: 1.0 };"),
     ),
     (
         codes::UNIT_MISMATCH,

@@ -140,7 +140,7 @@ fn a_storage_that_follows_from_another_is_told() {
     assert_eq!(meta.eliminated[0].relation, "load ratio 1/motor rotor.p");
     assert_eq!(
         meta.notes[0],
-        "the initial value of `drum.p` is not used: `drum.p` follows from other states"
+        "`drum.p` is not 3.0 at the start but 0.0: it follows from other states"
     );
     // Seen from the rotor the drum weighs load ratio².
     let (x, u) = (SVector::from([5.0]), SVector::from([7.0]));

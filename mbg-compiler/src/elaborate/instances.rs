@@ -6,6 +6,7 @@ use super::Builder;
 use super::conditions::no_word;
 use super::frames::LeftOut;
 use super::scope::{Entity, Scope};
+use super::unused::without_effect;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
@@ -24,6 +25,11 @@ impl<'a> Builder<'a> {
             || instance.derivative.is_some()
             || component.derivative.is_some();
         let around = &self.scopes[scope];
+        let constants = around.constants.of_instance(instance, component);
+        if around.library.is_none() {
+            let idle = without_effect(instance, component, &around.constants, &constants);
+            idle.into_iter().for_each(|it| self.diagnostics.warn(it));
+        }
         let place = (component.name.to_string(), instance.name.span());
         let inner = self.scopes.add(Scope {
             prefix: format!("{}.", self.path(scope, &instance.name)),
@@ -32,7 +38,7 @@ impl<'a> Builder<'a> {
                 .library
                 .clone()
                 .or(component.library.then_some(place)),
-            constants: around.constants.of_instance(instance, component),
+            constants,
             ..Scope::default()
         });
         self.name(scope, &instance.name, Entity::Instance(inner));

@@ -31,6 +31,7 @@ mod references;
 mod scope;
 mod size;
 mod spread;
+mod unused;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -44,6 +45,7 @@ pub use model::{
     Signals, State, StateRate, Variable,
 };
 pub use size::LIMIT;
+pub use unused::warn;
 
 use self::claims::Claims;
 use self::constants::Constants;

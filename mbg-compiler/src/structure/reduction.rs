@@ -15,7 +15,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Condition, Elaborated, State, StateRate, Variable};
 use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, Turn, linearise};
-use crate::graph::{ElementId, ElementKind, Law, component_name};
+use crate::graph::{ElementId, ElementKind, Law};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol, linear_part,
@@ -218,16 +218,11 @@ impl Reducer<'_> {
         });
         for (id, component, flow) in &selection.coordinates {
             let junction = &model.graph.junctions[id.0];
-            let letter = if junction.dimension == 1 {
-                String::new()
-            } else {
-                format!(".{}", component_name(*component, junction.dimension))
-            };
             let state = Symbol::State(model.states.len());
             let span = model.graph.origins.span(junction.origin);
             model.states.push(State {
                 variable: Variable {
-                    name: format!("{}.f{letter}", junction.name),
+                    name: junction.flow(*component),
                     unit: String::new(),
                 },
                 initial: junction

@@ -20,6 +20,7 @@ mod expressions;
 mod items;
 pub mod library;
 mod loops;
+mod reads;
 mod recovery;
 mod statements;
 mod units;

@@ -1,0 +1,112 @@
+//! What a user should know of a model that compiles: values at the start that are not used, which are warned of too, and
+//! energies that are not what they seem.
+
+use proc_macro2::Span;
+
+use crate::answers::Answers;
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error};
+use crate::elaborate::{Elaborated, State};
+use crate::graph::{Element, Law, Storage};
+use crate::start::Start;
+use crate::structure::Solved;
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Expression, Pool, Symbol};
+
+/// A value at the start is another one if it differs by more than this part of it.
+const MET: f64 = 1e-9;
+
+/// All of them, one a line.
+pub(crate) fn of(
+    model: &Elaborated,
+    solved: &Solved,
+    answers: &Answers,
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (span, note) in unused_starts(model, solved, answers, pool) {
+        diagnostics.warn(error(codes::UNUSED_START, span, note.clone()));
+        notes.push(note);
+    }
+    notes.extend(modulated_energies(model, pool));
+    notes.extend(approximate_energies(model));
+    notes
+}
+
+/// Values given for the start to what is no state, and which it does not have there, with default parameters and without
+/// inputs.
+fn unused_starts(
+    model: &Elaborated,
+    solved: &Solved,
+    answers: &Answers,
+    pool: &Pool,
+) -> Vec<(Span, String)> {
+    let start = Start::of(model, pool);
+    let momenta = answers.eliminated.iter().map(|(state, value)| {
+        let State {
+            variable,
+            initial,
+            span,
+            ..
+        } = &model.states[*state];
+        (*span, variable.name.clone(), *initial, *value)
+    });
+    let flows = model.graph.junctions.iter().zip(&solved.scalars.common);
+    let flows = flows.flat_map(|(junction, flows)| {
+        let span = model.graph.origins.span(junction.origin);
+        let given = junction.initial_flow.iter().zip(flows).enumerate();
+        given.map(move |(component, (given, flow))| {
+            let name = junction.flow(component);
+            (span, name, *given, solved.solution.values[*flow])
+        })
+    });
+    let note = |(span, name, given, value): (Span, String, Expression, Expression)| {
+        let [given, value] = [given, value].map(|it| start.value(pool, it));
+        let is_met = given == 0.0 || (given - value).abs() <= MET * given.abs();
+        let place = if value.is_finite() {
+            format!(" but {value:?}")
+        } else {
+            String::new()
+        };
+        let note =
+            format!("`{name}` is not {given:?} at the start{place}: it follows from other states");
+        (!is_met).then_some((span, note))
+    };
+    momenta.chain(flows).filter_map(note).collect()
+}
+
+/// Storages whose energy changes with more than their own states.
+fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<String> {
+    let is_modulated = |storage: &Storage| {
+        let mut read = symbols(pool, &[storage.energy]).into_iter();
+        read.any(|symbol| match symbol {
+            Symbol::State(state) => !storage.states.contains(&state),
+            Symbol::Parameter(_) => false,
+            _ => true,
+        })
+    };
+    let elements = model.graph.elements.iter();
+    let modulated = elements.filter(|it| matches!(&it.law, Law::Storage(it) if is_modulated(it)));
+    let note = |element: &Element| {
+        let name = &element.name;
+        format!(
+            "the energy of `{name}` changes with more than its own state: the power of that is not in the balance"
+        )
+    };
+    modulated.map(note).collect()
+}
+
+/// Storages whose law has no integral in closed form.
+fn approximate_energies(model: &Elaborated) -> Vec<String> {
+    let elements = model.graph.elements.iter();
+    let approximate = elements.filter(|it| matches!(&it.law, Law::Storage(it) if !it.is_exact));
+    let note = |element: &Element| {
+        let name = &element.name;
+        format!(
+            "the energy of `{name}` is a quadrature of its law at sixteen points, good to rounding only where the law is \
+             that smooth"
+        )
+    };
+    approximate.map(note).collect()
+}

@@ -1,0 +1,112 @@
+//! Warnings of what is written and changes nothing.
+#![allow(clippy::unwrap_used)]
+
+use mbg_compiler::diagnostics::Diagnostics;
+use mbg_compiler::items;
+
+/// Everything that is warned of in a text without mistakes, with the places.
+fn warned(text: &str) -> String {
+    let mut diagnostics = Diagnostics::new();
+    items(text.parse().unwrap(), &mut diagnostics);
+    assert!(!diagnostics.any(), "{:?}", diagnostics.list());
+    let list = diagnostics.warnings().iter().map(|it| {
+        let start = it.span.start();
+        format!("{}:{} {}", start.line, start.column + 1, it.text())
+    });
+    list.collect::<Vec<_>>().join("\n")
+}
+
+/// Of a model with a wheel, after a component.
+fn around_a_wheel(component: &str, body: &str) -> String {
+    warned(&format!(
+        "{component}\nmodel M {{ 1 wheel {{ I rotor {{ inertia: 1.0 }} }}\n{body} }}"
+    ))
+}
+
+#[test]
+fn names_that_nothing_reads_are_told() {
+    let body = "input gust: N; param k: N/m = 1.0; let idle = 3.0; integral turns = wheel.f;";
+    insta::assert_snapshot!(around_a_wheel("", body), @"
+    3:7 `M` does not read its input `gust` [MBG0223]
+      help: remove it, or call it `_gust`
+    3:22 `M` does not read its parameter `k` [MBG0223]
+      help: remove it, or call it `_k`
+    3:40 `M` does not read its value `idle` [MBG0223]
+      help: remove it, or call it `_idle`
+    3:61 `M` does not read its integral `turns` [MBG0223]
+      so it is no state; an `output` that reads it makes it one
+      help: remove it, or call it `_turns`
+    ");
+    let marked = ["gust", "k:", "idle", "turns"]
+        .iter()
+        .fold(body.to_owned(), |body, name| {
+            body.replace(name, &format!("_{name}"))
+        });
+    assert_eq!(around_a_wheel("", &marked), "");
+    let read =
+        "input gust; param k = 1.0; let factor = 3.0; let size = 2; integral turns = wheel.f;
+                1 other[3] { Se push { effort: factor * gust } } other[0] -> I n { inertia: 1.0 };
+                for i in 0..size { Sf spin { flow: k * turns } -> other[i + 1]; }";
+    assert_eq!(around_a_wheel("", read), "");
+}
+
+/// Values of a component are there for those who call it; its parameters are not.
+#[test]
+fn parameters_that_a_component_does_not_read_are_told() {
+    let brake = |body: &str| {
+        let parameters = "param grip = 2.0; param speed = 1.0; param kind: dry | wet = dry;";
+        let component = format!("component Brake(port at) {{ {parameters} {body} }}");
+        around_a_wheel(&component, "brake: Brake (wheel);")
+    };
+    insta::assert_snapshot!(brake("at -> R pad { resistance: grip }; let force = pad.e;"), @"
+    1:52 `Brake` does not read its parameter `speed` [MBG0223]
+      help: remove it, or call it `_speed`
+    1:71 `Brake` does not read its parameter `kind` [MBG0223]
+      help: remove it, or call it `_kind`
+    ");
+    let both = "if kind == dry { at -> R pad { resistance: grip }; } else { at -> R oil { resistance: speed }; }";
+    assert_eq!(brake(both), "");
+}
+
+/// In a loop they are told once.
+#[test]
+fn arguments_without_effect_are_told_with_what_would_give_them_one() {
+    let hinge = |arguments: &str| {
+        let arms = format!(
+            "1 arm[6]; weight: Body {{ mass: 1.0, inertia: 1.0 }} (arm);
+             hinge: Revolute {{ axis: 0, {arguments} }} (ground, arm);"
+        );
+        warned(&format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[6]; Sf still[6] {{ flow: 0.0 }} -> ground;
+             for k in 0..2 {{ {arms} }} }}"
+        ))
+    };
+    insta::assert_snapshot!(hinge("rest: 0.5, friction_speed: 0.1, blocked_damping: 3.0"), @"
+    3:41 `rest` has no effect on `hinge` [MBG0224]
+      help: it counts where `given(stiffness)`
+    3:52 `friction_speed` has no effect on `hinge` [MBG0224]
+      help: it counts where `given(friction)`
+    3:73 `blocked_damping` has no effect on `hinge` [MBG0224]
+      help: it counts where `blocked == compliant`
+    ");
+    let friction = "friction: 0.2, friction_speed: 0.1";
+    assert_eq!(hinge(&format!("stiffness: 2.0, rest: 0.5, {friction}")), "");
+    assert_eq!(hinge("blocked: compliant, blocked_damping: 3.0"), "");
+}
+
+/// What a component hands on may be given in another use of it.
+#[test]
+fn what_is_handed_on_is_not_told() {
+    let finger = "component Finger(port 1 at, port 1 tip) {
+        param grip = 1.0; param blocked: ideal | compliant = ideal;
+        rack: Rack { radius: 0.1, blocked: blocked, blocked_damping: grip } (at, tip); }";
+    let body = "1 slide { #[derivative] I jaw { inertia: 1.0 } } finger: Finger { grip: 2.0 } (wheel, slide);";
+    assert_eq!(around_a_wheel(finger, body), "");
+}
+
+#[test]
+fn values_at_the_start_that_are_not_used_are_told() {
+    let gear = "1 slow { #[derivative] I drum { inertia: 2.0, initial: 1.0 } } wheel -> TF gear { flow: 4.0 } -> slow;";
+    insta::assert_snapshot!(around_a_wheel("", gear), @"3:26 `drum.p` is not 1.0 at the start but 0.0: it follows from other states [MBG0405]");
+    assert_eq!(around_a_wheel("", &gear.replace("1.0 }", "0.0 }")), "");
+}

@@ -80,6 +80,11 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
             (*cursor.failure(codes::SYNTAX, limit)).help("give its parts in several statements"),
         ));
     }
+    let whole = cursor.length_until(|it, at| it.punct(at, ',') || it.punct(at, ';'));
+    if let Some(report) = question(cursor.ahead(length), cursor.ahead(whole)) {
+        cursor.advance(whole);
+        return Err(report);
+    }
     let tokens: TokenStream = cursor.ahead(length).iter().cloned().collect();
     let mut unread = 0;
     let parser = |input: ParseStream<'_>| {
@@ -91,6 +96,43 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
     let parsed = parser.parse2(tokens);
     cursor.advance(length - unread.min(length));
     parsed.map_err(|failure| translated(cursor, &failure, unread == 0))
+}
+
+/// What to write for `a ? b : c` among these tokens or in a group of theirs. What stands behind the first `:` may look
+/// like the next field, so that the `whole` is looked at for it.
+fn question(tokens: &[TokenTree], whole: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(it) if it.as_char() == mark);
+    let Some(asked) = tokens.iter().position(|token| is(token, '?')) else {
+        return tokens.iter().find_map(|token| match token {
+            TokenTree::Group(group) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                question(&inside, &inside)
+            }
+            _ => None,
+        });
+    };
+    let (condition, rest) = (&whole[..asked], &whole[asked + 1..]);
+    // A path has two colons.
+    let alone = |at: &usize| {
+        let neighbours = [at.wrapping_sub(1), at + 1];
+        let neighbours = neighbours.map(|at| rest.get(at));
+        is(&rest[*at], ':') && !neighbours.into_iter().flatten().any(|token| is(token, ':'))
+    };
+    let colon = (0..rest.len()).find(alone)?;
+    let (first, second) = (&rest[..colon], &rest[colon + 1..]);
+    let text = |part: &[TokenTree]| {
+        let part: TokenStream = part.iter().cloned().collect();
+        syn::parse2(part).map_or("…".to_owned(), |part: Expr| dump::expression(&part))
+    };
+    let choice = format!(
+        "write `if {} {{ {} }} else {{ {} }}`",
+        text(condition),
+        text(first),
+        text(second)
+    );
+    let message = "`?` is no operator: a choice is written with `if`";
+    let report = error(codes::SYNTAX, tokens[asked].span(), message);
+    Some(Box::new(report.help(choice)))
 }
 
 /// Whether an expression cannot go past this offset.

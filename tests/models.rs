@@ -24,7 +24,10 @@ mod models {
     mod arm;
     mod audit;
     mod batches;
-    #[allow(deprecated, reason = "warnings of the macro, one of which is tested there")]
+    #[allow(
+        deprecated,
+        reason = "warnings of the macro, one of which is tested there"
+    )]
     mod behaviour;
     mod closed;
     mod columns;

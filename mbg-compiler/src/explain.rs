@@ -19,8 +19,15 @@ use crate::{drawing, program, syntax};
 
 /// Prints what each stage makes of the tokens between the braces of `mbg! { … }`, and at the end what is wrong, with its
 /// place as the caller spells it. What they include is read by `read`.
-#[must_use]
-pub fn explain(tokens: TokenStream, read: &Read<'_>, place: &dyn Fn(Span) -> String) -> String {
+///
+/// # Errors
+///
+/// The same text, where something is wrong.
+pub fn explain(
+    tokens: TokenStream,
+    read: &Read<'_>,
+    place: &dyn Fn(Span) -> String,
+) -> Result<String, String> {
     let mut diagnostics = Diagnostics::new();
     let (mut text, _) = crate::located(tokens, read, &mut diagnostics, &all_stages);
     for diagnostic in diagnostics.list() {
@@ -31,7 +38,11 @@ pub fn explain(tokens: TokenStream, read: &Read<'_>, place: &dyn Fn(Span) -> Str
         let report = format!("{}: {}", place(warning.span), warning.text());
         text += &section("warning", &report);
     }
-    text
+    if diagnostics.any() {
+        Err(text)
+    } else {
+        Ok(text)
+    }
 }
 
 fn all_stages(tokens: TokenStream, diagnostics: &mut Diagnostics) -> String {

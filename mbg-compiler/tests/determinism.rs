@@ -23,11 +23,9 @@ fn expansions() -> String {
     let texts = TEXTS.into_iter().chain([rejected.as_str()]);
     let both = texts.map(|text| {
         let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
-        format!(
-            "{}\n{}\n",
-            expand(tokens.clone(), &no_file),
-            explain(tokens, &no_file, &|_| String::new())
-        )
+        let expanded = expand(tokens.clone(), &no_file);
+        let explained = explain(tokens, &no_file, &|_| String::new());
+        format!("{expanded}\n{}\n", explained.unwrap_or_else(|text| text))
     });
     both.collect()
 }

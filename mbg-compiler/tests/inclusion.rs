@@ -120,7 +120,7 @@ fn the_stages_are_told_with_the_place_in_the_file() {
     let brake = BRAKE.replace("strength }", "strenght }");
     let read = |_: &str| Ok(brake.clone());
     let place = |span: Span| format!("cart.mbg:{}", span.start().line);
-    let text = explain(CART.parse().unwrap(), &read, &place);
+    let text = explain(CART.parse().unwrap(), &read, &place).unwrap_err();
     let (_, mistake) = text.split_once("==== error\n").unwrap();
     let lines: Vec<&str> = mistake.lines().take(2).collect();
     assert_eq!(

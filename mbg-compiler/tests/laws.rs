@@ -281,7 +281,7 @@ fn energies_that_are_modulated_are_noted() {
     insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
     insta::assert_snapshot!(notes("exp(-powi(q, 3))"), @"the energy of `c` is a quadrature of its law at sixteen points, good to rounding only where the law is that smooth");
     let text = "model M { 1 v { C c { effort: exp(-powi(q, 3)) } I m { inertia: 1.0 } } }";
-    let explained = explain(text.parse().unwrap(), &no_file, &|_| String::new());
+    let explained = explain(text.parse().unwrap(), &no_file, &|_| String::new()).unwrap();
     assert!(
         explained.contains("==== notes\nthe energy of `c` is a quadrature"),
         "{explained}"

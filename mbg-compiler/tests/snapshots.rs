@@ -15,7 +15,7 @@ fn formatted(text: &str) -> String {
 }
 
 fn stages(text: &str) -> String {
-    explain(text.parse().expect("tokens"), &no_file, &|_| String::new())
+    explain(text.parse().expect("tokens"), &no_file, &|_| String::new()).expect("a sound model")
 }
 
 #[test]

@@ -190,6 +190,11 @@ impl Diagnostics {
         &self.list
     }
 
+    /// How many calls there were, also those that told what was told already.
+    pub(crate) fn calls(&self) -> usize {
+        self.places.len()
+    }
+
     /// The call by which a mistake came, by the mistake's number.
     pub(crate) fn call(&self, number: usize) -> usize {
         self.calls[number]

@@ -376,8 +376,6 @@ model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }}
     4:8 `C` has no parameter `wya` [MBG0207]
       help: did you mean `way`?
       help: its parameters are `n`, `way`
-    4:1 `C` needs a value for `way` [MBG0214]
-      help: write `{ way: left | right }`
     ");
     insta::assert_snapshot!(mistake("c: C { way: left } (a);", "if way == rihgt { }"), @"
     2:12 expected `left` or `right`, found `rihgt` [MBG0219]

@@ -47,8 +47,6 @@ fn mistakes_in_laws_are_told() {
     2:13 `I` does not know `inerta` [MBG0207]
       help: did you mean `inertia`?
       help: its words are `inertia`, `flow`, `energy`, `initial`, `initial_flow`, `gyroscopic`
-    2:9 `b` has no law [MBG0205]
-      help: write `I b { inertia: … }`
     2:41 `Sin` is not a function of the language [MBG0203]
       help: did you mean `sin`?
       help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation

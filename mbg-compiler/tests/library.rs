@@ -534,8 +534,6 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     2:22 `Body` has no parameter `mas` [MBG0207]
       help: did you mean `mass`?
       help: its parameters are `mass`, `inertia`, `centre`, `gravity_at`
-    2:9 `Body` needs a value for `mass` [MBG0214]
-      help: write `{ mass: … }`
     ");
     let unknown = "model M { 1 a[6];
         body: Bodi { mass: 1.0 } (a); output p = body.spin.p.x; }";

@@ -442,15 +442,23 @@ impl<N: Names> Evaluator<'_, N> {
                         format!("expected a number as divisor, found {}", right.shape()),
                     );
                 };
-                match left {
+                let quotient = match left {
                     Value::Scalar(dividend) => {
                         self.quotient(dividend, divisor, span).map(Value::Scalar)
                     }
                     matrix @ Value::Matrix(_) => {
-                        let reciprocal = self.quotient(Expression::ONE, divisor, span)?;
-                        Ok(self.scale(reciprocal, matrix))
+                        let reciprocal = self.quotient(Expression::ONE, divisor, span);
+                        reciprocal.map(|reciprocal| self.scale(reciprocal, matrix))
                     }
-                }
+                };
+                quotient.map_err(|report| {
+                    let zero = match &*binary.right {
+                        Expr::Lit(_) => return report,
+                        Expr::Paren(inner) => dump::expression(&inner.expr),
+                        other => dump::expression(other),
+                    };
+                    Box::new(report.note(format!("`{zero}` is zero")))
+                })
             }
         }
     }

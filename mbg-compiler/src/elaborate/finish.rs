@@ -6,18 +6,20 @@ use proc_macro2::Ident;
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
+use super::definitions::Missing;
 use super::expressions::{Evaluator, Result, Step, Value};
-use super::laws::{Reader, law_words, other_words};
+use super::laws::{Reader, law_words, words_of};
 use super::mentions::mentioned;
 use super::model::{Elaborated, Output, State, StateRate};
 use super::scope::{Entity, Lookup, Own};
 use super::{Builder, Pending, component_names};
 use crate::codes;
-use crate::diagnostics::{error, listing};
+use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, JunctionId, Law};
 use crate::symbolic::{Expression, Pool, Rate, Symbol};
 use crate::syntax::ast::{self, Orientation, Statement};
 use crate::syntax::dump;
+use crate::syntax::words::is_misspelt;
 
 impl<'a> Builder<'a> {
     /// Reads the defaults of a model's parameters, once it is known what the model declares.
@@ -267,7 +269,7 @@ impl<'a> Builder<'a> {
 
     /// Reports the words that an element does not know.
     pub(super) fn check_words(&mut self, scope: usize, element: &ast::Element) {
-        let words = [law_words(element.kind), other_words(element.kind)].concat();
+        let words = words_of(element.kind);
         for field in &element.fields {
             if words.iter().any(|word| field.name == word) {
                 continue;
@@ -282,7 +284,14 @@ impl<'a> Builder<'a> {
     }
 
     fn law(&mut self, scope: usize, element: &ast::Element, id: ElementId) -> Result<()> {
-        let field = law_field(element)?;
+        let field = law_field(element).inspect_err(|_| {
+            let words = words_of(element.kind);
+            let found = || element.fields.iter().map(|field| &field.name);
+            let mut laws = law_words(element.kind).iter();
+            if laws.any(|law| is_misspelt(law, found(), &words)) {
+                self.missing = Some(Missing::Broken);
+            }
+        })?;
         if self.claims.is_some() {
             return self.claim_words(scope, element, id);
         }
@@ -373,8 +382,34 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// What to write for an output of another dimension than its value.
+    fn of_its_size(
+        &mut self,
+        scope: usize,
+        output: &ast::Output,
+        report: Box<Diagnostic>,
+    ) -> Box<Diagnostic> {
+        let value = self.evaluate(scope, &output.value).ok();
+        let entries = value.and_then(|value| value.entries(self.pool));
+        let size = entries.map_or(0, |entries| entries.len());
+        if report.code != codes::WRONG_DIMENSION || size < 2 {
+            return report;
+        }
+        let (name, text) = (&output.name, dump::expression(&output.value));
+        let unit = output.unit.as_ref();
+        let unit = unit.map_or_else(String::new, |unit| format!(": {}", unit.text));
+        let report = report.help(format!("write `output {name}[{size}]{unit} = {text};`"));
+        Box::new(match (&output.value, output.dimension) {
+            (syn::Expr::Path(_) | syn::Expr::Field(_), 1) => report.help(format!(
+                "or `output {name}{unit} = {text}[0];` for its first component"
+            )),
+            _ => report,
+        })
+    }
+
     fn output(&mut self, scope: usize, output: &ast::Output) -> Result<()> {
-        let values = self.vector(scope, &output.value, output.dimension, &output.name)?;
+        let values = self.vector(scope, &output.value, output.dimension, &output.name);
+        let values = values.map_err(|report| self.of_its_size(scope, output, report))?;
         self.claim_value(
             scope,
             &output.name,

@@ -18,7 +18,7 @@ use super::spread::{Place, Spread, Teller};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{ElementKind, End, JunctionId, JunctionKind};
-use crate::syntax::ast;
+use crate::syntax::{ast, dump};
 
 /// Components of a frame in space: those of its angular velocity, then those of its velocity.
 const IN_SPACE: usize = 6;
@@ -96,6 +96,7 @@ impl<'a> Builder<'a> {
         for frame in self.frames.values_mut().flatten() {
             frame.place.0 = first[frame.place.0.0];
         }
+        self.check_ends();
         let mut asked: BTreeMap<String, Vec<(LeftOut<'a>, Place)>> = BTreeMap::new();
         for left in &self.left_out {
             let name = left.parameter.name.to_string();
@@ -117,6 +118,44 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Reports components that lead from a frame to itself: of two ports there, both ask the same, or one tells what the
+    /// other asks.
+    fn check_ends(&mut self) {
+        let mut found = Vec::new();
+        for (scope, frames) in &self.frames {
+            let pairs =
+                (1..frames.len()).flat_map(|last| (0..last).map(move |first| (first, last)));
+            let mut pairs = pairs.filter(|(first, last)| {
+                let (one, other) = (&frames[*first], &frames[*last]);
+                one.place == other.place && self.concern_one_quantity(*scope, one, other)
+            });
+            if let Some((_, last)) = pairs.next() {
+                found.push((*scope, last));
+            }
+        }
+        for (inner, port) in found {
+            let Some((scope, instance)) = self.called.get(&inner).copied() else {
+                continue;
+            };
+            let reference = &instance.connections[port];
+            let (name, frame) = (&instance.name, dump::reference(reference));
+            let message = format!("`{name}` leads from `{frame}` to itself");
+            let report = error(codes::TOO_MANY_BONDS, reference.span, message);
+            self.tell(scope, report.help("give it two different frames"));
+            self.is_misled = true;
+        }
+    }
+
+    fn concern_one_quantity(&self, scope: usize, one: &Frame, other: &Frame) -> bool {
+        let names = &self.scopes[scope].names;
+        let asked = one.component.parameters().filter(|it| it.default.is_some());
+        let mut asked = asked.flat_map(|it| {
+            let name = it.name.to_string();
+            [(one, other), (other, one)].map(|(here, there)| Some(there.word(&here.asked(&name)?)))
+        });
+        asked.any(|word| word.is_some_and(|word| names.contains_key(&word)))
+    }
+
     /// Lets a parameter stand for what is told of its place, or notes that it must be given.
     fn hand(&mut self, left: LeftOut<'a>, place: Place, quantity: &str, spread: &Spread) {
         let told = spread.told(place);
@@ -128,7 +167,7 @@ impl<'a> Builder<'a> {
             _ => !spread.tellers.is_empty() || self.scopes[left.scope].library.is_some(),
         };
         // A frame that nothing holds and nobody leads to may be anywhere.
-        if matters && told.is_none() && !spread.is_held(place) {
+        if matters && !self.is_misled && told.is_none() && !spread.is_held(place) {
             let unknown = Unknown {
                 parameter: left.parameter,
                 scope: left.scope,

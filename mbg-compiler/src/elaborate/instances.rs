@@ -10,6 +10,7 @@ use super::unused::without_effect;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
+use crate::syntax::words::is_misspelt;
 use crate::syntax::{ast, dump, library};
 
 impl<'a> Builder<'a> {
@@ -18,6 +19,7 @@ impl<'a> Builder<'a> {
         let components = self.components;
         let Some(component) = components.get(&instance.component.to_string()) else {
             self.unknown_component(scope, &instance.component);
+            self.is_misled = true;
             self.name(scope, &instance.name, Entity::Opaque);
             return;
         };
@@ -34,6 +36,7 @@ impl<'a> Builder<'a> {
         let inner = self.scopes.add(Scope {
             prefix: format!("{}.", self.path(scope, &instance.name)),
             derivative,
+            is_broken: around.is_broken,
             library: around
                 .library
                 .clone()
@@ -42,8 +45,13 @@ impl<'a> Builder<'a> {
             ..Scope::default()
         });
         self.name(scope, &instance.name, Entity::Instance(inner));
+        self.called.insert(inner, (scope, instance));
+        let before = self.diagnostics.calls();
         self.ports_of(scope, inner, instance, component);
         self.arguments_of(scope, inner, instance, component);
+        let is_broken = self.diagnostics.calls() > before;
+        self.scopes[inner].is_broken |= is_broken;
+        self.is_misled |= is_broken;
         self.declare(inner, &component.statements);
     }
 
@@ -118,23 +126,19 @@ impl<'a> Builder<'a> {
         instance: &'a ast::Instance,
         component: &'a ast::Component,
     ) {
+        let known = parameter_names(component);
+        let names: Vec<&str> = known.iter().map(String::as_str).collect();
         for argument in &instance.arguments {
-            let mut known: Vec<String> = component
-                .parameters()
-                .map(|known| known.name.to_string())
-                .collect();
-            known.extend(component.choices().map(|known| known.name.to_string()));
-            if !known.iter().any(|known| argument.name == known) {
+            if !names.iter().any(|known| argument.name == known) {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
-                let names: Vec<&str> = known.iter().map(String::as_str).collect();
                 let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message)
                     .did_you_mean(&argument.name.to_string(), &names);
-                let help = format!("its parameters are {}", listing(known));
+                let help = format!("its parameters are {}", listing(known.clone()));
                 self.tell(scope, report.help(help));
             }
         }
         for choice in component.choices() {
-            self.check_word(scope, instance, choice);
+            self.check_word(scope, (instance, component), choice);
             self.name(inner, &choice.name, Entity::Choice);
         }
         for parameter in component.parameters() {
@@ -153,7 +157,7 @@ impl<'a> Builder<'a> {
                     self.definition(inner, name, shape, (inner, default))
                 }
                 (None, None) => {
-                    self.missing_argument(scope, instance, name, "…");
+                    self.missing_argument(scope, (instance, component), name, "…");
                     Entity::Opaque
                 }
             };
@@ -164,30 +168,42 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Reports a parameter without a value, unless a word that is not known was meant to be its name.
     fn missing_argument(
         &mut self,
         scope: usize,
-        instance: &ast::Instance,
+        (instance, component): (&ast::Instance, &ast::Component),
         name: &Ident,
         value: &str,
     ) {
+        let known = parameter_names(component);
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        let arguments = instance.arguments.iter().map(|argument| &argument.name);
+        if is_misspelt(&name.to_string(), arguments, &known) {
+            return;
+        }
         let message = format!("`{}` needs a value for `{name}`", instance.component);
         let report = error(codes::MISSING_DEFAULT, instance.name.span(), message);
         self.tell(scope, report.help(format!("write `{{ {name}: {value} }}`")));
     }
 
     /// Reports a choice that is not made, or made of a word that is not listed.
-    fn check_word(&mut self, scope: usize, instance: &ast::Instance, choice: &ast::Choice) {
+    fn check_word(
+        &mut self,
+        scope: usize,
+        (instance, component): (&ast::Instance, &ast::Component),
+        choice: &ast::Choice,
+    ) {
         let name = &choice.name;
         let words: Vec<String> = choice.words.iter().map(ToString::to_string).collect();
         let Some(argument) = instance.arguments.iter().find(|it| it.name == *name) else {
             if choice.default.is_none() {
-                self.missing_argument(scope, instance, name, &words.join(" | "));
+                self.missing_argument(scope, (instance, component), name, &words.join(" | "));
             }
             return;
         };
         let Some(value) = &argument.value else {
-            return self.missing_argument(scope, instance, name, &words.join(" | "));
+            return self.missing_argument(scope, (instance, component), name, &words.join(" | "));
         };
         let word = self.scopes[scope].constants.word(value);
         if word.is_none_or(|word| !words.contains(&word)) {
@@ -208,6 +224,13 @@ impl<'a> Builder<'a> {
         }
         self.tell(scope, report);
     }
+}
+
+/// What a component can be given.
+fn parameter_names(component: &ast::Component) -> Vec<String> {
+    let parameters = component.parameters().map(|known| &known.name);
+    let choices = component.choices().map(|known| &known.name);
+    parameters.chain(choices).map(ToString::to_string).collect()
 }
 
 /// More or fewer junctions than ports.

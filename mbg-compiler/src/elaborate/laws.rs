@@ -42,8 +42,13 @@ pub(super) fn law_words(kind: ElementKind) -> &'static [&'static str] {
     }
 }
 
+/// All words, by element.
+pub(super) fn words_of(kind: ElementKind) -> Vec<&'static str> {
+    [law_words(kind), other_words(kind)].concat()
+}
+
 /// The other words, by element.
-pub(super) fn other_words(kind: ElementKind) -> &'static [&'static str] {
+fn other_words(kind: ElementKind) -> &'static [&'static str] {
     match kind {
         ElementKind::I => &["initial", "initial_flow", "gyroscopic"],
         ElementKind::C => &["initial"],
@@ -332,7 +337,7 @@ impl Reader<'_, '_, '_> {
                 let matrix = if word == "stiffness" {
                     matrix
                 } else {
-                    self.inverse(&matrix, value.span())?
+                    self.inverse(word, &matrix, value.span())?
                 };
                 let coenergy = matrix
                     .times(self.pool, &Matrix::column(states.clone()))
@@ -524,13 +529,14 @@ impl Reader<'_, '_, '_> {
         )))
     }
 
-    fn inverse(&mut self, matrix: &Matrix, span: Span) -> Result<Matrix> {
+    /// The inverse of what stands behind a word.
+    fn inverse(&mut self, word: &str, matrix: &Matrix, span: Span) -> Result<Matrix> {
         matrix.inverse(self.pool).ok_or_else(|| {
-            Box::new(error(
-                codes::NOT_FINITE,
-                span,
-                format!("`{}` has a singular matrix", self.element.name),
-            ))
+            let name = &self.element.name;
+            let is_zero = matrix.entries.iter().all(|it| *it == Expression::ZERO);
+            let what = if is_zero { "zero" } else { "singular" };
+            let message = format!("the {word} of `{name}` is {what}, and its law divides by it");
+            Box::new(error(codes::NOT_FINITE, span, message))
         })
     }
 
@@ -611,7 +617,7 @@ impl Reader<'_, '_, '_> {
             }
         }
         let size = self.own.dimension;
-        let inertia = self.inverse(&Matrix::new(size, size, entries), span)?;
+        let inertia = self.inverse("slope", &Matrix::new(size, size, entries), span)?;
         Ok(inertia
             .times(self.pool, &Matrix::column(flow.to_vec()))
             .entries)

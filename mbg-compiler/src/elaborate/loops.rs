@@ -30,6 +30,7 @@ impl<'a> Builder<'a> {
                 let iteration = Scope {
                     prefix: format!("{}{path}[{number}].", around.prefix),
                     derivative: around.derivative,
+                    is_broken: around.is_broken,
                     around: Some(scope),
                     library: around.library.clone(),
                     constants: around.constants.of_iteration(repeated, Some(number)),

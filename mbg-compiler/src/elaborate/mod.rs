@@ -209,7 +209,11 @@ struct Builder<'a> {
     signals: Signals,
     /// Ports of components in use by their scopes.
     frames: BTreeMap<usize, Vec<Frame<'a>>>,
+    /// Components in use by their scopes, with the scopes that use them.
+    called: BTreeMap<usize, (usize, &'a ast::Instance)>,
     left_out: Vec<LeftOut<'a>>,
+    /// Whether a component is called wrongly, so that it is not known what it tells of frames.
+    is_misled: bool,
     /// Parameters that must be given where they are needed.
     unknown: BTreeMap<usize, Unknown<'a>>,
     assumptions: Vec<Assumption>,
@@ -259,7 +263,9 @@ impl<'a> Builder<'a> {
             outputs: Vec::new(),
             signals: Signals::default(),
             frames: BTreeMap::new(),
+            called: BTreeMap::new(),
             left_out: Vec::new(),
+            is_misled: false,
             unknown: BTreeMap::new(),
             assumptions: Vec::new(),
             pending: Vec::new(),
@@ -323,18 +329,26 @@ impl<'a> Builder<'a> {
             let report = error(codes::DUPLICATE_NAME, name.span(), message);
             self.tell(scope, report.help("give it a longer name"));
         }
-        if self.scopes[scope]
-            .names
-            .insert(name.to_string(), entity)
-            .is_some()
-        {
+        let is_element = matches!(entity, Entity::Element(_));
+        let names = &mut self.scopes[scope].names;
+        if names.insert(name.to_string(), entity).is_some() {
+            // Which of them is meant elsewhere is not known.
+            names.insert(name.to_string(), Entity::Opaque);
             let message = format!("`{name}` is declared twice");
-            self.tell(scope, error(codes::DUPLICATE_NAME, name.span(), message));
+            let mut report = error(codes::DUPLICATE_NAME, name.span(), message);
+            if is_element {
+                report = report.note("elements of different junctions have different names, too");
+            }
+            self.tell(scope, report);
         }
     }
 
-    /// Reports a mistake: one inside a component of the library at the instance, which is what the user wrote.
+    /// Reports a mistake: one inside a component of the library at the instance, which is what the user wrote, and none
+    /// inside a component that is called wrongly.
     fn tell(&mut self, scope: usize, mut report: Diagnostic) {
+        if self.scopes[scope].is_broken {
+            return;
+        }
         if let Some((component, instance)) = &self.scopes[scope].library {
             report = report.inside(component, *instance);
         }

@@ -9,6 +9,7 @@ use crate::graph::{BondGraph, ElementId, JunctionId};
 use crate::symbolic::{Expression, Symbol};
 
 /// A model in which every name is resolved.
+#[derive(Clone)]
 pub struct Elaborated {
     /// Documentation comments of the model.
     pub documentation: Vec<Attribute>,
@@ -51,6 +52,7 @@ impl Elaborated {
 }
 
 /// A scalar parameter.
+#[derive(Clone)]
 pub struct Parameter {
     /// Name.
     pub name: Ident,
@@ -72,6 +74,7 @@ pub struct Variable {
 }
 
 /// A scalar output.
+#[derive(Clone)]
 pub struct Output {
     /// Name and unit.
     pub variable: Variable,
@@ -82,6 +85,7 @@ pub struct Output {
 }
 
 /// A candidate state.
+#[derive(Clone)]
 pub struct State {
     /// Name and unit.
     pub variable: Variable,

@@ -68,6 +68,8 @@ pub(super) struct Scope {
     pub(super) prefix: String,
     /// Whether `#[derivative]` covers everything inside.
     pub(super) derivative: bool,
+    /// Whether it is a component that is called wrongly, or inside one: what goes wrong there follows from that.
+    pub(super) is_broken: bool,
     /// The scope whose names an iteration of a loop sees as well.
     pub(super) around: Option<usize>,
     /// Inside a component of the library: its name, and the instance in the user's text.

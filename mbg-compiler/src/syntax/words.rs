@@ -1,5 +1,7 @@
 //! The words of the language, and the nearest one to what was typed.
 
+use proc_macro2::Ident;
+
 use super::ast::ElementKind;
 
 /// Words that begin a statement.
@@ -100,6 +102,16 @@ pub(crate) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
         .filter(|(distance, word)| *distance <= (word.len().min(found.len()) / 2).min(2))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, word)| word)
+}
+
+/// Whether one of these words, of which some are unknown, was probably meant to be `word`.
+pub(crate) fn is_misspelt<'a>(
+    word: &str,
+    found: impl IntoIterator<Item = &'a Ident>,
+    known: &[&str],
+) -> bool {
+    let mut found = found.into_iter().map(ToString::to_string);
+    found.any(|it| !known.contains(&it.as_str()) && nearest(&it, known) == Some(word))
 }
 
 /// Edit distance in which a swap of neighbours counts as one slip (optimal string alignment).

@@ -290,7 +290,8 @@ impl Checker<'_> {
 
     fn expect(&mut self, claim: &Claim, what: &str, wanted: &[Dimension], found: &[Measure]) {
         if let Some((wanted, found)) = self.first_other(found, wanted) {
-            self.reporter.other(claim, what, [&wanted, &found], None);
+            self.reporter
+                .other(claim, what, [&wanted, &found], None, None);
         }
     }
 
@@ -334,8 +335,12 @@ impl Checker<'_> {
             let name = &self.model.graph.elements[id.0].name;
             let what = format!("`{word}` of `{name}`");
             let note = self.surroundings(id);
+            let given = usize::from(self.model.graph.elements[id.0].kind == ElementKind::I);
+            let given = &self.ports.inner[id.0][0][given];
+            let is_given = word == "initial" && self.inference.unknowns.reduce(given) == found;
+            let help = is_given.then(|| self.reporter.start(claim, id));
             self.reporter
-                .other(claim, &what, [&wanted, &found], Some(note));
+                .other(claim, &what, [&wanted, &found], Some(note), help);
         }
     }
 

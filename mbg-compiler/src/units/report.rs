@@ -10,13 +10,16 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::claims::{Claim, Claims, Site, Subject};
 use crate::elaborate::{Elaborated, Place, Quantity, Signal};
-use crate::graph::{JunctionId, OriginId, component_name};
+use crate::graph::{ElementId, ElementKind, JunctionId, OriginId, component_name};
 use crate::symbolic::{Expression, Operation, Pool, Symbol};
 use crate::syntax::ast::Unit;
 
 /// How a pure number gets a unit.
 const FACTOR: &str =
     "a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts";
+
+/// Words of a compliance whose law multiplies or divides by what stands there.
+const COEFFICIENTS: [&str; 2] = ["compliance", "stiffness"];
 
 /// Tells mistakes, each once.
 pub(super) struct Reporter<'a> {
@@ -190,8 +193,9 @@ impl<'a> Reporter<'a> {
         what: &str,
         units: [&Dimension; 2],
         note: Option<String>,
+        advice: Option<String>,
     ) {
-        let help = match self.no_power(claim, units) {
+        let help = match advice.or_else(|| self.no_power(claim, units)) {
             None if self.is_numeric(claim) || units.iter().any(|unit| unit.is_pure()) => {
                 Some(FACTOR.to_owned())
             }
@@ -200,6 +204,37 @@ impl<'a> Reporter<'a> {
         let (wanted, found) = self.both(units);
         let message = format!("{what} must be {wanted} here, and this is {found}");
         self.report(&claim.place, message, note, help);
+    }
+
+    /// What to type for a storage that is given its effort or flow at the start in the place of its state.
+    pub(super) fn start(&self, claim: &Claim, id: ElementId) -> String {
+        let text = |value: Expression| {
+            let text = expression_text(self.model, self.claims, self.pool, value);
+            let is_atom = text
+                .chars()
+                .all(|it| it.is_alphanumeric() || "_.[]".contains(it));
+            if is_atom { text } else { format!("({text})") }
+        };
+        let value = match claim.entries[..] {
+            [value] => text(value),
+            _ => "…".to_owned(),
+        };
+        if self.model.graph.elements[id.0].kind == ElementKind::I {
+            return format!("write `initial_flow: {value}`");
+        }
+        let law = self.claims.list.iter().find_map(|it| match &it.subject {
+            Subject::Word(other, law) if *other == id && COEFFICIENTS.contains(&law.as_str()) => {
+                Some((law, it.entries[0]))
+            }
+            _ => None,
+        });
+        match law {
+            Some((law, entry)) if law == "compliance" => {
+                format!("write `initial: {} * {value}`", text(entry))
+            }
+            Some((_, entry)) => format!("write `initial: {value} / {}`", text(entry)),
+            None => "write the `q` at which its law gives this effort".to_owned(),
+        }
     }
 
     /// What to type where units differ because temperature times heat flow is taken for power.

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::answers::Answers;
+use crate::causality::outlook::Outlook;
 use crate::checks::{self, Check};
 use crate::closures;
 use crate::codes;
@@ -129,7 +130,11 @@ pub fn compile(
     {
         return None;
     }
-    let verdict = drawing::judge(&elaborated.graph, soluble, diagnostics)?;
+    let outlook = || match soluble {
+        true => Outlook::Soluble,
+        false => structure::outlook(&elaborated, &pool),
+    };
+    let verdict = drawing::judge(&elaborated.graph, &outlook, diagnostics)?;
     let solved = structure::resolve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
     let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;
     finish(elaborated, &solved, answers, pool, verdict, diagnostics)

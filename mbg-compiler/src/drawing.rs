@@ -4,6 +4,7 @@
 //! componentwise;` only the equations can reject a model; strokes are then those of the best uniform drawing, if there
 //! is one. Errors: `MBG03xx`.
 
+use crate::causality::outlook::Outlook;
 use crate::causality::{report, uniform};
 use crate::diagnostics::Diagnostics;
 use crate::graph::{Bond, BondGraph, BondId, Causality};
@@ -18,10 +19,14 @@ pub struct Drawn {
     pub notes: Vec<String>,
 }
 
-/// Judges the drawing; none if it is rejected. Whether the equations are `soluble`, component by component, decides
-/// which ways out are offered.
+/// Judges the drawing; none if it is rejected. The `outlook` of the equations, component by component, decides which ways
+/// out are offered then.
 #[must_use]
-pub fn judge(graph: &BondGraph, soluble: bool, diagnostics: &mut Diagnostics) -> Option<Drawn> {
+pub fn judge(
+    graph: &BondGraph,
+    outlook: &dyn Fn() -> Outlook,
+    diagnostics: &mut Diagnostics,
+) -> Option<Drawn> {
     let verdict = match uniform::verdict(graph) {
         Ok(verdict) => verdict,
         Err(_) if graph.causality == Causality::Componentwise => {
@@ -33,7 +38,7 @@ pub fn judge(graph: &BondGraph, soluble: bool, diagnostics: &mut Diagnostics) ->
             });
         }
         Err(conflict) => {
-            report::conflict_diagnostics(graph, &conflict, soluble, diagnostics);
+            report::conflict_diagnostics(graph, &conflict, &outlook(), diagnostics);
             return None;
         }
     };
@@ -43,7 +48,7 @@ pub fn judge(graph: &BondGraph, soluble: bool, diagnostics: &mut Diagnostics) ->
         .iter()
         .any(|id| !graph.elements[id.0].derivative);
     if graph.causality == Causality::Uniform && rejected {
-        report::diagnose(graph, &verdict, soluble, diagnostics);
+        report::diagnose(graph, &verdict, &outlook(), diagnostics);
         return None;
     }
     let marked = graph.elements.iter().any(|element| element.derivative);

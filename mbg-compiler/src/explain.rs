@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use proc_macro2::{Span, TokenStream};
 
+use crate::causality::outlook::Outlook;
 use crate::compile::{self, Compiled, Routines};
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::{self, Elaborated};
@@ -77,7 +78,7 @@ fn stages(model: &Model, components: &BTreeMap<String, &Component>) -> String {
         return text;
     };
     text += &section(&format!("graph of {}", model.name), &model.graph.dump());
-    if let Some(drawn) = drawing::judge(&model.graph, true, &mut ignored) {
+    if let Some(drawn) = drawing::judge(&model.graph, &|| Outlook::Soluble, &mut ignored) {
         text += &section("causality", &drawing::diagram(&model.graph, &drawn.strokes));
     }
     let network = Network::of(&model.graph, &mut pool);

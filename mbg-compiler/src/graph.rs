@@ -259,17 +259,10 @@ pub fn declaration(kind: JunctionKind, name: &str, dimension: usize) -> String {
 }
 
 impl Element {
-    /// Path of the component in use that it belongs to, if it is not written in the model itself. A loop is no component: what
-    /// it makes has a number.
-    fn instance(&self) -> Option<&str> {
-        let mut path = self.name.as_str();
-        while let Some((outer, _)) = path.rsplit_once('.') {
-            if !outer.ends_with(']') {
-                return Some(outer);
-            }
-            path = outer;
-        }
-        None
+    /// Path of the component in use that it belongs to, if it is not written in the model itself.
+    #[must_use]
+    pub fn instance(&self) -> Option<&str> {
+        instance_of(&self.name)
     }
 
     /// What to type so that its derivative causality is accepted.
@@ -287,6 +280,18 @@ impl Element {
             "write `#[derivative]` before `{own}: …`, which makes `{instance}`, or before the model, to accept it"
         )
     }
+}
+
+/// Path of the component in use in which a path leads. A loop is no component: what it makes has a number.
+#[must_use]
+pub fn instance_of(mut path: &str) -> Option<&str> {
+    while let Some((outer, _)) = path.rsplit_once('.') {
+        if !outer.ends_with(']') {
+            return Some(outer);
+        }
+        path = outer;
+    }
+    None
 }
 
 impl BondGraph {

@@ -166,3 +166,227 @@ fn what_a_loop_makes_is_marked_where_it_is_written() {
     );
     compiles(&component.replace("cell: Cell", "#[derivative] cell: Cell"));
 }
+
+/// All codes that a text is answered with.
+fn codes_of(text: &str) -> Vec<&'static str> {
+    let diagnostics = diagnose(text);
+    let list = diagnostics.list().iter();
+    list.map(|it| it.code.text).collect()
+}
+
+#[test]
+fn a_word_that_is_misspelt_is_told_alone_with_the_word_that_is_meant() {
+    let scene = |joint: &str, body: &str| {
+        format!(
+            "#[derivative] model M {{ gravity [0.0, 0.0, -9.81]; 1 arm[6]; 1 world[6]; Sf ground[6] {{ flow: 0.0 }} -> world;
+             hinge: {joint} (world, arm); body: {body} (arm); output angle: rad = hinge.angle; }}"
+        )
+    };
+    let (joint, body) = ("Revolute { axis: 1 }", "Body { mass: 1.0, inertia: 0.1 }");
+    compiles(&scene(joint, body));
+    let misspelt = [
+        (scene("Revolut { axis: 1 }", body), "Revolute"),
+        (scene("Revolute { axs: 1 }", body), "axis"),
+        (scene(joint, "Body { mas: 1.0, inertia: 0.1 }"), "mass"),
+        (scene(joint, body).replace("(world,", "(wrld,"), "world"),
+        (
+            "model M { 1 a { I m { inertia: 1.0 } R r { resistnce: 1.0 } } output e = r.e; }"
+                .to_owned(),
+            "resistance",
+        ),
+    ];
+    for (text, meant) in misspelt {
+        let diagnostics = diagnose(&text);
+        let told: Vec<String> = diagnostics.list().iter().map(|it| it.text()).collect();
+        assert_eq!(told.len(), 1, "{}", told.join("\n"));
+        let help = format!("did you mean `{meant}`?");
+        assert!(diagnostics.list()[0].helps.contains(&help), "{}", told[0]);
+    }
+    // What is wrong besides is told.
+    let both = "model M { 1 a[6]; body: Body { inerta: 0.1 } (a); }";
+    assert_eq!(codes_of(both), ["MBG0207", "MBG0214"]);
+}
+
+#[test]
+fn where_the_rate_of_an_input_is_needed_the_source_acts_through_a_resistor_or_gives_its_rate() {
+    let texts = [
+        "model M { input u: m/s; 1 a { I m { inertia: 2.0 } } Sf s { flow: u } -> a; }",
+        "model M { input u: V; 0 a { C m { compliance: 2.0 } } Se s { effort: u } -> a; }",
+    ];
+    for text in texts {
+        let helps = helps(text, codes::STORAGE_DERIVATIVE);
+        assert_eq!(helps.len(), 3, "{helps:?}");
+        let driven = text.replace("-> a;", "-> driven;");
+        compiles(&followed(&driven, &helps[0]));
+        let typed: Vec<&str> = helps[1].split('`').skip(1).step_by(2).collect();
+        let rate = text.replace(typed[1], typed[2]);
+        let marked = |text: &str| {
+            text.replace("{ I", "{ #[derivative] I")
+                .replace("{ C", "{ #[derivative] C")
+        };
+        compiles(&marked(&rate));
+        compiles(&marked(
+            &text
+                .replace("flow: u", "flow: 2.0 * t")
+                .replace("effort: u", "effort: 2.0 * t"),
+        ));
+    }
+}
+
+#[test]
+fn a_transformer_that_is_drawn_the_wrong_way_is_turned_round() {
+    let text = "model M { param d = 0.5; 0 dc { C c { compliance: 1.0 } }
+                1 load[2] { I l { inertia: 1.0 } R r { resistance: 1.0 } }
+                dc -> MTF t { flow: [[d], [1.0 - d]] } -> load; }";
+    let helps = helps(text, codes::STORAGE_DERIVATIVE);
+    let (before, after) = (
+        "dc -> MTF t { flow: [[d], [1.0 - d]] } -> load;",
+        "[[d], [1.0 - d]]",
+    );
+    let turned = helps[1].split('`').nth(5).unwrap().replace('…', after);
+    compiles(&text.replace(before, &turned));
+    // Both storages are forced by one cause, which is told once.
+    assert_eq!(codes_of(text), ["MBG0301"]);
+    let typed = helps[0]
+        .split('`')
+        .filter(|typed| typed.starts_with("#[derivative] "));
+    let accepted = typed.fold(text.to_owned(), |text, typed| {
+        let typed = typed.trim_end_matches("{ … }");
+        text.replace(typed.trim_start_matches("#[derivative] "), typed)
+    });
+    compiles(&accepted);
+}
+
+#[test]
+fn a_choice_of_other_languages_is_written_with_if() {
+    let laws = ["f > 0.0 ? f : 2.0 * f", "2.0 * (f > 0.0 ? f : 2.0 * f)"];
+    for law in laws {
+        let text =
+            format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} R r {{ effort: {law} }} }} }}");
+        let helps = helps(&text, codes::SYNTAX);
+        assert_eq!(helps, ["write `if f > 0.0 { f } else { 2.0 * f }`"]);
+        compiles(&text.replace("f > 0.0 ? f : 2.0 * f", helps[0].split('`').nth(1).unwrap()));
+    }
+}
+
+#[test]
+fn a_law_that_is_zero_is_told_at_its_element() {
+    let cases = [
+        (
+            "0 n { C c { compliance: 1.0 } R r { resistance: 0.0 } }",
+            "resistor `r` would have to give its flow",
+        ),
+        (
+            "1 n { I i { inertia: 1.0 } R r { conductance: 0.0 } }",
+            "resistor `r` would have to give its effort",
+        ),
+        (
+            "0 n { C c { compliance: 0.0 } }",
+            "the compliance of `c` is zero, and its law divides by it",
+        ),
+    ];
+    for (body, message) in cases {
+        let diagnostics = diagnose(&format!("model M {{ {body} }}"));
+        let [report] = diagnostics.list() else {
+            panic!("{body}")
+        };
+        assert!(report.message.starts_with(message), "{}", report.message);
+    }
+    compiles("model M { 1 n { I i { inertia: 1.0 } R r { resistance: 0.0 } } }");
+    let gas = "model M { 0 n { R r { resistance: 1.0 } }
+               gas: Accumulator { exponent: 1.0, volume: 1.0, precharge: 2.0 } (n); }";
+    assert_eq!(diagnose(gas).list()[0].notes[0], "`exponent - 1` is zero");
+}
+
+#[test]
+fn a_storage_given_its_effort_or_flow_at_the_start_is_told_its_state() {
+    let text = "model M { param c: F = 1.0; param k: N/m = 1.0; param m: kg = 1.0; param v: V = 1.0;
+                param g: N = 1.0; param w: m/s = 1.0; 0 n { C a { compliance: c, initial: v } R r { resistance: 1.0 } }
+                1 j { C b { stiffness: k, initial: g } I i { inertia: m, initial: w } } }";
+    let mut mended = text.to_owned();
+    for (before, after) in [
+        ("initial: v", "initial: c * v"),
+        ("initial: g", "initial: g / k"),
+        ("initial: w", "initial_flow: w"),
+    ] {
+        let helps = helps(&mended, codes::UNIT_MISMATCH);
+        assert_eq!(helps, [format!("write `{after}`")]);
+        mended = mended.replace(before, after);
+    }
+    compiles(&mended);
+}
+
+#[test]
+fn an_output_of_another_dimension_than_its_value_is_told_both_ways() {
+    let text = "model M { 1 arm[3] { I m { inertia: 1.0 } } output w: m/s = arm.f; }";
+    let helps = helps(text, codes::WRONG_DIMENSION);
+    assert_eq!(helps.len(), 2, "{helps:?}");
+    for help in helps {
+        compiles(&text.replace("output w: m/s = arm.f;", help.split('`').nth(1).unwrap()));
+    }
+}
+
+#[test]
+fn joints_between_one_frame_or_the_same_two_are_told_by_name() {
+    let scene = |joints: &str| {
+        format!(
+            "#[derivative] model M {{ gravity [0.0, 0.0, -9.81]; 1 arm[6]; 1 world[6]; Sf ground[6] {{ flow: 0.0 }} -> world;
+             body: Body {{ mass: 1.0, inertia: 0.1 }} (arm); {joints} }}"
+        )
+    };
+    for itself in [
+        "hinge: Revolute { axis: 1 } (arm, arm);",
+        "hinge: Cut (arm, arm);",
+    ] {
+        let diagnostics = diagnose(&scene(itself));
+        let [report] = diagnostics.list() else {
+            panic!("{itself}")
+        };
+        assert_eq!(report.message, "`hinge` leads from `arm` to itself");
+    }
+    let twice =
+        scene("one: Revolute { axis: 1 } (world, arm); other: Revolute { axis: 1 } (world, arm);");
+    let diagnostics = diagnose(&twice);
+    let message = "`one`, `other` impose the same flows: how they share the efforts is open";
+    assert_eq!(diagnostics.list()[0].message, message);
+    let helps = helps(&twice, codes::SINGULAR_JUNCTIONS);
+    let typed = helps[1].split('`').nth(1).unwrap();
+    compiles(&twice.replace(
+        "other: Revolute { ",
+        &format!("other: Revolute {{ {typed}, "),
+    ));
+    // Both chambers of a cylinder may be one node.
+    compiles(
+        "model M { 0 node { C oil { stiffness: 1.0 } } 1 rod { I mass { inertia: 1.0 } }
+         piston: Cylinder { area_a: 2.0, area_b: 1.0 } (node, node, rod); }",
+    );
+}
+
+#[test]
+fn a_mass_without_extent_on_a_ball_joint_is_told_what_it_lacks() {
+    let text = "model M { gravity [0.0, 0.0, -9.81]; 1 arm[6]; 1 tip[6]; 1 world[6]; Sf ground[6] { flow: 0.0 } -> world;
+                ball: Spherical (world, arm); rod: Offset { by: [1.0, 0.0, 0.0] } (arm, tip);
+                #[derivative] weight: PointMass { mass: 1.0 } (tip); }";
+    let report = diagnose(text).list()[0].clone();
+    assert_eq!(report.code, codes::SINGULAR_JUNCTIONS);
+    assert!(
+        report.message.ends_with("at `weight.body`"),
+        "{}",
+        report.message
+    );
+    compiles(&text.replace(
+        "PointMass { mass: 1.0 }",
+        "Body { mass: 1.0, inertia: 0.1 }",
+    ));
+}
+
+#[test]
+fn a_name_given_twice_is_told_alone() {
+    let elements = "model M { 0 n { C c { compliance: 1.0 } R rs { resistance: 2.0 } } 1 k { R rs { resistance: 1.0 } }
+                    n -> k; output y = rs.q; }";
+    assert_eq!(codes_of(elements), ["MBG0202"]);
+    let values =
+        "model M { 0 n { C c { compliance: 1.0 } } let rs = 1.0; 1 rs { R r { resistance: 2.0 } }
+                  n -> rs; output y = rs.e; }";
+    assert_eq!(codes_of(values), ["MBG0202"]);
+}

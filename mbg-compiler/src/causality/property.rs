@@ -7,6 +7,7 @@ use proptest::strategy::Union;
 
 use super::enumerate::{Options, enumerate};
 use super::fixtures::Builder;
+use super::outlook::Outlook;
 use super::strokes::Stroke;
 use super::uniform::verdict;
 use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionKind, Rule};
@@ -238,13 +239,13 @@ proptest! {
         let mut diagnostics = crate::diagnostics::Diagnostics::new();
         match verdict(&graph) {
             Ok(verdict) => {
-                super::report::diagnose(&graph, &verdict, true, &mut diagnostics);
+                super::report::diagnose(&graph, &verdict, &Outlook::Soluble, &mut diagnostics);
                 let rejected = verdict.dependent.iter().filter(|id| !graph.elements[id.0].derivative).count();
                 prop_assert_eq!(rejected > 0, diagnostics.any());
                 prop_assert!(diagnostics.list().len() <= graph.elements.len());
             }
             Err(conflict) => {
-                super::report::conflict_diagnostics(&graph, &conflict, true, &mut diagnostics);
+                super::report::conflict_diagnostics(&graph, &conflict, &Outlook::Soluble, &mut diagnostics);
                 prop_assert!(diagnostics.any());
             }
         }

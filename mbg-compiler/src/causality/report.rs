@@ -7,8 +7,10 @@ use std::collections::BTreeSet;
 
 use super::dependence;
 use super::explain::{self, Chain};
+use super::outlook::Outlook;
 pub use super::report_conflict::conflict_diagnostics;
 use super::uniform::Verdict;
+use super::ways::{Between, through, turned};
 use super::words::{self, ChainStep};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
@@ -17,23 +19,23 @@ use crate::graph::{Bond, BondGraph, ElementId, End, Rule};
 /// The first way out, where the drawing alone is at fault.
 pub const COMPONENTWISE: &str = "write `causality componentwise;` in the model: one stroke per component instead of one per multibond";
 /// The way out for joints that block some axes.
-pub const JACOBIAN: &str = "replace the joints between `a` and `b` by one with a square Jacobian: \
+pub const JACOBIAN: &str = "replace the joints between two bodies `a` and `b` by one with a square Jacobian: \
     `1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
     gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
     joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
 /// What to do about inertias that depend on each other by the physics.
-pub const APART: &str = "give each inertia a junction of its own and put a spring between them: \
-    `a -> between; between -> b; 0 between { C shaft { stiffness: … } }`";
+pub const APART: &str = "give each inertia a junction of its own and put a compliance between them: \
+    `a -> between; between -> b; 0 between { C spring { stiffness: … } }`";
 
 /// Longer chains are shortened.
 const LONGEST_CHAIN: usize = 40;
 
 /// Reports every storage that is forced into derivative causality and not marked `#[derivative]`, then the elements
-/// that force it. `soluble` says whether the equations, component by component, keep every storage as a state.
+/// that force it. What the same sources and two-ports force is told once.
 pub fn diagnose(
     graph: &BondGraph,
     verdict: &Verdict,
-    soluble: bool,
+    outlook: &Outlook,
     diagnostics: &mut Diagnostics,
 ) {
     let rejected = verdict
@@ -44,8 +46,14 @@ pub fn diagnose(
         .filter_map(|id| explain::explain(graph, verdict, *id))
         .collect();
     let mut reported: BTreeSet<ElementId> = chains.iter().map(|chain| chain.storage).collect();
-    for chain in &chains {
-        diagnostics.report(storage_error(graph, verdict, chain, soluble));
+    for (number, chain) in chains.iter().enumerate() {
+        let alike = |other: &&Chain| has_one_cause(chain, other);
+        if chains[..number].iter().any(|other| alike(&other)) {
+            continue;
+        }
+        let others = chains[number + 1..].iter().filter(alike);
+        let others: Vec<ElementId> = others.map(|other| other.storage).collect();
+        diagnostics.report(storage_error(graph, verdict, chain, &others, outlook));
     }
     for chain in chains.iter().filter(|chain| !chain.integral.is_empty()) {
         for id in chain.integral.iter().chain(&chain.fixed) {
@@ -54,6 +62,12 @@ pub fn diagnose(
             }
         }
     }
+}
+
+/// Whether the same elements alone force two storages.
+fn has_one_cause(one: &Chain, other: &Chain) -> bool {
+    let alone = |chain: &Chain| chain.integral.is_empty() && !chain.fixed.is_empty();
+    alone(one) && alone(other) && one.fixed == other.fixed
 }
 
 fn name(graph: &BondGraph, id: ElementId) -> String {
@@ -96,43 +110,72 @@ fn headline(graph: &BondGraph, id: ElementId) -> String {
     )
 }
 
-fn storage_error(graph: &BondGraph, verdict: &Verdict, chain: &Chain, soluble: bool) -> Diagnostic {
+fn storage_error(
+    graph: &BondGraph,
+    verdict: &Verdict,
+    chain: &Chain,
+    others: &[ElementId],
+    outlook: &Outlook,
+) -> Diagnostic {
     let id = chain.storage;
-    let mut report = error(
-        codes::STORAGE_DERIVATIVE,
-        graph.origins.span(graph.elements[id.0].origin),
-        headline(graph, id),
-    );
+    let element = &graph.elements[id.0];
+    let span = graph.origins.span(element.origin);
+    let mut report = error(codes::STORAGE_DERIVATIVE, span, headline(graph, id));
     report.notes = chain_notes(graph, verdict, chain);
     report.notes.extend(choice(graph, verdict, chain));
-    let element = &graph.elements[id.0];
-    let written = element.name.rsplit('.').next().unwrap_or_default();
-    let written = format!("{} {written}", words::symbol(element.kind));
-    let mut helps = Vec::new();
-    if soluble {
-        helps.push(COMPONENTWISE.to_owned());
-    } else {
+    if !others.is_empty() {
+        let others = names(graph, others);
+        report.notes.push(format!("the same forces {others}"));
+    }
+    if !outlook.is_soluble() {
         report.notes.push(
             "component by component the equations have no solution either: a true loss of order, which no choice of \
              strokes mends"
                 .to_owned(),
         );
     }
-    helps.push(element.acceptance());
-    if !soluble && !chain.integral.is_empty() {
-        helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
+    report.notes.extend(outlook.notes());
+    let helps = ways_out(graph, chain, others, outlook);
+    report.helps = alternatives(helps);
+    report
+}
+
+fn ways_out(
+    graph: &BondGraph,
+    chain: &Chain,
+    others: &[ElementId],
+    outlook: &Outlook,
+) -> Vec<String> {
+    let element = &graph.elements[chain.storage.0];
+    let mut helps = Vec::new();
+    if outlook.is_soluble() {
+        helps.push(COMPONENTWISE.to_owned());
     }
-    let imposed_on = !chain.integral.is_empty() || !chain.fixed.is_empty();
-    if !soluble && imposed_on && element.rule == Rule::PreferFlowOut {
-        helps.push(APART.to_owned());
+    let storages = std::iter::once(&chain.storage).chain(others);
+    helps.extend(outlook.acceptance(storages.map(|id| &graph.elements[id.0])));
+    if !outlook.is_soluble() {
+        if !chain.integral.is_empty() {
+            let written = element.name.rsplit('.').next().unwrap_or_default();
+            let written = format!("{} {written}", words::symbol(element.kind));
+            helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
+            if element.rule == Rule::PreferFlowOut {
+                helps.push(APART.to_owned());
+            }
+        } else {
+            let mut fixed = chain.fixed.iter();
+            helps.extend(fixed.find_map(|id| through(graph, *id, Between::Resistor)));
+        }
     }
     let resistors = chain.fixed.iter();
     helps.extend(resistors.filter_map(|id| resistor_help(graph, *id)));
+    helps.extend(chain.fixed.iter().find_map(|id| turned(graph, *id)));
     if explain::blocks_axes(graph, &chain.fixed) {
         helps.push(JACOBIAN.to_owned());
     }
-    report.helps = alternatives(helps);
-    report
+    let known = helps.clone();
+    let more = outlook.helps().into_iter();
+    helps.extend(more.filter(|help| !known.contains(help)));
+    helps
 }
 
 fn chain_notes(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Vec<String> {

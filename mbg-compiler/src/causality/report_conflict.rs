@@ -5,18 +5,19 @@
 
 use super::conflict::Conflict;
 use super::explain;
+use super::outlook::Outlook;
 use super::report::{COMPONENTWISE, JACOBIAN, alternatives, own_steps, resistor_help};
+use super::ways::{Between, through, turned};
 use super::words;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::graph::{BondGraph, ElementId, End, JunctionKind, OriginId, Rule};
 
 /// Reports a conflict where the rules fail or at the element to blame, then at each fixed element that takes part.
-/// `soluble` says whether the equations, component by component, have a solution.
 pub fn conflict_diagnostics(
     graph: &BondGraph,
     conflict: &Conflict,
-    soluble: bool,
+    outlook: &Outlook,
     diagnostics: &mut Diagnostics,
 ) {
     let Some(first) = origin(graph, conflict) else {
@@ -29,7 +30,7 @@ pub fn conflict_diagnostics(
     );
     let steps = conflict.chain.iter();
     report.notes = steps.map(|step| step.text.clone()).collect();
-    report.helps = alternatives(helps(graph, conflict, soluble));
+    report.helps = alternatives(helps(graph, conflict, outlook));
     diagnostics.report(report);
     for id in conflict.elements() {
         let element = &graph.elements[id.0];
@@ -112,7 +113,7 @@ fn fixed_message(graph: &BondGraph, id: ElementId) -> Option<String> {
     ))
 }
 
-fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
+fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<String> {
     if !conflict.proven() {
         return vec![COMPONENTWISE.to_owned()];
     }
@@ -130,21 +131,12 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
         _ => None,
     };
     if let Some(storage) = uneven {
-        helps.push(if soluble {
-            COMPONENTWISE.to_owned()
-        } else {
-            let storage = &graph.elements[storage.0];
-            format!(
-                "{COMPONENTWISE}; what is imposed on `{}` is no state then: {}",
-                storage.name,
-                storage.acceptance()
-            )
-        });
-        helps.extend(through(graph, &elements));
+        helps.extend(outlook.componentwise(&graph.elements[storage.0]));
+        helps.extend(imposing(graph, &elements));
         return helps;
     }
     let imposed = match conflict.code {
-        codes::RECTANGULAR_INVERSE => through(graph, &elements),
+        codes::RECTANGULAR_INVERSE => imposing(graph, &elements),
         _ => None,
     };
     helps.push(imposed.unwrap_or_else(|| match (conflict.code, end) {
@@ -157,7 +149,10 @@ fn helps(graph: &BondGraph, conflict: &Conflict, soluble: bool) -> Vec<String> {
         }
         _ => format!("attach a resistor that can give the flow: `{place} -> R damper {{ conductance: … }};`"),
     }));
-    if soluble {
+    if conflict.code == codes::RECTANGULAR_INVERSE {
+        helps.extend(elements.iter().find_map(|id| turned(graph, *id)));
+    }
+    if outlook.is_soluble() {
         helps.push(COMPONENTWISE.to_owned());
     }
     if explain::blocks_axes(graph, &elements) {
@@ -185,26 +180,8 @@ fn storage_over(graph: &BondGraph, place: &End) -> Option<ElementId> {
     })
 }
 
-/// Where a source imposes what something else would give: how the source can act without imposing it.
-fn through(graph: &BondGraph, elements: &[ElementId]) -> Option<String> {
-    elements.iter().find_map(|id| {
-        let element = &graph.elements[id.0];
-        let (word, outer, inner, store) = match element.rule {
-            Rule::FlowOut => ("spring", 1, 0, "C spring { stiffness: … }"),
-            Rule::EffortOut => ("mass", 0, 1, "I mass { inertia: … }"),
-            _ => return None,
-        };
-        let own = End::OnePort(*id);
-        let bond = graph.bonds.iter().find(|it| it.from == own || it.to == own)?;
-        let place = graph.end_name(if bond.from == own { &bond.to } else { &bond.from });
-        let dimension = match bond.dimension {
-            1 => String::new(),
-            dimension => format!("[{dimension}]"),
-        };
-        let name = &element.name;
-        Some(format!(
-            "remove `{name}`, or let it act through a {word}: bond it to `{outer} driven{dimension};` and write \
-             `{inner} between{dimension} {{ {store} }} driven -> between; between -> {place};`"
-        ))
-    })
+/// Where a source imposes what a storage would give: how it can act without imposing it.
+fn imposing(graph: &BondGraph, elements: &[ElementId]) -> Option<String> {
+    let mut elements = elements.iter();
+    elements.find_map(|id| through(graph, *id, Between::Storage))
 }

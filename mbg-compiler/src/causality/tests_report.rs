@@ -2,6 +2,7 @@
 
 use super::explain::{alternatives, explain};
 use super::fixtures::{Attached, Builder, Ground, Joint, fig_12, navigation};
+use super::outlook::Outlook;
 use super::report::{conflict_diagnostics, diagnose};
 use super::uniform::verdict;
 use crate::codes;
@@ -11,8 +12,10 @@ use crate::graph::{BondGraph, ElementId, End, Rule};
 fn reports(graph: &BondGraph) -> Diagnostics {
     let mut diagnostics = Diagnostics::new();
     match verdict(graph) {
-        Ok(verdict) => diagnose(graph, &verdict, true, &mut diagnostics),
-        Err(conflict) => conflict_diagnostics(graph, &conflict, true, &mut diagnostics),
+        Ok(verdict) => diagnose(graph, &verdict, &Outlook::Soluble, &mut diagnostics),
+        Err(conflict) => {
+            conflict_diagnostics(graph, &conflict, &Outlook::Soluble, &mut diagnostics)
+        }
     }
     diagnostics
 }
@@ -49,7 +52,7 @@ change of `body`
 causality in order of declaration, those under `#[derivative]` last
   help: write `causality componentwise;` in the model: one stroke per component instead of one per multibond
   help: or write `#[derivative]` before `I body` to accept it: `#[derivative] I body { … }`
-  help: or replace the joints between `a` and `b` by one with a square Jacobian: \
+  help: or replace the joints between two bodies `a` and `b` by one with a square Jacobian: \
 `1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
 gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
 joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
@@ -192,7 +195,7 @@ no assignment of strokes satisfies the rules at `hinge.rel.x` [MBG0303]
   but then no bond gives `hinge.rel.x` its flow
   help: attach a resistor that can give the flow: `hinge.rel.x -> R damper { conductance: … };`
   help: or write `causality componentwise;` in the model: one stroke per component instead of one per multibond
-  help: or replace the joints between `a` and `b` by one with a square Jacobian: \
+  help: or replace the joints between two bodies `a` and `b` by one with a square Jacobian: \
 `1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
 gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
 joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";

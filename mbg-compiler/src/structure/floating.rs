@@ -6,12 +6,14 @@
 
 use std::collections::BTreeSet;
 
+use proc_macro2::Span;
+
 use super::mesh;
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error, listing};
+use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Owner, Scalars};
-use crate::graph::{BondGraph, End, JunctionId, JunctionKind};
+use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of};
 use crate::symbolic::Pool;
 
 /// A component of a junction.
@@ -55,6 +57,15 @@ pub fn report_floating(
         JunctionKind::One => ("Sf", "wall", "flows", "flow"),
     };
     let names: BTreeSet<JunctionId> = part.iter().map(|(id, _)| *id).collect();
+    let outermost = |id: &JunctionId| instances(&graph.junctions[id.0].name).last();
+    let within: Option<BTreeSet<&str>> = names.iter().map(outermost).collect();
+    let span = graph.origins.span(junction.origin);
+    if let Some(within) = within
+        && within.len() > 1
+    {
+        diagnostics.report(shared_by(&within, junction.kind, span));
+        return true;
+    }
     let names = listing(names.iter().map(|id| graph.junctions[id.0].name.clone()));
     let message =
         format!("nothing holds {names}: their {shared} can change together without any effect");
@@ -63,13 +74,33 @@ pub fn report_floating(
         "hold one of them: `{symbol} {source}{size} {{ {field}: 0.0 }} -> {};`",
         graph.end_name(&End::Junction(place, range))
     );
-    let span = graph.origins.span(junction.origin);
     diagnostics.report(
         error(codes::SINGULAR_JUNCTIONS, span, message)
             .help(help)
             .help("or, if two of them are joined twice where once is meant, take one of the bonds away"),
     );
     true
+}
+
+/// The components in use in which a path leads, from inside out.
+fn instances(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(instance_of(path), |outer| instance_of(outer))
+}
+
+/// Components between which something is shared that nothing determines.
+fn shared_by(components: &BTreeSet<&str>, kind: JunctionKind, span: Span) -> Diagnostic {
+    let names = listing(components.iter().map(|name| (*name).to_owned()));
+    let (imposed, shared) = match kind {
+        JunctionKind::Zero => ("flows", "efforts"),
+        JunctionKind::One => ("efforts", "flows"),
+    };
+    let message = format!("{names} impose the same {imposed}: how they share the {shared} is open");
+    let report = error(codes::SINGULAR_JUNCTIONS, span, message);
+    let report = report.help("take one of them away");
+    match kind {
+        JunctionKind::Zero => report.help("or, of joints, let one give way: `blocked: compliant`"),
+        JunctionKind::One => report,
+    }
 }
 
 /// The junctions whose balances are in a mesh, in order of declaration.

@@ -18,7 +18,9 @@ pub mod matching;
 mod mesh;
 mod moments;
 mod nonlinear;
+mod outlook;
 mod reduction;
+mod refused;
 mod resolve;
 mod rest;
 mod selection;
@@ -26,6 +28,7 @@ mod shift;
 mod solve;
 mod tensor;
 mod tree;
+mod zero;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,6 +38,7 @@ use crate::symbolic::{Expression, Matrix, Pool};
 
 pub use floating::report_floating;
 pub use formulation::Formulation;
+pub use outlook::outlook;
 pub use reduction::{Reduction, reduce};
 pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};

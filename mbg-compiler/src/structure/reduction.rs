@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::levels;
 use super::matching;
+use super::refused::{apart, report_input, report_second_derivative, report_unmoved};
 use super::selection::{Lost, Selection};
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
@@ -699,59 +700,4 @@ impl Linear {
         self.constant = pool.add(self.constant, scaled);
         self.input = self.input.or(other.input);
     }
-}
-
-/// What keeps storages of a kind from depending on each other.
-fn apart(kind: ElementKind) -> &'static str {
-    match kind {
-        ElementKind::I => "or put a spring and a damper between them",
-        _ => "or put a resistor between them",
-    }
-}
-
-fn report_second_derivative(model: &Elaborated, id: ElementId, diagnostics: &mut Diagnostics) {
-    let graph = &model.graph;
-    let element = &graph.elements[id.0];
-    let message = format!(
-        "storage `{}` follows from efforts or flows that are rates themselves",
-        element.name
-    );
-    let report = error(
-        codes::ORDER_LOST_UNSUPPORTED,
-        graph.origins.span(element.origin),
-        message,
-    )
-    .note("it would have to be differentiated twice")
-    .help("put a spring and a damper, or an inertia, where it is coupled");
-    diagnostics.report(report);
-}
-
-fn report_unmoved(model: &Elaborated, closure: usize, diagnostics: &mut Diagnostics) {
-    let graph = &model.graph;
-    let closure = &graph.closures[closure];
-    let message = format!(
-        "the closure `{}` joins flows that do not follow from the states",
-        closure.name
-    );
-    let report = error(
-        codes::ORDER_LOST_UNSUPPORTED,
-        graph.origins.span(closure.origin),
-        message,
-    );
-    let help = "put an inertia at both ends, or let them move with joints whose rates are states";
-    diagnostics.report(report.help(help));
-}
-
-fn report_input(model: &Elaborated, owner: Owner, input: usize, diagnostics: &mut Diagnostics) {
-    let graph = &model.graph;
-    let span = match owner {
-        Owner::Element(id, _) => graph.origins.span(graph.elements[id.0].origin),
-        Owner::Structure | Owner::Coordinate(..) => model.name.span(),
-    };
-    let name = &model.inputs[input].name;
-    let message = format!("a dependent storage needs the time derivative of the input `{name}`");
-    let report = error(codes::ORDER_LOST_UNSUPPORTED, span, message)
-        .note("an input is known by its value alone")
-        .help("put a spring and a damper between the source and the storage, or give the source as a law of `t`");
-    diagnostics.report(report);
 }

@@ -1,15 +1,17 @@
 //! The solution of a model's equations, by whatever it takes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
-use super::{Failure, Solution, Undetermined, block_names, formulation, reduce, select};
+use super::zero::zero_law;
+use super::{Failure, Selection, Solution, Undetermined, block_names, formulation, reduce, select};
 use crate::codes;
 use crate::compile::text;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Equation, Owner, Scalars};
+use crate::graph::ElementId;
 use crate::symbolic::{Expression, Pool};
 
 /// Equations with their solution.
@@ -45,7 +47,15 @@ pub fn resolve(
         }
         Err(Failure::Singular) => {}
     }
-    let selection = select(model, &scalars, pool, diagnostics)?;
+    let mut told = Diagnostics::new();
+    let Some(selection) = select(model, &scalars, pool, &mut told) else {
+        let reports = match zero_law(model, pool) {
+            Some(report) => vec![report],
+            None => told.list().to_vec(),
+        };
+        reports.into_iter().for_each(|it| diagnostics.report(it));
+        return None;
+    };
     let reduction = reduce(model, scalars, &selection, pool, diagnostics)?;
     let scalars = reduction.scalars;
     match formulation::cheapest(&scalars, pool) {
@@ -59,11 +69,29 @@ pub fn resolve(
             None
         }
         Err(Failure::Singular) => {
-            let message = "the efforts between dependent storages are undetermined";
-            diagnostics.error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
+            report_unheld(model, &selection, diagnostics);
             None
         }
     }
+}
+
+/// Storages between which something moves without inertia, or is held twice.
+fn report_unheld(model: &Elaborated, selection: &Selection, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let lost: BTreeSet<ElementId> = selection.lost.iter().map(|lost| lost.element).collect();
+    let names = listing(lost.iter().map(|id| graph.elements[id.0].name.clone()));
+    let span = match lost.first() {
+        Some(id) => graph.origins.span(graph.elements[id.0].origin),
+        None => model.name.span(),
+    };
+    let message = format!("the efforts between dependent storages are undetermined: at {names}");
+    let report = error(codes::SINGULAR_JUNCTIONS, span, message)
+        .note("something there moves without inertia, or is held twice");
+    diagnostics.report(
+        report
+            .help("give every frame that can turn or move by itself a body with an inertia")
+            .help("or, where two joints hold one motion, put a `Cut` in the place of one"),
+    );
 }
 
 /// A nonlinear loop whose Jacobian is identically singular: its equations, and the slopes that show it.

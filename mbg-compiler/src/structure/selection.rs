@@ -267,7 +267,11 @@ impl<'a> Selector<'a> {
     /// Reports storages and sources that cannot be accepted.
     fn report(&self, diagnostics: &mut Diagnostics) -> Verdict {
         let before = diagnostics.list().len();
+        let mut sources: BTreeMap<ElementId, BTreeSet<Owner>> = BTreeMap::new();
         for (source, causes) in &self.sources {
+            sources.entry(*source).or_default().extend(causes);
+        }
+        for (source, causes) in &sources {
             self.report_source(*source, causes, diagnostics);
         }
         let mut by_element: BTreeMap<ElementId, (usize, BTreeSet<Owner>)> = BTreeMap::new();
@@ -319,14 +323,19 @@ impl<'a> Selector<'a> {
         let span = graph.origins.span(element.origin);
         let report = error(codes::SOURCES_CONFLICT, span, message);
         let names = self.names(id, causes);
-        if !names.is_empty() {
-            return diagnostics.report(report.note(format!("it is fixed by {names}")));
-        }
-        let report = report.note("the junction structure alone fixes it");
-        diagnostics.report(report.help(match element.kind {
-            ElementKind::Se => "give what it moves an inertia, such as a body on the frame that a joint carries",
-            _ => "where joints form a loop, close it by a `Cut`, or by `close a -> b by multipliers;`",
-        }));
+        let report = match names.is_empty() {
+            true => report.note("the junction structure alone fixes it"),
+            false => report.note(format!("it is fixed by {names}")),
+        };
+        diagnostics.report(match element.kind {
+            ElementKind::Se => report.help(
+                "give what it moves an inertia, such as a body on the frame that a joint carries",
+            ),
+            _ if names.is_empty() => report.help(
+                "where joints form a loop, close it by a `Cut`, or by `close a -> b by multipliers;`",
+            ),
+            _ => report,
+        });
     }
 
     fn report_storage(

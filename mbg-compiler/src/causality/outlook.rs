@@ -1,0 +1,76 @@
+//! What the equations, component by component, say of a drawing that is rejected.
+
+use super::report::COMPONENTWISE;
+use crate::diagnostics::Diagnostic;
+use crate::graph::Element;
+
+/// Which ways out exist.
+#[derive(Clone, Debug)]
+pub enum Outlook {
+    /// The equations keep every storage as a state: the drawing alone is at fault.
+    Soluble,
+    /// Storages depend on each other by the physics, which can be accepted.
+    Acceptable,
+    /// Storages depend on each other by the physics, and who accepts that is answered with this.
+    Refused(Box<Diagnostic>),
+}
+
+impl Outlook {
+    /// Whether the drawing alone is at fault.
+    #[must_use]
+    pub fn is_soluble(&self) -> bool {
+        matches!(self, Self::Soluble)
+    }
+
+    /// How to accept that storages are no states; nothing where that does not help.
+    #[must_use]
+    pub fn acceptance<'a>(&self, storages: impl Iterator<Item = &'a Element>) -> Option<String> {
+        if matches!(self, Self::Refused(_)) {
+            return None;
+        }
+        let mut ways: Vec<String> = Vec::new();
+        for way in storages.map(Element::acceptance) {
+            if !ways.contains(&way) {
+                ways.push(way);
+            }
+        }
+        Some(ways.join("; and "))
+    }
+
+    /// One stroke per component as a way out.
+    #[must_use]
+    pub fn componentwise(&self, storage: &Element) -> Option<String> {
+        if self.is_soluble() {
+            return Some(COMPONENTWISE.to_owned());
+        }
+        let acceptance = self.acceptance(std::iter::once(storage))?;
+        let name = &storage.name;
+        Some(format!(
+            "{COMPONENTWISE}; what is imposed on `{name}` is no state then: {acceptance}"
+        ))
+    }
+
+    /// Why it does not help to accept that storages are no states.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let Self::Refused(report) = self else {
+            return Vec::new();
+        };
+        let first = format!("`#[derivative]` does not mend it: {}", report.message);
+        std::iter::once(first)
+            .chain(report.notes.iter().cloned())
+            .collect()
+    }
+
+    /// What helps where accepting does not.
+    #[must_use]
+    pub fn helps(&self) -> Vec<String> {
+        let Self::Refused(report) = self else {
+            return Vec::new();
+        };
+        let helps = report.helps.iter();
+        helps
+            .map(|help| help.trim_start_matches("or ").to_owned())
+            .collect()
+    }
+}

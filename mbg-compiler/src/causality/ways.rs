@@ -1,0 +1,72 @@
+//! Ways out that rewrite a part of the graph, with the text to type.
+
+use crate::graph::{BondGraph, ElementId, End, Law, Rule};
+use crate::symbolic::Expression;
+
+use super::words;
+
+/// What is put between a source and what it acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Between {
+    /// A resistor, which leaves what is behind it free.
+    Resistor,
+    /// The storage of the other kind, which gives what is behind it the variable that the source gave.
+    Storage,
+}
+
+/// How a source can act without imposing its variable; none for what is no source of the user's, or a ground.
+#[must_use]
+pub fn through(graph: &BondGraph, id: ElementId, between: Between) -> Option<String> {
+    let element = &graph.elements[id.0];
+    let is_zero =
+        matches!(&element.law, Law::Source(rows) if rows.iter().all(|it| *it == Expression::ZERO));
+    let (outer, inner) = match element.rule {
+        Rule::FlowOut => (1, 0),
+        Rule::EffortOut => (0, 1),
+        _ => return None,
+    };
+    let (word, store) = match (between, element.rule) {
+        (Between::Resistor, _) if is_zero || element.instance().is_some() => return None,
+        (Between::Resistor, _) => ("resistor", "R resistor { resistance: … }"),
+        (Between::Storage, Rule::FlowOut) => ("spring", "C spring { stiffness: … }"),
+        (Between::Storage, _) => ("mass", "I mass { inertia: … }"),
+    };
+    let own = End::OnePort(id);
+    let mut bonds = graph.bonds.iter();
+    let bond = bonds.find(|it| it.from == own || it.to == own)?;
+    let far = if bond.from == own {
+        &bond.to
+    } else {
+        &bond.from
+    };
+    let place = graph.end_name(far);
+    let dimension = match bond.dimension {
+        1 => String::new(),
+        dimension => format!("[{dimension}]"),
+    };
+    let name = &element.name;
+    Some(format!(
+        "remove `{name}`, or let it act through a {word}: bond it to `{outer} driven{dimension};` and write \
+         `{inner} between{dimension} {{ {store} }} driven -> between; between -> {place};`"
+    ))
+}
+
+/// How a transformer without an inverse is written whose matrix was meant for the efforts.
+#[must_use]
+pub fn turned(graph: &BondGraph, id: ElementId) -> Option<String> {
+    let element = &graph.elements[id.0];
+    let Rule::Transformer { rows, columns, .. } = element.rule else {
+        return None;
+    };
+    if rows == columns || element.instance().is_some() {
+        return None;
+    }
+    let before = graph.bonds.iter().find(|bond| bond.to == End::In(id))?;
+    let after = graph.bonds.iter().find(|bond| bond.from == End::Out(id))?;
+    let [before, after] = [&before.from, &after.to].map(|end| graph.end_name(end));
+    let (kind, name) = (words::symbol(element.kind), &element.name);
+    Some(format!(
+        "where its matrix takes the effort of `{before}` to that of `{after}`, turn it round: \
+         `{after} -> {kind} {name} {{ flow: -transpose(…) }} -> {before};`"
+    ))
+}

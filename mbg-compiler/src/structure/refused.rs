@@ -1,0 +1,101 @@
+//! Dependences between storages that are accepted by `#[derivative]`, and not supported all the same.
+
+use crate::causality::ways::{Between, through};
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error};
+use crate::elaborate::{Elaborated, Variable};
+use crate::equations::Owner;
+use crate::graph::{ElementId, ElementKind};
+
+/// What keeps storages of a kind from depending on each other.
+pub(super) fn apart(kind: ElementKind) -> &'static str {
+    match kind {
+        ElementKind::I => "or put a spring and a damper between them",
+        _ => "or put a resistor between them",
+    }
+}
+
+/// A storage that depends on rates.
+pub(super) fn report_second_derivative(
+    model: &Elaborated,
+    id: ElementId,
+    diagnostics: &mut Diagnostics,
+) {
+    let graph = &model.graph;
+    let element = &graph.elements[id.0];
+    let message = format!(
+        "storage `{}` follows from efforts or flows that are rates themselves",
+        element.name
+    );
+    let report = error(
+        codes::ORDER_LOST_UNSUPPORTED,
+        graph.origins.span(element.origin),
+        message,
+    )
+    .note("it would have to be differentiated twice")
+    .help("put a spring and a damper, or an inertia, where it is coupled");
+    diagnostics.report(report);
+}
+
+/// A closure between flows without states behind them.
+pub(super) fn report_unmoved(model: &Elaborated, closure: usize, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let closure = &graph.closures[closure];
+    let message = format!(
+        "the closure `{}` joins flows that do not follow from the states",
+        closure.name
+    );
+    let report = error(
+        codes::ORDER_LOST_UNSUPPORTED,
+        graph.origins.span(closure.origin),
+        message,
+    );
+    let help = "put an inertia at both ends, or let them move with joints whose rates are states";
+    diagnostics.report(report.help(help));
+}
+
+/// A storage that depends on an input.
+pub(super) fn report_input(
+    model: &Elaborated,
+    owner: Owner,
+    input: usize,
+    diagnostics: &mut Diagnostics,
+) {
+    let graph = &model.graph;
+    let span = match owner {
+        Owner::Element(id, _) => graph.origins.span(graph.elements[id.0].origin),
+        Owner::Structure | Owner::Coordinate(..) => model.name.span(),
+    };
+    let name = &model.inputs[input].name;
+    let message = format!("a dependent storage needs the time derivative of the input `{name}`");
+    let mut report = error(codes::ORDER_LOST_UNSUPPORTED, span, message)
+        .note("an input is known by its value alone");
+    if let Owner::Element(id, _) = owner
+        && let Some(help) = through(graph, id, Between::Resistor)
+    {
+        report = report.help(help);
+    }
+    diagnostics.report(
+        report
+            .help(by_rate(model, input))
+            .help("or write `#[derivative]` and give a law of `t` in its place"),
+    );
+}
+
+/// How an input is given by its rate instead.
+fn by_rate(model: &Elaborated, input: usize) -> String {
+    let name = |input: &Variable| input.name.split('.').next().unwrap_or_default().to_owned();
+    let own = name(&model.inputs[input]);
+    let size = match model.inputs.iter().filter(|it| name(it) == own).count() {
+        1 => String::new(),
+        count => format!("[{count}]"),
+    };
+    let unit = match model.inputs[input].unit.as_str() {
+        "" => String::new(),
+        unit => format!(": {unit}"),
+    };
+    format!(
+        "or write `#[derivative]` and give the rate: in the place of `input {own}{size}{unit};` write \
+         `input {own}_rate{size}; integral {own}{size}{unit} = {own}_rate;`"
+    )
+}

@@ -49,7 +49,7 @@ fn mistakes_in_laws_are_told() {
       help: its words are `inertia`, `flow`, `energy`, `initial`, `initial_flow`, `gyroscopic`
     2:41 `Sin` is not a function of the language [MBG0203]
       help: did you mean `sin`?
-      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
+      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, pow, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
     ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0 } } v -> v;"), @"
     2:32 `v -> v` joins a junction to itself, which says nothing [MBG0209]
@@ -197,6 +197,15 @@ fn coefficients_may_change_with_the_state_they_multiply() {
             "C c { compliance: 1.0 / sqrt(1.0 + q) }",
             2.0 * (1.3_f64.powf(2.5) / 5.0 - 1.3_f64.powf(1.5) / 3.0 + 2.0 / 15.0),
         ),
+        // A contact of Hertz: ⅖ · 3 q^(5/2)
+        (
+            "C c { effort: 3.0 * pow(max(q, 0.0), 1.5) }",
+            1.2 * 0.3_f64.powf(2.5),
+        ),
+        (
+            "C c { effort: pow(1.0 - q, -1.4) }",
+            2.5 * (0.7_f64.powf(-0.4) - 1.0),
+        ),
         // Gas, a chemical potential, play
         (
             "C c { effort: 2.0 * exp(1.4 * ln(1.0 / (1.0 - q))) }",
@@ -327,13 +336,12 @@ fn words_of_other_languages_are_answered_with_what_has_their_value() {
         ("norm([3.0, 4.0])", 5.0),
         ("dot([3.0, 4.0], [1.0, 2.0])", 11.0),
         ("radians(90)", std::f64::consts::FRAC_PI_2),
-        ("pow(0.7, 2)", 0.49),
         ("powf(0.7, 2.0)", 0.49),
-        ("pow(0.2 + 0.5, -1)", 0.7_f64.recip()),
+        ("powf(0.2 + 0.5, -1)", 0.7_f64.recip()),
         ("powf(0.7, 0.5)", 0.7_f64.sqrt()),
         ("powf(0.7, 1.5)", 0.7_f64.powf(1.5)),
         ("powi(0.7, 1.5)", 0.7_f64.powf(1.5)),
-        ("pow(0.7, 1.0 + 0.5)", 0.7_f64.powf(1.5)),
+        ("powf(0.7, 1.0 + 0.5)", 0.7_f64.powf(1.5)),
         ("0.7 ^ 2", 0.49),
         ("0.7 ** 2", 0.49),
         ("0.7 ** 1.5", 0.7_f64.powf(1.5)),
@@ -353,6 +361,62 @@ fn words_of_other_languages_are_answered_with_what_has_their_value() {
 }
 
 #[test]
+fn powers_are_those_of_the_standard_library() {
+    for (typed, expected) in [
+        ("pow(0.7, 1.5)", 0.7_f64.powf(1.5)),
+        ("pow(0.7, -0.3)", 0.7_f64.powf(-0.3)),
+        ("pow(0.7, 0.5)", 0.7_f64.sqrt()),
+        ("pow(-0.7, 3)", -0.343),
+        ("pow(0.2 + 0.5, -1)", 0.7_f64.recip()),
+        ("pow(0.0, 1.5)", 0.0),
+    ] {
+        let found = value(typed);
+        assert!((found - expected).abs() < 1e-15, "{typed}: {found}");
+    }
+}
+
+/// At zero, where a product with a root has none: slopes of forces, and of one whose exponent varies.
+#[test]
+fn powers_have_slopes_at_zero() {
+    let model = compiled(
+        "model M { param n = 1.5; input m; 1 v {
+            C contact { effort: 3.0 * pow(max(q, 0.0), n) }
+            R water { effort: 2.0 * sign(f) * pow(abs(f), 1.75) }
+            R oil { effort: pow(2.0 + tanh(f), m) - pow(2.0, m) }
+            I body { inertia: 1.0 }
+        } }",
+    );
+    let entries = |routine, state: [f64; 2]| {
+        let arguments = Arguments {
+            parameters: &[1.5],
+            time: 0.0,
+            state: &state,
+            input: &[0.3],
+        };
+        program::evaluate(&model.program, routine, &arguments)
+    };
+    let oil = |f: f64| 0.3 * (2.0 + f.tanh()).powf(-0.7) * (1.0 - f.tanh().powi(2));
+    for (q, f) in [(0.0_f64, 0.0_f64), (-0.1, 0.0), (0.2, -0.3)] {
+        let stiffness = 4.5 * q.max(0.0).sqrt();
+        let damping = 3.5 * f.abs().powf(0.75) + oil(f);
+        let found = &entries(Routines::DERIVATIVE_AND_JACOBIAN, [q, f])[2..];
+        for (found, expected) in found.iter().zip([0.0, 1.0, -stiffness, -damping]) {
+            assert!(
+                (found - expected).abs() < 1e-14,
+                "{q} {f}: {found}, not {expected}"
+            );
+        }
+        let base = 2.0 + f.tanh();
+        let by_exponent = 2.0_f64.powf(0.3) * 2.0_f64.ln() - base.powf(0.3) * base.ln();
+        let found = entries(Routines::JACOBIAN_INPUT, [q, f])[1];
+        assert!(
+            (found - by_exponent).abs() < 1e-15,
+            "{q} {f}: {found}, not {by_exponent}"
+        );
+    }
+}
+
+#[test]
 fn mistakes_in_powers_and_functions_are_told() {
     // What stands beside the sign was meant, whatever Rust takes for its operands.
     insta::assert_snapshot!(mistake("1 v { R r { effort: 3.0 * f ** 2 + f } }"), @"
@@ -365,7 +429,7 @@ fn mistakes_in_powers_and_functions_are_told() {
     ");
     insta::assert_snapshot!(mistake("1 v { R r { effort: powi(f, n) } }"), @"
     2:29 expected an integer exponent between -64 and 64 [MBG0213]
-      help: write `exp(n * ln(f))`, where `f` is positive
+      help: write `pow(f, n)`, where `f` is not negative
     ");
     insta::assert_snapshot!(mistake("1 v { R r { effort: atan(f) } }"), @"
     2:21 `atan` is not a function of the language [MBG0203]

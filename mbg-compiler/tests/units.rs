@@ -125,6 +125,16 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "`x` is `m` and `y` is `s`",
     ),
     (
+        "param x: m = 1.0; param n = 1.5; output z: m = pow(x, 1.5) / sqrt(x); output y = pow(x, n);",
+        "pow(",
+        "`pow` takes a pure number or an angle, and `x` is `m`",
+    ),
+    (
+        "param x: m = 1.0; output z: m = pow(x, 1.5);",
+        "pow(",
+        "`z` is declared in `m`, and this is `m^(3/2)`",
+    ),
+    (
         "param x: m = 1.0; output z = max(x, mass);",
         "max(",
         "`x` is `m` and `mass` is `kg`",

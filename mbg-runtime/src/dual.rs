@@ -184,6 +184,19 @@ impl<T: Real> Real for Dual<T> {
         }
     }
 
+    fn pow(self, exponent: Self) -> Self {
+        let before = self.value.pow(exponent.value - T::from_f64(1.0));
+        let power = self.chain(self.value.pow(exponent.value), exponent.value * before);
+        if exponent.slope == T::from_f64(0.0) {
+            return power;
+        }
+        let by_exponent = power.value * self.value.ln() * exponent.slope;
+        Self {
+            slope: power.slope + by_exponent,
+            ..power
+        }
+    }
+
     fn exp(self) -> Self {
         let power = self.value.exp();
         self.chain(power, power)
@@ -317,6 +330,11 @@ mod tests {
                 y.atan2(x),
                 0.7_f64.atan2(-0.4),
                 (-0.4 * 2.0 - 0.7 * 5.0) / (0.16 + 0.49),
+            ),
+            (
+                y.pow(x),
+                0.7_f64.powf(-0.4),
+                0.7_f64.powf(-0.4) * (5.0 * 0.7_f64.ln() - 0.4 * 2.0 / 0.7),
             ),
             (y.min(x), -0.4, 5.0),
             (x.min(y), -0.4, 5.0),

@@ -148,7 +148,7 @@ macro_rules! lanes {
                 sine::sines_cosines(angles, sine::moderate)
             }
 
-            lane_by_lane!($scalar: tan, asin, acos, ln; atan2);
+            lane_by_lane!($scalar: tan, asin, acos, ln; atan2, pow);
 
             #[inline]
             fn exp(self) -> Self {
@@ -249,7 +249,7 @@ pub(crate) mod tests {
     use crate::solve::lanes::random;
 
     /// What is computed of two numbers: every function and every operation.
-    pub(crate) fn everything<T: Real>(a: T, b: T) -> [T; 21] {
+    pub(crate) fn everything<T: Real>(a: T, b: T) -> [T; 22] {
         let mut sum = a;
         sum += b;
         sum -= a;
@@ -276,6 +276,7 @@ pub(crate) mod tests {
             a.min(b),
             a.max(b),
             a.select_less(b, T::from_f64(1.0), b),
+            a.abs().pow(b),
         ]
     }
 

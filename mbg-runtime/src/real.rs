@@ -109,6 +109,8 @@ pub trait Real:
     fn exp(self) -> Self;
     /// Natural logarithm; NaN for negative numbers.
     fn ln(self) -> Self;
+    /// `self` to the power of `exponent`; NaN for negative numbers, unless the exponent is whole.
+    fn pow(self, exponent: Self) -> Self;
     /// Square root; NaN for negative numbers.
     fn sqrt(self) -> Self;
     /// Hyperbolic tangent, within 2.75 units of the last place.

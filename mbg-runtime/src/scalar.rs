@@ -135,6 +135,14 @@ impl Real for f64 {
         #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
         return libm::atan2(self, x);
     }
+
+    #[inline]
+    fn pow(self, exponent: Self) -> Self {
+        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
+        return f64::powf(self, exponent);
+        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
+        return libm::pow(self, exponent);
+    }
 }
 
 impl Real for f32 {
@@ -155,15 +163,14 @@ impl Real for f32 {
         #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
         return libm::atan2f(self, x);
     }
-}
 
-/// `base` to the power of `exponent`, for step control.
-#[inline]
-pub(crate) fn power(base: f64, exponent: f64) -> f64 {
-    #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
-    return base.powf(exponent);
-    #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
-    return libm::pow(base, exponent);
+    #[inline]
+    fn pow(self, exponent: Self) -> Self {
+        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
+        return f32::powf(self, exponent);
+        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
+        return libm::powf(self, exponent);
+    }
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ const WORDS: &[(&str, &[&str], &str)] = &[
 
 /// What to type here for a word of another language with these arguments.
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
-    if let ("pow" | "powf", [base, exponent]) = (word, arguments) {
+    if let ("powf", [base, exponent]) = (word, arguments) {
         return Some(power(base, exponent));
     }
     let (_, places, text) = WORDS.iter().find(|(known, _, _)| *known == word)?;
@@ -73,8 +73,8 @@ pub(super) fn power(base: &Expr, exponent: &Expr) -> String {
             format!("write `{}`", filled(&format!("powi(x, {whole})"), &places))
         }
         _ => {
-            let (text, base) = (filled("exp(n * ln(x))", &places), dump::expression(base));
-            format!("write `{text}`, where `{base}` is positive")
+            let (text, base) = (filled("pow(x, n)", &places), dump::expression(base));
+            format!("write `{text}`, where `{base}` is not negative")
         }
     }
 }
@@ -125,7 +125,7 @@ fn bare(expression: &Expr) -> &Expr {
 }
 
 /// The number that an expression is.
-fn number(expression: &Expr) -> Option<f64> {
+pub(super) fn number(expression: &Expr) -> Option<f64> {
     match bare(expression) {
         Expr::Lit(literal) => match &literal.lit {
             Lit::Int(number) => number.base10_parse().ok(),

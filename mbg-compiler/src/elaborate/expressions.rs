@@ -8,7 +8,7 @@ use super::elsewhere;
 use super::model::Assumption;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::symbolic::{Expression, Factor, Function, Matrix, Pool, Product, Rate};
+use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Pool, Product, Rate};
 use crate::syntax::dump;
 
 /// What an expression stands for.
@@ -24,7 +24,7 @@ pub enum Value {
 pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
 
 /// Functions, as messages list them.
-const FUNCTIONS: [&str; 29] = [
+const FUNCTIONS: [&str; 30] = [
     "sin",
     "cos",
     "tan",
@@ -39,6 +39,7 @@ const FUNCTIONS: [&str; 29] = [
     "tanh",
     "min",
     "max",
+    "pow",
     "powi",
     "interpolate",
     "diag",
@@ -562,9 +563,9 @@ impl<N: Names> Evaluator<'_, N> {
                     self.pool.cosine(angle)
                 }))
             }
-            "powi" => {
+            "pow" | "powi" => {
                 count(2)?;
-                self.power(arguments)
+                self.power(name, arguments)
             }
             "interpolate" => {
                 let [x, places, values] = arguments else {
@@ -641,26 +642,35 @@ impl<N: Names> Evaluator<'_, N> {
         Ok(Value::Scalar(self.pool.call(function, &values?)))
     }
 
-    fn power(&mut self, arguments: &[Expr]) -> Result<Value> {
+    /// `pow`, and `powi`, which takes whole exponents only.
+    fn power(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
         let base = self.scalar(&arguments[0])?;
-        let exponent = self.scalar(&arguments[1])?;
-        match self.pool.constant_value(exponent) {
-            Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => {
-                match self.pool.power(base, value as i32) {
-                    Some(power) => Ok(Value::Scalar(power)),
-                    None => Err(Box::new(error(
-                        codes::NOT_FINITE,
-                        arguments[0].span(),
-                        "this divides by zero, whatever the state",
-                    ))),
-                }
-            }
-            _ => {
-                let message = "expected an integer exponent between -64 and 64";
-                let report = error(codes::EXPRESSION, arguments[1].span(), message);
-                let help = elsewhere::power(&arguments[0], &arguments[1]);
-                Err(Box::new(report.help(help)))
-            }
+        let exponent = self.exponent(&arguments[1])?;
+        let value = self.pool.constant_value(exponent);
+        let is_whole = value.is_some_and(|it| it.fract() == 0.0 && it.abs() <= LARGEST_POWER);
+        if name == "powi" && !is_whole {
+            let message = "expected an integer exponent between -64 and 64";
+            let report = error(codes::EXPRESSION, arguments[1].span(), message);
+            let help = elsewhere::power(&arguments[0], &arguments[1]);
+            return Err(Box::new(report.help(help)));
+        }
+        match self.pool.real_power(base, exponent) {
+            Some(power) => Ok(Value::Scalar(power)),
+            None => Err(Box::new(error(
+                codes::NOT_FINITE,
+                arguments[0].span(),
+                "this divides by zero, whatever the state",
+            ))),
+        }
+    }
+
+    /// The exponent of a power. One that is written as a number has no unit, whatever other numbers may carry.
+    fn exponent(&mut self, exponent: &Expr) -> Result<Expression> {
+        let number = elsewhere::number(exponent);
+        let literal = number.and_then(|it| self.pool.literal(&format!("{:?}", it.abs())));
+        match (number, literal) {
+            (Some(number), Some(literal)) => Ok(literal.flipped(number < 0.0)),
+            _ => self.scalar(exponent),
         }
     }
 

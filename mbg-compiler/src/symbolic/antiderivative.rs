@@ -176,6 +176,15 @@ impl Integration<'_> {
                 let value = self.pool.subtract(product, u);
                 self.inner(u, value)
             }
+            Function::Pow => {
+                let next = self.pool.add(arguments[1], Expression::ONE);
+                let power = self
+                    .pool
+                    .real_power(u, next)
+                    .filter(|_| self.is_free(next))?;
+                let value = self.pool.divide(power, next)?;
+                self.inner(u, value)
+            }
             Function::Sqrt => {
                 let root = self.pool.call(Function::Sqrt, &[u]);
                 let product = self.pool.multiply(u, root);

@@ -3,9 +3,12 @@
 //! What is there already is found by its value, what changes seldom is gathered, and common factors are taken out where
 //! that saves work.
 
-use super::expression::{Expression, Operation, Rate};
+use super::expression::{Expression, Function, Operation, Rate};
 use super::field::Image;
 use super::pool::Pool;
+
+/// Whole exponents up to this are products.
+pub const LARGEST_POWER: f64 = 64.0;
 
 impl Pool {
     /// Sum.
@@ -262,6 +265,20 @@ impl Pool {
             self.divide(Expression::ONE, result)
         } else {
             Some(result)
+        }
+    }
+
+    /// Power with any exponent, of a base that is not negative unless the exponent is whole; none for a negative power of
+    /// zero.
+    #[must_use]
+    pub fn real_power(&mut self, base: Expression, exponent: Expression) -> Option<Expression> {
+        match self.constant_value(exponent) {
+            Some(whole) if whole.fract() == 0.0 && whole.abs() <= LARGEST_POWER => {
+                self.power(base, whole as i32)
+            }
+            Some(0.5) => Some(self.call(Function::Sqrt, &[base])),
+            Some(negative) if negative < 0.0 && base == Expression::ZERO => None,
+            _ => Some(self.call(Function::Pow, &[base, exponent])),
         }
     }
 }

@@ -50,12 +50,19 @@ impl Integration<'_> {
 
     /// Whether it has no jumps and no poles, over which the antiderivative would have another constant.
     fn is_continuous(&self, inner: Expression) -> bool {
-        use Function::{Atan2, SelectLess, Sign, Tan};
+        use Function::{Atan2, Pow, SelectLess, Sign, Tan};
         let mut jumping = Vec::new();
         visit(self.pool, &[inner], |_, operation| match operation {
             Operation::Divide(_, divisor) => jumping.push(*divisor),
             Operation::Call(Sign | Tan | Atan2 | SelectLess, arguments) => {
                 jumping.extend(arguments);
+            }
+            // With an exponent below zero it has a pole.
+            Operation::Call(Pow, arguments) => {
+                let exponent = self.pool.constant_value(arguments[1]);
+                if exponent.is_none_or(|it| it < 0.0) {
+                    jumping.push(arguments[0]);
+                }
             }
             _ => {}
         });

@@ -251,6 +251,7 @@ fn call_rule(
             known.of(arguments[1]),
         ),
         Function::Atan2 => atan2_rule(pool, known, arguments[0], arguments[1]),
+        Function::Pow => power_rule(pool, known, whole, arguments[0], arguments[1]),
         _ if inner == Expression::ZERO => Expression::ZERO,
         _ => {
             let outer = outer(pool, whole, function, arguments[0]);
@@ -282,6 +283,32 @@ fn atan2_rule(pool: &mut Pool, known: &Rewritten, y: Expression, x: Expression) 
     pool.divide(numerator, radius).unwrap_or(Expression::ZERO)
 }
 
+/// Of `x^p`: `p x^(p − 1) x' + x^p ln(x) p'`. The first is finite at zero where `p` is above 1, which no form with `x^p / x`
+/// is.
+fn power_rule(
+    pool: &mut Pool,
+    known: &Rewritten,
+    whole: Expression,
+    base: Expression,
+    exponent: Expression,
+) -> Expression {
+    let before = pool.subtract(exponent, Expression::ONE);
+    let slope = pool.real_power(base, before).unwrap_or(Expression::ZERO);
+    let factors = [exponent, slope, known.of(base)];
+    let by_base = factors
+        .into_iter()
+        .fold(Expression::ONE, |a, b| pool.multiply(a, b));
+    if known.of(exponent) == Expression::ZERO {
+        return by_base;
+    }
+    let logarithm = pool.call(Function::Ln, &[base]);
+    let factors = [whole, logarithm, known.of(exponent)];
+    let by_exponent = factors
+        .into_iter()
+        .fold(Expression::ONE, |a, b| pool.multiply(a, b));
+    pool.add(by_base, by_exponent)
+}
+
 /// Derivative of a function of one argument with respect to it, in terms of the value `whole` where that is
 /// cheapest.
 fn outer(pool: &mut Pool, whole: Expression, function: Function, a: Expression) -> Expression {
@@ -310,9 +337,12 @@ fn outer(pool: &mut Pool, whole: Expression, function: Function, a: Expression) 
             quotient(pool, one, root).flipped(function == Function::Acos)
         }
         // The derivative of a step is zero wherever it exists; the others are handled by their own rules.
-        Function::Sign | Function::Min | Function::Max | Function::Atan2 | Function::SelectLess => {
-            Expression::ZERO
-        }
+        Function::Sign
+        | Function::Min
+        | Function::Max
+        | Function::Atan2
+        | Function::Pow
+        | Function::SelectLess => Expression::ZERO,
     }
 }
 

@@ -83,6 +83,8 @@ pub enum Function {
     Exp,
     /// Natural logarithm.
     Ln,
+    /// The first argument to the power of the second.
+    Pow,
     /// Square root.
     Sqrt,
     /// Absolute value.
@@ -101,13 +103,14 @@ pub enum Function {
 
 impl Function {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Tan,
         Self::Asin,
         Self::Acos,
         Self::Atan2,
         Self::Exp,
         Self::Ln,
+        Self::Pow,
         Self::Sqrt,
         Self::Abs,
         Self::Sign,
@@ -127,6 +130,7 @@ impl Function {
             Self::Atan2 => "atan2",
             Self::Exp => "exp",
             Self::Ln => "ln",
+            Self::Pow => "pow",
             Self::Sqrt => "sqrt",
             Self::Abs => "abs",
             Self::Sign => "sign",
@@ -141,7 +145,7 @@ impl Function {
     #[must_use]
     pub fn arity(self) -> usize {
         match self {
-            Self::Atan2 | Self::Min | Self::Max => 2,
+            Self::Atan2 | Self::Pow | Self::Min | Self::Max => 2,
             Self::SelectLess => 4,
             _ => 1,
         }
@@ -157,6 +161,7 @@ impl Function {
             Self::Atan2 => a[0].atan2(a[1]),
             Self::Exp => a[0].exp(),
             Self::Ln => a[0].ln(),
+            Self::Pow => a[0].powf(a[1]),
             Self::Sqrt => a[0].sqrt(),
             Self::Abs => a[0].abs(),
             Self::Sign => f64::from(i8::from(a[0] > 0.0) - i8::from(a[0] < 0.0)),

@@ -27,6 +27,7 @@ mod walk;
 
 pub use affine::{affine, linear_part};
 pub use antiderivative::antiderivative;
+pub use arithmetic::LARGEST_POWER;
 pub use dense::dense;
 pub use determinant::determinant;
 pub use differentiate::{Differentiator, jacobian};

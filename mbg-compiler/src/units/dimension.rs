@@ -12,6 +12,9 @@ pub(super) struct Ratio {
 /// Exponents are held below this, so that nothing overflows; no quantity of physics comes near.
 const LARGEST: i64 = 1 << 30;
 
+/// Exponents of powers that are looked for: 1.4 has 5, 0.714 has 500.
+const LARGEST_DENOMINATOR: i64 = 1000;
+
 impl Ratio {
     /// One.
     pub(super) const ONE: Self = Self {
@@ -46,6 +49,18 @@ impl Ratio {
             numerator: held(numerator),
             denominator: held(denominator).max(1),
         }
+    }
+
+    /// The fraction of a small denominator that a number is, if it is one.
+    #[must_use]
+    pub(super) fn nearest(number: f64) -> Option<Self> {
+        let numerator = |denominator: i64| number * denominator as f64;
+        let is_whole = |number: f64| (number - number.round()).abs() < 1e-9 && number.abs() < 1e6;
+        let denominator = (1..=LARGEST_DENOMINATOR).find(|it| is_whole(numerator(*it)))?;
+        Some(Self::new(
+            numerator(denominator).round() as i64,
+            denominator,
+        ))
     }
 
     fn plus(self, other: Self) -> Self {

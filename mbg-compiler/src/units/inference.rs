@@ -120,6 +120,7 @@ impl<'a> Inference<'a> {
                 Measure::Number => Measure::Number,
                 Measure::Of(unit) => Measure::Of(Dimension::pure().times_power(&unit, Ratio::HALF)),
             },
+            (Function::Pow, [base, exponent]) => self.power(*base, *exponent, mistakes),
             (Function::Min | Function::Max, [a, b]) => self.alike(*a, *b, mistakes),
             (Function::Atan2, [a, b]) => {
                 self.alike(*a, *b, mistakes);
@@ -134,6 +135,26 @@ impl<'a> Inference<'a> {
                     self.argument(function.name(), *argument, mistakes);
                 }
                 Measure::pure()
+            }
+        }
+    }
+
+    /// The unit of a power: that of the base to a known exponent, or else both are pure numbers.
+    fn power(
+        &mut self,
+        base: Expression,
+        exponent: Expression,
+        mistakes: &mut Vec<Mismatch>,
+    ) -> Measure {
+        let known = self.pool.constant_value(exponent).and_then(Ratio::nearest);
+        match (self.known(base), known) {
+            (Measure::Number, Some(_)) => Measure::Number,
+            (Measure::Of(unit), Some(power)) => {
+                Measure::Of(Dimension::pure().times_power(&unit, power))
+            }
+            (_, None) => {
+                self.argument(Function::Pow.name(), base, mistakes);
+                self.argument(Function::Pow.name(), exponent, mistakes)
             }
         }
     }

@@ -25,6 +25,7 @@ const LAWS: &[&str] = &[
     "powi",
     "min",
     "atan2",
+    "pow",
     "skew",
     "diag",
     "transpose",

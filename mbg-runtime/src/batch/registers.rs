@@ -211,6 +211,14 @@ macro_rules! registers {
             }
 
             #[inline(always)]
+            fn pow(mut self, exponent: Self) -> Self {
+                for (x, n) in self.0.as_mut_slice().iter_mut().zip(exponent.0.as_slice()) {
+                    *x = Real::pow(*x, *n);
+                }
+                self
+            }
+
+            #[inline(always)]
             fn exp(self) -> Self {
                 exponential::exp(self)
             }

@@ -78,7 +78,7 @@ impl Real for Pair {
         (self.each(f64::sin), self.each(f64::cos))
     }
 
-    functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, min, max);
+    functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
 
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         Self([0, 1].map(|i| self.0[i].select_less(bound.0[i], yes.0[i], no.0[i])))

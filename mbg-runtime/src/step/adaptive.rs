@@ -12,7 +12,6 @@ use super::problem::Problem;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
 use super::{Cause, Stopped, check_result, less, seen};
-use crate::scalar::power;
 use crate::{Input, Real, System};
 
 /// A method at steps whose length follows its estimate of the error.
@@ -264,7 +263,7 @@ impl<M: Estimating> Adaptive<'_, M> {
         problem.memory = memory;
         let second = measure.norm(&(ahead - slope)) / trial;
         let largest = first.max(second);
-        let accurate = power(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER));
+        let accurate = Real::pow(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER));
         // An infinite slope ahead gives zero or NaN; the first trial is safer then.
         let step = most.min(accurate).min(longest);
         if step > 0.0 && second.is_finite() {

@@ -1,7 +1,6 @@
 //! The length of steps that follow the error.
 
 use crate::Real;
-use crate::scalar::power;
 
 /// How the length of the next step follows the errors of this one and of the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +79,7 @@ impl Control {
 
     pub(super) fn reject(&mut self, length: f64, error: f64) {
         let shorter = if error.is_finite() {
-            (power(error, PROPORTION * self.exponent) / SAFETY).min(5.0)
+            (Real::pow(error, PROPORTION * self.exponent) / SAFETY).min(5.0)
         } else {
             5.0
         };
@@ -115,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_trend_of_the_error_goes_on_only_where_it_grows() {
-        let allowed = |error| SAFETY / power(error, 0.25);
+        let allowed = |error| SAFETY / Real::pow(error, 0.25);
         let assert_next = |errors, expected: f64| {
             let found = next(Rule::Trend, errors);
             assert!(
@@ -144,7 +143,7 @@ mod tests {
     fn steps_heed_an_error_that_grows_unless_something_drives_the_model() {
         let errors = [1e-2, 0.5];
         let trend = next(Rule::Trend, errors);
-        assert!(trend < 0.7 * SAFETY / power(errors[1], 0.25));
+        assert!(trend < 0.7 * SAFETY / Real::pow(errors[1], 0.25));
         assert_eq!(next(Rule::Steady, errors), trend);
         assert!(next(Rule::Proportional, errors) > 1.4 * trend);
         let alone = Control::new(4, 1.0, true);

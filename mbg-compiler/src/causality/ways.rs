@@ -1,6 +1,6 @@
 //! Ways out that rewrite a part of the graph, with the text to type.
 
-use crate::graph::{BondGraph, ElementId, End, Law, Rule};
+use crate::graph::{BondGraph, ElementId, End, JunctionKind, Law, Rule, declaration};
 use crate::symbolic::Expression;
 
 use super::words;
@@ -21,8 +21,8 @@ pub fn through(graph: &BondGraph, id: ElementId, between: Between) -> Option<Str
     let is_zero =
         matches!(&element.law, Law::Source(rows) if rows.iter().all(|it| *it == Expression::ZERO));
     let (outer, inner) = match element.rule {
-        Rule::FlowOut => (1, 0),
-        Rule::EffortOut => (0, 1),
+        Rule::FlowOut => (JunctionKind::One, JunctionKind::Zero),
+        Rule::EffortOut => (JunctionKind::Zero, JunctionKind::One),
         _ => return None,
     };
     let (word, store) = match (between, element.rule) {
@@ -40,14 +40,12 @@ pub fn through(graph: &BondGraph, id: ElementId, between: Between) -> Option<Str
         &bond.from
     };
     let place = graph.end_name(far);
-    let dimension = match bond.dimension {
-        1 => String::new(),
-        dimension => format!("[{dimension}]"),
-    };
+    let driven = declaration(outer, "driven", bond.dimension);
+    let between = declaration(inner, "between", bond.dimension);
     let name = &element.name;
     Some(format!(
-        "remove `{name}`, or let it act through a {word}: bond it to `{outer} driven{dimension};` and write \
-         `{inner} between{dimension} {{ {store} }} driven -> between; between -> {place};`"
+        "remove `{name}`, or let it act through a {word}: bond it to `{driven};` and write \
+         `{between} {{ {store} }} driven -> between; between -> {place};`"
     ))
 }
 

@@ -5,15 +5,26 @@ use crate::Real;
 /// Functions of one argument: from the standard library where there is one and its last digits may differ from one
 /// system to another, else from `libm`.
 macro_rules! elementary {
-    ($scalar:ident: $($name:ident = $bare:ident),*) => { $(
-        #[inline]
-        fn $name(self) -> Self {
-            #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
-            return $scalar::$name(self);
-            #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
-            return libm::$bare(self);
-        }
-    )* };
+    ($scalar:ident: $($name:ident = $bare:ident),*; $($pair:ident = $own:ident | $pair_bare:ident),*) => {
+        $(
+            #[inline]
+            fn $name(self) -> Self {
+                #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
+                return $scalar::$name(self);
+                #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
+                return libm::$bare(self);
+            }
+        )*
+        $(
+            #[inline]
+            fn $pair(self, other: Self) -> Self {
+                #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
+                return $scalar::$own(self, other);
+                #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
+                return libm::$pair_bare(self, other);
+            }
+        )*
+    };
 }
 
 /// What `f64` and `f32` have in common.
@@ -126,23 +137,7 @@ impl Real for f64 {
     const SINGULAR: f64 = 1.490_116_119_384_765_6e-8;
 
     ordered!(f64, f64x4);
-    elementary!(f64: tan = tan, asin = asin, acos = acos, ln = log, sqrt = sqrt);
-
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
-        return f64::atan2(self, x);
-        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
-        return libm::atan2(self, x);
-    }
-
-    #[inline]
-    fn pow(self, exponent: Self) -> Self {
-        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
-        return f64::powf(self, exponent);
-        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
-        return libm::pow(self, exponent);
-    }
+    elementary!(f64: tan = tan, asin = asin, acos = acos, ln = log, sqrt = sqrt; atan2 = atan2 | atan2, pow = powf | pow);
 }
 
 impl Real for f32 {
@@ -154,23 +149,7 @@ impl Real for f32 {
     const SINGULAR: f64 = 3.452_669_830_012_439_4e-4;
 
     ordered!(f32, f32x8);
-    elementary!(f32: tan = tanf, asin = asinf, acos = acosf, ln = logf, sqrt = sqrtf);
-
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
-        return f32::atan2(self, x);
-        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
-        return libm::atan2f(self, x);
-    }
-
-    #[inline]
-    fn pow(self, exponent: Self) -> Self {
-        #[cfg(all(any(test, feature = "std"), not(feature = "reproducible")))]
-        return f32::powf(self, exponent);
-        #[cfg(not(all(any(test, feature = "std"), not(feature = "reproducible"))))]
-        return libm::powf(self, exponent);
-    }
+    elementary!(f32: tan = tanf, asin = asinf, acos = acosf, ln = logf, sqrt = sqrtf; atan2 = atan2 | atan2f, pow = powf | powf);
 }
 
 #[cfg(test)]

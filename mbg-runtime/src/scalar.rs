@@ -2,7 +2,7 @@
 
 use crate::Real;
 
-/// Functions of one argument: from the standard library where there is one and its last digits may differ from one
+/// Functions of one and two arguments: from the standard library where there is one and its last digits may differ from one
 /// system to another, else from `libm`.
 macro_rules! elementary {
     ($scalar:ident: $($name:ident = $bare:ident),*; $($pair:ident = $own:ident | $pair_bare:ident),*) => {

@@ -293,9 +293,9 @@ fn a_law_that_is_zero_is_told_at_its_element() {
         assert!(report.message.starts_with(message), "{}", report.message);
     }
     compiles("model M { 1 n { I i { inertia: 1.0 } R r { resistance: 0.0 } } }");
-    let gas = "model M { 0 n { R r { resistance: 1.0 } }
-               gas: Accumulator { exponent: 1.0, volume: 1.0, precharge: 2.0 } (n); }";
-    assert_eq!(diagnose(gas).list()[0].notes[0], "`exponent - 1` is zero");
+    let gas = "component Gas(port at) { param n; at -> C c { effort: q / (n - 1) }; }
+               model M { 0 n { R r { resistance: 1.0 } } gas: Gas { n: 1.0 } (n); }";
+    assert_eq!(diagnose(gas).list()[0].notes[0], "`n - 1` is zero");
 }
 
 #[test]

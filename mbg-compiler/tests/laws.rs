@@ -231,6 +231,30 @@ fn coefficients_may_change_with_the_state_they_multiply() {
     }
 }
 
+/// Slow and fast changes of the gas, of which slow ones have a logarithm for their energy.
+#[test]
+fn an_accumulator_stores_the_work_of_its_gas() {
+    for (exponent, work) in [
+        ("1.0", -0.7_f64.ln()),
+        ("1.4", 2.5 * (0.7_f64.powf(-0.4) - 1.0)),
+    ] {
+        let text = format!(
+            "model M {{ 0 line {{ R leak {{ resistance: 1.0 }} }}
+             gas: Accumulator {{ volume: 2.0, precharge: 3.0, exponent: {exponent}, initial: 0.6 }} (line); }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes.is_empty());
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[0.6],
+            input: &[],
+        };
+        let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+        assert!((found - 6.0 * work).abs() < 1e-14, "{exponent}: {found}");
+    }
+}
+
 /// Where a quadrature between zero and the state would not see what happens near zero.
 #[test]
 fn energies_of_laws_of_inner_functions_are_exact() {

@@ -40,6 +40,7 @@ codes! {
     JUNCTION_KIND = "MBG0222", "a junction of the kind that a port does not take";
     UNREAD = "MBG0223", "a name that nothing reads";
     NO_EFFECT = "MBG0224", "an argument that has no effect";
+    LOOSE_END = "MBG0225", "a junction with one bond, which takes another out of the model";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";
     NO_ASSIGNMENT = "MBG0303", "no assignment of strokes exists";

@@ -14,6 +14,7 @@ use crate::elaborate::{self, Elaborated};
 use crate::equations::{self, Owner, Scalars};
 use crate::graph::{Causality, ElementId, ElementKind};
 use crate::jacobians;
+use crate::loose;
 use crate::network::Network;
 use crate::notes;
 use crate::program::{self, Program, Request};
@@ -134,8 +135,15 @@ pub fn compile(
         true => Outlook::Soluble,
         false => structure::outlook(&elaborated, &pool),
     };
-    let verdict = drawing::judge(&elaborated.graph, &outlook, diagnostics)?;
-    let solved = structure::resolve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
+    let verdict = drawing::judge(&elaborated.graph, &outlook, diagnostics);
+    let solved = verdict.and_then(|verdict| {
+        let solved = structure::resolve(&mut elaborated, scalars, first, &mut pool, diagnostics)?;
+        Some((verdict, solved))
+    });
+    let Some((verdict, solved)) = solved else {
+        loose::help(&elaborated.graph, before, diagnostics);
+        return None;
+    };
     let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;
     finish(elaborated, &solved, answers, pool, verdict, diagnostics)
 }
@@ -208,6 +216,7 @@ fn finish(
         (name, written(value))
     });
     let mut notes = verdict.notes;
+    loose::warn(&model, diagnostics);
     notes.extend(notes::of(&model, solved, &answers, &pool, diagnostics));
     Some(Compiled {
         program,

@@ -35,6 +35,7 @@ pub mod explain;
 pub mod graph;
 pub mod inclusion;
 pub mod jacobians;
+mod loose;
 pub mod network;
 mod notes;
 pub mod program;

@@ -6,6 +6,8 @@
 
 mod rank;
 
+use std::collections::BTreeSet;
+
 use mbg_compiler::codes;
 use mbg_compiler::compile::{Compiled, Routines, compile};
 use mbg_compiler::diagnostics::{Code, Diagnostics};
@@ -24,6 +26,8 @@ struct Graph {
     bonds: usize,
     /// Bonds at each junction, with 1 where power goes into it.
     junctions: Vec<(bool, Vec<(usize, i64)>)>,
+    /// Junctions that a bond joins.
+    joined: BTreeSet<(usize, usize)>,
     /// Equations of two-ports and resistors.
     laws: Vec<Row>,
     /// What each source fixes, and at which value.
@@ -77,6 +81,11 @@ impl Graph {
     /// A bond, transformer or gyrator between two junctions.
     fn link(&mut self, number: usize, from: usize, to: usize, kind: usize, modulus: i64) {
         if kind < 2 {
+            let is_alike = self.junctions[from].0 == self.junctions[to].0;
+            // A second bond between junctions of one kind is refused as such.
+            if !self.joined.insert((from.min(to), from.max(to))) && is_alike {
+                return;
+            }
             self.write(&format!("j{from} -> j{to};"));
             self.bond(Some(from), Some(to));
             return;

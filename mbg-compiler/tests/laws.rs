@@ -384,6 +384,32 @@ fn words_of_other_languages_are_answered_with_what_has_their_value() {
     assert_eq!(instead("cross(a.f, 2.0 + a.f)"), "skew(a.f) * (2.0 + a.f)");
 }
 
+/// Scales of fixed-point numbers, whose ratio is 2⁶¹.
+#[test]
+fn numbers_far_apart_are_not_one() {
+    let model = compiled(
+        "model Q31 { 1 s { I m { inertia: 1.0 } R r { resistance: 2.0 } }
+            output full = 2147483648.0 * m.f; output back = m.f / 1073741824.0;
+            output half = 0.5 * m.f; output large = 1152921504606846976.0 * m.f; }",
+    );
+    let arguments = Arguments {
+        parameters: &[],
+        time: 0.0,
+        state: &[3.0],
+        input: &[],
+    };
+    let found = program::evaluate(&model.program, Routines::OUTPUT, &arguments);
+    let bits = |exponent: i32| 3.0 * 2.0_f64.powi(exponent);
+    assert_eq!(found, [bits(31), bits(-30), bits(-1), bits(60)]);
+    for (typed, expected) in [
+        ("9223372036854775807.0", 2.0_f64.powi(63)),
+        ("1.0 / 9223372036854775807.0", 2.0_f64.powi(-63)),
+        ("3.0 + 2305843009213693951.0", 2.0_f64.powi(61)),
+    ] {
+        assert_eq!(value(typed), expected, "{typed}");
+    }
+}
+
 #[test]
 fn powers_are_those_of_the_standard_library() {
     for (typed, expected) in [

@@ -123,6 +123,10 @@ const FIXTURES: &[(Code, &str)] = &[
         ),
     ),
     (
+        codes::LOOSE_END,
+        beside_a_mass!("0 b { R r { resistance: 1.0 } } 1 c; 0 d; b -> c; c -> d;"),
+    ),
+    (
         codes::STORAGE_DERIVATIVE,
         beside_a_mass!("a -> I n { inertia: 2.0 };"),
     ),
@@ -571,6 +575,30 @@ fn a_port_takes_junctions_of_its_kind() {
         "(plus, earth, shaft_motor)",
     );
     assert_eq!((declared.as_str(), between.as_str()), ("", ""));
+}
+
+/// A wall without its source takes the state of the spring; both terminals at one node, and a bond drawn twice.
+#[test]
+fn slips_in_wiring_are_told_with_what_is_missing() {
+    let wall = "model M { 1 wall; 0 pull { C s { stiffness: 1.0 } } 1 a { I m { inertia: 1.0 } } wall -> pull; pull -> a; }";
+    let report = told(wall);
+    let help = report.lines().find(|line| line.contains("help: ")).unwrap();
+    assert_eq!(
+        help.trim(),
+        "help: hold `wall`: `Sf wall2 { flow: 0.0 } -> wall;`"
+    );
+    assert_eq!(
+        told(&wall.replace("wall;", "wall; Sf wall2 { flow: 0.0 } -> wall;")),
+        ""
+    );
+    insta::assert_snapshot!(told("model M { 0 a { C c { compliance: 1.0 } } r: Resistor { resistance: 1.0 } (a, a); }"), @"
+    1:79 `r` leads from `a` to itself [MBG0209]
+      help: give it two different junctions
+    ");
+    insta::assert_snapshot!(told("model M { 1 a { I b { inertia: 1.0 } } 1 c { C e { stiffness: 1.0 } } a -> c; c -> a; }"), @"
+    1:81 `c -> a` is bonded twice [MBG0209]
+      help: take one of the bonds away
+    ");
 }
 
 #[test]

@@ -110,3 +110,35 @@ fn values_at_the_start_that_are_not_used_are_told() {
     insta::assert_snapshot!(around_a_wheel("", gear), @"3:26 `drum.p` is not 1.0 at the start but 0.0: it follows from other states [MBG0405]");
     assert_eq!(around_a_wheel("", &gear.replace("1.0 }", "0.0 }")), "");
 }
+
+#[test]
+fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_is_missing() {
+    let circuit = |ground: &str| {
+        warned(&format!(
+            "model M {{ input v: V; 0 a; 0 b; 0 g; Se source {{ effort: v }} -> a; {ground}
+             r: Resistor {{ resistance: 1.0 }} (a, b);\nc: Capacitor {{ capacitance: 1e-3 }} (b, g); output i: A = r.current; }}"
+        ))
+    };
+    insta::assert_snapshot!(circuit(""), @"
+    1:35 nothing flows through `g`, which has one bond, nor through `c.branch` [MBG0225]
+      help: hold `g`: `Se earth { effort: 0.0 } -> g;`
+    ");
+    assert_eq!(circuit("Se earth { effort: 0.0 } -> g;"), "");
+    // An axis that is locked, of which the torque is asked.
+    let locked = "0 lock; 1 axis; 0 shaft { C s { stiffness: 1.0 } } wheel -> shaft; shaft -> axis; axis -> lock;";
+    insta::assert_snapshot!(around_a_wheel("", locked), @"
+    3:3 nothing flows through `lock`, which has one bond, nor through `axis` [MBG0225]
+      help: hold `lock`: `Se earth { effort: 0.0 } -> lock;`
+    ");
+    assert_eq!(
+        around_a_wheel("", &format!("{locked} output torque = lock.e;")),
+        ""
+    );
+    insta::assert_snapshot!(around_a_wheel("", "0 nothing { R stray { resistance: 1.0 } }"), @"
+    3:3 nothing flows through `nothing`, which has one bond, nor through `stray` [MBG0225]
+      help: hold `nothing`: `Se earth { effort: 0.0 } -> nothing;`
+    ");
+    // A free axis of a joint, the end of a chain, a body that nothing pushes.
+    let free = "1 axis; 0 joint; wheel -> joint; joint -> axis; 1 end; wheel -> TF lever { flow: 2.0 } -> end;";
+    assert_eq!(around_a_wheel("", free), "");
+}

@@ -1,6 +1,8 @@
 //! Ways out that rewrite a part of the graph, with the text to type.
 
-use crate::graph::{BondGraph, ElementId, End, JunctionKind, Law, Rule, declaration};
+use std::ops::Range;
+
+use crate::graph::{BondGraph, ElementId, End, JunctionId, JunctionKind, Law, Rule, declaration};
 use crate::symbolic::Expression;
 
 use super::words;
@@ -67,4 +69,34 @@ pub fn turned(graph: &BondGraph, id: ElementId) -> Option<String> {
         "where its matrix takes the effort of `{before}` to that of `{after}`, turn it round: \
          `{after} -> {kind} {name} {{ flow: -transpose(…) }} -> {before};`"
     ))
+}
+
+/// A source that holds what the bonds at a junction have in common.
+#[must_use]
+pub fn hold(graph: &BondGraph, id: JunctionId, range: Range<usize>) -> String {
+    let (symbol, word, field) = match graph.junctions[id.0].kind {
+        JunctionKind::Zero => ("Se", "earth", "effort"),
+        JunctionKind::One => ("Sf", "wall", "flow"),
+    };
+    let size = match range.len() {
+        1 => String::new(),
+        size => format!("[{size}]"),
+    };
+    let source = free_name(graph, word);
+    let place = graph.end_name(&End::Junction(id, range));
+    format!("`{symbol} {source}{size} {{ {field}: 0.0 }} -> {place};`")
+}
+
+/// A name for a source that nothing has yet.
+fn free_name(graph: &BondGraph, word: &str) -> String {
+    let is_taken = |name: &str| {
+        let junctions = graph.junctions.iter().map(|it| &it.name);
+        let mut names = junctions.chain(graph.elements.iter().map(|it| &it.name));
+        names.any(|known| known == name)
+    };
+    let numbered = (2..).map(|number| format!("{word}{number}"));
+    let mut names = std::iter::once(word.to_owned()).chain(numbered);
+    names
+        .find(|name| !is_taken(name))
+        .unwrap_or_else(|| word.to_owned())
 }

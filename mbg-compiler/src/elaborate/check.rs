@@ -50,6 +50,11 @@ impl Builder<'_> {
                 let report = error(codes::TOO_MANY_BONDS, span, message);
                 self.diagnostics
                     .report(report.help("remove it, or lead it through a `TF` or a `GY`"));
+            } else if self.is_doubled(index) {
+                let message = format!("`{name}` is bonded twice");
+                let report = error(codes::TOO_MANY_BONDS, span, message);
+                self.diagnostics
+                    .report(report.help("take one of the bonds away"));
             } else if from != to {
                 let message = format!("`{name}` joins dimension {from} to dimension {to}");
                 let report = error(codes::WRONG_DIMENSION, span, message);
@@ -57,6 +62,18 @@ impl Builder<'_> {
             }
             self.graph.bonds[index].dimension = from;
         }
+    }
+
+    /// Whether a bond before this one joins the same components of the same junctions, both of one kind, so that this one
+    /// says nothing.
+    fn is_doubled(&self, index: usize) -> bool {
+        let Bond { from, to, .. } = &self.graph.bonds[index];
+        let (End::Junction(a, _), End::Junction(b, _)) = (from, to) else {
+            return false;
+        };
+        let [a, b] = [a, b].map(|id| self.graph.junctions[id.0].kind);
+        let mut before = self.graph.bonds[..index].iter();
+        a == b && before.any(|it| [(&it.from, &it.to), (&it.to, &it.from)].contains(&(from, to)))
     }
 
     /// Reports a mistake at a bond, of which the law of a two-port is the reason if one is there.

@@ -118,8 +118,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Reports components that lead from a frame to itself: of two ports there, both ask the same, or one tells what the
-    /// other asks.
+    /// Reports components that lead from a frame or node to itself: they have two ports, or of two there both ask the same,
+    /// or one tells what the other asks.
     fn check_ends(&mut self) {
         let mut found = Vec::new();
         for (scope, frames) in &self.frames {
@@ -127,7 +127,8 @@ impl<'a> Builder<'a> {
                 (1..frames.len()).flat_map(|last| (0..last).map(move |first| (first, last)));
             let mut pairs = pairs.filter(|(first, last)| {
                 let (one, other) = (&frames[*first], &frames[*last]);
-                one.place == other.place && self.concern_one_quantity(*scope, one, other)
+                let joins = one.component.ports.len() == 2;
+                one.place == other.place && (joins || self.concern_one_quantity(*scope, one, other))
             });
             if let Some((_, last)) = pairs.next() {
                 found.push((*scope, last));
@@ -141,7 +142,7 @@ impl<'a> Builder<'a> {
             let (name, frame) = (&instance.name, dump::reference(reference));
             let message = format!("`{name}` leads from `{frame}` to itself");
             let report = error(codes::TOO_MANY_BONDS, reference.span, message);
-            self.tell(scope, report.help("give it two different frames"));
+            self.tell(scope, report.help("give it two different junctions"));
             self.is_misled = true;
         }
     }

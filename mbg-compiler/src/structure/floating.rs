@@ -9,11 +9,12 @@ use std::collections::BTreeSet;
 use proc_macro2::Span;
 
 use super::mesh;
+use crate::causality::ways::hold;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Owner, Scalars};
-use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of};
+use crate::graph::{BondGraph, JunctionId, JunctionKind, instance_of};
 use crate::symbolic::Pool;
 
 /// A component of a junction.
@@ -48,13 +49,9 @@ pub fn report_floating(
     } else {
         component..component + 1
     };
-    let size = match range.len() {
-        1 => String::new(),
-        size => format!("[{size}]"),
-    };
-    let (symbol, word, shared, field) = match junction.kind {
-        JunctionKind::Zero => ("Se", "earth", "efforts", "effort"),
-        JunctionKind::One => ("Sf", "wall", "flows", "flow"),
+    let shared = match junction.kind {
+        JunctionKind::Zero => "efforts",
+        JunctionKind::One => "flows",
     };
     let names: BTreeSet<JunctionId> = part.iter().map(|(id, _)| *id).collect();
     let outermost = |id: &JunctionId| instances(&graph.junctions[id.0].name).last();
@@ -69,11 +66,7 @@ pub fn report_floating(
     let names = listing(names.iter().map(|id| graph.junctions[id.0].name.clone()));
     let message =
         format!("nothing holds {names}: their {shared} can change together without any effect");
-    let source = free_name(graph, word);
-    let help = format!(
-        "hold one of them: `{symbol} {source}{size} {{ {field}: 0.0 }} -> {};`",
-        graph.end_name(&End::Junction(place, range))
-    );
+    let help = format!("hold one of them: {}", hold(graph, place, range));
     diagnostics.report(
         error(codes::SINGULAR_JUNCTIONS, span, message)
             .help(help)
@@ -112,18 +105,4 @@ fn nodes(graph: &BondGraph, scalars: &Scalars, mesh: &[usize]) -> Vec<Node> {
     let all = junctions.flat_map(|(id, it)| (0..it.dimension).map(move |k| (JunctionId(id), k)));
     all.filter(|(id, component)| common.contains(&scalars.common[id.0][*component]))
         .collect()
-}
-
-/// A name for a source that nothing has yet.
-fn free_name(graph: &BondGraph, word: &str) -> String {
-    let is_taken = |name: &str| {
-        let junctions = graph.junctions.iter().map(|it| &it.name);
-        let mut names = junctions.chain(graph.elements.iter().map(|it| &it.name));
-        names.any(|known| known == name)
-    };
-    let numbered = (2..).map(|number| format!("{word}{number}"));
-    let mut names = std::iter::once(word.to_owned()).chain(numbered);
-    names
-        .find(|name| !is_taken(name))
-        .unwrap_or_else(|| word.to_owned())
 }

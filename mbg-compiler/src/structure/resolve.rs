@@ -90,7 +90,7 @@ fn report_unheld(model: &Elaborated, selection: &Selection, diagnostics: &mut Di
     diagnostics.report(
         report
             .help("give every frame that can turn or move by itself a body with an inertia")
-            .help("or, where two joints hold one motion, put a `Cut` in the place of one"),
+            .help("or put a `Cut` in the place of one of two joints that hold one motion"),
     );
 }
 

@@ -1,13 +1,20 @@
-//! Exact arithmetic in a large prime field.
+//! Exact arithmetic in large prime fields.
 //!
-//! Every expression carries its value at three fixed pseudo-random points of the field with 2⁶¹ − 1 elements.
-//! Two expressions that agree there are equal as functions but for a chance of about (degree / 2⁶¹)³
-//! (Schwartz 1980; Zippel 1979), so equality, zero and rank are decided by evaluation and never by rewriting.
+//! Every expression carries its value at three fixed pseudo-random points: two of the field with 2⁶¹ − 45 elements, and one
+//! of that with 2⁶¹ − 1. Two expressions that agree there are equal as functions but for a chance of about
+//! (degree / 2⁶¹)³ (Schwartz 1980; Zippel 1979), so equality, zero and rank are decided by evaluation and never by rewriting.
+//!
+//! A number has one value in a field, wherever the point. Two fields tell all numbers apart that differ by less than their
+//! product; in the second alone 2⁶¹ would be 1, and a scale of 2³⁰ that of 2⁻³¹.
 
 use std::hash::{Hash, Hasher};
 
-/// The prime 2⁶¹ − 1.
-pub const PRIME: u64 = (1 << 61) - 1;
+/// By how much the first prime is below 2⁶¹: powers of 2 and 10 take all its values, or nearly so.
+const FIRST: u64 = 45;
+/// The same of the second, a prime of Mersenne.
+const SECOND: u64 = 1;
+/// The prime of the first two points.
+pub const PRIME: u64 = prime::<FIRST>();
 
 /// How many points.
 pub const POINTS: usize = 3;
@@ -23,59 +30,93 @@ impl Hash for Image {
     }
 }
 
-/// Sum modulo the prime.
-#[must_use]
-pub fn add(a: u64, b: u64) -> u64 {
+const fn prime<const BELOW: u64>() -> u64 {
+    (1 << 61) - BELOW
+}
+
+fn sum<const BELOW: u64>(a: u64, b: u64) -> u64 {
     let sum = a + b;
-    if sum >= PRIME { sum - PRIME } else { sum }
+    if sum >= prime::<BELOW>() {
+        sum - prime::<BELOW>()
+    } else {
+        sum
+    }
 }
 
-/// Negative modulo the prime.
-#[must_use]
-pub fn negate(a: u64) -> u64 {
-    if a == 0 { 0 } else { PRIME - a }
+fn opposite<const BELOW: u64>(a: u64) -> u64 {
+    if a == 0 { 0 } else { prime::<BELOW>() - a }
 }
 
-/// Difference modulo the prime.
-#[must_use]
-pub fn subtract(a: u64, b: u64) -> u64 {
-    add(a, negate(b))
-}
-
-/// Product modulo the prime.
-#[must_use]
-pub fn multiply(a: u64, b: u64) -> u64 {
+/// 2⁶¹ is `BELOW` here, so what stands above that bit is folded in: twice, since `BELOW` is small.
+fn product<const BELOW: u64>(a: u64, b: u64) -> u64 {
+    const LOW: u128 = (1 << 61) - 1;
     let product = u128::from(a) * u128::from(b);
-    let low = (product & u128::from(PRIME)) as u64;
-    let high = (product >> 61) as u64;
-    add(low, high)
+    let folded = (product & LOW) + (product >> 61) * u128::from(BELOW);
+    let rest = (folded >> 61) as u64 * BELOW;
+    sum::<BELOW>((folded & LOW) as u64, rest)
 }
 
-/// Power with a non-negative exponent.
-#[must_use]
-pub fn power(mut base: u64, mut exponent: u64) -> u64 {
+fn raised<const BELOW: u64>(mut base: u64, mut exponent: u64) -> u64 {
     let mut result = 1;
     while exponent > 0 {
         if exponent & 1 == 1 {
-            result = multiply(result, base);
+            result = product::<BELOW>(result, base);
         }
-        base = multiply(base, base);
+        base = product::<BELOW>(base, base);
         exponent >>= 1;
     }
     result
 }
 
-/// Inverse; none of zero. Extended Euclid, since it runs unoptimised inside the compiler.
-#[must_use]
-pub fn invert(a: u64) -> Option<u64> {
-    let (mut r0, mut r1) = (i128::from(PRIME), i128::from(a));
+/// Extended Euclid, since it runs unoptimised inside the compiler.
+fn inverse<const BELOW: u64>(a: u64) -> Option<u64> {
+    let prime = i128::from(prime::<BELOW>());
+    let (mut r0, mut r1) = (prime, i128::from(a));
     let (mut t0, mut t1) = (0i128, 1i128);
     while r1 != 0 {
         let quotient = r0 / r1;
         (r0, r1) = (r1, r0 - quotient * r1);
         (t0, t1) = (t1, t0 - quotient * t1);
     }
-    (r0 == 1).then(|| t0.rem_euclid(i128::from(PRIME)) as u64)
+    (r0 == 1).then(|| t0.rem_euclid(prime) as u64)
+}
+
+/// `digits · 10^exponent`.
+fn decimal<const BELOW: u64>(digits: &str, exponent: i64) -> u64 {
+    let append =
+        |value, digit: u8| sum::<BELOW>(product::<BELOW>(value, 10), u64::from(digit - b'0'));
+    let mantissa = digits.bytes().fold(0, append);
+    let scale = raised::<BELOW>(10, exponent.unsigned_abs());
+    let scale = if exponent < 0 {
+        inverse::<BELOW>(scale).unwrap_or(0)
+    } else {
+        scale
+    };
+    product::<BELOW>(mantissa, scale)
+}
+
+/// Negative, in the field of the first two points.
+#[must_use]
+pub fn negate(a: u64) -> u64 {
+    opposite::<FIRST>(a)
+}
+
+/// Difference, in the field of the first two points.
+#[must_use]
+pub fn subtract(a: u64, b: u64) -> u64 {
+    sum::<FIRST>(a, negate(b))
+}
+
+/// Product, in the field of the first two points.
+#[must_use]
+pub fn multiply(a: u64, b: u64) -> u64 {
+    product::<FIRST>(a, b)
+}
+
+/// Inverse in the field of the first two points; none of zero.
+#[must_use]
+pub fn invert(a: u64) -> Option<u64> {
+    inverse::<FIRST>(a)
 }
 
 /// Reciprocals of several that are not zero, by one inversion (Montgomery 1987).
@@ -132,32 +173,24 @@ impl Image {
     /// One everywhere.
     pub const ONE: Self = Self([1; POINTS]);
 
+    /// A number, by its values in both fields.
+    fn number(first: u64, second: u64) -> Self {
+        Self([first, first, second])
+    }
+
     /// An integer.
     #[must_use]
     pub fn integer(value: i64) -> Self {
-        let magnitude = value.unsigned_abs() % PRIME;
-        Self(
-            [if value < 0 {
-                negate(magnitude)
-            } else {
-                magnitude
-            }; POINTS],
-        )
+        let size = value.unsigned_abs();
+        let image = Self::number(size % prime::<FIRST>(), size % prime::<SECOND>());
+        if value < 0 { image.negated() } else { image }
     }
 
     /// `digits · 10^exponent`.
     #[must_use]
     pub fn decimal(digits: &str, exponent: i64) -> Self {
-        let mantissa = digits.bytes().fold(0, |value, digit| {
-            add(multiply(value, 10), u64::from(digit - b'0'))
-        });
-        let scale = power(10, exponent.unsigned_abs());
-        let scale = if exponent < 0 {
-            invert(scale).unwrap_or(0)
-        } else {
-            scale
-        };
-        Self([multiply(mantissa, scale); POINTS])
+        let first = decimal::<FIRST>(digits, exponent);
+        Self::number(first, decimal::<SECOND>(digits, exponent))
     }
 
     /// An independent unknown that depends on the words given.
@@ -186,42 +219,49 @@ impl Image {
         Self([value(0), value(1), value(2)])
     }
 
-    fn zip(self, other: Self, operation: impl Fn(u64, u64) -> u64) -> Self {
-        Self::at_points(|point| operation(self.0[point], other.0[point]))
+    fn zip(self, other: Self, first: fn(u64, u64) -> u64, second: fn(u64, u64) -> u64) -> Self {
+        let ([a, b, c], [d, e, f]) = (self.0, other.0);
+        Self([first(a, d), first(b, e), second(c, f)])
     }
 
     /// Sum.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
-        self.zip(other, add)
+        self.zip(other, sum::<FIRST>, sum::<SECOND>)
     }
 
     /// Difference.
     #[must_use]
     pub fn minus(self, other: Self) -> Self {
-        self.zip(other, subtract)
+        self.plus(other.negated())
     }
 
     /// Product.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
-        self.zip(other, multiply)
+        self.zip(other, product::<FIRST>, product::<SECOND>)
     }
 
     /// Negative.
     #[must_use]
     pub fn negated(self) -> Self {
-        Self::at_points(|point| negate(self.0[point]))
+        let [a, b, c] = self.0;
+        Self([
+            opposite::<FIRST>(a),
+            opposite::<FIRST>(b),
+            opposite::<SECOND>(c),
+        ])
     }
 
     /// Inverse; none where it is zero at a point.
     #[must_use]
     pub fn inverted(self) -> Option<Self> {
-        let mut image = [0; POINTS];
-        for (slot, value) in image.iter_mut().zip(self.0) {
-            *slot = invert(value)?;
-        }
-        Some(Self(image))
+        let [a, b, c] = self.0;
+        Some(Self([
+            inverse::<FIRST>(a)?,
+            inverse::<FIRST>(b)?,
+            inverse::<SECOND>(c)?,
+        ]))
     }
 
     /// Cosine and sine of a base angle: a random point of the circle, by its rational parametrisation.
@@ -275,6 +315,31 @@ impl Image {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_told_apart_by_both_fields() {
+        let power = |exponent: i64| {
+            let two = Image::integer(2);
+            let power = (0..exponent.abs()).fold(Image::ONE, |power, _| power.times(two));
+            if exponent < 0 {
+                power.inverted().unwrap()
+            } else {
+                power
+            }
+        };
+        let images: Vec<Image> = (-200..200).map(power).collect();
+        for (place, image) in images.iter().enumerate() {
+            assert!(!images[..place].contains(image), "2^{}", place as i64 - 200);
+        }
+        for (number, other) in [("9223372036854775807", 3), ("2305843009213693951", 0)] {
+            assert_ne!(Image::decimal(number, 0), Image::integer(other));
+        }
+        let [large, small] = [Image::integer(i64::MAX), Image::integer(-3)];
+        assert_eq!(
+            large.times(small),
+            Image::decimal("27670116110564327421", 0).negated()
+        );
+    }
 
     #[test]
     fn inverse_and_decimal_are_exact() {

@@ -181,9 +181,9 @@ impl Known {
 
 /// The fraction of small numbers that has this image.
 pub(super) fn number(pool: &mut Pool, image: Image) -> Option<Expression> {
-    let is_constant = image.0.iter().all(|it| *it == image.0[0]);
     let (numerator, denominator) = field::fraction(image.0[0], LARGEST)?;
-    if !is_constant {
+    let fraction = Image::integer(denominator).inverted()?;
+    if fraction.times(Image::integer(numerator)) != image {
         return None;
     }
     let number = pool.constant(numerator as f64 / denominator as f64, image);

@@ -1,0 +1,115 @@
+//! Junctions that a bond leads to and nothing else: a node without its ground, a wall without its source.
+//!
+//! Such a 0-junction has no flow, and such a 1-junction no effort. That takes a branch or a spring behind the bond out of
+//! the model, of which it is warned; and where storages lose their states by it, it is the first way out.
+
+use crate::causality::ways::hold;
+use crate::codes;
+use crate::diagnostics::{Diagnostics, error};
+use crate::elaborate::{Elaborated, Place};
+use crate::graph::{BondGraph, ElementKind, End, JunctionId, JunctionKind};
+
+/// A junction, and what it takes out of the model.
+struct Loose {
+    id: JunctionId,
+    dead: String,
+}
+
+/// Warns of those whose effort or flow nobody asks for.
+pub(crate) fn warn(model: &Elaborated, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    for Loose { id, dead } in all(graph) {
+        let mut read = model.signals.list().iter();
+        if read.any(|(_, place, _)| *place == Place::Junction(id)) {
+            continue;
+        }
+        let junction = &graph.junctions[id.0];
+        let message = match junction.kind {
+            JunctionKind::Zero => format!(
+                "nothing flows through `{}`, which has one bond, nor through `{dead}`",
+                junction.name
+            ),
+            JunctionKind::One => format!(
+                "nothing acts on `{}`, which has one bond, nor does `{dead}` act",
+                junction.name
+            ),
+        };
+        let report = error(
+            codes::LOOSE_END,
+            graph.origins.span(junction.origin),
+            message,
+        );
+        diagnostics.warn(report.help(holding(graph, id)));
+    }
+}
+
+/// Puts the sources that are missing before the other ways out of mistakes from number `before` on.
+pub(crate) fn help(graph: &BondGraph, before: usize, diagnostics: &mut Diagnostics) {
+    let helps: Vec<String> = all(graph).iter().map(|it| holding(graph, it.id)).collect();
+    for number in before..diagnostics.list().len() {
+        diagnostics
+            .get_mut(number)
+            .helps
+            .splice(0..0, helps.iter().cloned());
+    }
+}
+
+fn holding(graph: &BondGraph, id: JunctionId) -> String {
+    let junction = &graph.junctions[id.0];
+    let source = hold(graph, id, 0..junction.dimension);
+    format!("hold `{}`: {source}", junction.name)
+}
+
+fn all(graph: &BondGraph) -> Vec<Loose> {
+    let junctions = (0..graph.junctions.len()).map(JunctionId);
+    let loose = junctions.filter_map(|id| {
+        Some(Loose {
+            id,
+            dead: dead(graph, id)?,
+        })
+    });
+    loose.collect()
+}
+
+/// What the only bond of a junction takes out of the model.
+fn dead(graph: &BondGraph, id: JunctionId) -> Option<String> {
+    let junction = &graph.junctions[id.0];
+    let is_here = |end: &End| matches!(end, End::Junction(other, _) if *other == id);
+    let ends = graph
+        .bonds
+        .iter()
+        .flat_map(|bond| [(&bond.from, &bond.to), (&bond.to, &bond.from)]);
+    let mut far = ends.filter(|(end, _)| is_here(end)).map(|(_, far)| far);
+    let (Some(far), None) = (far.next(), far.next()) else {
+        return None;
+    };
+    match far {
+        End::OnePort(element) => {
+            let element = &graph.elements[element.0];
+            (element.kind == ElementKind::R).then(|| element.name.clone())
+        }
+        End::Junction(other, _) => {
+            let (own, other) = (junction.kind, &graph.junctions[other.0]);
+            let is_dead = own != other.kind && (own == JunctionKind::Zero || has_law(graph, far));
+            is_dead.then(|| other.name.clone())
+        }
+        _ => None,
+    }
+}
+
+/// Whether a storage or a resistor gives the effort or takes the flow of a junction; a 0-junction without one is free to
+/// have none, as an axis of a joint is.
+fn has_law(graph: &BondGraph, junction: &End) -> bool {
+    let End::Junction(id, _) = junction else {
+        return false;
+    };
+    let mut bonds = graph.bonds.iter();
+    bonds.any(|bond| match [&bond.from, &bond.to] {
+        [End::Junction(other, _), End::OnePort(element)]
+        | [End::OnePort(element), End::Junction(other, _)] => {
+            let kind = graph.elements[element.0].kind;
+            other == id && matches!(kind, ElementKind::C | ElementKind::R)
+        }
+        _ => false,
+    })
+}

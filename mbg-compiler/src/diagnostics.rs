@@ -116,7 +116,8 @@ pub struct Diagnostics {
     /// The place of every call, also of one that told what was told already; and the call by which each mistake came.
     places: Vec<Span>,
     calls: Vec<usize>,
-    warnings: Vec<Diagnostic>,
+    /// What is warned of, in a sink of its own.
+    warnings: Option<Box<Self>>,
 }
 
 impl Diagnostics {
@@ -159,18 +160,27 @@ impl Diagnostics {
 
     /// Warns of something, once at each place: each iteration of a loop has the same.
     pub fn warn(&mut self, warning: Diagnostic) {
-        let is_known = |known: &Diagnostic| {
-            known.message == warning.message && place(known) == place(&warning)
-        };
-        if !self.warnings.iter().any(is_known) {
-            self.warnings.push(warning);
-        }
+        let warnings = self.warnings.get_or_insert_default();
+        warnings.report_once(warning, 0);
     }
 
     /// What a model that has no mistake should be looked at for.
     #[must_use]
     pub fn warnings(&self) -> &[Diagnostic] {
-        if self.any() { &[] } else { &self.warnings }
+        match &self.warnings {
+            Some(warnings) if !self.any() => warnings.list(),
+            _ => &[],
+        }
+    }
+
+    /// The sink of what is warned of, for a pass over it.
+    pub(crate) fn take_warnings(&mut self) -> Self {
+        self.warnings.take().map_or_else(Self::new, |it| *it)
+    }
+
+    /// Puts the sink back.
+    pub(crate) fn put_warnings(&mut self, warnings: Self) {
+        self.warnings = Some(Box::new(warnings));
     }
 
     /// Reports a mistake that needs no more than its message.

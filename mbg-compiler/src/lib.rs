@@ -73,7 +73,8 @@ pub fn expansion(
     output
 }
 
-/// What `run` makes of tokens and of the files that they include; its errors in a file are told with their place there.
+/// What `run` makes of tokens and of the files that they include; its errors and warnings in a file are told with their place
+/// there.
 fn located<R>(
     tokens: TokenStream,
     read: &Read<'_>,
@@ -83,11 +84,17 @@ fn located<R>(
     let inclusion = Inclusion::of(tokens, read, diagnostics);
     let before = diagnostics.clone();
     let output = run(inclusion.tokens(), diagnostics);
-    inclusion.locate(before.list().len(), diagnostics, &|tokens| {
+    let again = |tokens| {
         let mut again = before.clone();
         let _ = run(tokens, &mut again);
         again
-    });
+    };
+    inclusion.locate(before.list().len(), diagnostics, &again);
+    if !diagnostics.any() {
+        let mut warnings = diagnostics.take_warnings();
+        inclusion.locate(0, &mut warnings, &|tokens| again(tokens).take_warnings());
+        diagnostics.put_warnings(warnings);
+    }
     (output, inclusion)
 }
 

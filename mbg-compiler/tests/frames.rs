@@ -142,16 +142,18 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     insta::assert_snapshot!(floating(body), @"
     7:13 `body` needs `gravity_at`, which nothing tells at its frame [MBG0214]
       this is inside `Body`, a component of the library
-      help: let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest
-      help: write `gravity_at: gravity` where that of the world is meant
+      help: hold the frame, if it is at rest: `Sf wall[6] { flow: 0.0 } -> a;`
+      help: or let a joint, such as `Free`, lead to it from a frame that is held
+      help: or write `gravity_at: gravity` where that of the world is meant
     ");
     // Where it is held alone, a frame turns as it likes.
     let pinned = "Sf pin[3] { flow: 0.0 } -> a[3..6];";
     insta::assert_snapshot!(floating(&format!("{pinned} {body}")), @"
     7:49 `body` needs `gravity_at`, which nothing tells at its frame [MBG0214]
       this is inside `Body`, a component of the library
-      help: let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest
-      help: write `gravity_at: gravity` where that of the world is meant
+      help: hold the frame, if it is at rest: `Sf wall[6] { flow: 0.0 } -> a;`
+      help: or let a joint, such as `Free`, lead to it from a frame that is held
+      help: or write `gravity_at: gravity` where that of the world is meant
     ");
     let upright = "Sf upright[3] { flow: [0.0, 0, 0.0] } -> a[0..3];";
     assert_eq!(floating(&format!("{upright} {body}")), "");
@@ -161,8 +163,9 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     insta::assert_snapshot!(told(plane), @"
     1:77 `rod` needs `angle_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarOffset`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` keeps at rest
-      help: write `angle_a: 0.0` where that of the world is meant
+      help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> a;`
+      help: or let a joint lead to it from a frame that is held
+      help: or write `angle_a: 0.0` where that of the world is meant
     ");
     // In a ring one joint that is given it is enough.
     let ring = "first: Revolute { axis: 0, gravity_a: gravity } (a, b); back: Revolute { axis: 0 } (b, a);";
@@ -269,16 +272,18 @@ fn what_a_source_moves_is_known_by_what_leads_to_it() {
     insta::assert_snapshot!(base("[0.5, 0.0, 0.0]", ""), @"
     2:14 `slide` needs `angle_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarPrismatic`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` keeps at rest
-      help: write `angle_a: 0.0` where that of the world is meant
+      help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> base;`
+      help: or let a joint lead to it from a frame that is held
+      help: or write `angle_a: 0.0` where that of the world is meant
     ");
     // What does not turn keeps its angle, wherever it goes.
     assert_eq!(base("[0.0, sin(t), 0.0]", ""), "");
     insta::assert_snapshot!(base("[0.0, sin(t), 0.0]", "output place[2] = slide.position_b;"), @"
     2:14 `slide` needs `position_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarPrismatic`, a component of the library
-      help: let a joint lead to it from a frame that an `Sf` keeps at rest
-      help: write `position_a: 0.0` where that of the world is meant
+      help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> base;`
+      help: or let a joint lead to it from a frame that is held
+      help: or write `position_a: 0.0` where that of the world is meant
     ");
 }
 
@@ -303,7 +308,7 @@ fn a_joint_that_leads_the_wrong_way_is_told() {
     7:54 `body` needs `gravity_at`, which nothing tells at its frame [MBG0214]
       this is inside `Body`, a component of the library
       help: exchange the frames of `hinge`: it hands on from the first to the second
-      help: write `gravity_at: gravity` where that of the world is meant
+      help: or write `gravity_at: gravity` where that of the world is meant
     ");
     let pulled = format!(
         "hinge: Revolute {{ axis: 0 }} (ground, a); {body}
@@ -314,7 +319,7 @@ fn a_joint_that_leads_the_wrong_way_is_told() {
     9:10 `load` needs `orientation_at`, which nothing tells at its frame [MBG0214]
       this is inside `Load`, a component of the library
       help: exchange the frames of `rod`: it hands on from the first to the second
-      help: write `orientation_at: 1.0` where that of the world is meant
+      help: or write `orientation_at: 1.0` where that of the world is meant
     ");
 }
 
@@ -332,7 +337,8 @@ fn what_only_the_library_asks_must_be_known() {
     insta::assert_snapshot!(told(&format!("{hinge} {}", scene("b[6]", load))), @"
     14:39 `load` needs `orientation_at`, which nothing tells at its frame [MBG0214]
       this is inside `Load`, a component of the library
-      help: let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest
-      help: write `orientation_at: 1.0` where that of the world is meant
+      help: hold the frame, if it is at rest: `Sf wall[6] { flow: 0.0 } -> b;`
+      help: or let a joint, such as `Free`, lead to it from a frame that is held
+      help: or write `orientation_at: 1.0` where that of the world is meant
     ");
 }

@@ -116,6 +116,28 @@ fn mistakes_in_files_are_told_at_their_place() {
 }
 
 #[test]
+fn warnings_in_files_are_told_at_their_place() {
+    let brake = BRAKE.replace("a ->", "param grip = 1.0;\n    param wear = 2.0; a ->");
+    let mut diagnostics = Diagnostics::new();
+    let read = |_: &str| Ok(brake.clone());
+    expansion(CART.parse().unwrap(), &read, &mut diagnostics);
+    assert!(!diagnostics.any(), "{:?}", diagnostics.list());
+    let texts = diagnostics.warnings().iter().map(|it| it.text());
+    insta::assert_snapshot!(texts.collect::<Vec<_>>().join("\n"), @"
+    `Brake` does not read its parameter `grip` [MBG0223]
+      in brake.mbg:4:11
+            param grip = 1.0;
+                  ^^^^
+      help: remove it, or call it `_grip`
+    `Brake` does not read its parameter `wear` [MBG0223]
+      in brake.mbg:5:11
+            param wear = 2.0; a -> R shoe { resistance: strength };
+                  ^^^^
+      help: remove it, or call it `_wear`
+    ");
+}
+
+#[test]
 fn the_stages_are_told_with_the_place_in_the_file() {
     let brake = BRAKE.replace("strength }", "strenght }");
     let read = |_: &str| Ok(brake.clone());

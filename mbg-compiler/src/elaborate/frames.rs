@@ -15,6 +15,7 @@ use super::Builder;
 use super::expressions::Result;
 use super::scope::{Entity, GRAVITY};
 use super::spread::{Place, Spread, Teller};
+use crate::causality::ways::hold;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{ElementKind, End, JunctionId, JunctionKind};
@@ -51,7 +52,7 @@ pub(super) struct Unknown<'a> {
     parameter: &'a ast::Parameter,
     /// Scope of its component.
     scope: usize,
-    is_in_space: bool,
+    place: Place,
     /// Scope of a component that leads from its frame to one that is known.
     backwards: Option<usize>,
 }
@@ -172,7 +173,7 @@ impl<'a> Builder<'a> {
             let unknown = Unknown {
                 parameter: left.parameter,
                 scope: left.scope,
-                is_in_space: place.2 == IN_SPACE,
+                place,
                 backwards: spread.backwards(place),
             };
             self.unknown.insert(left.definition, unknown);
@@ -272,21 +273,26 @@ impl<'a> Builder<'a> {
         if self.scopes[unknown.scope].library.is_none() && joint.is_none() {
             return report.help(format!("{keep} to keep its default"));
         }
-        let report = report.help(match (joint, unknown.is_in_space) {
-            (Some(joint), _) => {
-                format!(
-                    "exchange the frames of `{joint}`: it hands on from the first to the second"
-                )
+        let (id, start, size) = unknown.place;
+        let report = match joint {
+            Some(joint) => report.help(format!(
+                "exchange the frames of `{joint}`: it hands on from the first to the second"
+            )),
+            None => {
+                let source = hold(&self.graph, id, start..start + size);
+                let such = if size == IN_SPACE {
+                    ", such as `Free`,"
+                } else {
+                    ""
+                };
+                report
+                    .help(format!("hold the frame, if it is at rest: {source}"))
+                    .help(format!(
+                        "or let a joint{such} lead to it from a frame that is held"
+                    ))
             }
-            (None, true) => {
-                "let a joint, such as `Free`, lead to it from a frame that an `Sf` keeps at rest"
-                    .to_owned()
-            }
-            (None, false) => {
-                "let a joint lead to it from a frame that an `Sf` keeps at rest".to_owned()
-            }
-        });
-        report.help(format!("{keep} where that of the world is meant"))
+        };
+        report.help(format!("or {keep} where that of the world is meant"))
     }
 
     /// Path of the component in use with this scope.

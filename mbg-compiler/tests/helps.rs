@@ -1,15 +1,11 @@
 //! Helps of messages are followed to the letter, and lead to models that compile.
 #![allow(clippy::unwrap_used)]
 
-use mbg_compiler::codes;
-use mbg_compiler::diagnostics::{Code, Diagnostics};
-use mbg_compiler::items;
+mod told;
 
-fn diagnose(text: &str) -> Diagnostics {
-    let mut diagnostics = Diagnostics::new();
-    let _ = items(text.parse().unwrap(), &mut diagnostics);
-    diagnostics
-}
+use mbg_compiler::codes;
+use mbg_compiler::diagnostics::Code;
+use told::diagnose;
 
 /// The helps of the only code of a model, without the `or` between them.
 fn helps(text: &str, code: Code) -> Vec<String> {

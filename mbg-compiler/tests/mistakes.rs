@@ -1,16 +1,12 @@
 //! Mistakes in models: each is answered with its code at a token.
 #![allow(clippy::unwrap_used)]
 
+mod told;
+
 use mbg_compiler::codes::{self, ALL};
 use mbg_compiler::diagnostics::{Code, Diagnostics};
 use mbg_compiler::items;
-
-/// What is reported for the text between the braces.
-fn diagnose(text: &str) -> Diagnostics {
-    let mut diagnostics = Diagnostics::new();
-    let _ = items(text.parse().unwrap(), &mut diagnostics);
-    diagnostics
-}
+use told::{diagnose, told};
 
 fn found(text: &str) -> Vec<&'static str> {
     let diagnostics = diagnose(text);
@@ -410,16 +406,6 @@ fn a_source_that_asks_for_an_inverse_can_act_through_a_storage() {
     }
 }
 
-/// Everything that is told of a text, with the places.
-fn told(text: &str) -> String {
-    let diagnostics = diagnose(text);
-    let list = diagnostics.list().iter().map(|it| {
-        let start = it.span.start();
-        format!("{}:{} {}", start.line, start.column + 1, it.text())
-    });
-    list.collect::<Vec<_>>().join("\n")
-}
-
 /// Names of the items that a text becomes.
 fn types(text: &str) -> Vec<String> {
     let expansion = items(text.parse().unwrap(), &mut Diagnostics::new());
@@ -527,77 +513,6 @@ model M { 1 a { I m { inertia: 1.0 } } seat: Bearing (a); }";
     insta::assert_snapshot!(told(text), @"
     1:30 component `Bearing` contains itself [MBG0215]
       this is inside `Rack`, a component of the library
-    ");
-}
-
-#[test]
-fn mistakes_at_ports_are_told() {
-    let told = |body: &str| {
-        told(&format!(
-            "component Tie(port left[3], port right) {{ left.x -> right; }}
-             component Stop(port at) {{ Sf s {{ flow: 0.0 }} -> at; }}
-             model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} R air {{ resistance: 1.0 }} }} 0 b {{ C c {{ compliance: 1.0 }} }} {body} }}"
-        ))
-    };
-    insta::assert_snapshot!(told("tie: Tie (air, b);"), @"
-    3:124 `air` is an element, `R`, and a port takes a junction [MBG0208]
-      help: write `a`, its junction
-    ");
-    insta::assert_snapshot!(told("tie: Tie (a);"), @"3:114 `Tie` has the ports `left[3]`, `right`, found 1 junction [MBG0208]");
-    insta::assert_snapshot!(told("stop: Stop (b, b);"), @"3:114 `Stop` has the port `at`, found 2 junctions [MBG0208]");
-    insta::assert_snapshot!(told("tie: Tie (a.x, b);"), @"3:124 port `left` has dimension 3, and `a.x` has 1 [MBG0204]");
-    assert_eq!(told("tie: Tie (a, b);"), "");
-}
-
-/// A motor's shaft on a 0-junction and a tank's node on a 1-junction would simulate other physics.
-#[test]
-fn a_port_takes_junctions_of_its_kind() {
-    let told = |wheel: &str, motor: &str| {
-        told(&format!(
-            "model M {{ 0 plus {{ Se battery {{ effort: 12.0 }} }} 0 earth {{ Se zero {{ effort: 0.0 }} }}
-             {wheel} motor: DcMotor {{ resistance: 1.0, inductance: 1e-3, constant: 0.1, inertia: 1e-3 }} {motor}; }}"
-        ))
-    };
-    insta::assert_snapshot!(told("0 wheel;", "(plus, earth, wheel)"), @"
-    2:120 port `shaft` takes a 1-junction, whose flow is common, and `wheel` is a 0-junction [MBG0222]
-      help: declare it as `1 wheel`
-      help: if its effort is common indeed, put one between: `1 shaft_motor; wheel -> shaft_motor;`, and give `shaft_motor`
-    ");
-    insta::assert_snapshot!(told("1 wheel[2]; 1 amps;", "(amps, earth, wheel[1])"), @"
-    2:118 port `a` takes a 0-junction, whose effort is common, and `amps` is a 1-junction [MBG0222]
-      help: declare it as `0 amps`
-      help: if its flow is common indeed, put one between: `0 a_motor; amps -> a_motor;`, and give `a_motor`
-    ");
-    let brake = "{ R brake { resistance: 0.1 } }";
-    let declared = told(&format!("1 wheel {brake}"), "(plus, earth, wheel)");
-    let between = told(
-        &format!("0 wheel {brake} 1 shaft_motor; wheel -> shaft_motor;"),
-        "(plus, earth, shaft_motor)",
-    );
-    assert_eq!((declared.as_str(), between.as_str()), ("", ""));
-}
-
-/// A wall without its source takes the state of the spring; both terminals at one node, and a bond drawn twice.
-#[test]
-fn slips_in_wiring_are_told_with_what_is_missing() {
-    let wall = "model M { 1 wall; 0 pull { C s { stiffness: 1.0 } } 1 a { I m { inertia: 1.0 } } wall -> pull; pull -> a; }";
-    let report = told(wall);
-    let help = report.lines().find(|line| line.contains("help: ")).unwrap();
-    assert_eq!(
-        help.trim(),
-        "help: hold `wall`: `Sf wall2 { flow: 0.0 } -> wall;`"
-    );
-    assert_eq!(
-        told(&wall.replace("wall;", "wall; Sf wall2 { flow: 0.0 } -> wall;")),
-        ""
-    );
-    insta::assert_snapshot!(told("model M { 0 a { C c { compliance: 1.0 } } r: Resistor { resistance: 1.0 } (a, a); }"), @"
-    1:79 `r` leads from `a` to itself [MBG0209]
-      help: give it two different junctions
-    ");
-    insta::assert_snapshot!(told("model M { 1 a { I b { inertia: 1.0 } } 1 c { C e { stiffness: 1.0 } } a -> c; c -> a; }"), @"
-    1:81 `c -> a` is bonded twice [MBG0209]
-      help: take one of the bonds away
     ");
 }
 

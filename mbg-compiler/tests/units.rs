@@ -1,13 +1,13 @@
 //! Units: which models agree in them, and what is told where they do not.
 #![allow(clippy::unwrap_used)]
 
-use mbg_compiler::diagnostics::{Diagnostic, Diagnostics};
-use mbg_compiler::items;
+#[path = "told/mod.rs"]
+mod reports;
+
+use mbg_compiler::diagnostics::Diagnostic;
 
 fn diagnose(text: &str) -> Vec<Diagnostic> {
-    let mut diagnostics = Diagnostics::new();
-    let _ = items(text.parse().unwrap(), &mut diagnostics);
-    diagnostics.list().to_vec()
+    reports::diagnose(text).list().to_vec()
 }
 
 /// What is told of a text with one mistake: where, in the text, and what.

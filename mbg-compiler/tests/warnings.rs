@@ -1,20 +1,8 @@
 //! Warnings of what is written and changes nothing.
-#![allow(clippy::unwrap_used)]
 
-use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::items;
+mod told;
 
-/// Everything that is warned of in a text without mistakes, with the places.
-fn warned(text: &str) -> String {
-    let mut diagnostics = Diagnostics::new();
-    items(text.parse().unwrap(), &mut diagnostics);
-    assert!(!diagnostics.any(), "{:?}", diagnostics.list());
-    let list = diagnostics.warnings().iter().map(|it| {
-        let start = it.span.start();
-        format!("{}:{} {}", start.line, start.column + 1, it.text())
-    });
-    list.collect::<Vec<_>>().join("\n")
-}
+use told::warned;
 
 /// Of a model with a wheel, after a component.
 fn around_a_wheel(component: &str, body: &str) -> String {

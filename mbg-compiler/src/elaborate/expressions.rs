@@ -294,6 +294,14 @@ impl<N: Names> Evaluator<'_, N> {
             name,
             format!("`{text}` is not declared"),
         );
+        if let [first, _, ..] = &steps[..] {
+            let (first, known) = (&first.name, self.names.all());
+            if !known.iter().any(|name| first == name) {
+                let message = format!("`{first}` is not declared");
+                let report = error(codes::UNKNOWN_NAME, first.span(), message);
+                return Err(Box::new(report.did_you_mean(&first.to_string(), &known)));
+            }
+        }
         let help = elsewhere::instead(&text, &[]);
         Err(Box::new(
             match help.or_else(|| self.names.advice(self.pool, &steps)) {

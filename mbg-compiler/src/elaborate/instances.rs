@@ -62,7 +62,8 @@ impl<'a> Builder<'a> {
         instance: &ast::Instance,
         component: &'a ast::Component,
     ) {
-        if instance.connections.len() != component.ports.len() {
+        let is_counted = instance.connections.len() == component.ports.len();
+        if !is_counted {
             self.tell(scope, wrong_count(instance, component));
         }
         for (position, port) in component.ports.iter().enumerate() {
@@ -72,7 +73,8 @@ impl<'a> Builder<'a> {
                 .and_then(|reference| self.resolve(scope, reference));
             let entity = match given {
                 Some((End::Junction(id, range), size))
-                    if size == port.dimension && port.takes(self.graph.junctions[id.0].kind) =>
+                    if size == port.dimension
+                        && (!is_counted || port.takes(self.graph.junctions[id.0].kind)) =>
                 {
                     self.at_frame(inner, component, port, (id, range.clone()));
                     Entity::Junction(id, range)

@@ -260,6 +260,16 @@ impl Names for Lookup<'_, '_> {
             (Entity::Junction(id, range), [variable]) => {
                 self.junction_variable(pool, *id, range.clone(), &variable.name)
             }
+            (Entity::Junction(id, _), []) => {
+                let (text, kind) = (written(path), self.graph.junctions[id.0].kind);
+                let variable = match kind {
+                    JunctionKind::Zero => "e",
+                    JunctionKind::One => "f",
+                };
+                let digit = kind.digit();
+                let message = format!("`{text}` is a {digit}-junction; write `{text}.{variable}`");
+                Some(fail(last.name.span(), message))
+            }
             (entity, []) => Some(self.plain(pool, entity, &last.name)),
             _ => None,
         }
@@ -322,6 +332,15 @@ impl Names for Lookup<'_, '_> {
     }
 }
 
+/// A path as it is written.
+fn written(path: &[Step]) -> String {
+    let step = |Step { name, index }: &Step| match index {
+        Some((index, _)) => format!("{name}[{index}]"),
+        None => name.to_string(),
+    };
+    path.iter().map(step).collect::<Vec<_>>().join(".")
+}
+
 /// Why `e` and `f` of a two-port mean nothing.
 const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
 
@@ -353,10 +372,6 @@ impl Lookup<'_, '_> {
                 let matrix = Matrix::new(3, 3, entries.collect());
                 Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
             }
-            Entity::Junction(..) => fail(
-                name.span(),
-                format!("`{name}` is a junction; write `{name}.f` or `{name}.e`"),
-            ),
             Entity::Element(_) => fail(
                 name.span(),
                 format!("`{name}` is an element; write `{name}.q`, `.p`, `.e` or `.f`"),

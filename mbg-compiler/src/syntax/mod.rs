@@ -35,8 +35,8 @@ use proc_macro2::{Ident, TokenStream};
 use crate::codes;
 use crate::diagnostics::Diagnostics;
 
-/// The largest dimension and index: far above any model, far below where sizes overflow.
-pub const LARGEST_DIMENSION: usize = 1_000_000;
+/// The largest dimension: above any model, and below what matrices of that many rows and columns can be held for.
+pub const LARGEST_DIMENSION: usize = 4096;
 
 /// Reads the tokens between the braces of `mbg! { … }`.
 ///

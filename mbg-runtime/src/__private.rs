@@ -21,6 +21,9 @@ pub enum Condition {
     Positive,
 }
 
+/// Why a value is refused that is infinite or NaN, whatever else is asked of it.
+const FINITE: &str = "it must be a finite number";
+
 /// Checks a parameter, or an expression of parameters, in every lane.
 pub fn check<T: Real>(
     name: &'static str,
@@ -37,7 +40,7 @@ pub fn check<T: Real>(
         Some(value) => Err(ParameterError {
             name,
             value,
-            reason,
+            reason: if value.is_finite() { reason } else { FINITE },
         }),
         None => Ok(()),
     }
@@ -201,6 +204,8 @@ mod tests {
         assert_eq!(passes(0.0), [true, false, false]);
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert_eq!(passes(value), [false, false, false]);
+            let error = check("1/arm", value, Condition::NonZero, "it must not be zero");
+            assert_eq!(error.unwrap_err().reason, FINITE);
         }
     }
 

@@ -234,6 +234,11 @@ pub struct Storage {
 }
 
 impl Junction {
+    /// Its name without the path.
+    pub fn own_name(&self) -> &str {
+        self.name.rsplit('.').next().unwrap_or(&self.name)
+    }
+
     /// The name of a component of its flow: `wheel.f`, `wheel.f.x`.
     pub fn flow(&self, component: usize) -> String {
         match self.dimension {
@@ -244,8 +249,7 @@ impl Junction {
 
     /// Its declaration, were it of this kind: `1 wheel[3]`.
     pub fn declaration(&self, kind: JunctionKind) -> String {
-        let own = self.name.rsplit('.').next().unwrap_or(&self.name);
-        declaration(kind, own, self.dimension)
+        declaration(kind, self.own_name(), self.dimension)
     }
 }
 

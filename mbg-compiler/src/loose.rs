@@ -19,11 +19,12 @@ struct Loose {
 pub(crate) fn warn(model: &Elaborated, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
     for Loose { id, dead } in all(graph) {
+        let junction = &graph.junctions[id.0];
         let mut read = model.signals.list().iter();
-        if read.any(|(_, place, _)| *place == Place::Junction(id)) {
+        let is_read = read.any(|(_, place, _)| *place == Place::Junction(id));
+        if is_read || junction.own_name().starts_with('_') {
             continue;
         }
-        let junction = &graph.junctions[id.0];
         let message = match junction.kind {
             JunctionKind::Zero => format!(
                 "nothing flows through `{}`, which has one bond, nor through `{dead}`",

@@ -120,6 +120,11 @@ fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_i
       help: hold `g`: `Se earth { effort: 0.0 } -> g;`
     ");
     assert_eq!(circuit("Se earth { effort: 0.0 } -> g;"), "");
+    let open = around_a_wheel(
+        "",
+        "0 _open; 1 branch { R r { resistance: 1.0 } } branch -> _open;",
+    );
+    assert_eq!(open, "");
     // An axis that is locked, of which the torque is asked.
     let locked = "0 lock; 1 axis; 0 shaft { C s { stiffness: 1.0 } } wheel -> shaft; shaft -> axis; axis -> lock;";
     insta::assert_snapshot!(around_a_wheel("", locked), @"

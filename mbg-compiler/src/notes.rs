@@ -73,7 +73,9 @@ fn unused_starts(
             format!("`{name}` is not {given:?} at the start{place}: it follows from other states");
         (!is_met).then_some((span, note))
     };
-    momenta.chain(flows).filter_map(note).collect()
+    let all = momenta.chain(flows);
+    let given = all.filter(|(_, _, given, _)| *given != Expression::ZERO);
+    given.filter_map(note).collect()
 }
 
 /// Storages whose energy changes with more than their own states.

@@ -114,14 +114,13 @@ impl Cursor {
 
     /// Steps over the `0` or `1` of a junction if it stands here.
     pub(super) fn take_junction_kind(&mut self) -> Option<JunctionKind> {
-        let is_zero = self.found() == "`0`";
-        let stands = self.junction_digit(0);
-        self.at += usize::from(stands);
-        stands.then_some(if is_zero {
-            JunctionKind::Zero
-        } else {
-            JunctionKind::One
-        })
+        let kind = match self.found().as_str() {
+            "`0`" => JunctionKind::Zero,
+            "`1`" => JunctionKind::One,
+            _ => return None,
+        };
+        self.at += 1;
+        Some(kind)
     }
 
     /// Steps over this character if it stands here.

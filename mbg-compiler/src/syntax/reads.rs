@@ -2,7 +2,7 @@
 
 use syn::Expr;
 
-use super::ast::{ChainNode, Element, Field, Reference, Statement};
+use super::ast::{ChainNode, Element, Reference, Statement};
 
 impl Statement {
     /// All expressions in it, but for those of the statements in its braces.
@@ -26,7 +26,9 @@ impl Statement {
             }
             Self::Instance(it) => {
                 let ends = it.connections.iter().flat_map(selections);
-                values(&it.arguments).chain(ends).collect()
+                let arguments = it.arguments.iter();
+                let arguments = arguments.filter_map(|it| it.value.as_ref());
+                arguments.chain(ends).collect()
             }
             Self::Loop(it) => vec![&it.start, &it.end],
             Self::Conditional(it) => {
@@ -51,10 +53,6 @@ impl Statement {
             _ => Vec::new(),
         }
     }
-}
-
-fn values(fields: &[Field]) -> impl Iterator<Item = &Expr> {
-    fields.iter().filter_map(|field| field.value.as_ref())
 }
 
 fn of_node(node: &ChainNode) -> Vec<&Expr> {

@@ -78,7 +78,7 @@ fn of_laws<'a>(model: &'a Elaborated, pool: &Pool) -> Vec<(Expression, &'a Eleme
             {
                 found.push((divisor.magnitude(), element));
             }
-            roots.extend(operation.operands());
+            roots.extend_from_slice(&operation.operands());
         }
     }
     found.sort_by_key(|(divisor, _)| *divisor);

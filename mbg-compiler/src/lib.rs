@@ -38,6 +38,7 @@ pub mod jacobians;
 mod loose;
 pub mod network;
 mod notes;
+mod operands;
 pub mod program;
 pub mod sparsity;
 pub mod start;

@@ -65,7 +65,7 @@ impl Constants {
             let argument = instance.argument(&parameter.name);
             match (argument, &parameter.default) {
                 (Some((_, argument)), _) => {
-                    if let Ok(number) = self.evaluate(argument) {
+                    if let Some(number) = self.number(argument) {
                         inner.numbers.insert(name.clone(), number);
                     }
                 }
@@ -130,12 +130,12 @@ impl Constants {
         while progress {
             progress = false;
             for (name, value) in std::mem::take(&mut values) {
-                match self.evaluate(value) {
-                    Ok(number) => {
+                match self.number(value) {
+                    Some(number) => {
                         self.numbers.insert(name.to_string(), number);
                         progress = true;
                     }
-                    Err(_) => values.push((name, value)),
+                    None => values.push((name, value)),
                 }
             }
             // A value may decide an `if`, which brings more values.

@@ -28,7 +28,7 @@ impl<'a> Builder<'a> {
             || component.derivative.is_some();
         let around = &self.scopes[scope];
         let constants = around.constants.of_instance(instance, component);
-        if around.library.is_none() {
+        if around.library.is_none() && self.claims.is_none() {
             let idle = without_effect(instance, component, &around.constants, &constants);
             idle.into_iter().for_each(|it| self.diagnostics.warn(it));
         }

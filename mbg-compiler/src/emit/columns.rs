@@ -4,13 +4,13 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::routine::{Writer, column_lines};
+use super::tokens::block;
 use crate::program::{Columns, Operand, Routine, Source};
 use crate::symbolic::Symbol;
 
 /// Writes `jacobian`, column by column; the steps of the routine stand before it.
 pub(super) fn write(writer: &Writer, routine: &Routine) -> TokenStream {
-    let groups = routine.columns.iter().map(|it| group(writer, it));
-    quote!(#(#groups)*)
+    routine.columns.iter().map(|it| group(writer, it)).collect()
 }
 
 /// Some columns. Rows that hold one constant need no steps.
@@ -27,14 +27,15 @@ fn group(writer: &Writer, columns: &Columns) -> TokenStream {
         .copied()
         .map(Literal::usize_suffixed);
     let steps = steps.into_iter().map(Literal::usize_suffixed);
+    let mut body = quote! {
+        use ::mbg_runtime::Real as _;
+        let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
+    };
+    body.extend([lines, quote!([#(#slopes),*])]);
+    let body = block(body);
     quote! {
         #(#constant)*
-        ::mbg_runtime::__private::columns(jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| {
-            use ::mbg_runtime::Real as _;
-            let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
-            #lines
-            [#(#slopes),*]
-        });
+        ::mbg_runtime::__private::columns(jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| #body);
     }
 }
 

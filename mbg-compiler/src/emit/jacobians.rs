@@ -5,6 +5,7 @@ use quote::quote;
 
 use super::columns;
 use super::routine::{Writer, written_lines};
+use super::tokens::block;
 use crate::compile::{Compiled, Routines};
 use crate::program::Source;
 
@@ -15,7 +16,8 @@ pub(super) fn methods(
     memory: &TokenStream,
 ) -> TokenStream {
     let [states, inputs] = [compiled.states.len(), compiled.model.inputs.len()];
-    let derivative_and_jacobian = written(compiled, Routines::DERIVATIVE_AND_JACOBIAN, states);
+    let derivative_and_jacobian =
+        block(written(compiled, Routines::DERIVATIVE_AND_JACOBIAN, states));
     let jacobian_input = written(compiled, Routines::JACOBIAN_INPUT, inputs);
     let [n, m] = [states, inputs].map(Literal::usize_suffixed);
     quote! {
@@ -39,9 +41,7 @@ pub(super) fn methods(
             &self, #arguments, memory: &mut #memory,
             derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
             jacobian: &mut ::mbg_runtime::__private::SMatrix<T, #n, #n>,
-        ) {
-            #derivative_and_jacobian
-        }
+        ) #derivative_and_jacobian
         #[inline]
         fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
             let mut input = ::mbg_runtime::__private::SMatrix::<T, #n, #m>::from_element(T::from_f64(0.0));
@@ -70,7 +70,7 @@ fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
     });
     let places: Vec<_> = rates.chain(entries).collect();
     let writer = Writer::of(compiled, routine);
-    let lines = written_lines(&writer, routine, &places);
-    let by_columns = columns::write(&writer, routine);
-    quote!(#lines #by_columns)
+    let mut lines = written_lines(&writer, routine, &places);
+    lines.extend(columns::write(&writer, routine));
+    lines
 }

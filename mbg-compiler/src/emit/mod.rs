@@ -12,6 +12,7 @@ mod routine;
 mod shell;
 mod sparsity;
 mod system;
+mod tokens;
 
 use proc_macro2::TokenStream;
 use quote::quote;

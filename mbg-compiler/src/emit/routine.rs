@@ -1,12 +1,13 @@
 //! Steps as `let` bindings.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 use std::rc::Rc;
 
-use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream};
+use proc_macro2::{Delimiter, Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
+use rustc_hash::FxHashMap;
 
+use super::tokens::{Tokens, Words, block};
 use crate::compile::Compiled;
 use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step, angles};
 use crate::symbolic::{Kind, Symbol};
@@ -71,7 +72,9 @@ pub(super) fn written_lines(
     let lines = writer.lines(&routine.steps, 0, &behind);
     let kept = Literal::usize_suffixed(writer.kept.len());
     let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));
-    quote!(#kept #known #lines #solved)
+    let mut all = kept.unwrap_or_default();
+    all.extend([known, lines, solved]);
+    all
 }
 
 /// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
@@ -137,7 +140,7 @@ fn names(routine: &Routine) -> Vec<Ident> {
 const PART: usize = 256;
 
 /// What a step makes.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Made {
     Value(usize),
     Solved(usize),
@@ -150,6 +153,19 @@ impl Made {
             Source::Value(value) => Some(Self::Value(value)),
             Source::Solved(place) => Some(Self::Solved(place.number)),
             Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => None,
+        }
+    }
+
+    /// Adds what a step makes, whose values begin with number `value`.
+    fn by(step: &Step, value: usize, made: &mut Vec<Self>) {
+        match step {
+            Step::Solve(solve) => {
+                made.push(Self::Solved(solve.number));
+                if matches!(solve.solver, Solver::Linear(_)) {
+                    made.push(Self::Factors(solve.number));
+                }
+            }
+            _ => made.extend((value..value + step.results()).map(Self::Value)),
         }
     }
 
@@ -172,15 +188,19 @@ impl Made {
 }
 
 /// The last part that reads what is made, some of which is read behind all parts.
-fn last_parts(parts: &[&[Step]], behind: &[Made]) -> BTreeMap<Made, usize> {
-    let mut last = BTreeMap::new();
+fn last_parts(parts: &[&[Step]], behind: &[Made]) -> FxHashMap<Made, usize> {
+    let mut last = FxHashMap::default();
     if parts.len() == 1 {
         return last;
     }
     for (number, part) in parts.iter().enumerate() {
-        let factors = part.iter().filter_map(Made::needed_by);
-        let read = part.iter().flat_map(|step| Made::read(&step.operands()));
-        last.extend(read.chain(factors).map(|made| (made, number)));
+        for step in *part {
+            let read = step.operands();
+            let read = read.iter().filter_map(|it| Made::of(it.source));
+            for made in read.chain(Made::needed_by(step)) {
+                last.insert(made, number);
+            }
+        }
     }
     last.extend(behind.iter().map(|made| (*made, parts.len())));
     last
@@ -190,6 +210,7 @@ fn last_parts(parts: &[&[Step]], behind: &[Made]) -> BTreeMap<Made, usize> {
 #[derive(Clone)]
 pub(super) struct Writer<'a> {
     compiled: &'a Compiled,
+    words: Rc<Words>,
     names: Rc<[Ident]>,
     setting: Setting,
     /// The place of each value that is kept for columns of a Jacobian.
@@ -205,6 +226,7 @@ impl<'a> Writer<'a> {
     pub(super) fn of(compiled: &'a Compiled, routine: &Routine) -> Self {
         Self {
             compiled,
+            words: Rc::new(Words::new()),
             names: names(routine).into(),
             setting: Setting::Method,
             kept: kept(routine).into(),
@@ -219,95 +241,99 @@ impl<'a> Writer<'a> {
         let last_part = last_parts(&parts, behind);
         let mut body = TokenStream::new();
         for (number, part) in parts.iter().enumerate() {
-            let mut lines = TokenStream::new();
-            let mut made = BTreeMap::new();
+            let mut lines = Tokens::default();
+            let mut made = Vec::new();
             let mut rest = *part;
             while let Some(step) = rest.first() {
                 let angles = angles(rest, value);
                 let taken = angles.len().max(1);
-                lines.extend(match angles.len() {
-                    0 | 1 => self.line(step, value),
-                    _ => self.sines_cosines(&angles, value),
-                });
+                match angles.len() {
+                    0 | 1 => self.line(step, value, &mut lines),
+                    _ => lines.extend(self.sines_cosines(&angles, value)),
+                }
                 let (now, after) = rest.split_at(taken);
                 for step in now {
-                    self.make(step, value, &mut made);
-                    lines.extend(self.store(value..value + step.results()));
+                    Made::by(step, value, &mut made);
+                    for (_, written) in self.written.range(value..value + step.results()) {
+                        lines.extend(written.clone());
+                    }
                     value += step.results();
                 }
                 rest = after;
             }
             if parts.len() == 1 {
-                return lines;
+                return lines.stream();
             }
-            let live: Vec<&Ident> = made
-                .iter()
-                .filter(|(made, _)| last_part.get(made).is_some_and(|last| *last > number))
-                .map(|(_, name)| name)
-                .collect();
+            made.retain(|made| last_part.get(made).is_some_and(|last| *last > number));
+            made.sort_unstable();
+            let live: Vec<Ident> = made.iter().map(|made| self.name(*made)).collect();
             lines.extend(quote!((#(#live,)*)));
-            let block = Group::new(Delimiter::Brace, lines);
+            let block = block(lines.stream());
             body.extend(quote!(let (#(#live,)*) = #block;));
         }
         body
     }
 
-    /// Puts values where they are wanted.
-    fn store(&self, values: Range<usize>) -> TokenStream {
-        let written = self.written.range(values);
-        written.map(|(_, lines)| lines.clone()).collect()
-    }
-
-    /// The names that a step gives to what it makes.
-    fn make(&self, step: &Step, value: usize, made: &mut BTreeMap<Made, Ident>) {
-        if let Step::Solve(solve) = step {
-            made.insert(Made::Solved(solve.number), unknowns(solve.number));
-            if matches!(solve.solver, Solver::Linear(_)) {
-                made.insert(Made::Factors(solve.number), factors(solve.number));
-            }
-            return;
-        }
-        for value in value..value + step.results() {
-            made.insert(Made::Value(value), self.names[value].clone());
+    /// The name of what a step makes.
+    fn name(&self, made: Made) -> Ident {
+        match made {
+            Made::Value(value) => self.names[value].clone(),
+            Made::Solved(number) => unknowns(number),
+            Made::Factors(number) => factors(number),
         }
     }
 
-    fn line(&self, step: &Step, value: usize) -> TokenStream {
+    /// Adds the line of a step. Most are sums and products, and written without `quote!`.
+    fn line(&self, step: &Step, value: usize, lines: &mut Tokens) {
+        let words = &*self.words;
         let name = self.names.get(value);
+        let arithmetic = |lines: &mut Tokens, write: &dyn Fn(&mut Tokens)| {
+            lines.name(&words.bind);
+            lines.name(&self.names[value]);
+            lines.sign('=');
+            write(lines);
+            lines.sign(';');
+        };
+        let between = |lines: &mut Tokens, sign: char, a: Operand, b: Operand| {
+            arithmetic(lines, &|lines| {
+                self.read(a, lines);
+                lines.sign(sign);
+                self.read(b, lines);
+            });
+        };
         match step {
-            Step::Add(a, b) => {
-                let (first, second) = (self.operand(*a), self.operand(Operand::plain(b.source)));
-                if b.negative {
-                    quote!(let #name = #first - #second;)
-                } else {
-                    quote!(let #name = #first + #second;)
-                }
-            }
-            Step::Multiply(a, b) => {
-                let (a, b) = (self.operand(*a), self.operand(*b));
-                quote!(let #name = #a * #b;)
-            }
-            Step::MultiplyAdd(a, b, c) => {
-                let [a, b, c] = [*a, *b, *c].map(|it| self.operand(it));
+            Step::Add(a, b) if b.negative => between(lines, '-', *a, Operand::plain(b.source)),
+            Step::Add(a, b) => between(lines, '+', *a, *b),
+            Step::Multiply(a, b) => between(lines, '*', *a, *b),
+            Step::Divide(a, b) => between(lines, '/', *a, *b),
+            Step::MultiplyAdd(a, b, c) => arithmetic(lines, &|lines| {
+                let mut arguments = Tokens::default();
                 if self.columns.is_some() {
-                    quote!(let #name = #a.multiply_add(#b, #c);)
+                    self.read(*a, lines);
+                    lines.sign('.');
                 } else {
-                    quote!(let #name = T::multiply_add(#a, #b, #c);)
+                    lines.name(&words.scalar);
+                    lines.colons();
+                    self.read(*a, &mut arguments);
+                    arguments.sign(',');
                 }
-            }
-            Step::Divide(a, b) => {
-                let (a, b) = (self.operand(*a), self.operand(*b));
-                quote!(let #name = #a / #b;)
-            }
+                lines.name(&words.multiply_add);
+                self.read(*b, &mut arguments);
+                arguments.sign(',');
+                self.read(*c, &mut arguments);
+                lines.group(Delimiter::Parenthesis, arguments);
+            }),
             Step::SineCosine(a) => {
                 let (sine, cosine) = (&self.names[value], &self.names[value + 1]);
                 let a = self.operand(*a);
-                quote!(let (#sine, #cosine) = T::sin_cos(#a);)
+                lines.extend(quote!(let (#sine, #cosine) = T::sin_cos(#a);));
             }
-            Step::Sine(a) => self.call(name, "sin", &[*a]),
-            Step::Cosine(a) => self.call(name, "cos", &[*a]),
-            Step::Call(function, arguments) => self.call(name, function.name(), arguments),
-            Step::Solve(solve) => self.solve(solve, value),
+            Step::Sine(a) => lines.extend(self.call(name, "sin", &[*a])),
+            Step::Cosine(a) => lines.extend(self.call(name, "cos", &[*a])),
+            Step::Call(function, arguments) => {
+                lines.extend(self.call(name, function.name(), arguments));
+            }
+            Step::Solve(solve) => lines.extend(self.solve(solve, value)),
         }
     }
 
@@ -425,48 +451,77 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A scalar without its sign.
-    fn scalar(&self, source: Source) -> TokenStream {
+    /// Adds an operand.
+    fn read(&self, operand: Operand, tokens: &mut Tokens) {
+        let Operand { source, negative } = operand;
+        let within = |delimiter, write: &dyn Fn(&mut Tokens), tokens: &mut Tokens| {
+            let mut inner = Tokens::default();
+            write(&mut inner);
+            tokens.group(delimiter, inner);
+        };
+        let signed = |tokens: &mut Tokens| {
+            if !negative {
+                return self.scalar(source, tokens);
+            }
+            let opposite = |inner: &mut Tokens| {
+                inner.sign('-');
+                self.scalar(source, inner);
+            };
+            within(Delimiter::Parenthesis, &opposite, tokens);
+        };
+        if self.is_whole(source) {
+            tokens.name(&self.words.whole);
+            within(Delimiter::Parenthesis, &signed, tokens);
+        } else {
+            signed(tokens);
+        }
+    }
+
+    /// Adds a scalar without its sign.
+    fn scalar(&self, source: Source, tokens: &mut Tokens) {
+        let words = &*self.words;
+        let of_model = |tokens: &mut Tokens| {
+            if self.setting == Setting::Method {
+                tokens.name(&words.model);
+                tokens.sign('.');
+            }
+        };
         match source {
-            Source::Constant(value) => {
-                let literal = Literal::f64_suffixed(value);
-                quote!(T::from_f64(#literal))
-            }
-            Source::Symbol(Symbol::Parameter(index)) => {
-                let name = &self.compiled.model.parameters[index].name;
-                if self.setting == Setting::Method {
-                    quote!(self.parameters.#name)
-                } else {
-                    quote!(parameters.#name)
-                }
-            }
-            Source::Symbol(Symbol::State(index)) => element(quote!(x), index),
-            Source::Symbol(Symbol::Input(index)) => element(quote!(u), index),
-            Source::Symbol(Symbol::Slope(index)) => element(quote!(slopes), index),
-            Source::Solved(place) => {
-                let unknowns = unknowns(place.number);
-                element(quote!(#unknowns), place.row)
-            }
-            Source::Symbol(Symbol::Time | Symbol::Signal(_) | Symbol::Unknown(_)) => quote!(t),
-            Source::Folded(index) => {
-                let index = Literal::usize_suffixed(index);
-                if self.setting == Setting::Method {
-                    quote!(self.folded[#index])
-                } else {
-                    quote!(folded[#index])
-                }
-            }
             Source::Value(index) => match self.columns.as_ref().and_then(|_| self.kept.get(&index))
             {
-                Some(place) => element(quote!(kept), *place),
-                None => self.names[index].to_token_stream(),
+                Some(place) => element(tokens, &words.kept, *place),
+                None => tokens.name(&self.names[index]),
             },
+            Source::Constant(value) => {
+                tokens.name(&words.scalar);
+                tokens.colons();
+                tokens.name(&words.from_f64);
+                let mut number = Tokens::default();
+                number.literal(Literal::f64_suffixed(value));
+                tokens.group(Delimiter::Parenthesis, number);
+            }
+            Source::Symbol(Symbol::Parameter(index)) => {
+                of_model(tokens);
+                tokens.name(&words.parameters);
+                tokens.sign('.');
+                tokens.name(&self.compiled.model.parameters[index].name);
+            }
+            Source::Symbol(Symbol::State(index)) => element(tokens, &words.state, index),
+            Source::Symbol(Symbol::Input(index)) => element(tokens, &words.input, index),
+            Source::Symbol(Symbol::Slope(index)) => element(tokens, &words.slopes, index),
+            Source::Solved(place) => element(tokens, &unknowns(place.number), place.row),
+            Source::Symbol(Symbol::Time | Symbol::Signal(_) | Symbol::Unknown(_)) => {
+                tokens.name(&words.time);
+            }
+            Source::Folded(index) => {
+                of_model(tokens);
+                element(tokens, &words.folded, index);
+            }
         }
     }
 }
 
-/// An operand as it is read. It is written where it belongs at once: tokens that go through several streams are copied
-/// as often.
+/// An operand as it is read, inside of what is written as a whole.
 struct Term<'a> {
     writer: &'a Writer<'a>,
     operand: Operand,
@@ -474,14 +529,9 @@ struct Term<'a> {
 
 impl ToTokens for Term<'_> {
     fn to_tokens(&self, tokens: &mut TokenStream) {
-        let Operand { source, negative } = self.operand;
-        let scalar = self.writer.scalar(source);
-        match (self.writer.is_whole(source), negative) {
-            (false, false) => tokens.extend(scalar),
-            (false, true) => tokens.extend(quote!((-#scalar))),
-            (true, false) => tokens.extend(quote!(whole(#scalar))),
-            (true, true) => tokens.extend(quote!(whole((-#scalar)))),
-        }
+        let mut read = Tokens::default();
+        self.writer.read(self.operand, &mut read);
+        tokens.extend(read.stream());
     }
 }
 
@@ -495,7 +545,9 @@ fn factors(number: usize) -> Ident {
     format_ident!("s{}", number, span = Span::mixed_site())
 }
 
-fn element(array: TokenStream, index: usize) -> TokenStream {
-    let index = Literal::usize_suffixed(index);
-    quote!(#array[#index])
+fn element(tokens: &mut Tokens, array: &Ident, index: usize) {
+    tokens.name(array);
+    let mut place = Tokens::default();
+    place.literal(Literal::usize_suffixed(index));
+    tokens.group(Delimiter::Bracket, place);
 }

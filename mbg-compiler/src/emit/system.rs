@@ -5,6 +5,7 @@ use quote::{format_ident, quote};
 
 use super::close::close;
 use super::routine::{Setting, Writer, lines, written_lines};
+use super::tokens::block;
 use super::{jacobians, meta, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
@@ -105,7 +106,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let sparsity = sparsity::items(&compiled.pattern);
     let body = |routine: usize, build: Build| body(compiled, routine, build);
     let initial = body(Routines::INITIAL, &vector);
-    let derivative = derivative(compiled);
+    let derivative = block(derivative(compiled));
     let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
@@ -146,9 +147,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn derivative_into(
                 &self, #arguments, memory: &mut #memory,
                 derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
-            ) {
-                #derivative
-            }
+            ) #derivative
             #derivatives
             #[inline]
             fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
@@ -235,7 +234,9 @@ fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
     let routine = &compiled.program.routines[routine];
     let (steps, results) = lines(compiled, routine, Setting::Method);
     let result = build(&results);
-    quote!(#steps #result)
+    let mut body = steps;
+    body.extend(result);
+    body
 }
 
 /// A vector of results.

@@ -28,8 +28,11 @@ impl Inclusion {
         let open: Vec<usize> = reports
             .filter(|report| inside.contains(&text(diagnostics.list()[*report].span)))
             .collect();
+        if open.is_empty() {
+            return;
+        }
         let marks = Marks::among(&self.call);
-        if open.is_empty() || marks.spans.len() < 2 {
+        if marks.spans.len() < 2 {
             return;
         }
         let calls: Vec<usize> = open.iter().map(|it| diagnostics.call(*it)).collect();

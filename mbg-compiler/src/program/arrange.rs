@@ -7,7 +7,7 @@
 //! sees, so that not many more values are alive at once than before.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+use std::collections::{BTreeMap, BinaryHeap};
 use std::ops::Range;
 
 use super::{Operand, Routine, Solver, Source, Step, angles, latency};
@@ -165,10 +165,12 @@ fn units(steps: &[Step]) -> Vec<Unit> {
     let mut begin = 0;
     while begin < steps.len() {
         let end = begin + angles(&steps[begin..], starts[begin]).len().max(1);
-        let before: BTreeSet<usize> = steps[begin..end]
-            .iter()
-            .flat_map(|step| makers.before(step))
-            .collect();
+        let mut before = Vec::new();
+        for step in &steps[begin..end] {
+            makers.before(step, &mut before);
+        }
+        before.sort_unstable();
+        before.dedup();
         let unit = units.len();
         for earlier in &before {
             units[*earlier].followers.push(unit);
@@ -210,8 +212,8 @@ struct Makers {
 }
 
 impl Makers {
-    /// The units that a step waits for.
-    fn before(&self, step: &Step) -> Vec<usize> {
+    /// Adds the units that a step waits for.
+    fn before(&self, step: &Step, units: &mut Vec<usize>) {
         let factors = match step {
             Step::Solve(solve) => match solve.solver {
                 Solver::Slope(of) => self.solves.get(&of).copied(),
@@ -219,13 +221,13 @@ impl Makers {
             },
             _ => None,
         };
-        let operands = step.operands().into_iter();
-        let made = operands.filter_map(|operand| match operand.source {
+        let operands = step.operands();
+        let made = operands.iter().filter_map(|operand| match operand.source {
             Source::Value(value) => self.values[value],
             Source::Solved(place) => self.solves.get(&place.number).copied(),
             Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => None,
         });
-        made.chain(factors).collect()
+        units.extend(made.chain(factors));
     }
 }
 

@@ -21,8 +21,10 @@ mod reorder;
 mod schedule;
 mod signs;
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
+use crate::operands::Operands;
 use crate::symbolic::{Expression, Function, Kind, Place, Symbol};
 
 pub use dump::dump;
@@ -116,16 +118,13 @@ impl Step {
 
     /// What it reads.
     #[must_use]
-    pub fn operands(&self) -> Vec<Operand> {
+    pub fn operands(&self) -> Operands<'_, Operand> {
         match self {
-            Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => vec![*a, *b],
-            Self::MultiplyAdd(a, b, c) => vec![*a, *b, *c],
-            Self::SineCosine(a) | Self::Sine(a) | Self::Cosine(a) => vec![*a],
-            Self::Call(_, operands) => operands.clone(),
-            Self::Solve(solve) => {
-                let inner = solve.steps.iter().flat_map(Self::operands);
-                inner.chain(solve.results.iter().copied()).collect()
-            }
+            Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => Operands::Two([*a, *b]),
+            Self::MultiplyAdd(a, b, c) => Operands::Three([*a, *b, *c]),
+            Self::SineCosine(a) | Self::Sine(a) | Self::Cosine(a) => Operands::One([*a]),
+            Self::Call(_, operands) => Operands::Many(Cow::Borrowed(operands)),
+            Self::Solve(solve) => Operands::Many(read(&solve.steps, &solve.results).into()),
         }
     }
 
@@ -240,10 +239,19 @@ impl Columns {
     }
 
     /// What they read or return.
-    fn operands(&self) -> impl Iterator<Item = Operand> {
-        let steps = self.steps.iter().flat_map(Step::operands);
-        steps.chain(self.results.iter().copied())
+    fn operands(&self) -> Vec<Operand> {
+        read(&self.steps, &self.results)
     }
+}
+
+/// What steps read, and what is returned of them.
+fn read(steps: &[Step], results: &[Operand]) -> Vec<Operand> {
+    let mut read = Vec::new();
+    for step in steps {
+        read.extend_from_slice(&step.operands());
+    }
+    read.extend_from_slice(results);
+    read
 }
 
 /// A function: steps in order of evaluation, and what it returns.
@@ -292,9 +300,9 @@ impl Routine {
     /// Whether its steps read a symbol or return it.
     #[must_use]
     pub fn reads(&self, symbol: Symbol) -> bool {
-        let read = self.steps.iter().flat_map(Step::operands);
-        let mut read = read.chain(self.read_behind());
-        read.any(|operand| operand.source == Source::Symbol(symbol))
+        let is_read = |operand: &Operand| operand.source == Source::Symbol(symbol);
+        let by = |step: &Step| step.operands().iter().any(is_read);
+        self.steps.iter().any(by) || self.read_behind().iter().any(is_read)
     }
 
     /// Whether there is an iteration in it.

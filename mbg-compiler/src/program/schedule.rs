@@ -1,5 +1,7 @@
 //! From the expression graph to steps in order.
 
+use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::arrange::arrange;
@@ -7,6 +9,7 @@ use super::contract::contract;
 use super::reorder::reorder;
 use super::signs::signs;
 use super::{Columns, Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step};
+use crate::operands::Operands;
 use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
 /// Builds one function for each request. `state` gives the place in `x` of each candidate state; `names` names nodes.
@@ -28,6 +31,7 @@ pub fn build(
             .map(|number| captured(pool, number))
             .collect(),
         folded,
+        changing: OnceCell::new(),
         state,
         names,
     };
@@ -58,8 +62,8 @@ fn folded_nodes(pool: &Pool, requests: &[Request]) -> Vec<Expression> {
             }
             match (pool.rate(current), pool.operation(current)) {
                 (Rate::Varying, _) => {
-                    let causes = pool.causes(current).into_iter().rev();
-                    pending.extend(causes.map(Expression::magnitude));
+                    let causes = pool.causes(current);
+                    pending.extend(causes.iter().rev().map(|it| it.magnitude()));
                 }
                 (Rate::Parameter, Operation::Symbol(_)) | (Rate::Constant, _) => {}
                 (Rate::Parameter, _) => found.push(current),
@@ -95,7 +99,7 @@ fn free_of_unknowns(
             continue;
         }
         if depends[current.node()] {
-            pending.extend(pool.operation(current).operands().into_iter().rev());
+            pending.extend(pool.operation(current).operands().iter().rev());
         } else {
             found.push(current.magnitude());
         }
@@ -110,8 +114,8 @@ fn dependent(pool: &Pool, implicit: &Implicit) -> Vec<bool> {
         depends.push(match operation {
             Operation::Symbol(Symbol::Unknown(unknown)) => implicit.unknowns.contains(unknown),
             _ => {
-                let mut operands = operation.operands().into_iter();
-                operands.any(|operand| depends.get(operand.node()).copied().unwrap_or(false))
+                let known = |it: &Expression| depends.get(it.node()).copied().unwrap_or(false);
+                operation.operands().iter().any(known)
             }
         });
     }
@@ -124,6 +128,8 @@ struct Context<'a> {
     captured: Vec<Vec<Expression>>,
     /// The number of what is folded, by node.
     folded: Vec<Option<usize>>,
+    /// Whether each node changes along a direction, once that was asked for.
+    changing: OnceCell<Vec<bool>>,
     state: &'a dyn Fn(usize) -> usize,
     names: &'a BTreeMap<usize, String>,
 }
@@ -220,8 +226,9 @@ impl Context<'_> {
             changing.push(match self.pool.operation(node) {
                 Operation::Symbol(Symbol::Slope(_)) => true,
                 _ => {
-                    let mut before = self.before(node).into_iter();
-                    before.any(|it| changing.get(it.node()).copied().unwrap_or(false))
+                    let known = |it: &Expression| changing.get(it.node()).copied();
+                    let before = self.before(node);
+                    before.iter().any(|it| known(it).unwrap_or(false))
                 }
             });
         }
@@ -234,7 +241,7 @@ impl Context<'_> {
         if columns.is_empty() {
             return found;
         }
-        let changing = self.changing();
+        let changing = self.changing.get_or_init(|| self.changing());
         let mut seen = vec![false; self.pool.len()];
         let rates = columns.iter().rev().flat_map(|it| it.rates.iter().rev());
         let mut pending: Vec<Expression> = rates.copied().collect();
@@ -257,7 +264,7 @@ impl Context<'_> {
                 }
                 _ => {}
             }
-            pending.extend(self.before(current).into_iter().rev());
+            pending.extend(self.before(current).iter().rev());
         }
         found
     }
@@ -333,11 +340,11 @@ impl Context<'_> {
     }
 
     /// What must be there before a node.
-    fn before(&self, expression: Expression) -> Vec<Expression> {
+    fn before(&self, expression: Expression) -> Operands<'_, Expression> {
         match self.pool.operation(expression) {
             Operation::Symbol(symbol) => match self.pool.place(*symbol) {
-                Some(place) => self.captured[place.number].clone(),
-                None => Vec::new(),
+                Some(place) => Operands::Many(Cow::Borrowed(&self.captured[place.number])),
+                None => Operands::Zero,
             },
             operation => operation.operands(),
         }
@@ -371,7 +378,7 @@ impl Context<'_> {
                 Operation::Divide(_, divisor) => *quotients.entry(divisor.node()).or_default() += 1,
                 _ => {}
             }
-            pending.extend(self.before(current));
+            pending.extend_from_slice(&self.before(current));
         }
         sines.retain(|angle, _| cosines.contains_key(angle));
         let early = sines
@@ -407,8 +414,8 @@ impl Context<'_> {
             }
             if !ready {
                 pending.push((current, true));
-                let before = self.before(current).into_iter().rev();
-                pending.extend(before.map(|operand| (operand.magnitude(), false)));
+                let before = self.before(current);
+                pending.extend(before.iter().rev().map(|it| (it.magnitude(), false)));
                 continue;
             }
             match place {

@@ -126,8 +126,11 @@ impl<'a> Signs<'a> {
             Step::Multiply(a, b) | Step::Divide(a, b) => SIGN * u32::from(sign(&a, &b)),
             Step::MultiplyAdd(a, b, c) => BOTH_SIGNS * u32::from(sign(&a, &b) && c.negative),
             other => {
-                let operands = other.operands().into_iter();
-                SIGN * operands.map(|it| u32::from(it.negative)).sum::<u32>()
+                let operands = other.operands();
+                SIGN * operands
+                    .iter()
+                    .map(|it| u32::from(it.negative))
+                    .sum::<u32>()
             }
         }
     }

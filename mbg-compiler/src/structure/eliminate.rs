@@ -70,29 +70,33 @@ impl System {
             is_wanted[*column] = true;
             holding.extend(self.rows_with(*column).filter(|row| rows.contains(row)));
         }
-        let constant = |rate, row, column: usize| {
-            rate == Rate::Constant && is_wanted[column] && admitted(row, column)
-        };
-        while let Some((row, column)) = self.pivot(pool, holding.iter().copied(), &constant) {
+        let wanted = |row, column: usize| is_wanted[column] && admitted(row, column);
+        while let Some((row, column)) =
+            self.pivot(pool, holding.iter().copied(), Rate::Constant, &wanted)
+        {
             self.eliminate(pool, row, column)?;
             holding.remove(&row);
         }
         Ok(())
     }
 
-    /// A pivot in one of the rows given, which are open: constants before parameters before what varies, then the one that
-    /// fills in least.
+    /// A pivot in one of the rows given, which are open, that changes so often at most: constants before parameters before
+    /// what varies, then the one that fills in least.
     pub(super) fn pivot(
         &self,
         pool: &Pool,
         rows: impl Iterator<Item = usize>,
-        admitted: &dyn Fn(Rate, usize, usize) -> bool,
+        most: Rate,
+        admitted: &dyn Fn(usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
         let mut best = None;
         for row in rows {
-            for column in self.rows[row].keys() {
+            for (column, entry) in &self.rows[row] {
+                if pool.rate(*entry) > most || !admitted(row, *column) {
+                    continue;
+                }
                 let rate = self.rate(pool, row, *column);
-                if !admitted(rate, row, *column) {
+                if rate > most {
                     continue;
                 }
                 let found = (rate, self.fill(row, *column), row, *column);
@@ -111,18 +115,17 @@ impl System {
     /// How often an entry changes, as a pivot: a constant that is small beside others in its row and in its column counts as if
     /// it varied. What is divided by it carries their rounding errors, as many times larger.
     pub(super) fn rate(&self, pool: &Pool, row: usize, column: usize) -> Rate {
-        let size = |row: usize, column: usize| {
-            let value = pool.constant_value(self.entry(row, column));
-            value.map_or(0.0, f64::abs)
-        };
-        let own = size(row, column);
+        let size = |entry| pool.constant_value(entry).map_or(0.0, f64::abs);
+        let entry = self.entry(row, column);
+        let own = size(entry);
         let is_small_beside = |other: f64| own < SMALL * other;
         let is_small = || {
-            let mut others = self.rows[row].keys().map(|it| size(row, *it));
-            let mut above = self.rows_with(column).map(|it| size(it, column));
+            let mut others = self.rows[row].values().map(|it| size(*it));
+            let above = self.rows_with(column);
+            let mut above = above.map(|it| size(self.entry(it, column)));
             others.any(is_small_beside) && above.any(is_small_beside)
         };
-        match pool.rate(self.entry(row, column)) {
+        match pool.rate(entry) {
             Rate::Constant if own < SMALL && is_small() => Rate::Varying,
             rate => rate,
         }

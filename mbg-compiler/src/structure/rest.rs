@@ -68,10 +68,16 @@ impl Solver<'_> {
         allowed: &dyn Fn(usize, usize) -> bool,
         divisor: &mut Expression,
     ) -> Result<(Rest, Vec<Expression>), Failure> {
-        let steady = |rate, row, column| rate < Rate::Varying && allowed(row, column);
+        let steady = |pool: &Pool, system: &System| {
+            system.pivot(
+                pool,
+                system.open().iter().copied(),
+                Rate::Parameter,
+                allowed,
+            )
+        };
         while system.open().len() > ADJUGATE
-            && let Some((row, column)) =
-                system.pivot(self.pool, system.open().iter().copied(), &steady)
+            && let Some((row, column)) = steady(self.pool, system)
         {
             let pivot = system.entry(row, column);
             // In the determinant of the whole it may cancel.
@@ -149,10 +155,10 @@ impl Solver<'_> {
             .collect();
         let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
         let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
-        let outside = |_, _, column| !columns.contains(&column);
+        let outside = |_, column| !columns.contains(&column);
         let pivot = |pool: &Pool, system: &System| {
             let others = system.open().difference(&rows).copied();
-            system.pivot(pool, others, &outside)
+            system.pivot(pool, others, Rate::Varying, &outside)
         };
         while let Some((row, column)) = pivot(self.pool, system) {
             self.note(system.entry(row, column), &[]);

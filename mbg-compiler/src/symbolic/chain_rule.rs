@@ -32,7 +32,7 @@ impl Integration<'_> {
         let mut inners = Vec::new();
         visit(self.pool, &[expression], |_, operation| {
             if !matches!(operation, Operation::Add(..)) {
-                inners.extend(operation.operands().into_iter().map(Expression::magnitude));
+                inners.extend(operation.operands().iter().map(|it| it.magnitude()));
             }
         });
         let mut found = Vec::new();

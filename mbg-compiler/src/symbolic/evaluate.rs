@@ -30,11 +30,11 @@ impl<'a> Evaluation<'a> {
             }
             let operation = pool.operation(current);
             let before = pending.len();
-            let missing = operation
-                .operands()
-                .into_iter()
-                .filter(|part| self.known[part.node()].is_none());
-            pending.extend(missing.map(Expression::magnitude));
+            for part in operation.operands().iter() {
+                if self.known[part.node()].is_none() {
+                    pending.push(part.magnitude());
+                }
+            }
             if pending.len() == before {
                 self.known[current.node()] = Some(self.of_operation(operation));
                 pending.pop();

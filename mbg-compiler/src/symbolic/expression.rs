@@ -203,12 +203,12 @@ pub enum Operation {
 impl Operation {
     /// What it is computed from.
     #[must_use]
-    pub fn operands(&self) -> Vec<Expression> {
+    pub fn operands(&self) -> Operands<'_, Expression> {
         match self {
-            Self::Constant(_) | Self::Symbol(_) => Vec::new(),
-            Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => vec![*a, *b],
-            Self::Sine(a) | Self::Cosine(a) => vec![*a],
-            Self::Call(_, arguments) => arguments.clone(),
+            Self::Constant(_) | Self::Symbol(_) => Operands::Zero,
+            Self::Add(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => Operands::Two([*a, *b]),
+            Self::Sine(a) | Self::Cosine(a) => Operands::One([*a]),
+            Self::Call(_, arguments) => Operands::Many(Cow::Borrowed(arguments)),
         }
     }
 }
@@ -223,3 +223,5 @@ pub enum Rate {
     /// With time, state or input: computed at every evaluation.
     Varying,
 }
+use crate::operands::Operands;
+use std::borrow::Cow;

@@ -73,9 +73,9 @@ fn raised<const BELOW: u64>(mut base: u64, mut exponent: u64) -> u64 {
 
 /// Extended Euclid, since it runs unoptimised inside the compiler.
 fn inverse<const BELOW: u64>(a: u64) -> Option<u64> {
-    let prime = i128::from(prime::<BELOW>());
-    let (mut r0, mut r1) = (prime, i128::from(a));
-    let (mut t0, mut t1) = (0i128, 1i128);
+    let prime = prime::<BELOW>() as i64;
+    let (mut r0, mut r1) = (prime, a as i64);
+    let (mut t0, mut t1) = (0i64, 1i64);
     while r1 != 0 {
         let quotient = r0 / r1;
         (r0, r1) = (r1, r0 - quotient * r1);
@@ -142,15 +142,15 @@ pub fn reciprocals(elements: &[u64]) -> Vec<u64> {
 /// The fraction that an element stands for, if numerator and denominator are at most `largest` (Wang 1981).
 #[must_use]
 pub fn fraction(element: u64, largest: u64) -> Option<(i64, i64)> {
-    let largest = i128::from(largest);
-    let (mut r0, mut r1) = (i128::from(PRIME), i128::from(element));
-    let (mut t0, mut t1) = (0i128, 1i128);
+    let largest = largest as i64;
+    let (mut r0, mut r1) = (PRIME as i64, element as i64);
+    let (mut t0, mut t1) = (0i64, 1i64);
     while r1 > largest {
         let quotient = r0 / r1;
         (r0, r1) = (r1, r0 - quotient * r1);
         (t0, t1) = (t1, t0 - quotient * t1);
     }
-    (t1.abs() <= largest).then(|| ((r1 * t1.signum()) as i64, t1.abs() as i64))
+    (t1.abs() <= largest).then(|| (r1 * t1.signum(), t1.abs()))
 }
 
 /// A fixed pseudo-random element that depends on the words given (splitmix64).

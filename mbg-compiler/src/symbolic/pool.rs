@@ -15,6 +15,7 @@ use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
 use super::implicit::{Implicit, Place};
 use super::linear::Linear;
+use crate::operands::Operands;
 
 #[derive(Clone)]
 struct Node {
@@ -294,11 +295,11 @@ impl Pool {
 
     /// What the value of a node depends on: its operands, and for an unknown the equations that give it.
     #[must_use]
-    pub fn causes(&self, expression: Expression) -> Vec<Expression> {
+    pub fn causes(&self, expression: Expression) -> Operands<'_, Expression> {
         match self.operation(expression) {
             Operation::Symbol(symbol) => match self.place(*symbol) {
-                Some(place) => self.evaluated(place.number),
-                None => Vec::new(),
+                Some(place) => Operands::Many(self.evaluated(place.number).into()),
+                None => Operands::Zero,
             },
             operation => operation.operands(),
         }

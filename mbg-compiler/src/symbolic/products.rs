@@ -37,10 +37,11 @@ pub fn products(pool: &mut Pool, others: &[Expression], roots: &[Expression]) {
 /// Whether it is a sum or product with a part that nothing else needs.
 fn is_long(pool: &Pool, uses: &Uses, node: Expression) -> bool {
     let operation = pool.operation(node);
-    let mut parts = operation.operands().into_iter();
+    let is_own =
+        |part: &Expression| uses.count(*part) == 1 && !pool.operation(*part).operands().is_empty();
     matches!(operation, Operation::Add(..) | Operation::Multiply(..))
         && uses.count(node) > 0
-        && parts.any(|part| uses.count(part) == 1 && !pool.operation(part).operands().is_empty())
+        && operation.operands().iter().any(is_own)
 }
 
 /// Takes the shortest form of a node.
@@ -64,10 +65,9 @@ fn shorten(pool: &mut Pool, uses: &mut Uses, known: &Known, node: Expression) {
 
 /// Counts a node's parts as those of another form; gives how many nodes that saves.
 fn exchange(pool: &Pool, uses: &mut Uses, node: Expression, form: &Operation) -> usize {
-    let added = form.operands().into_iter().map(|part| uses.add(pool, part));
-    let added: usize = added.sum();
-    let old = pool.operation(node).operands().into_iter();
-    let removed: usize = old.map(|part| uses.remove(pool, part)).sum();
+    let (new, old) = (form.operands(), pool.operation(node).operands());
+    let added: usize = new.iter().map(|part| uses.add(pool, *part)).sum();
+    let removed: usize = old.iter().map(|part| uses.remove(pool, *part)).sum();
     removed.saturating_sub(added)
 }
 
@@ -199,7 +199,7 @@ fn divisors(pool: &Pool, nodes: &[Expression]) -> Option<(BTreeMap<Expression, u
     let mut free = (0..u128::BITS).map(|place| 1 << place);
     for node in nodes {
         let mut bits = 0;
-        for part in pool.causes(*node) {
+        for &part in pool.causes(*node).iter() {
             bits |= depends[part.node()];
         }
         bits |= match *pool.operation(*node) {

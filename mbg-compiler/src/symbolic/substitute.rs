@@ -121,6 +121,6 @@ pub(super) fn visit<'a>(
             continue;
         }
         each(current.magnitude(), pool.operation(current));
-        pending.extend(pool.causes(current).into_iter().rev());
+        pending.extend(pool.causes(current).iter().rev());
     }
 }

@@ -35,7 +35,7 @@ impl Uses {
             self.counts[current.node()] += 1;
             if self.counts[current.node()] == 1 {
                 nodes += 1;
-                pending.extend(pool.causes(current));
+                pending.extend_from_slice(&pool.causes(current));
             }
         }
         nodes
@@ -49,7 +49,7 @@ impl Uses {
             self.counts[current.node()] -= 1;
             if self.counts[current.node()] == 0 {
                 nodes += 1;
-                pending.extend(pool.causes(current));
+                pending.extend_from_slice(&pool.causes(current));
             }
         }
         nodes

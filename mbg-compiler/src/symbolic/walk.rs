@@ -42,11 +42,11 @@ impl Rewritten {
             }
             let operation = pool.operation(current).clone();
             let before = pending.len();
-            let missing = operation
-                .operands()
-                .into_iter()
-                .filter(|part| !self.0.contains_key(&part.node()));
-            pending.extend(missing.map(Expression::magnitude));
+            for part in operation.operands().iter() {
+                if !self.0.contains_key(&part.node()) {
+                    pending.push(part.magnitude());
+                }
+            }
             if pending.len() == before {
                 let rewritten = rule(pool, self, current, &operation)?;
                 self.0.insert(current.node(), rewritten);

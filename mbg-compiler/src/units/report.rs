@@ -113,7 +113,7 @@ impl<'a> Reporter<'a> {
                 return false;
             }
             if seen.insert(current.node()) {
-                open.extend(operation.operands());
+                open.extend_from_slice(&operation.operands());
             }
         }
         true

@@ -10,7 +10,7 @@ mod distribute;
 use rustc_hash::FxHashMap;
 
 use self::distribute::{Factors, factors};
-use super::{Columns, Operand, Routine, Source, Step, latency};
+use super::{Columns, Operand, Routine, Source, Step, latency, read};
 use crate::symbolic::Symbol;
 
 /// The routine with sums and products reordered.
@@ -84,8 +84,7 @@ struct Order {
 
 impl Order {
     fn count(&mut self, routine: &Routine) {
-        let steps = routine.steps.iter().flat_map(Step::operands);
-        for operand in steps.chain(routine.read_behind()) {
+        for operand in read(&routine.steps, &routine.read_behind()) {
             if let Source::Value(value) = operand.source {
                 self.uses[value] += 1;
             }

@@ -1,0 +1,93 @@
+//! Tokens one after the other.
+
+use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+
+/// Tokens that more are added to. `quote!` makes a stream of each piece and copies it into the next, which in thousands
+/// of lines is most of the work of an unoptimised macro.
+#[derive(Default)]
+pub(super) struct Tokens(Vec<TokenTree>);
+
+impl Tokens {
+    /// Adds a name.
+    pub(super) fn name(&mut self, name: &Ident) {
+        self.0.push(TokenTree::Ident(name.clone()));
+    }
+
+    /// Adds a sign that stands alone.
+    pub(super) fn sign(&mut self, sign: char) {
+        self.0
+            .push(TokenTree::Punct(Punct::new(sign, Spacing::Alone)));
+    }
+
+    /// Adds `::`.
+    pub(super) fn colons(&mut self) {
+        let first = Punct::new(':', Spacing::Joint);
+        self.0.push(TokenTree::Punct(first));
+        self.sign(':');
+    }
+
+    /// Adds a literal.
+    pub(super) fn literal(&mut self, literal: Literal) {
+        self.0.push(TokenTree::Literal(literal));
+    }
+
+    /// Adds a group of tokens.
+    pub(super) fn group(&mut self, delimiter: Delimiter, inner: Self) {
+        let group = Group::new(delimiter, inner.stream());
+        self.0.push(TokenTree::Group(group));
+    }
+
+    /// Adds all tokens of a stream.
+    pub(super) fn extend(&mut self, stream: TokenStream) {
+        self.0.extend(stream);
+    }
+
+    /// All of them.
+    pub(super) fn stream(self) -> TokenStream {
+        self.0.into_iter().collect()
+    }
+}
+
+/// `{ tokens }`.
+pub(super) fn block(tokens: TokenStream) -> Group {
+    Group::new(Delimiter::Brace, tokens)
+}
+
+/// The words of which most lines are made.
+#[derive(Clone)]
+pub(super) struct Words {
+    pub(super) bind: Ident,
+    pub(super) scalar: Ident,
+    pub(super) multiply_add: Ident,
+    pub(super) whole: Ident,
+    pub(super) from_f64: Ident,
+    pub(super) model: Ident,
+    pub(super) parameters: Ident,
+    pub(super) folded: Ident,
+    pub(super) state: Ident,
+    pub(super) input: Ident,
+    pub(super) slopes: Ident,
+    pub(super) time: Ident,
+    pub(super) kept: Ident,
+}
+
+impl Words {
+    pub(super) fn new() -> Self {
+        let word = |text| Ident::new(text, Span::call_site());
+        Self {
+            bind: word("let"),
+            scalar: word("T"),
+            multiply_add: word("multiply_add"),
+            whole: word("whole"),
+            from_f64: word("from_f64"),
+            model: word("self"),
+            parameters: word("parameters"),
+            folded: word("folded"),
+            state: word("x"),
+            input: word("u"),
+            slopes: word("slopes"),
+            time: word("t"),
+            kept: word("kept"),
+        }
+    }
+}

@@ -47,4 +47,6 @@ mod models {
     mod pins;
     mod pivots;
     mod stages;
+    #[allow(deprecated, reason = "a warning of the macro, which is meant there")]
+    mod starts;
 }

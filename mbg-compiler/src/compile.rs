@@ -150,13 +150,14 @@ pub fn compile(
 
 /// Requests everything a model is asked, and builds the program.
 fn finish(
-    model: Elaborated,
+    mut model: Elaborated,
     solved: &Solved,
     answers: Answers,
     mut pool: Pool,
     verdict: Drawn,
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
+    structure::starting_momenta(&mut model, solved, &answers.states, &mut pool);
     let (scalars, solution) = (&solved.scalars, &solved.solution);
     let by_state: Vec<Symbol> = answers.states.iter().copied().map(Symbol::State).collect();
     let by_input: Vec<Symbol> = (0..model.inputs.len()).map(Symbol::Input).collect();

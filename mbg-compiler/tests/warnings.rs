@@ -105,6 +105,18 @@ fn values_at_the_start_that_are_not_used_are_told() {
     };
     assert_eq!(moving("initial_flow: 2.0"), "");
     insta::assert_snapshot!(moving("initial_flow: 1.0"), @"1:92 `drum.p` is not 2.0 at the start but 4.0: it follows from other states [MBG0405]");
+    // A momentum that is given decides, and one that is not gives the flow.
+    let rate = |start: &str, law: &str| {
+        let flow = "1 rate coordinate, initial_flow: 3.0";
+        warned(&format!(
+            "model M {{ {flow} {{ I wheel {{ {law}{start} }} }} }}"
+        ))
+    };
+    let linear = "inertia: 2.0";
+    assert_eq!(rate("", linear), "");
+    insta::assert_snapshot!(rate(", initial: 1.0", linear), @"1:13 `rate.f` is not 3.0 at the start but 0.5: it follows from other states [MBG0405]");
+    // Not where the law is none that can be inverted.
+    insta::assert_snapshot!(rate("", "flow: pow(wheel.p, 3)"), @"1:13 `rate.f` is not 3.0 at the start but 0.0: it follows from other states [MBG0405]");
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod rest;
 mod selection;
 mod shift;
 mod solve;
+mod starting;
 mod tensor;
 mod tree;
 mod zero;
@@ -42,6 +43,7 @@ pub use outlook::outlook;
 pub use reduction::{Reduction, reduce};
 pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};
+pub use starting::starting_momenta;
 
 /// Unknowns as expressions.
 pub struct Solution {

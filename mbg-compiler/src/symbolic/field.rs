@@ -256,6 +256,23 @@ impl Image {
         ])
     }
 
+    /// One of it and its negative, the same for both, and whether that is the negative.
+    #[must_use]
+    pub fn unsigned(self) -> (Self, bool) {
+        let [a, b, c] = self.0;
+        // Of an element and its negative, which add up to an odd prime, one is above its half.
+        let is_negative = match (a, b) {
+            (0, 0) => c > prime::<SECOND>() / 2,
+            (0, _) => b > prime::<FIRST>() / 2,
+            _ => a > prime::<FIRST>() / 2,
+        };
+        if is_negative {
+            (self.negated(), true)
+        } else {
+            (self, false)
+        }
+    }
+
     /// Inverse; none where it is zero at a point.
     #[must_use]
     pub fn inverted(self) -> Option<Self> {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::field::Image;
@@ -50,7 +50,7 @@ pub(super) enum Definition {
 pub struct Pool {
     nodes: Vec<Node>,
     /// Looked up, never iterated.
-    found: FxHashMap<Image, u32>,
+    found: FxHashMap<Image, Expression>,
     implicit: Vec<Implicit>,
     /// Images of states that depend on each other, such as the parts of a quaternion.
     located: BTreeMap<usize, Image>,
@@ -61,6 +61,9 @@ pub struct Pool {
     /// How many unknowns were made up.
     fresh: usize,
 }
+
+/// More nodes than most models have: to find room for more of them takes long in unoptimised code.
+const USUAL: usize = 8192;
 
 impl Default for Pool {
     fn default() -> Self {
@@ -74,7 +77,7 @@ impl Pool {
     pub fn new() -> Self {
         let mut pool = Self {
             nodes: Vec::new(),
-            found: FxHashMap::default(),
+            found: FxHashMap::with_capacity_and_hasher(USUAL, FxBuildHasher),
             implicit: Vec::new(),
             located: BTreeMap::new(),
             definitions: Vec::new(),
@@ -156,19 +159,18 @@ impl Pool {
             image,
             rate,
         });
-        self.found.insert(image, node as u32);
+        let (unsigned, is_negative) = image.unsigned();
+        self.found
+            .insert(unsigned, Expression::new(node, is_negative));
         Expression::new(node, false)
     }
 
     /// The expression with this image, if there is one.
     #[must_use]
     pub fn find(&self, image: Image) -> Option<Expression> {
-        if let Some(node) = self.found.get(&image) {
-            return Some(Expression::new(*node as usize, false));
-        }
-        self.found
-            .get(&image.negated())
-            .map(|node| Expression::new(*node as usize, true))
+        let (unsigned, is_negative) = image.unsigned();
+        let found = self.found.get(&unsigned)?;
+        Some(found.flipped(is_negative))
     }
 
     /// The node with this image, or a new one.

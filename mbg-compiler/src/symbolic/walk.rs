@@ -34,24 +34,20 @@ impl Rewritten {
         root: Expression,
         rule: impl Fn(&mut Pool, &Self, Expression, &Operation) -> Option<Expression>,
     ) -> Option<Expression> {
-        let mut pending = vec![root.magnitude()];
-        while let Some(&current) = pending.last() {
-            if self.0.contains_key(&current.node()) {
-                pending.pop();
+        let mut pending = vec![(root.magnitude(), false)];
+        while let Some((current, is_ready)) = pending.pop() {
+            if !is_ready {
+                if self.0.contains_key(&current.node()) {
+                    continue;
+                }
+                pending.push((current, true));
+                let operands = pool.operation(current).operands();
+                pending.extend(operands.iter().map(|part| (part.magnitude(), false)));
                 continue;
             }
             let operation = pool.operation(current).clone();
-            let before = pending.len();
-            for part in operation.operands().iter() {
-                if !self.0.contains_key(&part.node()) {
-                    pending.push(part.magnitude());
-                }
-            }
-            if pending.len() == before {
-                let rewritten = rule(pool, self, current, &operation)?;
-                self.0.insert(current.node(), rewritten);
-                pending.pop();
-            }
+            let rewritten = rule(pool, self, current, &operation)?;
+            self.0.insert(current.node(), rewritten);
         }
         Some(self.of(root))
     }

@@ -142,6 +142,19 @@ fn a_flow_that_nothing_gives_is_given() {
 }
 
 #[test]
+fn a_tank_between_a_pump_and_a_valve_is_held() {
+    let text = "model M { 0 tank; 0 supply { C oil { stiffness: 1e12 } } 1 shaft { Sf motor { flow: 100.0 } }
+                pump: Pump { displacement: 1e-6 } (tank, supply, shaft); valve: Orifice { area: 1e-6 } (supply, tank); }";
+    let helps = helps(text, codes::FIXED_RESISTOR);
+    let typed = "`Se earth { effort: 0.0 } -> tank;`";
+    let expected = format!("hold `tank`, where it is a ground or a tank: {typed}");
+    assert_eq!(helps[0], expected);
+    for help in &helps[..2] {
+        compiles(&followed(text, help));
+    }
+}
+
+#[test]
 fn what_a_loop_makes_is_marked_where_it_is_written() {
     let element = "model M { Se air { effort: 1.0 } -> cells[0].node;
                    cells: for k in 0..1 { 0 node { C heat { compliance: 1.0 } } } }";

@@ -7,11 +7,14 @@ use super::conflict::Conflict;
 use super::explain;
 use super::outlook::Outlook;
 use super::report::{COMPONENTWISE, JACOBIAN, alternatives, own_steps, resistor_help};
-use super::ways::{Between, through, turned};
+use super::strokes::Site;
+use super::ways::{Between, hold, through, turned};
 use super::words;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
-use crate::graph::{BondGraph, ElementId, End, JunctionKind, OriginId, Rule};
+use crate::graph::{
+    BondGraph, ElementId, End, JunctionId, JunctionKind, OriginId, Rule, instance_of,
+};
 
 /// Reports a conflict where the rules fail or at the element to blame, then at each fixed element that takes part.
 pub fn conflict_diagnostics(
@@ -122,6 +125,9 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         .iter()
         .filter_map(|id| resistor_help(graph, *id))
         .collect();
+    if conflict.code == codes::FIXED_RESISTOR {
+        helps.extend(holding(graph, conflict));
+    }
     let end = conflict.place();
     let place = end
         .as_ref()
@@ -159,6 +165,36 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         helps.push(JACOBIAN.to_owned());
     }
     helps
+}
+
+/// A source at the first node of a conflict that may lack one, such as a tank between a pump and a valve.
+fn holding(graph: &BondGraph, conflict: &Conflict) -> Option<String> {
+    let mut sites = conflict.sites.iter();
+    sites.find_map(|site| match site {
+        Site::Junction(id, components) if joins_components(graph, *id) => {
+            let name = &graph.junctions[id.0].name;
+            let source = hold(graph, *id, components.clone());
+            Some(format!(
+                "hold `{name}`, where it is a ground or a tank: {source}"
+            ))
+        }
+        _ => None,
+    })
+}
+
+/// Whether a junction is a node of the model itself that has components around it and nothing else.
+fn joins_components(graph: &BondGraph, id: JunctionId) -> bool {
+    let junction = &graph.junctions[id.0];
+    let is_here = |end: &End| matches!(end, End::Junction(other, _) if *other == id);
+    let ends = graph
+        .bonds
+        .iter()
+        .flat_map(|bond| [(&bond.from, &bond.to), (&bond.to, &bond.from)]);
+    let mut far = ends
+        .filter(|(end, _)| is_here(end))
+        .map(|(_, far)| graph.end_name(far));
+    let is_node = junction.kind == JunctionKind::Zero && junction.dimension == 1;
+    is_node && instance_of(&junction.name).is_none() && far.all(|far| instance_of(&far).is_some())
 }
 
 /// A storage that would give a place what it lacks, but not with one stroke: elsewhere on its bond that is imposed.

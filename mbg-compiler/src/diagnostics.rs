@@ -4,7 +4,7 @@
 //! carry the causal chain; `help` says what to type. Every diagnostic has a code from [`crate::codes`].
 
 use proc_macro2::{Ident, Span, TokenStream};
-use quote::{quote, quote_spanned};
+use quote::{ToTokens, quote, quote_spanned};
 
 use crate::syntax::words::nearest;
 
@@ -32,6 +32,8 @@ pub struct Diagnostic {
     pub helps: Vec<String>,
     /// How many more there are that differ in numbers alone, as a loop makes them.
     pub alike: usize,
+    /// The expressions that are to blame, where they are only parts of what was read; the first foremost.
+    pub about: Vec<TokenStream>,
 }
 
 impl Diagnostic {
@@ -46,6 +48,13 @@ impl Diagnostic {
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.helps.push(help.into());
+        self
+    }
+
+    /// Adds an expression that is to blame.
+    #[must_use]
+    pub fn about(mut self, expression: &impl ToTokens) -> Self {
+        self.about.push(expression.to_token_stream());
         self
     }
 
@@ -254,6 +263,7 @@ pub fn error(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
         notes: Vec::new(),
         helps: Vec::new(),
         alike: 0,
+        about: Vec::new(),
     }
 }
 

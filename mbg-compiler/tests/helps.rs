@@ -155,6 +155,40 @@ fn a_tank_between_a_pump_and_a_valve_is_held() {
 }
 
 #[test]
+fn parallel_axes_of_a_joint_are_told_at_the_axes() {
+    let scene = |joint: &str, axes: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 arm[6]; Sf still[6] {{ flow: 0.0 }} -> ground;
+             joint: {joint} {{\n{axes} }} (ground, arm); body: Body {{ mass: 1.0, inertia: 1.0 }} (arm); }}"
+        )
+    };
+    let cases = [
+        ("Universal", "first: 1, second: 1", 19),
+        ("Universal", "second: 0", 9),
+        ("Universal", "first: 1", 8),
+        ("Spherical", "first: 2, second: 0, third: 0", 29),
+    ];
+    for (joint, axes, column) in cases {
+        let text = scene(joint, axes);
+        let report = diagnose(&text).list()[0].clone();
+        let parallel = "the axes of two turns in a row are parallel";
+        assert!(report.message.contains(parallel), "{}", report.message);
+        let start = report.span.start();
+        assert_eq!((start.line, start.column), (3, column - 1), "{axes}");
+        let names = ["first", "second", "third"];
+        for help in helps(&text, codes::EXPRESSION) {
+            for written in help.split('`').skip(1).step_by(2) {
+                let axes = names.iter().zip(written.split(", "));
+                let axes = axes.map(|(name, axis)| format!("{name}: {axis}"));
+                let start = ["", ", initial: [0.1, 0.2, 0.3]"][usize::from(joint == "Spherical")];
+                let axes = axes.collect::<Vec<_>>().join(", ") + start;
+                compiles(&scene(joint, &axes));
+            }
+        }
+    }
+}
+
+#[test]
 fn what_a_loop_makes_is_marked_where_it_is_written() {
     let element = "model M { Se air { effort: 1.0 } -> cells[0].node;
                    cells: for k in 0..1 { 0 node { C heat { compliance: 1.0 } } } }";

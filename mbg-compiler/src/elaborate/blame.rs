@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use proc_macro2::Span;
+use quote::ToTokens;
 use syn::spanned::Spanned;
 use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue};
 
@@ -31,7 +32,9 @@ impl Builder<'_> {
         let inside = self.scopes[scope].library.clone();
         let inside = inside.filter(|_| OF_VALUES.contains(&report.code));
         let culprit = inside.and_then(|(component, _)| {
-            let culprit = self.culprit(scope, report.code, expressions)?;
+            let mut parts = report.about.iter();
+            let culprit = parts.find_map(|part| self.culprit(scope, report.code, &[part]));
+            let culprit = culprit.or_else(|| self.culprit(scope, report.code, expressions))?;
             Some((culprit, component))
         });
         let Some((culprit, component)) = culprit else {
@@ -47,10 +50,15 @@ impl Builder<'_> {
     }
 
     /// The one value of the user's that can have made a mistake of this code.
-    fn culprit(&mut self, scope: usize, code: Code, expressions: &[&Expr]) -> Option<usize> {
+    fn culprit(
+        &mut self,
+        scope: usize,
+        code: Code,
+        expressions: &[&impl ToTokens],
+    ) -> Option<usize> {
         let mut behind = BTreeSet::new();
         for expression in expressions {
-            self.behind(scope, code, expression, &mut behind);
+            self.behind(scope, code, *expression, &mut behind);
         }
         let told = |it: &&usize| matches!(self.definitions[**it].progress, Progress::Failed);
         if let Some(told) = behind.iter().find(told) {
@@ -69,7 +77,13 @@ impl Builder<'_> {
     }
 
     /// Gathers the values of the user's from which an expression in a component follows.
-    fn behind(&self, scope: usize, code: Code, expression: &Expr, found: &mut BTreeSet<usize>) {
+    fn behind(
+        &self,
+        scope: usize,
+        code: Code,
+        expression: &impl ToTokens,
+        found: &mut BTreeSet<usize>,
+    ) {
         let mut open = vec![(scope, mentioned(expression))];
         let mut seen = BTreeSet::new();
         while let Some((scope, paths)) = open.pop() {

@@ -2,12 +2,11 @@
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use quote::ToTokens;
-use syn::Expr;
 
 use super::expressions::Step;
 
 /// All dotted paths, in order; what stands in brackets ends a path.
-pub(super) fn mentioned(expression: &Expr) -> Vec<Vec<Step>> {
+pub(super) fn mentioned(expression: &impl ToTokens) -> Vec<Vec<Step>> {
     let mut paths = Vec::new();
     gather(expression.to_token_stream(), &mut paths);
     paths

@@ -11,7 +11,7 @@ use crate::symbolic::orientation::{angles_of, matrix_of, quaternion_of};
 use crate::symbolic::{Expression, Factor, Matrix, Pool, Product};
 
 /// How each function is called.
-const USAGES: [&str; 10] = [
+const USAGES: [&str; 11] = [
     "rot_x(angle)",
     "rot_y(angle)",
     "rot_z(angle)",
@@ -19,6 +19,7 @@ const USAGES: [&str; 10] = [
     "jacobian_xyz(angles)",
     "jacobian(angles, 0, 1, 2)",
     "matrix_of(quaternion)",
+    "matrix_of(angles, 0, 1, 2)",
     "quaternion_of(matrix)",
     "angles_of(matrix, 0, 1, 2)",
     "rotation(matrix)",
@@ -44,16 +45,22 @@ impl<N: Names> Evaluator<'_, N> {
                 .sequence(axes)
                 .and_then(|axes| self.jacobian(angles, axes)),
             ("matrix_of", [quaternion]) => self.matrix_of(quaternion),
+            ("matrix_of", [angles, axes @ ..]) if axes.len() == 2 => self.turns::<2>(angles, axes),
+            ("matrix_of", [angles, axes @ ..]) if axes.len() == 3 => self.turns::<3>(angles, axes),
             ("quaternion_of", [matrix]) => self
                 .rotation(matrix)
                 .map(|matrix| Value::column(quaternion_of(self.pool, &matrix).to_vec())),
             ("angles_of", [matrix, axes @ ..]) if axes.len() == 3 => self.angles_of(matrix, axes),
             ("rotation", [matrix]) => self.rotation(matrix).and_then(|_| self.evaluate(matrix)),
             (known, _) => {
-                let usage = USAGES
+                let usages = USAGES
                     .iter()
-                    .find(|usage| usage.starts_with(&format!("{known}(")))?;
-                fail(name.span(), format!("expected `{usage}`"))
+                    .filter(|it| it.starts_with(&format!("{known}(")));
+                let usages: Vec<String> = usages.map(|it| format!("`{it}`")).collect();
+                if usages.is_empty() {
+                    return None;
+                }
+                fail(name.span(), format!("expected {}", usages.join(" or ")))
             }
         };
         Some(value)
@@ -79,6 +86,17 @@ impl<N: Names> Evaluator<'_, N> {
         Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
     }
 
+    /// Turns in a row, the first outermost.
+    fn turns<const D: usize>(&mut self, angles: &Expr, axes: &[Expr]) -> Result<Value> {
+        let axes = self.sequence::<D>(axes)?;
+        let angles = self.column::<D>(angles)?;
+        let turns = axes.into_iter().zip(angles);
+        let factors = turns.map(|(axis, angle)| Factor::Rotation { axis, angle });
+        Ok(Value::Matrix(Product {
+            factors: factors.collect(),
+        }))
+    }
+
     fn angles_of(&mut self, matrix: &Expr, axes: &[Expr]) -> Result<Value> {
         let (axes, matrix) = (self.sequence(axes)?, self.rotation(matrix)?);
         Ok(Value::column(angles_of(self.pool, &matrix, axes).to_vec()))
@@ -101,22 +119,28 @@ impl<N: Names> Evaluator<'_, N> {
         })
     }
 
-    /// Three axes, no neighbours equal.
-    fn sequence(&mut self, axes: &[Expr]) -> Result<[usize; 3]> {
-        let mut sequence = [0; 3];
+    /// Axes of turns in a row, no neighbours equal.
+    fn sequence<const D: usize>(&mut self, axes: &[Expr]) -> Result<[usize; D]> {
+        let mut sequence = [0; D];
         for (axis, place) in axes.iter().zip(&mut sequence) {
             *place = self.axis(axis)?;
         }
-        let [first, second, third] = sequence;
-        if first != second && second != third {
+        let Some(at) = sequence.windows(2).position(|pair| pair[0] == pair[1]) else {
             return Ok(sequence);
-        }
-        let (a, b) = if first == second { (0, 1) } else { (1, 2) };
+        };
+        let (axis, first, second) = (sequence[at], &axes[at], &axes[at + 1]);
         let message = format!(
-            "two turns in a row about one axis, {second}, are one turn; write three axes such as `0, 1, 2` or `2, 0, 2`"
+            "the axes of two turns in a row are parallel, {axis} and {axis}, which makes them one turn"
         );
-        let span = axes[a].span();
-        fail(span.join(axes[b].span()).unwrap_or(span), message)
+        let span = first.span();
+        let span = span.join(second.span()).unwrap_or(span);
+        let examples = if D == 2 {
+            "two axes such as `0, 1` or `2, 0`"
+        } else {
+            "three axes such as `0, 1, 2` or `2, 0, 2`"
+        };
+        let report = error(codes::EXPRESSION, span, message).help(format!("write {examples}"));
+        Err(Box::new(report.about(second).about(first)))
     }
 
     fn axis(&mut self, axis: &Expr) -> Result<usize> {

@@ -92,9 +92,28 @@ fn of_storages_that_depend_on_each_other_a_linear_one_is_eliminated() {
         )
     };
     compiles(&text("stiffness: 2.0"));
+    // The mark stands already, but not before the linear one alone.
+    for model in [
+        "#[derivative] model M { MARKS",
+        "model M { MARKS#[derivative] ",
+    ] {
+        let (linear, mark) = ("C last { stiffness: 2.0 }", "#[derivative] ");
+        let rest = "C first { effort: q + powi(q, 3) } R r { resistance: 1.0 } } }";
+        let before = format!("0 node {{ {linear} ");
+        let marked = model.replace("MARKS", &before) + rest;
+        let told = helps(&marked, codes::ORDER_LOST_UNSUPPORTED);
+        let alone =
+            "write `#[derivative]` before another of the storages alone, whose law is linear";
+        assert!(told[0].starts_with(alone), "{told:?}");
+        compiles(
+            &marked
+                .replace(mark, "")
+                .replace(linear, &format!("{mark}{linear}")),
+        );
+    }
     let nonlinear = text("effort: 2.0 * q + powi(q, 3)");
-    let helps = helps(&nonlinear, codes::ORDER_LOST_UNSUPPORTED);
-    assert_eq!(helps[1], "put a resistor between them");
+    let told = helps(&nonlinear, codes::ORDER_LOST_UNSUPPORTED);
+    assert_eq!(told, ["put a resistor between them"]);
     let (node, last) = ("0 node {", "#[derivative] C last");
     let between =
         "0 other { C last { effort: 2.0 * q + powi(q, 3) } } 1 path { R s { resistance: 1.0 } }
@@ -256,17 +275,25 @@ fn where_the_rate_of_an_input_is_needed_the_source_acts_through_a_resistor_or_gi
         "model M { input u: m/s; 1 a { I m { inertia: 2.0 } } Sf s { flow: u } -> a; }",
         "model M { input u: V; 0 a { C m { compliance: 2.0 } } Se s { effort: u } -> a; }",
     ];
+    let marked = |text: &str| {
+        text.replace("{ I", "{ #[derivative] I")
+            .replace("{ C", "{ #[derivative] C")
+    };
     for text in texts {
-        let helps = helps(text, codes::STORAGE_DERIVATIVE);
+        let told = helps(text, codes::STORAGE_DERIVATIVE);
+        // Where the mark stands it is not asked for.
+        let without = told
+            .iter()
+            .map(|help| help.replace("write `#[derivative]`, and ", ""));
+        let without: Vec<String> = without.collect();
+        assert_ne!(told, without);
+        assert_eq!(helps(&marked(text), codes::ORDER_LOST_UNSUPPORTED), without);
+        let helps = told;
         assert_eq!(helps.len(), 3, "{helps:?}");
         let driven = text.replace("-> a;", "-> driven;");
         compiles(&followed(&driven, &helps[0]));
         let typed: Vec<&str> = helps[1].split('`').skip(1).step_by(2).collect();
         let rate = text.replace(typed[1], typed[2]);
-        let marked = |text: &str| {
-            text.replace("{ I", "{ #[derivative] I")
-                .replace("{ C", "{ #[derivative] C")
-        };
         compiles(&marked(&rate));
         compiles(&marked(
             &text

@@ -4,6 +4,9 @@ use super::report::COMPONENTWISE;
 use crate::diagnostics::Diagnostic;
 use crate::graph::Element;
 
+/// How ways out begin that change what a dependence is on, and do not spare accepting it.
+pub const IN_PLACE: &str = "in the place of";
+
 /// Which ways out exist.
 #[derive(Clone, Debug)]
 pub enum Outlook {
@@ -69,8 +72,11 @@ impl Outlook {
             return Vec::new();
         };
         let helps = report.helps.iter();
-        helps
-            .map(|help| help.trim_start_matches("or ").to_owned())
-            .collect()
+        let helps = helps.map(|help| help.trim_start_matches("or "));
+        let accepted = |help: &str| match help.starts_with(IN_PLACE) {
+            true => format!("write `#[derivative]`, and {help}"),
+            false => help.to_owned(),
+        };
+        helps.map(accepted).collect()
     }
 }

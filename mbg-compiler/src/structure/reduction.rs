@@ -12,6 +12,7 @@ use super::levels;
 use super::matching;
 use super::refused::{apart, report_input, report_second_derivative, report_unmoved};
 use super::selection::{Lost, Selection};
+use crate::causality::report::alternatives;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Condition, Elaborated, State, StateRate, Variable};
@@ -111,15 +112,16 @@ impl Reducer<'_> {
                 element.name
             );
             let span = model.graph.origins.span(element.origin);
-            let report = error(codes::ORDER_LOST_UNSUPPORTED, span, message);
-            diagnostics.report(
-                report
-                    .help(
-                        "put `#[derivative]` before another of the storages, whose law is linear, so that this one stays \
-                         a state",
-                    )
-                    .help(apart(element.kind)),
+            let mut others = (0..model.graph.elements.len()).map(ElementId);
+            let linear = others.any(|other| self.inverse(model, other).is_some());
+            let linear = linear.then_some(
+                "write `#[derivative]` before another of the storages alone, whose law is linear, so that this one stays \
+                 a state",
             );
+            let helps = linear.into_iter().chain([apart(element.kind)]);
+            let mut report = error(codes::ORDER_LOST_UNSUPPORTED, span, message);
+            report.helps = alternatives(helps.map(str::to_owned).collect());
+            diagnostics.report(report);
         }
         inverses
     }

@@ -1,5 +1,6 @@
 //! Dependences between storages that are accepted by `#[derivative]`, and not supported all the same.
 
+use crate::causality::outlook::IN_PLACE;
 use crate::causality::ways::{Between, through};
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
@@ -10,8 +11,8 @@ use crate::graph::{ElementId, ElementKind};
 /// What keeps storages of a kind from depending on each other.
 pub(super) fn apart(kind: ElementKind) -> &'static str {
     match kind {
-        ElementKind::I => "or put a spring and a damper between them",
-        _ => "or put a resistor between them",
+        ElementKind::I => "put a spring and a damper between them",
+        _ => "put a resistor between them",
     }
 }
 
@@ -78,7 +79,7 @@ pub(super) fn report_input(
     diagnostics.report(
         report
             .help(by_rate(model, input))
-            .help("or write `#[derivative]` and give a law of `t` in its place"),
+            .help(format!("or {IN_PLACE} the input write a law of `t`")),
     );
 }
 
@@ -95,7 +96,7 @@ fn by_rate(model: &Elaborated, input: usize) -> String {
         unit => format!(": {unit}"),
     };
     format!(
-        "or write `#[derivative]` and give the rate: in the place of `input {own}{size}{unit};` write \
-         `input {own}_rate{size}; integral {own}{size}{unit} = {own}_rate;`"
+        "or {IN_PLACE} `input {own}{size}{unit};` write its rate: `input {own}_rate{size}; \
+         integral {own}{size}{unit} = {own}_rate;`"
     )
 }

@@ -98,7 +98,7 @@ impl Diagnostic {
     fn is_alike(&self, other: &Self) -> bool {
         self.code == other.code
             && self.message != other.message
-            && without_numbers(&self.message) == without_numbers(&other.message)
+            && without_numbers(&self.message).eq(without_numbers(&other.message))
             && place(self) == place(other)
     }
 }
@@ -109,13 +109,12 @@ fn place(diagnostic: &Diagnostic) -> String {
 }
 
 /// A text without the numbers in brackets.
-fn without_numbers(text: &str) -> String {
+fn without_numbers(text: &str) -> impl Iterator<Item = char> {
     let mut is_number = false;
-    let kept = text.chars().filter(|character| {
+    text.chars().filter(move |character| {
         is_number = *character == '[' || is_number && character.is_ascii_digit();
         !is_number
-    });
-    kept.collect()
+    })
 }
 
 /// The sink into which every stage reports.

@@ -168,7 +168,7 @@ fn a_tank_between_a_pump_and_a_valve_is_held() {
     let typed = "`Se earth { effort: 0.0 } -> tank;`";
     let expected = format!("hold `tank`, where it is a ground or a tank: {typed}");
     assert_eq!(helps[0], expected);
-    for help in &helps[..2] {
+    for help in [&helps[0], &helps[2]] {
         compiles(&followed(text, help));
     }
 }

@@ -420,9 +420,8 @@ fn mistakes_in_loops_are_told() {
       help: a `param` of a model is no such number, because it can change after the model is compiled
     ");
     insta::assert_snapshot!(mistake("for k in 0..5 / 2 { 1 b; }"), @"
-    2:13 expected a whole number that is known while the model is compiled, found `5 / 2` [MBG0217]
-      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
-      help: a `param` of a model is no such number, because it can change after the model is compiled
+    2:13 expected a whole number, found `5 / 2`, which is 2.5 [MBG0217]
+      help: its whole part is `(5 - 5 % 2) / 2`
     ");
     insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]");
     insta::assert_snapshot!(mistake("a[2..1] -> R r { resistance: 1.0 };"), @"2:1 `a[2..1]` selects no component [MBG0204]");
@@ -471,7 +470,10 @@ fn mistakes_with_gravity_are_told() {
     1:72 `gravity_at` has dimension 3, found a number [MBG0204]
       help: write `gravity [0.0, 0.0, -9.81];` in the model
     ");
-    insta::assert_snapshot!(told(text("", "centre: 0.5")), @"1:58 `centre` has dimension 3, found a number [MBG0204]");
+    insta::assert_snapshot!(told(text("", "centre: 0.5")), @"
+    1:58 `centre` has dimension 3, found a number [MBG0204]
+      help: write each component, such as `[0.5, 0.5, 0.5]`
+    ");
     insta::assert_snapshot!(mistake("gravity [gravity, 1.0];"), @"
     2:1 `gravity` is defined by itself [MBG0218]
       each needs the next: `gravity`, `gravity`

@@ -277,15 +277,11 @@ pub fn own_steps(graph: &BondGraph, id: ElementId, steps: &[ChainStep], told: &s
     own.map(alone).chain([whole]).collect()
 }
 
-/// The other law of a resistor that fits one causality only, and is not that of a component.
+/// The other law of a resistor that fits one causality only.
 #[must_use]
 pub fn resistor_help(graph: &BondGraph, id: ElementId) -> Option<String> {
-    let element = &graph.elements[id.0];
-    if element.instance().is_some() {
-        return None;
-    }
-    let name = &element.name;
-    match element.rule {
+    let name = &graph.elements[id.0].name;
+    match graph.elements[id.0].rule {
         Rule::ResistanceOnly => Some(format!(
             "write the law of `{name}` for the flow: `flow: …` in terms of `e`"
         )),

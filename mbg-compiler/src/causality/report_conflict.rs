@@ -121,13 +121,11 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         return vec![COMPONENTWISE.to_owned()];
     }
     let elements = conflict.elements();
-    let mut helps: Vec<String> = elements
-        .iter()
-        .filter_map(|id| resistor_help(graph, *id))
-        .collect();
+    let mut helps = Vec::new();
     if conflict.code == codes::FIXED_RESISTOR {
         helps.extend(holding(graph, conflict));
     }
+    helps.extend(elements.iter().filter_map(|id| resistor_help(graph, *id)));
     let end = conflict.place();
     let place = end
         .as_ref()

@@ -132,8 +132,12 @@ impl Builder<'_> {
                     span,
                     format!("junction `{name}` has no bond"),
                 );
-                self.diagnostics
-                    .report(report.help(format!("write an arrow to it: `{name} -> …;`")));
+                let report = report.help(format!("write an arrow to it: `{name} -> …;`"));
+                let report = match bonded.contains(&true) {
+                    false => report.help("or remove it"),
+                    true => report,
+                };
+                self.diagnostics.report(report);
             }
         }
     }

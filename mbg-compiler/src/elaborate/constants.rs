@@ -9,6 +9,7 @@ use proc_macro2::Ident;
 use syn::spanned::Spanned;
 use syn::{BinOp, Block, Expr, Lit, Stmt, UnOp};
 
+use super::elsewhere;
 use super::expressions::Result;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -158,7 +159,37 @@ impl Constants {
 
     /// The number that an expression stands for.
     pub(super) fn evaluate(&self, expression: &Expr) -> Result<i64> {
-        self.number(expression).ok_or_else(|| unknown(expression))
+        self.number(expression)
+            .ok_or_else(|| match self.broken_quotient(expression) {
+                Some(report) => report,
+                None => unknown(expression),
+            })
+    }
+
+    /// What is wrong with a quotient of whole numbers that is not whole.
+    fn broken_quotient(&self, expression: &Expr) -> Option<Box<Diagnostic>> {
+        let binary = match expression {
+            Expr::Paren(inner) => return self.broken_quotient(&inner.expr),
+            Expr::Group(inner) => return self.broken_quotient(&inner.expr),
+            Expr::Binary(binary) => binary,
+            _ => return None,
+        };
+        let (left, right) = (self.number(&binary.left), self.number(&binary.right));
+        let (Some(left), Some(right)) = (left, right) else {
+            let mut parts = [&binary.left, &binary.right].into_iter();
+            return parts.find_map(|part| self.broken_quotient(part));
+        };
+        if !matches!(binary.op, BinOp::Div(_)) || right == 0 {
+            return None;
+        }
+        let text = dump::expression(expression);
+        let quotient = left as f64 / right as f64;
+        let message = format!("expected a whole number, found `{text}`, which is {quotient}");
+        let report = error(codes::WHOLE_NUMBER, expression.span(), message);
+        let whole_part = elsewhere::whole_part(binary);
+        Some(Box::new(
+            report.help(format!("its whole part is `{whole_part}`")),
+        ))
     }
 
     fn number(&self, expression: &Expr) -> Option<i64> {

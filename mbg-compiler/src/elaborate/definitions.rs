@@ -14,6 +14,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Expression;
 use crate::syntax::ast::{Parameter, Unit};
+use crate::syntax::dump;
 
 /// A named value.
 pub(super) struct Definition<'a> {
@@ -176,13 +177,16 @@ impl<'a> Builder<'a> {
         let value = match dimension {
             None => value,
             Some(size) => {
+                let is_number = matches!(value, Value::Scalar(_));
                 let column = self.column(value, size, name);
                 column.map_err(|report| match told {
                     Some(told) => Box::new(report.note(format!(
                         "it is what `{}` tells",
                         self.definitions[told].path
                     ))),
-                    None => about_gravity(report, expression, size),
+                    None if is_gravity(expression) => about_gravity(report, size),
+                    None if is_number => by_component(report, expression, size),
+                    None => report,
                 })?
             }
         };
@@ -211,12 +215,27 @@ impl<'a> Builder<'a> {
     }
 }
 
+fn is_gravity(expression: &Expr) -> bool {
+    matches!(expression, Expr::Path(path) if path.path.is_ident(GRAVITY))
+}
+
 /// What to type where gravity itself has the wrong dimension.
-fn about_gravity(report: Box<Diagnostic>, expression: &Expr, dimension: usize) -> Box<Diagnostic> {
-    let is_gravity = matches!(expression, Expr::Path(path) if path.path.is_ident(GRAVITY));
-    if !is_gravity || !(2..=3).contains(&dimension) {
+fn about_gravity(report: Box<Diagnostic>, dimension: usize) -> Box<Diagnostic> {
+    if !(2..=3).contains(&dimension) {
         return report;
     }
     let level = "0.0, ".repeat(dimension - 1);
     Box::new(report.help(format!("write `gravity [{level}-9.81];` in the model")))
+}
+
+/// What to type where a number stands for a vector.
+pub(super) fn by_component(
+    report: Box<Diagnostic>,
+    number: &Expr,
+    dimension: usize,
+) -> Box<Diagnostic> {
+    match dump::column(number, dimension) {
+        Some(all) => Box::new(report.help(format!("write each component, such as `{all}`"))),
+        None => report,
+    }
 }

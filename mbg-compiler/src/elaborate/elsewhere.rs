@@ -98,6 +98,19 @@ fn starred(right: &Expr) -> Option<&Expr> {
     }
 }
 
+/// What to type where a quaternion is to turn a vector.
+pub(super) fn by_quaternion(product: &ExprBinary) -> String {
+    let places = [("q", &*product.left), ("v", &*product.right)];
+    let text = filled("matrix_of(q) * v", &places);
+    format!("to turn a vector by a quaternion write `{text}`")
+}
+
+/// The whole part of a quotient of whole numbers.
+pub(super) fn whole_part(quotient: &ExprBinary) -> String {
+    let places = [("a", &*quotient.left), ("b", &*quotient.right)];
+    filled("(a - a % b) / b", &places)
+}
+
 /// The operand at the end of an expression.
 fn last(expression: &Expr) -> &Expr {
     match expression {

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
-use syn::{BinOp, Expr, Lit, Member, RangeLimits, UnOp};
+use syn::{BinOp, Expr, Lit, Member, UnOp};
 
 use super::elsewhere;
 use super::model::Assumption;
@@ -111,6 +111,11 @@ pub trait Names {
 }
 
 impl Value {
+    /// Whether it is a vector of this dimension.
+    fn is_vector_of(&self, dimension: usize) -> bool {
+        matches!(self, Self::Matrix(it) if (it.rows(), it.columns()) == (dimension, 1))
+    }
+
     /// A column.
     #[must_use]
     pub fn column(entries: Vec<Expression>) -> Self {
@@ -346,68 +351,12 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     /// A component of an element's own variable is one of the whole vector.
-    fn check_whole(&self, name: &Ident) -> Result<()> {
+    pub(super) fn check_whole(&self, name: &Ident) -> Result<()> {
         let is_own = OWN.iter().any(|own| name == own);
         if is_own && self.names.is_by_component() {
             return whole_vector(name.span());
         }
         Ok(())
-    }
-
-    fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
-        let Some(index) = component_index(name) else {
-            return fail(
-                name.span(),
-                format!("expected `x`, `y` or `z`, found `{name}`"),
-            );
-        };
-        self.pick(value, index as i64, name.span())
-    }
-
-    fn pick(&mut self, value: Value, index: i64, span: Span) -> Result<Value> {
-        let shape = value.shape();
-        let entries = value.entries(self.pool).unwrap_or_default();
-        match usize::try_from(index)
-            .ok()
-            .and_then(|index| entries.get(index))
-        {
-            Some(entry) => Ok(Value::Scalar(*entry)),
-            None => mismatch(span, format!("component {index} of {shape} does not exist")),
-        }
-    }
-
-    fn index(&mut self, index: &syn::ExprIndex) -> Result<Value> {
-        if let Expr::Path(base) = &*index.expr
-            && let Some(name) = base.path.get_ident()
-        {
-            self.check_whole(name)?;
-        }
-        let value = self.evaluate(&index.expr)?;
-        let span = index.index.span();
-        let Expr::Range(range) = &*index.index else {
-            let number = self.names.whole(&index.index)?;
-            return self.pick(value, number, span);
-        };
-        let (Some(start), Some(end), RangeLimits::HalfOpen(_)) =
-            (&range.start, &range.end, &range.limits)
-        else {
-            return fail(
-                span,
-                "expected a range such as `1..3`, which excludes its end",
-            );
-        };
-        let (start, end) = (self.names.whole(start)?, self.names.whole(end)?);
-        let shape = value.shape();
-        let entries = value.entries(self.pool).unwrap_or_default();
-        match (usize::try_from(start), usize::try_from(end)) {
-            (Ok(first), Ok(last)) if first < last && last <= entries.len() => {
-                Ok(Value::column(entries[first..last].to_vec()))
-            }
-            _ => mismatch(
-                span,
-                format!("components {start}..{end} of {shape} do not exist"),
-            ),
-        }
     }
 
     fn binary(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
@@ -443,7 +392,14 @@ impl<N: Names> Evaluator<'_, N> {
         match binary.op {
             BinOp::Add(_) => self.sum(left, right, false, span),
             BinOp::Sub(_) => self.sum(left, right, true, span),
-            BinOp::Mul(_) => self.product(left, right, span),
+            BinOp::Mul(_) => {
+                let is_turn = left.is_vector_of(4) && right.is_vector_of(3);
+                let product = self.product(left, right, span);
+                product.map_err(|report| match is_turn {
+                    true => Box::new(report.help(elsewhere::by_quaternion(binary))),
+                    false => report,
+                })
+            }
             _ => {
                 let Value::Scalar(divisor) = right else {
                     return mismatch(

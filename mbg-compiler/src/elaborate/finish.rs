@@ -6,9 +6,9 @@ use proc_macro2::Ident;
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
-use super::definitions::Missing;
+use super::definitions::{Missing, by_component};
 use super::expressions::{Evaluator, Result, Step, Value};
-use super::laws::{Reader, law_words, words_of};
+use super::laws::{Reader, words_of};
 use super::mentions::mentioned;
 use super::model::{Elaborated, Output, State, StateRate};
 use super::scope::{Entity, Lookup, Own};
@@ -19,7 +19,7 @@ use crate::graph::{ElementId, JunctionId, Law};
 use crate::symbolic::{Expression, Pool, Rate, Symbol};
 use crate::syntax::ast::{self, Orientation, Statement};
 use crate::syntax::dump;
-use crate::syntax::words::is_misspelt;
+use crate::syntax::words::{is_misspelt, law_words};
 
 impl<'a> Builder<'a> {
     /// Reads the defaults of a model's parameters, once it is known what the model declares.
@@ -243,7 +243,11 @@ impl<'a> Builder<'a> {
         name: &Ident,
     ) -> Result<Vec<Expression>> {
         let value = self.evaluate(scope, expression)?;
-        self.entries(&value, dimension, name)
+        let entries = self.entries(&value, dimension, name);
+        entries.map_err(|report| match value {
+            Value::Scalar(_) => by_component(report, expression, dimension),
+            Value::Matrix(_) => report,
+        })
     }
 
     /// The entries of a vector of the given dimension.

@@ -91,6 +91,25 @@ impl<'a> Builder<'a> {
         });
     }
 
+    /// The rate, of one component, of a joint that was called in a scope and carries this junction.
+    pub(super) fn rate_at(&self, scope: usize, junction: JunctionId) -> Option<String> {
+        let carries = |frame: &Frame| {
+            let last = frame.component.ports.last();
+            frame.place.0 == junction && last.is_some_and(|last| last.name == frame.port)
+        };
+        let mut joints = self
+            .frames
+            .iter()
+            .filter(|(_, frames)| frames.iter().any(carries));
+        joints.find_map(|(inner, _)| match self.scopes[*inner].names.get("rate") {
+            Some(Entity::Junction(_, range)) if range.len() == 1 => {
+                let (around, instance) = self.called.get(inner)?;
+                (*around == scope).then(|| format!("{}.rate", instance.name))
+            }
+            _ => None,
+        })
+    }
+
     /// Lets every parameter that is left out stand for what is told of its frame.
     pub(super) fn hand_on(&mut self) {
         let first = self.joined();

@@ -86,6 +86,10 @@ impl<'a> Builder<'a> {
                         End::Junction(id, _) if size == port.dimension => {
                             wrong_kind(port, &instance.name, reference, &self.graph.junctions[id.0])
                         }
+                        End::Junction(id, _) if port.dimension == 1 => {
+                            let rate = self.rate_at(scope, id);
+                            wrong_size(port, reference, size).help(of_a_frame(reference, rate))
+                        }
                         _ => wrong_size(port, reference, size),
                     };
                     self.tell(scope, report);
@@ -258,6 +262,19 @@ fn wrong_size(port: &ast::Port, reference: &ast::Reference, size: usize) -> Diag
     let text = dump::reference(reference);
     let message = format!("port `{name}` has dimension {dimension}, and `{text}` has {size}");
     error(codes::WRONG_DIMENSION, reference.span, message)
+}
+
+/// What to give a port for a shaft or a node in the place of a frame.
+fn of_a_frame(reference: &ast::Reference, rate: Option<String>) -> String {
+    match rate {
+        Some(rate) => format!("write `{rate}`, which is the shaft of the joint"),
+        None => {
+            let text = dump::reference(reference);
+            format!(
+                "write one of its components, such as `{text}[0]`, or the rate of a joint, such as `hinge.rate`"
+            )
+        }
+    }
 }
 
 /// A junction of the kind that the port does not take.

@@ -20,6 +20,7 @@ use crate::symbolic::{
     antiderivative, linear_part,
 };
 use crate::syntax::ast::{Element, Field};
+use crate::syntax::words::law_words;
 
 /// What reading the fields of an element gives.
 pub(super) struct Reading {
@@ -28,18 +29,6 @@ pub(super) struct Reading {
     /// Initial states, when given.
     pub(super) initial: Option<Vec<Expression>>,
     pub(super) assumptions: Vec<Assumption>,
-}
-
-/// The words that carry a law, by element.
-pub(super) fn law_words(kind: ElementKind) -> &'static [&'static str] {
-    match kind {
-        ElementKind::Se | ElementKind::GY | ElementKind::MGY => &["effort"],
-        ElementKind::Sf | ElementKind::TF | ElementKind::MTF => &["flow"],
-        ElementKind::I => &["inertia", "flow", "energy"],
-        ElementKind::C => &["stiffness", "compliance", "effort", "energy"],
-        ElementKind::R => &["resistance", "conductance", "effort", "flow"],
-        ElementKind::EJS => &["momentum"],
-    }
 }
 
 /// All words, by element.

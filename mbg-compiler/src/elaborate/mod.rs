@@ -20,6 +20,7 @@ mod elsewhere;
 pub mod expressions;
 mod finish;
 mod frames;
+mod indices;
 mod instances;
 mod laws;
 mod loops;

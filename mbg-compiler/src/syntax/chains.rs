@@ -9,7 +9,7 @@ use super::cursor::{Cursor, Parsed};
 use super::elements::{element, fields, kind, no_element};
 use super::expressions::{bounds, expression};
 use super::recovery::{Sink, finish};
-use super::words;
+use super::{dump, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
@@ -116,11 +116,17 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
         "`=>`" | "`-`" => (*cursor.expected(&wanted)).help("a bond is written `a -> b`"),
         "`<-`" | "`<`" => (*cursor.expected(&wanted))
             .help("a bond points where its power is positive: write `b -> a`"),
-        "`=`" => (*cursor.expected(&wanted))
-            .help("a value has a word before its name: `param x = …;` or `output x = …;`"),
-        "`{`" => match node {
+        "`=`" => match named(cursor, node) {
+            Some(help) => (*cursor.expected("`:` after the name of the instance")).help(help),
+            None => (*cursor.expected(&wanted))
+                .help("a value has a word before its name: `param x = …;` or `output x = …;`"),
+        },
+        "`{`" | "`(`" => match node {
             Some(ChainNode::Reference(reference)) => {
                 let name = &reference.path.last()?.name;
+                if let Some(help) = slips::ahead(cursor, 0, "name", &name.to_string()) {
+                    return Some(Box::new((*cursor.expected(&wanted)).help(help)));
+                }
                 (*cursor.expected(&wanted)).help(format!(
                     "an element is written `R {name} {{ … }}`, with its kind before its name"
                 ))
@@ -130,6 +136,18 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
         _ => return None,
     };
     Some(Box::new(error))
+}
+
+/// What to type for `name = Component { … } (a, b);`; a component differs from a function by its capital.
+fn named(cursor: &Cursor, node: Option<&ChainNode>) -> Option<String> {
+    let (Some(ChainNode::Reference(reference)), Some(component)) = (node, cursor.ident(1)) else {
+        return None;
+    };
+    let component = component.to_string();
+    if !component.starts_with(char::is_uppercase) {
+        return None;
+    }
+    slips::ahead(cursor, 2, &dump::reference(reference), &component)
 }
 
 /// Reads `links[k-1].rel[1..3]`.
@@ -219,6 +237,13 @@ pub(super) fn instance(
         return Err(Box::new(error));
     };
     let connections = connections(&group)?;
+    if arguments.is_empty() && cursor.group(0, Delimiter::Brace).is_some() {
+        let error = *cursor.expected("`;` after the instance");
+        let (name, component) = (name.to_string(), component.to_string());
+        let braces = cursor.group(0, Delimiter::Brace);
+        let help = slips::written(&name, &component, braces, &group);
+        return Err(Box::new(error.help(help)));
+    }
     finish(cursor, sink, "`;` after the instance")?;
     Ok(Instance {
         name,

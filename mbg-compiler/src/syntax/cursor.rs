@@ -172,14 +172,25 @@ impl Cursor {
             return Ok(None);
         };
         let mut inner = Self::inside(&group);
+        let computed = |report: Box<Diagnostic>| {
+            let help = "a dimension is a number as it stands, such as `[3]`; `for k in 0..n { … }` repeats a computed \
+                        number of times";
+            Box::new(report.help(help))
+        };
         let what = "a dimension, which is an integer from 1 up";
-        let dimension = inner.integer(what, codes::DIMENSION_LITERAL)?;
+        let is_name = inner.ident(0).is_some();
+        let dimension = inner.integer(what, codes::DIMENSION_LITERAL);
+        let dimension =
+            dimension.map_err(|report| if is_name { computed(report) } else { report })?;
         if dimension == 0 {
             inner.at -= 1;
             return Err(inner.expected_with(codes::DIMENSION_LITERAL, what));
         }
         if !inner.ended() {
-            return Err(inner.expected_with(codes::DIMENSION_LITERAL, "`]` after the dimension"));
+            let wanted = "`]` after the dimension";
+            return Err(computed(
+                inner.expected_with(codes::DIMENSION_LITERAL, wanted),
+            ));
         }
         Ok(Some(dimension))
     }

@@ -31,8 +31,10 @@ pub(super) fn element(
     let Some(group) = cursor.take_group(Delimiter::Brace) else {
         let brackets = if dimension.is_none() { "`[` or " } else { "" };
         let error = *cursor.expected(&format!("{brackets}`{{` after `{spelling} {name}`"));
+        let size = dimension.map_or_else(String::new, |dimension| format!("[{dimension}]"));
+        let law = words::law_words(kind)[0];
         return Err(Box::new(error.help(format!(
-            "the law of an element stands in braces: `{spelling} {name} {{ … }}`"
+            "the law of an element stands in braces: `{spelling} {name}{size} {{ {law}: … }}`"
         ))));
     };
     let fields = fields(&group, &format!("{spelling} {name}"), sink)?;

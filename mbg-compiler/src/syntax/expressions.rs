@@ -7,8 +7,8 @@ use syn::{Expr, ExprRange, RangeLimits};
 
 use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
-use super::dump;
 use super::recovery::opens;
+use super::{dump, slips};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 
@@ -80,9 +80,13 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
             (*cursor.failure(codes::SYNTAX, limit)).help("give its parts in several statements"),
         ));
     }
-    let whole = cursor.length_until(|it, at| it.punct(at, ',') || it.punct(at, ';'));
-    if let Some(report) = question(cursor.ahead(length), cursor.ahead(whole)) {
-        cursor.advance(whole);
+    let whole = || cursor.length_until(|it, at| it.punct(at, ',') || it.punct(at, ';'));
+    if let Some(report) = question(cursor.ahead(length), &|| cursor.ahead(whole())) {
+        cursor.advance(whole());
+        return Err(report);
+    }
+    if let Some(report) = slips::entry(cursor.ahead(length)) {
+        cursor.advance(length);
         return Err(report);
     }
     let tokens: TokenStream = cursor.ahead(length).iter().cloned().collect();
@@ -100,17 +104,21 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
 
 /// What to write for `a ? b : c` among these tokens or in a group of theirs. What stands behind the first `:` may look
 /// like the next field, so that the `whole` is looked at for it.
-fn question(tokens: &[TokenTree], whole: &[TokenTree]) -> Option<Box<Diagnostic>> {
+fn question<'t>(
+    tokens: &[TokenTree],
+    whole: &dyn Fn() -> &'t [TokenTree],
+) -> Option<Box<Diagnostic>> {
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(it) if it.as_char() == mark);
     let Some(asked) = tokens.iter().position(|token| is(token, '?')) else {
         return tokens.iter().find_map(|token| match token {
             TokenTree::Group(group) => {
                 let inside: Vec<TokenTree> = group.stream().into_iter().collect();
-                question(&inside, &inside)
+                question(&inside, &|| &inside)
             }
             _ => None,
         });
     };
+    let whole = whole();
     let (condition, rest) = (&whole[..asked], &whole[asked + 1..]);
     // A path has two colons.
     let alone = |at: &usize| {

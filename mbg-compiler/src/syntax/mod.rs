@@ -22,6 +22,7 @@ pub mod library;
 mod loops;
 mod reads;
 mod recovery;
+mod slips;
 mod statements;
 mod units;
 pub(crate) mod words;

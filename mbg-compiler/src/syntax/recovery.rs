@@ -194,7 +194,8 @@ fn name_at(tokens: &[TokenTree], first: bool) -> Option<&Ident> {
             TokenTree::Punct(colon),
             TokenTree::Ident(_),
             ..,
-        ] => (first && colon.as_char() == ':').then_some(name),
+            // Even a keyword, which is told for that.
+        ] if first && colon.as_char() == ':' => return Some(name),
         _ => None,
     };
     name.filter(|name| !words::is_reserved(&name.to_string()))

@@ -17,7 +17,7 @@ use super::expressions::{condition, expression};
 use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
-use super::words;
+use super::{slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 use crate::inclusion;
@@ -74,6 +74,9 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
         return Err(no_statement(cursor));
     };
     let word = first.to_string();
+    if let Some(error) = keyword(cursor, &word) {
+        return Err(error);
+    }
     // A junction may bear one of the words as its name, and then an arrow, a dot or a bracket follows.
     let referred =
         cursor.arrow(1) || cursor.punct(1, '.') || cursor.group(1, Delimiter::Bracket).is_some();
@@ -108,6 +111,25 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
     chain(cursor, attributes.derivative, sink).map(Statement::Chain)
 }
 
+/// A keyword as the name of an instance or as the label of a loop.
+fn keyword(cursor: &Cursor, word: &str) -> Option<Box<Diagnostic>> {
+    let is_keyword =
+        words::is_reserved(word) || words::STATEMENTS.contains(&word) || word == words::INCLUDE;
+    if !is_keyword || !cursor.punct(1, ':') {
+        return None;
+    }
+    let what = match cursor.ident(2)?.to_string().as_str() {
+        "for" => "the label of a loop",
+        _ => "the name of an instance",
+    };
+    let message = format!("expected {what}, found the keyword `{word}`");
+    let error = *cursor.failure(codes::SYNTAX, message);
+    Some(Box::new(match word {
+        "_" => error,
+        _ => error.help(format!("write another name, such as `{word}_`")),
+    }))
+}
+
 /// What stands here begins no statement.
 fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
     let error = *cursor.expected("a statement");
@@ -122,6 +144,11 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
         &[words::STATEMENTS, &words::element_names()].concat(),
     ) {
         return Box::new(error.help(format!("did you mean `{near}`?")));
+    }
+    if let (Some(component), Some(name)) = (cursor.ident(0), cursor.ident(1))
+        && let Some(help) = slips::ahead(cursor, 2, &name.to_string(), &component.to_string())
+    {
+        return Box::new(error.help(help));
     }
     if let Some(digit) = glued(cursor) {
         return Box::new(error.help(format!(

@@ -52,6 +52,18 @@ pub(super) fn is_reserved(word: &str) -> bool {
     RESERVED.contains(&word)
 }
 
+/// The words that carry a law, by element.
+pub(crate) fn law_words(kind: ElementKind) -> &'static [&'static str] {
+    match kind {
+        ElementKind::Se | ElementKind::GY | ElementKind::MGY => &["effort"],
+        ElementKind::Sf | ElementKind::TF | ElementKind::MTF => &["flow"],
+        ElementKind::I => &["inertia", "flow", "energy"],
+        ElementKind::C => &["stiffness", "compliance", "effort", "energy"],
+        ElementKind::R => &["resistance", "conductance", "effort", "flow"],
+        ElementKind::EJS => &["momentum"],
+    }
+}
+
 /// The element of this name.
 pub(super) fn element(word: &str) -> Option<ElementKind> {
     ELEMENTS

@@ -1,0 +1,66 @@
+//! Instances and entries of matrices in the order and spelling of other languages, and what to type instead.
+
+use proc_macro2::{Delimiter, Group, TokenTree};
+
+use super::cursor::Cursor;
+use super::dump;
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
+
+/// The instance that was probably meant, whose parameters and junctions stand `offset` places ahead.
+pub(super) fn ahead(cursor: &Cursor, offset: usize, name: &str, component: &str) -> Option<String> {
+    let [braces, parentheses] = [Delimiter::Brace, Delimiter::Parenthesis].map(|delimiter| {
+        let mut places = [offset, offset + 1].into_iter();
+        places.find_map(|place| cursor.group(place, delimiter))
+    });
+    Some(written(name, component, braces, parentheses?))
+}
+
+/// How an instance with these parameters and junctions is written.
+pub(super) fn written(
+    name: &str,
+    component: &str,
+    braces: Option<&Group>,
+    parentheses: &Group,
+) -> String {
+    let ports = dump::tokens(parentheses.stream());
+    let parameters = match braces.map(|group| dump::tokens(group.stream())) {
+        Some(words) if !words.is_empty() => format!(" {{ {words} }}"),
+        _ => String::new(),
+    };
+    format!("an instance is written `{name}: {component}{parameters} ({ports});`")
+}
+
+/// What to type for an entry `m[0, 1]` among these tokens or in a group of theirs.
+pub(super) fn entry(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    tokens.iter().enumerate().find_map(|(at, token)| {
+        let TokenTree::Group(group) = token else {
+            return None;
+        };
+        let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+        let before = at.checked_sub(1).map(|before| &tokens[before]);
+        let indexes = matches!(before, Some(TokenTree::Ident(_) | TokenTree::Group(_)));
+        let is_comma =
+            |token: &TokenTree| matches!(token, TokenTree::Punct(mark) if mark.as_char() == ',');
+        let comma = inside.iter().position(is_comma);
+        match comma.filter(|_| indexes && group.delimiter() == Delimiter::Bracket) {
+            Some(comma) => {
+                let places: Vec<String> = inside
+                    .split(is_comma)
+                    .map(|place| format!("[{}]", dump::tokens(place.iter().cloned().collect())))
+                    .collect();
+                let report = error(
+                    codes::SYNTAX,
+                    inside[comma].span(),
+                    "expected `]`, found `,`",
+                );
+                let help = format!(
+                    "an entry of a matrix is taken from a row: `{}`",
+                    places.concat()
+                );
+                Some(Box::new(report.help(help)))
+            }
+            None => entry(&inside),
+        }
+    })
+}

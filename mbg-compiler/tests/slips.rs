@@ -1,0 +1,168 @@
+//! What is written as other languages and tools would have it, and what is to be typed instead.
+#![allow(clippy::unwrap_used)]
+
+mod told;
+
+use told::{diagnose, told};
+
+/// The texts in backticks of the helps of the only mistake.
+fn typed(text: &str) -> Vec<String> {
+    let diagnostics = diagnose(text);
+    let [report] = diagnostics.list() else {
+        panic!("one mistake in {text}, found:\n{}", told(text))
+    };
+    let helps = report.helps.iter();
+    let typed = helps.flat_map(|help| help.split('`').skip(1).step_by(2));
+    typed.map(str::to_owned).collect()
+}
+
+/// A hinged arm and a statement.
+fn arm(statement: &str) -> String {
+    format!(
+        "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 arm[6]; Sf still[6] {{ flow: 0.0 }} -> ground;
+         body: Body {{ mass: 1.0, inertia: 1.0 }} (arm);\n{statement} }}"
+    )
+}
+
+#[test]
+fn an_instance_in_another_order_is_told_as_it_is_written() {
+    let slips = [
+        "hinge: Revolute (ground, arm) { axis: 0 };",
+        "Revolute hinge { axis: 0 } (ground, arm);",
+        "hinge = Revolute { axis: 0 } (ground, arm);",
+    ];
+    for slip in slips {
+        let written = "hinge: Revolute { axis: 0 } (ground, arm);";
+        assert_eq!(typed(&arm(slip)), [written]);
+        assert_eq!(told(&arm(written)), "");
+    }
+    let nameless = "name: Revolute { axis: 0 } (ground, arm);";
+    for slip in [
+        "Revolute (ground, arm) { axis: 0 };",
+        "Revolute { axis: 0 } (ground, arm);",
+    ] {
+        assert_eq!(typed(&arm(slip)), [nameless]);
+    }
+    assert_eq!(
+        typed(&arm(
+            "fixed: Fixed (ground, arm);\nball = Cut (ground, arm);"
+        )),
+        ["ball: Cut (ground, arm);"]
+    );
+}
+
+#[test]
+fn a_keyword_as_a_name_is_told_as_that() {
+    for keyword in ["crate", "type", "for", "let", "input", "gravity", "if"] {
+        let hinge = |name: &str| arm(&format!("{name}: Revolute {{ axis: 0 }} (ground, arm);"));
+        let report = diagnose(&hinge(keyword)).list()[0].clone();
+        let message = format!("expected the name of an instance, found the keyword `{keyword}`");
+        assert_eq!((report.message, report.span.start().line), (message, 3));
+        let name = typed(&hinge(keyword)).remove(0);
+        assert_eq!(told(&hinge(&name)), "");
+    }
+    insta::assert_snapshot!(told("model M { 1 a { I i { inertia: 1.0 } }\nloop: for k in 0..2 { a -> R r { resistance: 1.0 }; } }"), @"
+    2:1 expected the label of a loop, found the keyword `loop` [MBG0101]
+      help: write another name, such as `loop_`
+    ");
+    // What is read of it is not told besides.
+    let read = "crate: Revolute { axis: 0 } (ground, arm); output angle = crate.angle;";
+    assert_eq!(typed(&arm(read)), ["crate_"]);
+}
+
+#[test]
+fn an_element_bonded_without_its_law_is_told_whole() {
+    let text = |element: &str| {
+        format!("model M {{ 1 arm[3] {{ I body {{ inertia: 2.0 }} }} {element} -> arm; }}")
+    };
+    let help = typed(&text("Se push[3]")).remove(0);
+    assert_eq!(help, "Se push[3] { effort: … }");
+    assert_eq!(told(&text(&help.replace('…', "1.0"))), "");
+}
+
+#[test]
+fn entries_of_matrices_are_read_by_rows() {
+    let text = |value: &str| {
+        format!(
+            "model M {{ 1 turning[3] {{ I body {{ inertia: diag(1.0, 2.0, 3.0), gyroscopic }} }}
+             attitude q = quaternion(turning.f); let m = matrix_of(q);\noutput y = {value}; }}"
+        )
+    };
+    assert_eq!(
+        told(&text("m[1][2] + matrix_of(q)[0][1] + (m * m)[2].z")),
+        ""
+    );
+    assert_eq!(typed(&text("2.0 * m[1, 2]")), ["[1][2]"]);
+    insta::assert_snapshot!(told(&text("m[1, 2]")), @"
+    3:15 expected `]`, found `,` [MBG0101]
+      help: an entry of a matrix is taken from a row: `[1][2]`
+    ");
+    insta::assert_snapshot!(told(&text("m[3][0]")), @"3:14 row 3 of a 3×3 matrix does not exist [MBG0204]");
+    insta::assert_snapshot!(told(&text("m[0]")), @"
+    3:8 `y` has dimension 1, found a vector of 3 [MBG0204]
+      help: write `output y[3] = m[0];`
+    ");
+    let turned = |value: &str| text(&format!("({value}).x"));
+    let help = typed(&turned("q * [1.0, 0.0, 0.0]")).remove(0);
+    assert_eq!(help, "matrix_of(q) * [1.0, 0.0, 0.0]");
+    assert_eq!(told(&turned(&help)), "");
+}
+
+#[test]
+fn a_number_for_a_vector_is_told_by_component() {
+    let joint = |damping: &str| {
+        arm(&format!(
+            "cross: Universal {{ damping: {damping} }} (ground, arm);"
+        ))
+    };
+    let help = typed(&joint("0.05")).remove(0);
+    assert_eq!(help, "[0.05, 0.05]");
+    assert_eq!(told(&joint(&help)), "");
+    insta::assert_snapshot!(told("model M { 1 a[2] { I i { inertia: 1.0 } }\nintegral x[2] = a.f, initial: 1.0; output y[2] = x; }"), @"
+    2:10 `x` has dimension 2, found a number [MBG0204]
+      help: write each component, such as `[1.0, 1.0]`
+    ");
+}
+
+#[test]
+fn a_frame_at_a_shaft_is_told_the_rate_of_its_joint() {
+    let gear = |a: &str, b: &str| {
+        arm(&format!(
+            "one: Revolute {{ axis: 0 }} (ground, arm); 1 wheel {{ I disc {{ inertia: 1.0 }} }}
+             gear: Gear {{ radius_a: 0.1, radius_b: 0.2 }} ({a}, {b});"
+        ))
+    };
+    assert_eq!(typed(&gear("arm", "wheel")), ["one.rate"]);
+    assert_eq!(told(&gear("one.rate", "wheel")), "");
+    assert_eq!(typed(&gear("wheel", "ground")), ["ground[0]", "hinge.rate"]);
+}
+
+#[test]
+fn quotients_that_are_not_whole_are_told_with_their_whole_part() {
+    let text = |bound: &str| {
+        format!(
+            "model M {{ 1 a {{ I i {{ inertia: 1.0 }} }} let n = 6;\nfor k in 0..{bound} {{ a -> R r {{ resistance: 1.0 }}; }} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("(n + 1) / 2")), @"
+    2:13 expected a whole number, found `(n + 1) / 2`, which is 3.5 [MBG0217]
+      help: its whole part is `((n + 1) - (n + 1) % 2) / 2`
+    ");
+    let help = typed(&text("(n + 1) / 2")).remove(0);
+    assert_eq!(told(&text(&help)), "");
+    insta::assert_snapshot!(told("model M {\n1 a[7/2] { I i { inertia: 1.0 } } }"), @"
+    2:6 expected `]` after the dimension, found `/` [MBG0103]
+      help: a dimension is a number as it stands, such as `[3]`; `for k in 0..n { … }` repeats a computed number of times
+    ");
+}
+
+#[test]
+fn a_junction_without_bonds_can_be_removed() {
+    insta::assert_snapshot!(told("model M { 1 a { I i { inertia: 1.0 } }\n1 b; 1 c[2]; c.x -> a; }"), @"
+    2:3 junction `b` has no bond [MBG0208]
+      help: write an arrow to it: `b -> …;`
+      help: or remove it
+    2:8 junction `c[1]` has no bond [MBG0208]
+      help: write an arrow to it: `c[1] -> …;`
+    ");
+}

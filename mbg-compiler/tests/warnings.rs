@@ -88,8 +88,19 @@ fn what_is_handed_on_is_not_told() {
     let finger = "component Finger(port 1 at, port 1 tip) {
         param grip = 1.0; param blocked: ideal | compliant = ideal;
         rack: Rack { radius: 0.1, blocked: blocked, blocked_damping: grip } (at, tip); }";
-    let body = "1 slide { #[derivative] I jaw { inertia: 1.0 } } finger: Finger { grip: 2.0 } (wheel, slide);";
-    assert_eq!(around_a_wheel(finger, body), "");
+    let called = |arguments: &str| {
+        let jaw = "1 slide { #[derivative] I jaw { inertia: 1.0 } }";
+        around_a_wheel(
+            finger,
+            &format!("{jaw}\nfinger: Finger {arguments} (wheel, slide);"),
+        )
+    };
+    assert_eq!(called(""), "");
+    assert_eq!(called("{ blocked: compliant, grip: 2.0 }"), "");
+    insta::assert_snapshot!(called("{ grip: 2.0 }"), @"
+    6:18 `grip` has no effect on `finger` [MBG0224]
+      help: it counts where `blocked == compliant`
+    ");
 }
 
 #[test]
@@ -154,4 +165,140 @@ fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_i
     // A free axis of a joint, the end of a chain, a body that nothing pushes.
     let free = "1 axis; 0 joint; wheel -> joint; joint -> axis; 1 end; wheel -> TF lever { flow: 2.0 } -> end;";
     assert_eq!(around_a_wheel("", free), "");
+}
+
+/// An arm on a hinge, and a statement.
+fn around_an_arm(statement: &str) -> String {
+    warned(&format!(
+        "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 arm[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+         body: Body {{ mass: 1.0, inertia: 1.0 }} (arm);\n{statement} }}"
+    ))
+}
+
+#[test]
+fn components_that_change_nothing_are_told() {
+    let hinge = "hinge: Revolute { axis: 0 } (ground, arm);";
+    let load = |load: &str| around_an_arm(&format!("{hinge}\n{load}"));
+    insta::assert_snapshot!(load("push: Load (arm);"), @"
+    4:1 `push` changes nothing [MBG0224]
+      help: it counts where `given(force)` or `given(moment)`
+    ");
+    insta::assert_snapshot!(load("push: Load { force: [1.0, 0.0, 0.0] } (ground);"), @"
+    4:1 `push` changes nothing: `ground` does not move [MBG0224]
+      help: remove it, or give it a frame that moves
+    ");
+    insta::assert_snapshot!(load("base: Body { mass: 1.0, inertia: 1.0 } (ground);"), @"
+    4:1 `base` changes nothing: `ground` does not move [MBG0224]
+      help: remove it, or give it a frame that moves
+    ");
+    for moving in [
+        "push: Load { force: [1.0, 0.0, 0.0] } (arm);",
+        // What the ground must hold is asked for.
+        "push: Load { force: [1.0, 0.0, 0.0] } (ground); output held[6] = fixed.e;",
+        // It turns by itself.
+        "rotor: Rotor { count: 3, speed: 1.0, offset: 0.1, mass: 1.0, inertia: 1.0, centre: [1.0, 0.0, 0.0] } (ground);",
+    ] {
+        assert_eq!(load(moving), "", "{moving}");
+    }
+    // What a component hands on may be given elsewhere.
+    let handing = "component Push(port 1 at[6]) { param force[3]: N = 0.0; load: Load { force: force } (at); }";
+    let pushed = "1 b[6] { I m { inertia: 1.0 } } push: Push (b);";
+    assert_eq!(around_a_wheel(handing, pushed), "");
+    // What stands on the ground here may move elsewhere.
+    let robot = "component Robot(port 1 base[6]) { base_body: PointMass { mass: 1.0 } (base); }";
+    let held = "1 b[6] { Sf fixed { flow: 0.0 } } #[derivative] robot: Robot (b);";
+    assert_eq!(around_a_wheel(robot, held), "");
+}
+
+#[test]
+fn gravity_without_weight_is_told() {
+    let hinge = "hinge: Revolute { axis: 0 } (ground, arm);";
+    assert_eq!(
+        around_an_arm(&format!("gravity [0.0, 0.0, -9.81]; {hinge}")),
+        ""
+    );
+    let massless = "gravity [0.0, -9.81];\n1 rod[3]; pin: PlanarRevolute (held, rod);
+                    1 held[3]; Sf wall[3] { flow: 0.0 } -> held; rod -> I mass { inertia: 1.0 };";
+    let text = format!("#[derivative] model M {{ causality componentwise; {massless} }}");
+    insta::assert_snapshot!(warned(&text), @"
+    1:50 `gravity` changes nothing: the model has no weight [MBG0224]
+      help: remove it, or give a frame a body: `body: Body { mass: …, inertia: … } (arm);`
+    ");
+    let read = text.replace("inertia: 1.0 };", "inertia: 1.0 }; output g = gravity.y;");
+    assert_eq!(warned(&read), "");
+}
+
+/// What a ball joint hands on to the axes of its gimbals.
+#[test]
+fn arguments_without_effect_inside_what_is_called_are_told() {
+    let ball = |arguments: &str| {
+        around_an_arm(&format!("ball: Spherical {{ {arguments} }} (ground, arm);"))
+    };
+    insta::assert_snapshot!(ball("friction_speed: 0.1"), @"
+    3:19 `friction_speed` has no effect on `ball` [MBG0224]
+      help: it counts where `given(friction)`
+    ");
+    for arguments in [
+        "friction: 0.2, friction_speed: 0.1",
+        "damping: 0.1, first: 2, second: 1, third: 0",
+    ] {
+        assert_eq!(ball(arguments), "", "{arguments}");
+    }
+    let angles = "orientation: quaternion, friction: 0.2, friction_speed: 0.1";
+    assert_eq!(ball(angles), "");
+}
+
+#[test]
+fn what_a_loop_declares_or_never_does_is_told() {
+    let bars = |inside: &str, read: &str| {
+        let body = format!(
+            "bars: for k in 0..2 {{ 1 bar {{ I rod {{ inertia: 1.0 }} }}\n{inside} }} {read}"
+        );
+        around_a_wheel("", &body)
+    };
+    insta::assert_snapshot!(bars("let far = 2 * k; integral way = bar.f;", ""), @"
+    4:5 `M` does not read its value `far` [MBG0223]
+      help: remove it, or call it `_far`
+    4:27 `M` does not read its integral `way` [MBG0223]
+      so it is no state; an `output` that reads it makes it one
+      help: remove it, or call it `_way`
+    ");
+    assert_eq!(bars("let far = 2 * k;", "output y = bars[1].far;"), "");
+    assert_eq!(
+        bars("let far = 2 * k; R r { resistance: far } -> bar;", ""),
+        ""
+    );
+    assert_eq!(bars("let _far = 2 * k;", ""), "");
+    insta::assert_snapshot!(around_a_wheel("", "for k in 3..0 { wheel -> R r { resistance: k }; }"), @"
+    3:10 `3..0` is empty: nothing is repeated [MBG0224]
+      help: write `0..3`
+    ");
+    assert_eq!(
+        around_a_wheel("", "for k in 0..0 { wheel -> R r { resistance: k }; }"),
+        ""
+    );
+}
+
+#[test]
+fn ports_that_a_component_does_not_bond_are_told() {
+    let brake = |second: &str, body: &str| {
+        let component = format!("component Brake(port at, port {second}) {{ {body} }}");
+        around_a_wheel(
+            &component,
+            "1 other { I disc { inertia: 1.0 } } brake: Brake (wheel, other);",
+        )
+    };
+    insta::assert_snapshot!(brake("to", "at -> R pad { resistance: 1.0 };"), @"
+    1:31 `Brake` bonds nothing to its port `to` [MBG0223]
+      help: remove it, or call it `_to`
+    ");
+    assert_eq!(brake("_to", "at -> R pad { resistance: 1.0 };"), "");
+    assert_eq!(brake("to", "at -> R pad { effort: to.f * f };"), "");
+    assert_eq!(
+        brake(
+            "to",
+            "0 slip { R pad { resistance: 1.0 } } at -> slip; slip -> to;"
+        ),
+        ""
+    );
 }

@@ -143,6 +143,7 @@ impl<'a> Builder<'a> {
                 builder.resolve_law(pending.clone())
             });
         }
+        self.warn_of_idle();
         self.define_unread();
     }
 

@@ -31,10 +31,10 @@ const OF_AXES: [&str; 3] = [GRAVITY, "orientation", "angle"];
 
 /// A port of a component in use, and where it is connected.
 pub(super) struct Frame<'a> {
-    component: &'a ast::Component,
+    pub(super) component: &'a ast::Component,
     /// Name of the port.
     port: String,
-    place: Place,
+    pub(super) place: Place,
 }
 
 /// A parameter that is left out.
@@ -223,7 +223,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The first junction of the frame that each belongs to: a bond between 1-junctions makes one frame of theirs.
-    fn joined(&self) -> Vec<JunctionId> {
+    pub(super) fn joined(&self) -> Vec<JunctionId> {
         let mut first: Vec<JunctionId> = (0..self.graph.junctions.len()).map(JunctionId).collect();
         let is_whole = |id: &JunctionId, range: &Range<usize>| {
             let junction = &self.graph.junctions[id.0];
@@ -243,7 +243,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The components of junctions that sources keep at zero.
-    fn still(&self, first: &[JunctionId]) -> BTreeSet<(JunctionId, usize)> {
+    pub(super) fn still(&self, first: &[JunctionId]) -> BTreeSet<(JunctionId, usize)> {
         let mut still = BTreeSet::new();
         for bond in &self.graph.bonds {
             if let (End::OnePort(element), End::Junction(id, range))

@@ -5,6 +5,7 @@ use proc_macro2::Ident;
 use super::Builder;
 use super::conditions::no_word;
 use super::frames::LeftOut;
+use super::idle::without_bonds;
 use super::scope::{Entity, Scope};
 use super::unused::without_effect;
 use crate::codes;
@@ -28,8 +29,11 @@ impl<'a> Builder<'a> {
             || component.derivative.is_some();
         let around = &self.scopes[scope];
         let constants = around.constants.of_instance(instance, component);
-        if around.library.is_none() && self.claims.is_none() {
-            let idle = without_effect(instance, component, &around.constants, &constants);
+        // What a component hands on has an effect in other uses of it, perhaps.
+        let own = around.constants.given.is_empty() && around.constants.chosen.is_empty();
+        let is_written = around.library.is_none() && own && self.claims.is_none();
+        if is_written {
+            let idle = without_effect(instance, component, components, &constants);
             idle.into_iter().for_each(|it| self.diagnostics.warn(it));
         }
         let place = (component.name.to_string(), instance.name.span());
@@ -52,7 +56,12 @@ impl<'a> Builder<'a> {
         let is_broken = self.diagnostics.calls() > before;
         self.scopes[inner].is_broken |= is_broken;
         self.is_misled |= is_broken;
+        let bonds = self.graph.bonds.len();
         self.declare(inner, &component.statements);
+        if is_written && self.graph.bonds.len() == bonds {
+            let idle = without_bonds(instance, component);
+            idle.into_iter().for_each(|it| self.diagnostics.warn(it));
+        }
     }
 
     fn ports_of(

@@ -20,6 +20,7 @@ mod elsewhere;
 pub mod expressions;
 mod finish;
 mod frames;
+mod idle;
 mod indices;
 mod instances;
 mod laws;

@@ -41,6 +41,23 @@ impl Statement {
         }
     }
 
+    /// The junctions and elements that it bonds.
+    #[must_use]
+    pub fn references(&self) -> Vec<&Reference> {
+        match self {
+            Self::Chain(it) => {
+                let nodes = it.nodes.iter().filter_map(|node| match node {
+                    ChainNode::Reference(reference) => Some(reference),
+                    ChainNode::Element(_) => None,
+                });
+                nodes.collect()
+            }
+            Self::Closure(it) => vec![&it.from, &it.to],
+            Self::Instance(it) => it.connections.iter().collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The statements in its braces.
     #[must_use]
     pub fn inside(&self) -> Vec<&Self> {

@@ -1,0 +1,114 @@
+//! Warnings of what changes nothing in the model at hand: components without an element, bodies and loads on what stands
+//! still, gravity without weight.
+
+use std::collections::BTreeSet;
+
+use super::Builder;
+use super::definitions::Progress;
+use super::model::{Place, Quantity};
+use super::scope::{Entity, GRAVITY};
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
+use crate::graph::{ElementKind, JunctionId, JunctionKind, instance_of};
+use crate::syntax::ast::{Component, Instance, Statement};
+use crate::syntax::dump;
+use crate::syntax::words::alternatives;
+
+/// A warning for a component that came without a bond, all of which stand in its `if`s.
+pub(super) fn without_bonds(instance: &Instance, component: &Component) -> Option<Diagnostic> {
+    let conditionals = component.statements.iter().filter_map(|it| match it {
+        Statement::Conditional(conditional) => Some(conditional),
+        _ => None,
+    });
+    let conditions = conditionals.flat_map(|it| &it.branches);
+    let conditions = conditions.filter_map(|it| it.condition.as_ref());
+    let conditions: Vec<String> = conditions.map(dump::expression).collect();
+    if conditions.is_empty() {
+        return None;
+    }
+    let conditions: Vec<&str> = conditions.iter().map(String::as_str).collect();
+    let message = format!("`{}` changes nothing", instance.name);
+    let report = error(codes::NO_EFFECT, instance.name.span(), message);
+    Some(report.help(format!("it counts where {}", alternatives(&conditions))))
+}
+
+impl Builder<'_> {
+    /// Warns of all but [`without_bonds`], once everything is read that has an effect.
+    pub(super) fn warn_of_idle(&mut self) {
+        let mut warnings: Vec<Diagnostic> = self.weightless().into_iter().collect();
+        let still = self.held_frames();
+        for (inner, frames) in &self.frames {
+            let [frame] = &frames[..] else { continue };
+            // A component of the user's may be used on what moves, too.
+            if let Some((scope, instance)) = self.called.get(inner)
+                && instance_of(&self.path(*scope, &instance.name)).is_none()
+                && still.contains(&frame.place.0)
+                && is_passive(frame.component)
+            {
+                let at = dump::reference(&instance.connections[0]);
+                let name = &instance.name;
+                let message = format!("`{name}` changes nothing: `{at}` does not move");
+                let report = error(codes::NO_EFFECT, name.span(), message);
+                warnings.push(report.help("remove it, or give it a frame that moves"));
+            }
+        }
+        warnings
+            .into_iter()
+            .for_each(|it| self.diagnostics.warn(it));
+    }
+
+    /// A warning where nothing has read gravity.
+    fn weightless(&self) -> Option<Diagnostic> {
+        let Some(Entity::Definition(id)) = self.scopes[0].names.get(GRAVITY) else {
+            return None;
+        };
+        let gravity = &self.definitions[*id];
+        let is_unread = matches!(gravity.progress, Progress::Unread);
+        let message = "`gravity` changes nothing: the model has no weight";
+        let report = error(codes::NO_EFFECT, gravity.name.span(), message);
+        is_unread.then(|| {
+            report.help(
+                "remove it, or give a frame a body: `body: Body { mass: …, inertia: … } (arm);`",
+            )
+        })
+    }
+
+    /// The 1-junctions that sources hold still as a whole, and at which nobody asks for an effort.
+    fn held_frames(&self) -> BTreeSet<JunctionId> {
+        let still = self.still(&self.joined());
+        let asked = self
+            .signals
+            .list()
+            .iter()
+            .any(|(quantity, place, _)| match place {
+                Place::Port(id) => {
+                    *quantity == Quantity::Effort
+                        && self.graph.elements[id.0].kind == ElementKind::Sf
+                }
+                Place::Junction(_) => false,
+            });
+        let junctions = self.graph.junctions.iter().enumerate();
+        let held = junctions.filter(|(id, junction)| {
+            let mut components = 0..junction.dimension;
+            junction.kind == JunctionKind::One
+                && components.all(|component| still.contains(&(JunctionId(*id), component)))
+        });
+        let held = held.map(|(id, _)| JunctionId(id));
+        held.filter(|_| !asked).collect()
+    }
+}
+
+/// Whether a component of the library has elements alone, none of which moves by itself.
+fn is_passive(component: &Component) -> bool {
+    let mut open: Vec<&Statement> = component.statements.iter().collect();
+    while let Some(statement) = open.pop() {
+        match statement {
+            Statement::Instance(_) | Statement::Integral(_) | Statement::Attitude(_) => {
+                return false;
+            }
+            Statement::Junction(it) if it.coordinate => return false,
+            _ => open.extend(statement.inside()),
+        }
+    }
+    component.library
+}

@@ -445,11 +445,6 @@ fn mistakes_in_values_are_told() {
     insta::assert_snapshot!(mistake("let p = nowhere;"), @"2:9 `nowhere` is not declared [MBG0203]");
     insta::assert_snapshot!(mistake("let p = 1.0; let p = 2.0;"), @"2:18 `p` is declared twice [MBG0202]");
     insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"2:14 expected a junction or an element, found `p` [MBG0203]");
-    insta::assert_snapshot!(mistake("param p[2] = 1.0;"), @"
-    2:7 `p` is a parameter of a model, which is a number [MBG0204]
-      help: give each component a parameter of its own, `param p_x = 1.0;`, and write `let p[2] = [p_x, p_y];`
-      help: write `let p[2] = [1.0, 1.0];` for a value that never changes
-    ");
 }
 
 #[test]

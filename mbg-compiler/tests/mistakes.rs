@@ -457,10 +457,22 @@ fn mistakes_in_parameters_and_inputs_are_told() {
     1:46 parameter `k` has no value [MBG0214]
       help: write `param k: N/m = 1.0;`
     ");
-    insta::assert_snapshot!(told("param r[3]: m = [1.0, 2.0, 3.0]; output y: m = r.x;"), @"
-    1:46 `r` is a parameter of a model, which is a number [MBG0204]
-      help: give each component a parameter of its own, `param r_x: m = 1.0;`, and write `let r[3]: m = [r_x, r_y, r_z];`
-      help: write `let r[3]: m = [1.0, 2.0, 3.0];` for a value that never changes
+    insta::assert_snapshot!(told("param r[3]: m; output y: m = r.x;"), @"
+    1:46 parameter `r` has no value [MBG0214]
+      help: write `param r[3]: m = [1.0, 1.0, 1.0];`
+    ");
+    insta::assert_snapshot!(told("param r[3]: m = 1.0; output y: m = r.x;"), @"
+    1:46 `r` has dimension 3, found a number [MBG0204]
+      help: write each component, such as `[1.0, 1.0, 1.0]`
+    ");
+    insta::assert_snapshot!(told("param r[3]: m = [1.0, 2.0]; output y: m = r.x;"), @"1:46 `r` has dimension 3, found a vector of 2 [MBG0204]");
+    insta::assert_snapshot!(told("param l = 1.0; param r[2]: m = [l, 2.0]; output y: m = r.x;"), @"
+    1:71 expected numbers as the default of `r`, found `[l, 2.0]` [MBG0213]
+      help: write `let r[2]: m = [l, 2.0];` for what follows from other values
+    ");
+    insta::assert_snapshot!(told("param k = [1.0, 2.0]; output y = k.x;"), @"
+    1:50 expected a number as the default of `k`, found `[1.0, 2.0]` [MBG0213]
+      help: write `param k[2] = [1.0, 2.0];`
     ");
     insta::assert_snapshot!(told("param k: N/m = 2.0 * l; param l = 1.0;"), @"
     1:55 expected a number as the default of `k`, found `2.0 * l` [MBG0213]
@@ -475,11 +487,6 @@ fn mistakes_in_parameters_and_inputs_are_told() {
     1:51 `u` is an input: its value comes from outside, and it has no default [MBG0101]
       help: write `input u: N;`
       help: write `param u: N = 2.0;` for a value that stays
-    ");
-    insta::assert_snapshot!(told("param r[2] = 1.0;"), @"
-    1:46 `r` is a parameter of a model, which is a number [MBG0204]
-      help: give each component a parameter of its own, `param r_x = 1.0;`, and write `let r[2] = [r_x, r_y];`
-      help: write `let r[2] = [1.0, 1.0];` for a value that never changes
     ");
     insta::assert_snapshot!(told("input u[2] = 2.0; output y = u.x;"), @"
     1:51 `u` is an input: its value comes from outside, and it has no default [MBG0101]

@@ -1,6 +1,7 @@
 //! What `new` refuses, and that it refuses nothing else.
 
-use mbg_runtime::{ParameterError, Rk4, System, mbg};
+use mbg_runtime::{Convertible, ParameterError, Rk4, System, mbg};
+use nalgebra::SVector;
 
 use super::behaviour::{Ladder, LadderParameters, Oscillator, OscillatorParameters};
 use crate::ins::{Ins, InsClassic, InsClassicParameters, InsParameters, gust};
@@ -26,6 +27,23 @@ mbg! {
     }
 }
 
+mbg! {
+    /// Masses on springs of their own.
+    pub(crate) model Springs {
+        param stiffness[3]: N/m = [2.0, 3.0, 4.0];
+        param drag[3]: N*s/m = 0.0;
+        param mass[1]: kg = [0.5];
+        cells: for k in 0..3 {
+            1 cell {
+                I body { inertia: mass[0] }
+                C spring { stiffness: stiffness[k], initial: 1.0 }
+                R damper { resistance: drag[k] }
+            }
+        }
+        output effort[3]: N = [cells[0].spring.e, cells[1].spring.e, cells[2].spring.e];
+    }
+}
+
 #[track_caller]
 fn refused<T>(result: Result<T, ParameterError>, name: &str, value: f64, reason: &str) {
     match result {
@@ -36,6 +54,62 @@ fn refused<T>(result: Result<T, ParameterError>, name: &str, value: f64, reason:
             assert_eq!(error.reason, reason);
         }
     }
+}
+
+#[test]
+fn a_parameter_may_be_a_vector() {
+    let found = |parameters: SpringsParameters| {
+        let model = Springs::new(parameters).unwrap();
+        let (start, none) = (model.initial_state(), SVector::zeros());
+        let rates = model.derivative(0.0, &start, &none, &mut ());
+        let moving = start.map(|_| 1.0);
+        let drag = model.power(0.0, &moving, &none, &mut ()).dissipated;
+        let energy = model.energy(0.0, &start);
+        (
+            model.output(0.0, &start, &none, &mut ()),
+            rates.min(),
+            drag,
+            energy,
+        )
+    };
+    let effort = |x, y, z| SVector::from([x, y, z]);
+    let default = SpringsParameters::default();
+    assert_eq!(found(default), (effort(2.0, 3.0, 4.0), -4.0, 0.0, 4.5));
+    let other = SpringsParameters {
+        stiffness: [5.0, 6.0, 7.0],
+        drag: [0.0, 0.25, 0.5],
+        mass: [0.5],
+    };
+    // Momenta of one in half a kilogram are flows of two.
+    assert_eq!(found(other), (effort(5.0, 6.0, 7.0), -7.0, 3.0, 9.0));
+    let model = Springs::new(other).unwrap();
+    assert_eq!(*model.converted(f64::from).parameters(), other);
+    assert_eq!(
+        model.converted(|it| it as f32).parameters().drag,
+        [0.0, 0.25, 0.5]
+    );
+    let names = Springs::<f64>::META.parameters.iter().map(|it| it.name);
+    assert_eq!(
+        names.collect::<Vec<_>>().join(" "),
+        "stiffness.x stiffness.y stiffness.z drag.x drag.y drag.z mass"
+    );
+    let stiffness = [5.0, f64::INFINITY, 7.0];
+    let reason = "it must be a finite number";
+    refused(
+        Springs::new(SpringsParameters { stiffness, ..other }),
+        "stiffness.y",
+        f64::INFINITY,
+        reason,
+    );
+    refused(
+        Springs::new(SpringsParameters {
+            mass: [0.0],
+            ..other
+        }),
+        "mass",
+        0.0,
+        "it must be positive: it is the inertia of `cells[0].body`",
+    );
 }
 
 #[test]

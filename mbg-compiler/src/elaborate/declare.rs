@@ -8,10 +8,9 @@ use super::scope::{Entity, GRAVITY};
 use super::{Builder, component_names};
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{Junction, JunctionId, component_name};
+use crate::graph::{Junction, JunctionId};
 use crate::symbolic::Symbol;
 use crate::syntax::ast::{self, Statement};
-use crate::syntax::dump::{self, MOST_PARTS};
 
 impl<'a> Builder<'a> {
     /// Declares the names of junctions, parameters, inputs, values and loops.
@@ -79,48 +78,28 @@ impl<'a> Builder<'a> {
     }
 
     fn parameter(&mut self, parameter: &'a ast::Parameter) {
-        if let Some(dimension) = parameter.dimension {
-            return self.vector_parameter(parameter, dimension);
-        }
-        let symbol = self.pool.symbol(Symbol::Parameter(self.parameters.len()));
-        let value = Entity::Value(Value::Scalar(symbol));
-        let number = self.parameters.len();
-        self.claim_unit(0, [Symbol::Parameter(number)], parameter.unit.as_ref());
-        self.name(0, &parameter.name, value);
-        self.parameters.push(Parameter {
-            name: parameter.name.clone(),
-            documentation: parameter.documentation.clone(),
-            unit: parameter
-                .unit
-                .as_ref()
-                .map_or_else(String::new, |unit| unit.text.clone()),
-            default: 0.0,
-        });
-    }
-
-    fn vector_parameter(&mut self, parameter: &ast::Parameter, dimension: usize) {
         let name = &parameter.name;
-        let unit = parameter.unit_text();
-        let parts =
-            (0..dimension).map(|part| format!("{name}_{}", component_name(part, dimension)));
-        let parts: Vec<String> = parts.take(MOST_PARTS).collect();
-        let message = format!("`{name}` is a parameter of a model, which is a number");
-        let mut report = error(codes::WRONG_DIMENSION, name.span(), message);
-        if dimension <= MOST_PARTS {
-            let all = parts.join(", ");
-            report = report.help(format!(
-                "give each component a parameter of its own, `param {}{unit} = 1.0;`, and write `let {name}[{dimension}]{unit} = [{all}];`",
-                parts[0]
-            ));
-        }
-        let value = parameter.default.as_ref();
-        if let Some(value) = value.and_then(|value| dump::column(value, dimension)) {
-            report = report.help(format!(
-                "write `let {name}[{dimension}]{unit} = {value};` for a value that never changes"
-            ));
-        }
-        self.diagnostics.report(report);
-        self.name(0, name, Entity::Opaque);
+        let (start, unit) = (self.parameters.len(), parameter.unit.as_ref());
+        let unit_text = unit.map_or_else(String::new, |unit| unit.text.clone());
+        let size = parameter.dimension.unwrap_or(1);
+        let variables = component_names(&name.to_string(), size, &unit_text);
+        let parameters = variables.into_iter().enumerate();
+        self.parameters
+            .extend(parameters.map(|(component, variable)| Parameter {
+                declared: name.clone(),
+                component: parameter.dimension.map(|_| component),
+                variable,
+                documentation: parameter.documentation.clone(),
+                default: 0.0,
+            }));
+        let symbols = (start..start + size).map(Symbol::Parameter);
+        self.claim_unit(0, symbols.clone(), unit);
+        let values: Vec<_> = symbols.map(|symbol| self.pool.symbol(symbol)).collect();
+        let value = match parameter.dimension {
+            None => Value::Scalar(values[0]),
+            Some(_) => Value::column(values),
+        };
+        self.name(0, name, Entity::Value(value));
     }
 
     fn input(&mut self, scope: usize, input: &ast::Input) {

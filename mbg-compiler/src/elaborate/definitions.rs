@@ -177,15 +177,15 @@ impl<'a> Builder<'a> {
         let value = match dimension {
             None => value,
             Some(size) => {
-                let is_number = matches!(value, Value::Scalar(_));
-                let column = self.column(value, size, name);
+                let column = match told {
+                    Some(_) => self.column(value, size, name),
+                    None => self.column_of(value, size, name, expression),
+                };
                 column.map_err(|report| match told {
                     Some(told) => Box::new(report.note(format!(
                         "it is what `{}` tells",
                         self.definitions[told].path
                     ))),
-                    None if is_gravity(expression) => about_gravity(report, size),
-                    None if is_number => by_component(report, expression, size),
                     None => report,
                 })?
             }
@@ -199,6 +199,23 @@ impl<'a> Builder<'a> {
             Value::Scalar(number) if number == Expression::ZERO => vec![number; size],
             _ => self.entries(&value, size, name)?,
         }))
+    }
+
+    /// The same of the value of an expression, with what to type where that has another shape.
+    pub(super) fn column_of(
+        &mut self,
+        value: Value,
+        size: usize,
+        name: &Ident,
+        expression: &Expr,
+    ) -> Result<Value> {
+        let is_number = matches!(value, Value::Scalar(_));
+        let column = self.column(value, size, name);
+        column.map_err(|report| match is_number {
+            _ if is_gravity(expression) => about_gravity(report, size),
+            true => by_component(report, expression, size),
+            false => report,
+        })
     }
 
     fn report_cycle(&mut self, open: &[usize], needed: usize) {

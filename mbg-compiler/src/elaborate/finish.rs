@@ -25,47 +25,76 @@ impl<'a> Builder<'a> {
     /// Reads the defaults of a model's parameters, once it is known what the model declares.
     pub(super) fn read_defaults(&mut self, statements: &[Statement]) {
         let chosen = self.scopes[0].constants.chosen(statements);
-        let numbers = chosen.into_iter().filter_map(|statement| match statement {
-            Statement::Parameter(parameter) => Some(parameter),
-            _ => None,
-        });
-        let numbers = numbers.filter(|parameter| parameter.dimension.is_none());
-        for (number, parameter) in numbers.enumerate() {
-            self.parameters[number].default = self.default_value(parameter);
+        let mut number = 0;
+        for statement in chosen {
+            let Statement::Parameter(parameter) = statement else {
+                continue;
+            };
+            for (component, value) in self.default_values(parameter).into_iter().enumerate() {
+                self.parameters[number + component].default = value;
+            }
+            number += parameter.dimension.unwrap_or(1);
         }
     }
 
-    /// A model parameter's default, which must be a number.
-    fn default_value(&mut self, parameter: &ast::Parameter) -> f64 {
+    /// A model parameter's default, by component, which must be numbers; nothing if it was told that it is not.
+    fn default_values(&mut self, parameter: &ast::Parameter) -> Vec<f64> {
         let (name, unit) = (&parameter.name, parameter.unit_text());
+        let size = parameter.dimension;
+        let shape = size.map_or_else(String::new, |size| format!("[{size}]"));
         let Some(expression) = &parameter.default else {
             let message = format!("parameter `{name}` has no value");
             let report = error(codes::MISSING_DEFAULT, name.span(), message);
-            let help = format!("write `param {name}{unit} = 1.0;`");
+            let one = syn::parse_quote!(1.0);
+            let all = size.and_then(|size| dump::column(&one, size));
+            let all = all.unwrap_or_else(|| size.map_or("1.0", |_| "0.0").to_owned());
+            let help = format!("write `param {name}{shape}{unit} = {all};`");
             self.diagnostics.report(report.help(help));
-            return 0.0;
+            return Vec::new();
         };
-        let value = self.evaluate(0, expression);
+        let value = match (self.evaluate(0, expression), size) {
+            (Ok(value), Some(size)) => self.column_of(value, size, name, expression),
+            (value, _) => value,
+        };
         // A default is a number and waits for no other value.
         self.missing = None;
+        let numbers = value.as_ref().ok().and_then(|value| match value {
+            Value::Matrix(_) if size.is_none() => None,
+            value => value.entries(self.pool),
+        });
+        let numbers = numbers.and_then(|numbers| {
+            let numbers = numbers.iter().map(|it| self.pool.constant_value(*it));
+            numbers.collect::<Option<Vec<f64>>>()
+        });
+        if let Some(numbers) = numbers {
+            return numbers;
+        }
         match value {
-            Ok(Value::Scalar(value)) if self.pool.constant_value(value).is_some() => {
-                return self.pool.constant_value(value).unwrap_or(0.0);
-            }
             // What reads a value that exists is no number, whatever else may be wrong with it.
             Err(report) if !self.reads_what_exists(expression) => self.diagnostics.report(*report),
             _ => {
                 let text = dump::expression(expression);
+                let numbers = if size.is_some() {
+                    "numbers"
+                } else {
+                    "a number"
+                };
                 let message =
-                    format!("expected a number as the default of `{name}`, found `{text}`");
+                    format!("expected {numbers} as the default of `{name}`, found `{text}`");
                 let report = error(codes::EXPRESSION, expression.span(), message);
-                let help = format!(
-                    "write `let {name}{unit} = {text};` for what follows from other values"
-                );
+                let entries = value.ok().and_then(|value| value.entries(self.pool));
+                let help = match entries {
+                    Some(entries) if size.is_none() && entries.len() > 1 => {
+                        format!("write `param {name}[{}]{unit} = {text};`", entries.len())
+                    }
+                    _ => format!(
+                        "write `let {name}{shape}{unit} = {text};` for what follows from other values"
+                    ),
+                };
                 self.diagnostics.report(report.help(help));
             }
         }
-        0.0
+        Vec::new()
     }
 
     /// Whether an expression of the model mentions names, all of them declared.

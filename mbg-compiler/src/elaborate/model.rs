@@ -40,7 +40,7 @@ impl Elaborated {
     #[must_use]
     pub fn symbol_text(&self, symbol: Symbol) -> String {
         match symbol {
-            Symbol::Parameter(index) => self.parameters[index].name.to_string(),
+            Symbol::Parameter(index) => self.parameters[index].variable.name.clone(),
             Symbol::State(index) => self.states[index].variable.name.clone(),
             Symbol::Input(index) => self.inputs[index].name.clone(),
             Symbol::Time => "t".to_owned(),
@@ -54,12 +54,14 @@ impl Elaborated {
 /// A scalar parameter.
 #[derive(Clone)]
 pub struct Parameter {
-    /// Name.
-    pub name: Ident,
+    /// The name that was declared.
+    pub declared: Ident,
+    /// Its place, if that is a vector.
+    pub component: Option<usize>,
+    /// Its own name, and its unit.
+    pub variable: Variable,
     /// Documentation comments.
     pub documentation: Vec<Attribute>,
-    /// Unit as written, or empty.
-    pub unit: String,
     /// Default value.
     pub default: f64,
 }

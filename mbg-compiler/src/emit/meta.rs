@@ -107,7 +107,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
     let parameters: Vec<_> = model
         .parameters
         .iter()
-        .map(|entry| variable(&entry.name.to_string(), &entry.unit))
+        .map(|entry| variable(&entry.variable.name, &entry.variable.unit))
         .collect();
     let states: Vec<_> = compiled
         .states

@@ -5,27 +5,43 @@ use quote::{format_ident, quote};
 
 use super::meta::spaced;
 use crate::compile::Compiled;
+use crate::elaborate::Parameter;
+use crate::symbolic::print;
 
 /// `NameParameters` with its `Default`.
 pub(super) fn items(compiled: &Compiled) -> TokenStream {
     let model = &compiled.model;
     let (visibility, name) = (&model.visibility, format_ident!("{}Parameters", model.name));
-    let fields = model.parameters.iter().map(|parameter| {
-        let (name, documentation) = (&parameter.name, &parameter.documentation);
-        let unit = if parameter.unit.is_empty() {
-            "Without unit".to_owned()
-        } else {
-            format!("In {}", parameter.unit)
+    let declared = fields(&model.parameters).map(|field| {
+        let Parameter {
+            declared,
+            documentation,
+            variable,
+            ..
+        } = &field[0];
+        let unit = match variable.unit.as_str() {
+            "" => "Without unit".to_owned(),
+            unit => format!("In {unit}"),
         };
-        let line = spaced(format!(
-            "{unit}; {} by default.",
-            crate::symbolic::print::number(parameter.default)
-        ));
-        quote!(#(#documentation)* #[doc = #line] pub #name: T)
+        let defaults = field.iter().map(|it| print::number(it.default));
+        let defaults = defaults.collect::<Vec<_>>().join(", ");
+        let (defaults, scalars) = match field[0].component {
+            None => (defaults, quote!(T)),
+            Some(_) => {
+                let size = Literal::usize_suffixed(field.len());
+                (format!("[{defaults}]"), quote!([T; #size]))
+            }
+        };
+        let line = spaced(format!("{unit}; {defaults} by default."));
+        quote!(#(#documentation)* #[doc = #line] pub #declared: #scalars)
     });
-    let defaults = model.parameters.iter().map(|parameter| {
-        let (name, value) = (&parameter.name, number(parameter.default));
-        quote!(#name: #value)
+    let defaults = fields(&model.parameters).map(|field| {
+        let name = &field[0].declared;
+        let values = field.iter().map(|it| number(it.default));
+        match field[0].component {
+            None => quote!(#name: #(#values)*),
+            Some(_) => quote!(#name: [#(#values),*]),
+        }
     });
     let documentation = spaced(format!("Parameters of [`{}`].", model.name));
     let phantom = model.parameters.is_empty();
@@ -40,12 +56,26 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     quote! {
         #[doc = #documentation]
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #visibility struct #name<T = f64> { #(#fields,)* #field }
+        #visibility struct #name<T = f64> { #(#declared,)* #field }
 
         #[automatically_derived]
         impl<T: ::mbg_runtime::Real> ::core::default::Default for #name<T> {
             fn default() -> Self { Self { #(#defaults,)* #default } }
         }
+    }
+}
+
+/// The parameters by field of their type: those of a vector are declared one behind the other.
+pub(super) fn fields(parameters: &[Parameter]) -> impl Iterator<Item = &[Parameter]> {
+    parameters.chunk_by(|one, next| one.declared == next.declared)
+}
+
+/// What reads a parameter of parameters.
+pub(super) fn read(parameters: &TokenStream, parameter: &Parameter) -> TokenStream {
+    let name = &parameter.declared;
+    match parameter.component.map(Literal::usize_suffixed) {
+        None => quote!(#parameters.#name),
+        Some(component) => quote!(#parameters.#name[#component]),
     }
 }
 

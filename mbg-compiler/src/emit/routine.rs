@@ -504,7 +504,11 @@ impl<'a> Writer<'a> {
                 of_model(tokens);
                 tokens.name(&words.parameters);
                 tokens.sign('.');
-                tokens.name(&self.compiled.model.parameters[index].name);
+                let parameter = &self.compiled.model.parameters[index];
+                match parameter.component {
+                    None => tokens.name(&parameter.declared),
+                    Some(component) => element(tokens, &parameter.declared, component),
+                }
             }
             Source::Symbol(Symbol::State(index)) => element(tokens, &words.state, index),
             Source::Symbol(Symbol::Input(index)) => element(tokens, &words.input, index),

@@ -3,7 +3,7 @@
 //! Its types and methods exist, so that the code around the model compiles and the user sees the mistake and nothing
 //! else. None of it ever runs: the error stops the build.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -15,18 +15,24 @@ pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
     let (visibility, name) = (&model.visibility, &model.name);
     let parameters = format_ident!("{}Parameters", name);
     // A name given twice is the mistake that has been told.
-    let fields: BTreeSet<&Ident> = model
+    let fields: BTreeMap<&Ident, Option<usize>> = model
         .statements
         .iter()
         .filter_map(|statement| match statement {
-            Statement::Parameter(parameter) => Some(&parameter.name),
+            Statement::Parameter(parameter) => Some((&parameter.name, parameter.dimension)),
             _ => None,
         })
         .collect();
-    let fields: Vec<&Ident> = fields.into_iter().collect();
     let scalar = fields
         .is_empty()
         .then(|| quote!(#[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>));
+    let fields =
+        fields.into_iter().map(
+            |(name, dimension)| match dimension.map(Literal::usize_suffixed) {
+                None => quote!(#name: T),
+                Some(size) => quote!(#name: [T; #size]),
+            },
+        );
     let behaviour = behaviour(name, sizes);
     let [n, m, p] = [sizes.states, sizes.inputs, sizes.outputs].map(Literal::usize_suffixed);
     quote! {
@@ -36,7 +42,7 @@ pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
         #[allow(missing_docs)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         #visibility struct #parameters<T = f64> {
-            #(pub #fields: T,)*
+            #(pub #fields,)*
             #scalar
         }
         impl<T> ::core::default::Default for #parameters<T> {

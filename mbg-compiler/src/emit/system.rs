@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::close::close;
 use super::routine::{Setting, Writer, lines, written_lines};
 use super::tokens::block;
-use super::{jacobians, meta, sparsity};
+use super::{jacobians, meta, parameters, sparsity};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
 use crate::program::Step;
@@ -40,10 +40,11 @@ fn constructor(compiled: &Compiled) -> TokenStream {
     let name = &model.name;
     let parameters = format_ident!("{}Parameters", name);
     let finite = model.parameters.iter().map(|parameter| {
-        let (field, text) = (&parameter.name, parameter.name.to_string());
+        let value = parameters::read(&quote!(parameters), parameter);
+        let text = &parameter.variable.name;
         quote! {
             ::mbg_runtime::__private::check(
-                #text, parameters.#field, ::mbg_runtime::__private::Condition::Finite, "it must be a finite number",
+                #text, #value, ::mbg_runtime::__private::Condition::Finite, "it must be a finite number",
             )?;
         }
     });
@@ -194,7 +195,14 @@ fn convertible(compiled: &Compiled) -> Option<TokenStream> {
     let name = &compiled.model.name;
     let parameters = format_ident!("{}Parameters", name);
     let declared = &compiled.model.parameters;
-    let fields: Vec<_> = declared.iter().map(|it| &it.name).collect();
+    let fields = parameters::fields(declared).map(|field| {
+        let name = &field[0].declared;
+        match field[0].component {
+            None => quote!(#name: convert(self.parameters.#name)),
+            Some(_) => quote!(#name: self.parameters.#name.map(&convert)),
+        }
+    });
+    let fields: Vec<_> = fields.collect();
     let [n, m, p] = [
         compiled.states.len(),
         compiled.model.inputs.len(),
@@ -217,7 +225,7 @@ fn convertible(compiled: &Compiled) -> Option<TokenStream> {
                     convert: impl ::core::ops::Fn(T) -> L,
                 ) -> #name<L> {
                     #name {
-                        parameters: #parameters { #(#fields: convert(self.parameters.#fields),)* #phantom },
+                        parameters: #parameters { #(#fields,)* #phantom },
                         folded: self.folded.map(convert),
                     }
                 }

@@ -62,7 +62,7 @@ pub(crate) fn flat(text: &str) -> String {
         .unwrap();
     }
     let name = |symbol| match symbol {
-        Symbol::Parameter(index) => model.parameters[index].name.to_string(),
+        Symbol::Parameter(index) => model.parameters[index].variable.name.clone(),
         Symbol::State(index) => model.states[index].variable.name.clone(),
         other => format!("{other:?}"),
     };

@@ -86,13 +86,13 @@ const OTHERS: [&str; 7] = [
     }",
     "component Slope(port a) { a -> R r { flow: abs(e) * e }; }
     model Small {
-        causality componentwise; param k = 2.0; input u[2];
+        causality componentwise; param k = 2.0; param gains[2] = [1.0, 2.0]; input u[2];
         1 a[2] { C c { stiffness: [[k, 0.0], [0.0, 1.0]] } R l { resistance: k } }
         Se push { effort: u } -> a;
         a.x -> GY g { effort: k } -> b;
         0 b { C d { effort: tanh(q) } I m { energy: if p < 0.0 { p * p } else { powi(p, 4) } } }
         s: Slope (b);
-        integral x = m.f, initial: 1.0;
+        integral x = m.f, initial: gains.y;
         output y = x * c.q.y;
     }",
     "model Laws {

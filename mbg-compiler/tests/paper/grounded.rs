@@ -19,7 +19,7 @@ fn motion(system: System, ground: f64, step: f64, end: f64) -> Motion {
         .parameters
         .iter()
         .map(|parameter| {
-            if parameter.name == "ground" {
+            if parameter.declared == "ground" {
                 ground
             } else {
                 parameter.default

@@ -18,6 +18,7 @@ use crate::loose;
 use crate::network::Network;
 use crate::notes;
 use crate::program::{self, Program, Request};
+use crate::scaling;
 use crate::sparsity::{self, Pattern};
 use crate::start;
 use crate::structure::{self, Failure, Formulation, Loop, Solution, Solved};
@@ -166,8 +167,7 @@ fn finish(
     closures::tangential(&mut positions, &attitudes, &by_state, &mut pool);
     let flows = closures::flows(&model, scalars, solution, &by_state, &mut pool);
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
-    let conditioning = solution.conditioning.iter().map(|it| it.normalised);
-    let conditioning: Vec<Expression> = conditioning.collect();
+    let conditioning = scaling::scaled(&model, solution, &mut pool);
     let named = divisors::names(&model, scalars, solution, &pool);
     let divisors: Vec<_> = conditioning.iter().copied().zip(&named).collect();
     start::check(&model, &divisors, &pool, diagnostics);

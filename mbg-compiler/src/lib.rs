@@ -40,6 +40,7 @@ pub mod network;
 mod notes;
 mod operands;
 pub mod program;
+mod scaling;
 pub mod sparsity;
 pub mod start;
 pub mod structure;

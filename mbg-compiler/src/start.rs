@@ -38,23 +38,32 @@ pub fn check(
 /// Default parameters, and states at the start.
 pub(crate) struct Start<'a> {
     model: &'a Elaborated,
+    parameters: Vec<f64>,
     states: Vec<f64>,
 }
 
 impl<'a> Start<'a> {
     /// The initial values, worked out.
     pub(crate) fn of(model: &'a Elaborated, pool: &Pool) -> Self {
+        let defaults = model.parameters.iter().map(|it| it.default);
+        Self::with(model, defaults.collect(), pool)
+    }
+
+    /// The same with other parameters.
+    pub(crate) fn with(model: &'a Elaborated, parameters: Vec<f64>, pool: &Pool) -> Self {
         let parameters = Self {
             model,
+            parameters,
             states: Vec::new(),
         };
         let symbol = |symbol| parameters.symbol(symbol, &BTreeMap::new());
         let mut evaluation = Evaluation::new(&symbol);
         let states = model.states.iter();
         let states = states.map(|state| evaluation.value(pool, state.initial));
+        let states = states.collect();
         Self {
-            model,
-            states: states.collect(),
+            states,
+            ..parameters
         }
     }
 
@@ -67,7 +76,7 @@ impl<'a> Start<'a> {
     /// What a symbol is at the start, but with some states changed.
     fn symbol(&self, symbol: Symbol, changed: &BTreeMap<usize, f64>) -> f64 {
         match symbol {
-            Symbol::Parameter(index) => self.model.parameters[index].default,
+            Symbol::Parameter(index) => self.parameters[index],
             Symbol::State(index) => *changed.get(&index).unwrap_or(&self.states[index]),
             Symbol::Input(_) | Symbol::Time => 0.0,
             Symbol::Signal(_) | Symbol::Unknown(_) | Symbol::Slope(_) => f64::NAN,

@@ -1,6 +1,6 @@
 //! What is divided by where frames stand at right angles or at rest: no rounding error, and nothing that vanishes there.
 
-use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Convertible, Dop853, Integrator, System, mbg};
 use nalgebra::SVector;
 
 use crate::references::errors::apart;
@@ -34,6 +34,19 @@ mbg! {
         arm: Offset { by: [0.0, 0.0, -0.3] } (frame, tip);
         Sf still[3] { flow: 0.0 } -> tip[3..6];
         output rates[3] = [body.spin.f.x, body.spin.f.y, body.spin.f.z];
+    }
+
+    /// A hull that floats with a pendulum under it, of one kilogram or much less.
+    #[derivative]
+    pub(crate) model Swinging {
+        causality componentwise;
+        param size = 1.0;
+        1 ground[6]; 1 hull[6]; 1 rod[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        flight: Free { orientation: quaternion } (ground, hull);
+        body: Body { mass: 1.2 * size, inertia: size * diag(0.01, 0.012, 0.02) } (hull);
+        ball: Spherical { orientation: quaternion, offset: [0.0, 0.0, -0.1] } (hull, rod);
+        load: Body { mass: 0.4 * size, inertia: size * diag(1e-3, 1e-3, 5e-4), centre: [0.0, 0.0, -0.5] } (rod);
     }
 }
 
@@ -138,4 +151,30 @@ fn a_body_that_is_held_at_a_point_starts_where_no_angle_is_turned() {
         conditioning.iter().all(|it| it.is_finite()),
         "{conditioning:?}"
     );
+}
+
+/// Inertias make determinants as small as the machine, which is not singular for that.
+#[test]
+fn a_small_machine_is_not_singular() {
+    let first = Swinging::new(SwingingParameters { size: 1.0 }).unwrap();
+    let x = first.initial_state();
+    let none = SVector::zeros();
+    let expected = first.conditioning(0.0, &x, &none);
+    for size in [1e-9, 1e-3, 1.0, 1e6] {
+        let model = Swinging::new(SwingingParameters { size }).unwrap();
+        assert_eq!(model.trouble(0.0, &x, &none, &()), None);
+        assert!(apart(&model.conditioning(0.0, &x, &none), &expected) < 1e-12);
+        let single = model.converted(|it| it as f32);
+        if size > 1e-4 && size < 1e4 {
+            assert_eq!(
+                single.trouble(
+                    0.0,
+                    &x.map(|it| it as f32),
+                    &none.map(|it: f64| it as f32),
+                    &()
+                ),
+                None
+            );
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Rates that joints are given for the start, where the momenta of bodies are the states.
 
-use mbg_runtime::{System, mbg};
+use mbg_runtime::{Convertible, System, mbg};
 use nalgebra::{Rotation3, SVector, Vector3};
 
 use crate::references::errors::apart;
@@ -53,10 +53,48 @@ mbg! {
         output own[6] = tug.f;
     }
 
-    /// A momentum that is given itself stays what it is.
+    /// Momenta that are given themselves stay what they are, even zero.
     pub model Given {
         1 rate coordinate, initial_flow: 3.0 { I wheel { inertia: 2.0, initial: 1.0 } }
-        output turning = rate.f;
+        1 other coordinate, initial_flow: 3.0 { I rotor { inertia: 2.0, initial: 0.0 } }
+        output turning[2] = [rate.f, other.f];
+    }
+
+    /// Orientations that are parameters, at which single entries of rotations may vanish.
+    pub model Turned {
+        causality componentwise;
+        param yaw: rad = 0.0;
+        1 ground[6];
+        1 frame[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        one: Free {
+            orientation: quaternion, initial: [yaw, 0.0, yaw], initial_rate: [0.1, 0.2, 0.3], initial_velocity: [1.0, -2.0, 3.0]
+        } (ground, frame);
+        body: Body { mass: 2.0, inertia: 1.0, centre: [0.1, 0.2, 0.3] } (frame);
+        1 follower[6];
+        two: Free { initial: [0.0, 0.3, yaw], initial_rate: [0.4, 0.5, 0.6], initial_velocity: [4.0, 5.0, 6.0] } (frame, follower);
+        load: Body { mass: 2.0, inertia: 1.0, centre: [0.1, 0.2, 0.3] } (follower);
+        output found[12] = [
+            one.rotation.rate.f.x, one.rotation.rate.f.y, one.rotation.rate.f.z,
+            one.velocity.f.x, one.velocity.f.y, one.velocity.f.z,
+            two.rotation.gimbal.rate.f.x, two.rotation.gimbal.rate.f.y, two.rotation.gimbal.rate.f.z,
+            two.velocity.f.x, two.velocity.f.y, two.velocity.f.z
+        ];
+    }
+
+    /// A table that does not turn unless a parameter says so.
+    pub model Table {
+        causality componentwise;
+        param table: rad/s = 0.0;
+        1 ground[6];
+        Sf turning[6] { flow: [0.0, 0.0, table, 0.0, 0.0, 0.0] } -> ground;
+        1 frame[6];
+        tip: Free { orientation: quaternion, initial_position: [1.0, 0.0, 0.0] } (ground, frame);
+        body: Body { mass: 1.0, inertia: diag(0.2, 0.2, 0.1) } (frame);
+        output rates[6] = [
+            tip.rotation.rate.f.x, tip.rotation.rate.f.y, tip.rotation.rate.f.z,
+            tip.velocity.f.x, tip.velocity.f.y, tip.velocity.f.z
+        ];
     }
 }
 
@@ -115,5 +153,27 @@ fn what_floats_behind_starts_with_what_it_floats_behind() {
 #[test]
 fn a_momentum_that_is_given_is_kept() {
     let model = Given::new(GivenParameters::default()).unwrap();
-    assert_eq!(model.initial_state(), SVector::from([1.0]));
+    assert_eq!(model.initial_state(), SVector::from([1.0, 0.0]));
+}
+
+#[test]
+fn rates_are_kept_at_every_orientation() {
+    use std::f64::consts::FRAC_PI_2;
+    let expected = [0.1, 0.2, 0.3, 1.0, -2.0, 3.0, 0.4, 0.5, 0.6, 4.0, 5.0, 6.0];
+    for yaw in [0.0, 1.0, FRAC_PI_2, -FRAC_PI_2, 2.0 * FRAC_PI_2, 1.57] {
+        let model = Turned::new(TurnedParameters { yaw }).unwrap();
+        let output = model.output(0.0, &model.initial_state(), &SVector::zeros(), &mut ());
+        assert!(apart(output.as_slice(), &expected) < 1e-13, "{yaw}");
+        let single = model.converted(|it| it as f32);
+        let output = single.output(0.0, &single.initial_state(), &SVector::zeros(), &mut ());
+        let output = output.map(f64::from);
+        assert!(apart(output.as_slice(), &expected) < 1e-5, "{yaw}");
+    }
+}
+
+#[test]
+fn rates_are_kept_whatever_a_parameter_is_by_default() {
+    let model = Table::new(TableParameters { table: 0.5 }).unwrap();
+    let output = model.output(0.0, &model.initial_state(), &SVector::zeros(), &mut ());
+    assert!(apart(output.as_slice(), &[0.0; 6]) < 1e-15);
 }

@@ -133,6 +133,7 @@ impl<'a> Builder<'a> {
                 self.states.push(State {
                     variable,
                     initial: Expression::ZERO,
+                    is_given: false,
                     rate,
                     span,
                 });

@@ -133,6 +133,7 @@ impl<'a> Builder<'a> {
                 self.states.push(State {
                     variable,
                     initial: Expression::ZERO,
+                    is_given: false,
                     rate,
                     span,
                 });
@@ -381,6 +382,7 @@ impl<'a> Builder<'a> {
             )));
         }
         self.states[state].initial = initial;
+        self.states[state].is_given = true;
         Ok(())
     }
 

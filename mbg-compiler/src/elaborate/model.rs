@@ -93,6 +93,8 @@ pub struct State {
     pub variable: Variable,
     /// Value at the start, of parameters alone.
     pub initial: Expression,
+    /// Whether that was written.
+    pub is_given: bool,
     /// Where its time derivative comes from.
     pub rate: StateRate,
     /// Where it was written.

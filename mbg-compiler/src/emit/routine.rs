@@ -67,8 +67,9 @@ pub(super) fn written_lines(
     }
     let columns = routine.columns.iter().flat_map(|it| &it.steps);
     let mut behind: Vec<Made> = columns.filter_map(Made::needed_by).collect();
-    let results = Made::read(&routine.results).into_iter();
-    behind.extend(results.filter(|made| matches!(made, Made::Solved(_))));
+    // Values that columns read are kept, and those that are returned are written at once.
+    let read = Made::read(&routine.read_behind()).into_iter();
+    behind.extend(read.filter(|made| matches!(made, Made::Solved(_))));
     let lines = writer.lines(&routine.steps, 0, &behind);
     let kept = Literal::usize_suffixed(writer.kept.len());
     let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));

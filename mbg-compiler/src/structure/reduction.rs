@@ -233,6 +233,7 @@ impl Reducer<'_> {
                     .get(*component)
                     .copied()
                     .unwrap_or(Expression::ZERO),
+                is_given: false,
                 rate: StateRate::Unknown(*flow),
                 span,
             });

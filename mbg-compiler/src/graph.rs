@@ -309,6 +309,15 @@ impl BondGraph {
         })
     }
 
+    /// What the bonds of a junction lead to.
+    pub fn across(&self, id: JunctionId) -> impl Iterator<Item = &End> {
+        let is_here = move |end: &End| matches!(end, End::Junction(other, _) if *other == id);
+        let bonds = self.bonds.iter();
+        let ends = bonds.flat_map(|bond| [(&bond.from, &bond.to), (&bond.to, &bond.from)]);
+        ends.filter(move |(end, _)| is_here(end))
+            .map(|(_, far)| far)
+    }
+
     /// The path of an end, for people.
     #[must_use]
     pub fn end_name(&self, end: &End) -> String {

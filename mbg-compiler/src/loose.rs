@@ -75,12 +75,7 @@ fn all(graph: &BondGraph) -> Vec<Loose> {
 /// What the only bond of a junction takes out of the model.
 fn dead(graph: &BondGraph, id: JunctionId) -> Option<String> {
     let junction = &graph.junctions[id.0];
-    let is_here = |end: &End| matches!(end, End::Junction(other, _) if *other == id);
-    let ends = graph
-        .bonds
-        .iter()
-        .flat_map(|bond| [(&bond.from, &bond.to), (&bond.to, &bond.from)]);
-    let mut far = ends.filter(|(end, _)| is_here(end)).map(|(_, far)| far);
+    let mut far = graph.across(id);
     let (Some(far), None) = (far.next(), far.next()) else {
         return None;
     };

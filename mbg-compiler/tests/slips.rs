@@ -166,3 +166,27 @@ fn a_junction_without_bonds_can_be_removed() {
       help: write an arrow to it: `c[1] -> …;`
     ");
 }
+
+/// A junction that is not there makes no mistake of gravity, which a body on it cannot ask for.
+#[test]
+fn a_body_on_a_junction_that_is_not_there_is_told_alone() {
+    let model = "model M { causality componentwise; gravity [0.0, -9.81]; 1 ground[3]; Sf wall[3] { flow: 0.0 } -> ground;
+        ends: for k in 0..2 { 1 end[3]; } h: PlanarRevolute { initial: 0.3 } (ground, ends[0].end);
+        b: PlanarBody { mass: 1.0, inertia: 0.1 } (ends[2].end); output angle: rad = h.angle; }";
+    insta::assert_snapshot!(told(model), @"3:52 `ends` runs over 0..2, there is no `ends[2]` [MBG0203]");
+}
+
+#[test]
+fn a_junction_without_any_bond_is_told_as_a_whole() {
+    let model =
+        |bonds: &str| format!("model M {{ 1 v[2]; 1 a {{ I m {{ inertia: 1.0 }} }} {bonds} }}");
+    insta::assert_snapshot!(told(&model("")), @"
+    1:13 junction `v` has no bond [MBG0208]
+      help: write an arrow to it: `v -> …;`
+      help: or remove it
+    ");
+    insta::assert_snapshot!(told(&model("v.x -> a;")), @"
+    1:13 junction `v[1]` has no bond [MBG0208]
+      help: write an arrow to it: `v[1] -> …;`
+    ");
+}

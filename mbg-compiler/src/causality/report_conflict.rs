@@ -183,14 +183,7 @@ fn holding(graph: &BondGraph, conflict: &Conflict) -> Option<String> {
 /// Whether a junction is a node of the model itself that has components around it and nothing else.
 fn joins_components(graph: &BondGraph, id: JunctionId) -> bool {
     let junction = &graph.junctions[id.0];
-    let is_here = |end: &End| matches!(end, End::Junction(other, _) if *other == id);
-    let ends = graph
-        .bonds
-        .iter()
-        .flat_map(|bond| [(&bond.from, &bond.to), (&bond.to, &bond.from)]);
-    let mut far = ends
-        .filter(|(end, _)| is_here(end))
-        .map(|(_, far)| graph.end_name(far));
+    let mut far = graph.across(id).map(|far| graph.end_name(far));
     let is_node = junction.kind == JunctionKind::Zero && junction.dimension == 1;
     is_node && instance_of(&junction.name).is_none() && far.all(|far| instance_of(&far).is_some())
 }

@@ -29,6 +29,10 @@ const OF_VALUES: [Code; 5] = [
 impl Builder<'_> {
     /// Reports a mistake that was made in reading expressions.
     pub(super) fn tell_of(&mut self, scope: usize, report: Diagnostic, expressions: &[&Expr]) {
+        // What an instance makes of its values without its junctions or arguments is no mistake of theirs.
+        if self.scopes[scope].is_broken {
+            return;
+        }
         let inside = self.scopes[scope].library.clone();
         let inside = inside.filter(|_| OF_VALUES.contains(&report.code));
         let culprit = inside.and_then(|(component, _)| {

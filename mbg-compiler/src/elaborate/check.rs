@@ -122,9 +122,10 @@ impl Builder<'_> {
         for (index, bonded) in bonded.iter().enumerate() {
             if let Some(component) = bonded.iter().position(|bonded| !bonded) {
                 let junction = &graph.junctions[index];
-                let name = match junction.dimension {
-                    1 => junction.name.clone(),
-                    _ => format!("{}[{component}]", junction.name),
+                let is_alone = !bonded.contains(&true);
+                let name = match is_alone {
+                    true => junction.name.clone(),
+                    false => format!("{}[{component}]", junction.name),
                 };
                 let span = graph.origins.span(junction.origin);
                 let report = error(
@@ -133,9 +134,9 @@ impl Builder<'_> {
                     format!("junction `{name}` has no bond"),
                 );
                 let report = report.help(format!("write an arrow to it: `{name} -> …;`"));
-                let report = match bonded.contains(&true) {
-                    false => report.help("or remove it"),
-                    true => report,
+                let report = match is_alone {
+                    true => report.help("or remove it"),
+                    false => report,
                 };
                 self.diagnostics.report(report);
             }

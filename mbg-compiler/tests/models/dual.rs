@@ -88,6 +88,10 @@ impl Machine<'_> {
                 Step::Call(Function::Sqrt, operands) => self.read(&operands[0]).sqrt(),
                 Step::Call(Function::Exp, operands) => self.read(&operands[0]).exp(),
                 Step::Call(Function::Tanh, operands) => self.read(&operands[0]).tanh(),
+                Step::Call(Function::Abs, operands) => self.read(&operands[0]).abs(),
+                Step::Call(Function::Max, operands) => {
+                    self.read(&operands[0]).max(self.read(&operands[1]))
+                }
                 Step::Call(function, _) => panic!("no model here calls {function:?}"),
                 Step::Solve(solve) => {
                     let results = self.results(&solve.results);

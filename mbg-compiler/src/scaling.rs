@@ -5,12 +5,12 @@
 //! with other orientations of joints, which follow from the parameters when a model is built; all other states have
 //! their start there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::elaborate::{Attitude, Elaborated};
 use crate::structure::Solution;
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Function, Pool, Substitution, Symbol};
+use crate::symbolic::{Expression, Function, Operation, Pool, Substitution, Symbol};
 
 /// How many orientations are looked at.
 const SAMPLES: usize = 3;
@@ -33,9 +33,8 @@ const ROTATIONS: [[[f64; 3]; 3]; SAMPLES] = [
 pub(crate) fn scaled(model: &Elaborated, solution: &Solution, pool: &mut Pool) -> Vec<Expression> {
     let divisors = solution.conditioning.iter().map(|it| it.normalised);
     let divisors: Vec<Expression> = divisors.collect();
-    let samples: Vec<_> = (0..SAMPLES).map(|it| sample(model, it, pool)).collect();
     let scaled = divisors.into_iter().map(|divisor| {
-        let scale = scale(model, divisor, &samples, pool);
+        let scale = scale(model, divisor, pool);
         let scaled = scale.and_then(|scale| pool.divide(divisor, scale));
         scaled.unwrap_or(divisor).magnitude()
     });
@@ -44,15 +43,12 @@ pub(crate) fn scaled(model: &Elaborated, solution: &Solution, pool: &mut Pool) -
 
 /// The largest value of a divisor in the samples; none if one depends on what an iteration finds, or where it is near one
 /// anyway. What does not depend on an orientation may be found again in terms of a quaternion of length one.
-fn scale(
-    model: &Elaborated,
-    divisor: Expression,
-    samples: &[BTreeMap<usize, Expression>],
-    pool: &mut Pool,
-) -> Option<Expression> {
+fn scale(model: &Elaborated, divisor: Expression, pool: &mut Pool) -> Option<Expression> {
     let read = symbols(pool, &[divisor]);
+    let angles = angles(divisor, &read, pool);
     let mut largest: Option<Expression> = None;
-    for sample in samples {
+    for number in 0..SAMPLES {
+        let sample = sample(model, &angles, number, pool);
         let mut substitution = Substitution::new();
         for symbol in &read {
             let value = match symbol {
@@ -82,15 +78,38 @@ fn scale(
     (power.abs() > 8.0).then(|| pool.irrational(power.exp2()))
 }
 
-/// Values for the states that are angles or belong to attitudes.
-fn sample(model: &Elaborated, number: usize, pool: &mut Pool) -> BTreeMap<usize, Expression> {
-    let mut sample = BTreeMap::new();
-    for (state, entry) in model.states.iter().enumerate() {
-        if entry.variable.unit == "rad" {
-            // Multiples of the golden ratio spread evenly.
-            let place = (0.618 * ((number + 1) * (state + 2)) as f64).fract();
-            sample.insert(state, decimal(pool, 4.0 * place - 2.0));
+/// The states that are read in sines and cosines alone, whatever their units.
+fn angles(divisor: Expression, read: &[Symbol], pool: &Pool) -> BTreeSet<usize> {
+    let states = read.iter().filter_map(|symbol| match symbol {
+        Symbol::State(state) => Some(*state),
+        _ => None,
+    });
+    let mut angles: BTreeSet<usize> = states.collect();
+    let mut seen = BTreeSet::new();
+    let mut open = vec![divisor];
+    while let Some(current) = open.pop() {
+        match pool.operation(current) {
+            Operation::Sine(_) | Operation::Cosine(_) => {}
+            Operation::Symbol(Symbol::State(state)) => _ = angles.remove(state),
+            _ if seen.insert(current.node()) => open.extend_from_slice(&pool.causes(current)),
+            _ => {}
         }
+    }
+    angles
+}
+
+/// Values for angles and for the states of attitudes.
+fn sample(
+    model: &Elaborated,
+    angles: &BTreeSet<usize>,
+    number: usize,
+    pool: &mut Pool,
+) -> BTreeMap<usize, Expression> {
+    let mut sample = BTreeMap::new();
+    for state in angles {
+        // Multiples of the golden ratio spread evenly.
+        let place = (0.618 * ((number + 1) * (state + 2)) as f64).fract();
+        sample.insert(*state, decimal(pool, 4.0 * place - 2.0));
     }
     for Attitude { rows } in &model.attitudes {
         for (row, states) in rows.iter().enumerate() {

@@ -166,6 +166,21 @@ fn a_proper_sequence_needs_a_start() {
     assert_eq!(report.span.start().line, 7);
 }
 
+/// A determinant is compared with what it is at other angles, also where these are displacements of springs.
+#[test]
+fn a_start_that_is_all_but_singular_is_told() {
+    for spring in ["", ", stiffness: 3.0"] {
+        for (middle, is_told) in [(1e-9, true), (1e-4, false)] {
+            let axes = "first: 2, second: 0, third: 2";
+            let start = format!("initial: [0.0, {middle:?}, 0.0]");
+            let told = attempted(&text(&format!(
+                "joint: Gimbal {{ {axes}, {start}{spring} }}"
+            )));
+            assert_eq!(told.is_err(), is_told, "{middle}{spring}");
+        }
+    }
+}
+
 /// Two bodies with a joint between them, none of which is held.
 fn floating(joint: &str) -> Compiled {
     compiled(&format!(

@@ -39,59 +39,34 @@ impl<'a> Builder<'a> {
 
     /// A model parameter's default, by component, which must be numbers; nothing if it was told that it is not.
     fn default_values(&mut self, parameter: &ast::Parameter) -> Vec<f64> {
-        let (name, unit) = (&parameter.name, parameter.unit_text());
-        let size = parameter.dimension;
-        let shape = size.map_or_else(String::new, |size| format!("[{size}]"));
         let Some(expression) = &parameter.default else {
-            let message = format!("parameter `{name}` has no value");
-            let report = error(codes::MISSING_DEFAULT, name.span(), message);
-            let one = syn::parse_quote!(1.0);
-            let all = size.and_then(|size| dump::column(&one, size));
-            let all = all.unwrap_or_else(|| size.map_or("1.0", |_| "0.0").to_owned());
-            let help = format!("write `param {name}{shape}{unit} = {all};`");
-            self.diagnostics.report(report.help(help));
+            self.diagnostics.report(without_default(parameter));
             return Vec::new();
         };
-        let value = match (self.evaluate(0, expression), size) {
-            (Ok(value), Some(size)) => self.column_of(value, size, name, expression),
-            (value, _) => value,
+        let value = self.evaluate(0, expression);
+        let value = match parameter.dimension {
+            Some(size) => {
+                value.and_then(|it| self.column_of(it, size, &parameter.name, expression))
+            }
+            None => value,
         };
         // A default is a number and waits for no other value.
         self.missing = None;
-        let numbers = value.as_ref().ok().and_then(|value| match value {
-            Value::Matrix(_) if size.is_none() => None,
-            value => value.entries(self.pool),
-        });
-        let numbers = numbers.and_then(|numbers| {
-            let numbers = numbers.iter().map(|it| self.pool.constant_value(*it));
-            numbers.collect::<Option<Vec<f64>>>()
-        });
-        if let Some(numbers) = numbers {
-            return numbers;
-        }
-        match value {
+        let entries = value.as_ref().ok().and_then(|it| it.entries(self.pool));
+        let numbers = entries.iter().flatten();
+        let numbers = numbers.map(|it| self.pool.constant_value(*it));
+        let numbers: Option<Vec<f64>> = numbers.collect();
+        let is_scalar = matches!(value, Ok(Value::Scalar(_)));
+        match (value, numbers) {
+            (Ok(_), Some(numbers)) if is_scalar || parameter.dimension.is_some() => return numbers,
             // What reads a value that exists is no number, whatever else may be wrong with it.
-            Err(report) if !self.reads_what_exists(expression) => self.diagnostics.report(*report),
+            (Err(report), _) if !self.reads_what_exists(expression) => {
+                self.diagnostics.report(*report);
+            }
             _ => {
-                let text = dump::expression(expression);
-                let numbers = if size.is_some() {
-                    "numbers"
-                } else {
-                    "a number"
-                };
-                let message =
-                    format!("expected {numbers} as the default of `{name}`, found `{text}`");
-                let report = error(codes::EXPRESSION, expression.span(), message);
-                let entries = value.ok().and_then(|value| value.entries(self.pool));
-                let help = match entries {
-                    Some(entries) if size.is_none() && entries.len() > 1 => {
-                        format!("write `param {name}[{}]{unit} = {text};`", entries.len())
-                    }
-                    _ => format!(
-                        "write `let {name}{shape}{unit} = {text};` for what follows from other values"
-                    ),
-                };
-                self.diagnostics.report(report.help(help));
+                let entries = entries.map_or(1, |entries| entries.len());
+                let report = no_default(parameter, expression, entries);
+                self.diagnostics.report(report);
             }
         }
         Vec::new()
@@ -542,4 +517,46 @@ pub fn component_table(source: &ast::Source) -> BTreeMap<String, &ast::Component
         .chain(&source.library)
         .map(|component| (component.name.to_string(), component))
         .collect()
+}
+
+/// `[3]`, or nothing, behind the name of a parameter.
+fn size_text(size: Option<usize>) -> String {
+    size.map_or_else(String::new, |size| format!("[{size}]"))
+}
+
+/// A parameter of a model without a default.
+fn without_default(parameter: &ast::Parameter) -> Diagnostic {
+    let (name, unit) = (&parameter.name, parameter.unit_text());
+    let size = parameter.dimension;
+    let value = match size {
+        None => "1.0".to_owned(),
+        Some(size) => dump::column(&syn::parse_quote!(1.0), size).unwrap_or("0.0".to_owned()),
+    };
+    let message = format!("parameter `{name}` has no value");
+    let report = error(codes::MISSING_DEFAULT, name.span(), message);
+    report.help(format!(
+        "write `param {name}{}{unit} = {value};`",
+        size_text(size)
+    ))
+}
+
+/// A default that is not made of numbers, or is a vector of so many entries where a number is declared.
+fn no_default(parameter: &ast::Parameter, expression: &syn::Expr, entries: usize) -> Diagnostic {
+    let (name, unit) = (&parameter.name, parameter.unit_text());
+    let size = parameter.dimension;
+    let numbers = if size.is_some() {
+        "numbers"
+    } else {
+        "a number"
+    };
+    let text = dump::expression(expression);
+    let message = format!("expected {numbers} as the default of `{name}`, found `{text}`");
+    let report = error(codes::EXPRESSION, expression.span(), message);
+    report.help(match size {
+        None if entries > 1 => format!("write `param {name}[{entries}]{unit} = {text};`"),
+        _ => format!(
+            "write `let {name}{}{unit} = {text};` for what follows from other values",
+            size_text(size)
+        ),
+    })
 }

@@ -70,12 +70,12 @@ pub(super) fn fields(parameters: &[Parameter]) -> impl Iterator<Item = &[Paramet
     parameters.chunk_by(|one, next| one.declared == next.declared)
 }
 
-/// What reads a parameter of parameters.
-pub(super) fn read(parameters: &TokenStream, parameter: &Parameter) -> TokenStream {
+/// What reads a parameter.
+pub(super) fn read(parameter: &Parameter) -> TokenStream {
     let name = &parameter.declared;
     match parameter.component.map(Literal::usize_suffixed) {
-        None => quote!(#parameters.#name),
-        Some(component) => quote!(#parameters.#name[#component]),
+        None => quote!(parameters.#name),
+        Some(component) => quote!(parameters.#name[#component]),
     }
 }
 

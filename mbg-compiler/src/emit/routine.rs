@@ -7,6 +7,7 @@ use proc_macro2::{Delimiter, Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use rustc_hash::FxHashMap;
 
+use super::parameters;
 use super::tokens::{Tokens, Words, block};
 use crate::compile::Compiled;
 use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step, angles};
@@ -503,13 +504,8 @@ impl<'a> Writer<'a> {
             }
             Source::Symbol(Symbol::Parameter(index)) => {
                 of_model(tokens);
-                tokens.name(&words.parameters);
-                tokens.sign('.');
                 let parameter = &self.compiled.model.parameters[index];
-                match parameter.component {
-                    None => tokens.name(&parameter.declared),
-                    Some(component) => element(tokens, &parameter.declared, component),
-                }
+                tokens.extend(parameters::read(parameter));
             }
             Source::Symbol(Symbol::State(index)) => element(tokens, &words.state, index),
             Source::Symbol(Symbol::Input(index)) => element(tokens, &words.input, index),

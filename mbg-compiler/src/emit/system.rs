@@ -40,7 +40,7 @@ fn constructor(compiled: &Compiled) -> TokenStream {
     let name = &model.name;
     let parameters = format_ident!("{}Parameters", name);
     let finite = model.parameters.iter().map(|parameter| {
-        let value = parameters::read(&quote!(parameters), parameter);
+        let value = parameters::read(parameter);
         let text = &parameter.variable.name;
         quote! {
             ::mbg_runtime::__private::check(

@@ -93,19 +93,18 @@ fn connected(wanted: Vec<Wanted>) -> Vec<Vec<Wanted>> {
     blocks
 }
 
-/// Whether nothing moves, as it should, whatever the parameters.
+/// Whether nothing moves, as it should: with default parameters and with others, since a default may be zero.
 fn is_met(model: &Elaborated, block: &[Wanted], pool: &Pool) -> bool {
+    let rests = |parameters: Vec<f64>| {
+        let start = Start::with(model, parameters, pool);
+        block.iter().all(|it| start.value(pool, it.flow) == 0.0)
+    };
     let defaults = model.parameters.iter().map(|it| it.default);
     let others = defaults.clone().enumerate();
     let others = others.map(|(number, value)| value + 0.1 + 0.01 * number as f64);
-    [defaults.collect(), others.collect()]
-        .into_iter()
-        .all(|parameters| {
-            let start = Start::with(model, parameters, pool);
-            let rests = |it: &Wanted| start.value(pool, it.flow) == 0.0;
-            block.iter().all(rests)
-        })
-        && block.iter().all(|it| it.given == Expression::ZERO)
+    block.iter().all(|it| it.given == Expression::ZERO)
+        && rests(defaults.collect())
+        && rests(others.collect())
 }
 
 /// Linear equations that momenta solve.

@@ -1,5 +1,9 @@
 //! Expressions: handles to the nodes of a pool, and how the value of a node comes about.
 
+use std::borrow::Cow;
+
+use crate::operands::Operands;
+
 /// A handle to a node of a [`Pool`](super::Pool), with a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Expression(u32);
@@ -223,5 +227,3 @@ pub enum Rate {
     /// With time, state or input: computed at every evaluation.
     Varying,
 }
-use crate::operands::Operands;
-use std::borrow::Cow;

@@ -33,7 +33,7 @@ pub fn expression(expression: &Expr) -> String {
 }
 
 /// More components than these are not written out in a message.
-pub(crate) const MOST_PARTS: usize = 6;
+const MOST_PARTS: usize = 6;
 
 /// The list of a vector's components, each the same if only one is given; none where it would be long.
 #[must_use]

@@ -76,6 +76,43 @@ fn what_floats_is_held_at_one_junction() {
 }
 
 #[test]
+fn a_frame_that_nothing_holds_is_told_before_the_hinge_that_leads_to_it() {
+    let hinge = |kind: &str| format!("hinge: {kind} {{ torque: drive }} (ground, arm);");
+    let planar = hinge("PlanarRevolute");
+    let spatial = hinge("Revolute").replace("torque", "axis: 2, torque");
+    let cases = [
+        (
+            3,
+            format!("{planar} beam: PlanarBody {{ mass: 2.0, inertia: 0.1 }} (arm);"),
+        ),
+        (
+            6,
+            format!("{spatial} beam: Body {{ mass: 2.0, inertia: 0.1 }} (arm);"),
+        ),
+    ];
+    for (size, parts) in cases {
+        let text = format!(
+            "#[derivative] model M {{ input drive: N*m; 1 ground[{size}]; 1 arm[{size}]; {parts} }}"
+        );
+        assert_eq!(
+            diagnose(&text).list()[0].message,
+            "nothing holds `ground`: its flow and that of `hinge.rate` can change together without any effect"
+        );
+        let helps = helps(&text, codes::SINGULAR_JUNCTIONS);
+        let source = format!("`Sf wall[{size}] {{ flow: 0.0 }} -> ground;`");
+        assert_eq!(helps[0], format!("hold it, if it is at rest: {source}"));
+        compiles(&followed(&text, &helps[0]));
+    }
+    let free_end = "#[derivative] model M { 1 ground[6]; 1 arm[6]; Sf fixed[6] { flow: 0.0 } -> ground; \
+        hinge: Revolute { axis: 2 } (ground, arm); }";
+    assert!(
+        diagnose(free_end).list()[0]
+            .message
+            .starts_with("nothing holds `arm`")
+    );
+}
+
+#[test]
 fn a_ring_of_junctions_is_opened() {
     let ring = "model M { 1 a { I m { inertia: 1.0 } } 1 b; 0 c; b -> c; c -> b; }";
     let helps = helps(ring, codes::SINGULAR_JUNCTIONS);

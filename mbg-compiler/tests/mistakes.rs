@@ -668,9 +668,9 @@ fn a_hinge_that_carries_nothing_is_told_so() {
     let reported = diagnose(text);
     let texts: Vec<String> = reported.list().iter().map(|it| it.text()).collect();
     insta::assert_snapshot!(texts.join("\n"), @"
-    source `flap.motor` imposes effort that is imposed already [MBG0302]
-      the junction structure alone fixes it
-      help: give what it moves an inertia, such as a body on the frame that a joint carries
+    nothing holds `tip`: its flow and that of `flap.rate` can change together without any effect [MBG0401]
+      help: hold it, if it is at rest: `Sf wall[6] { flow: 0.0 } -> tip;`
+      help: or give it an inertia, such as a body, if it moves by itself
     ");
     let with_body = text.replace(
         "(arm, tip);",

@@ -13,8 +13,8 @@ use crate::causality::ways::hold;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
-use crate::equations::{Owner, Scalars};
-use crate::graph::{BondGraph, JunctionId, JunctionKind, instance_of};
+use crate::equations::{Equation, Owner, Scalars};
+use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of};
 use crate::symbolic::Pool;
 
 /// A component of a junction.
@@ -28,11 +28,7 @@ pub fn report_floating(
     diagnostics: &mut Diagnostics,
 ) -> bool {
     let graph = &model.graph;
-    let meshes = mesh::all(scalars, pool).into_iter();
-    let parts: Vec<Vec<Node>> = meshes
-        .map(|mesh| nodes(graph, scalars, &mesh))
-        .filter(|part| part.len() > 1)
-        .collect();
+    let parts = parts(graph, scalars, mesh::is_structure, pool);
     let Some(part) = parts.first() else {
         return false;
     };
@@ -73,6 +69,70 @@ pub fn report_floating(
             .help("or, if two of them are joined twice where once is meant, take one of the bonds away"),
     );
     true
+}
+
+/// The frame that nothing holds, where one is joined to the rest by joints that have no effort: the balances of a motor's
+/// and of a damper that is none count as well.
+pub(super) fn bare_frame(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> Option<Diagnostic> {
+    let graph = &model.graph;
+    let is_given = |equation: &Equation| {
+        mesh::is_structure(equation)
+            || matches!(equation.owner, Owner::Element(..))
+                && equation.terms.len() == 1
+                && equation.signals.is_empty()
+    };
+    let parts = parts(graph, scalars, is_given, pool);
+    let (part, frame) = parts.iter().find_map(|part| {
+        let frame = part.iter().find(|(id, _)| is_bare(graph, *id))?.0;
+        Some((part, frame))
+    })?;
+    let junction = &graph.junctions[frame.0];
+    let others: BTreeSet<JunctionId> = part.iter().map(|(id, _)| *id).collect();
+    let others = others.into_iter().filter(|id| *id != frame);
+    let others = listing(others.map(|id| graph.junctions[id.0].name.clone()));
+    let name = &junction.name;
+    let message = format!(
+        "nothing holds `{name}`: its flow and that of {others} can change together without any effect"
+    );
+    let span = graph.origins.span(junction.origin);
+    let source = hold(graph, frame, 0..junction.dimension);
+    Some(
+        error(codes::SINGULAR_JUNCTIONS, span, message)
+            .help(format!("hold it, if it is at rest: {source}"))
+            .help("or give it an inertia, such as a body, if it moves by itself"),
+    )
+}
+
+/// Whether a 1-junction has no elements of its own and leads into one component in use alone.
+fn is_bare(graph: &BondGraph, id: JunctionId) -> bool {
+    let junction = &graph.junctions[id.0];
+    let own = instance_of(&junction.name);
+    let neighbours: Option<Vec<&str>> = graph
+        .across(id)
+        .map(|far| match far {
+            End::OnePort(_) | End::Border => None,
+            End::In(id) | End::Out(id) => Some(graph.elements[id.0].name.as_str()),
+            End::Junction(other, _) => Some(graph.junctions[other.0].name.as_str()),
+        })
+        .collect();
+    let user = |name| instances(name).take_while(|it| Some(*it) != own).last();
+    let users = neighbours.map(|names| names.into_iter().filter_map(user).collect());
+    junction.kind == JunctionKind::One
+        && users.is_some_and(|users: BTreeSet<&str>| users.len() == 1)
+}
+
+/// The nodes that change together in each mesh of these equations.
+fn parts(
+    graph: &BondGraph,
+    scalars: &Scalars,
+    counts: impl Fn(&Equation) -> bool,
+    pool: &Pool,
+) -> Vec<Vec<Node>> {
+    let meshes = mesh::all(scalars, counts, pool).into_iter();
+    meshes
+        .map(|mesh| nodes(graph, scalars, &mesh))
+        .filter(|part| part.len() > 1)
+        .collect()
 }
 
 /// The components in use in which a path leads, from inside out.

@@ -8,7 +8,7 @@ use crate::codes;
 use crate::compile::text;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
-use crate::equations::{Owner, Scalars};
+use crate::equations::{Equation, Owner, Scalars};
 use crate::symbolic::{Expression, Pool, field};
 
 /// A sum of unknowns over the field, or of equations.
@@ -27,7 +27,7 @@ pub(super) fn report(
     }
     let message = "the junction structure leaves efforts or flows undetermined";
     let mut report = error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
-    if let Some(mesh) = all(scalars, pool).into_iter().next() {
+    if let Some(mesh) = all(scalars, is_structure, pool).into_iter().next() {
         let unknowns = mesh
             .iter()
             .flat_map(|row| scalars.equations[*row].terms.keys());
@@ -62,12 +62,21 @@ pub(super) fn report(
     diagnostics.report(report);
 }
 
-/// For each row of the structure that is a combination of others, the equations of all of them, itself included.
-pub(super) fn all(scalars: &Scalars, pool: &Pool) -> Vec<Vec<usize>> {
+/// Whether an equation is that of a junction or a two-port.
+pub(super) fn is_structure(equation: &Equation) -> bool {
+    equation.owner == Owner::Structure
+}
+
+/// For each of these rows that is a combination of others, the equations of all of them, itself included.
+pub(super) fn all(
+    scalars: &Scalars,
+    counts: impl Fn(&Equation) -> bool,
+    pool: &Pool,
+) -> Vec<Vec<usize>> {
     let mut found = Vec::new();
     let mut leads: BTreeMap<usize, (Combination, Combination)> = BTreeMap::new();
     let equations = scalars.equations.iter().enumerate();
-    for (number, equation) in equations.filter(|(_, it)| it.owner == Owner::Structure) {
+    for (number, equation) in equations.filter(|(_, it)| counts(it)) {
         let image = |(unknown, value): (&usize, &Expression)| (*unknown, pool.image(*value).0[0]);
         let mut row: Combination = equation.terms.iter().map(image).collect();
         let mut origin = Combination::from([(number, 1)]);

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
+use super::floating::bare_frame;
 use super::zero::zero_law;
 use super::{Failure, Selection, Solution, Undetermined, block_names, formulation, reduce, select};
 use crate::codes;
@@ -49,7 +50,7 @@ pub fn resolve(
     }
     let mut told = Diagnostics::new();
     let Some(selection) = select(model, &scalars, pool, &mut told) else {
-        let reports = match zero_law(model, pool) {
+        let reports = match bare_frame(model, &scalars, pool).or_else(|| zero_law(model, pool)) {
             Some(report) => vec![report],
             None => told.list().to_vec(),
         };

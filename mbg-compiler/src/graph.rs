@@ -298,6 +298,11 @@ pub fn instance_of(mut path: &str) -> Option<&str> {
     None
 }
 
+/// Paths of the components in use in which a path leads, from inside out.
+pub fn instances_of(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(instance_of(path), |outer| instance_of(outer))
+}
+
 impl BondGraph {
     /// Whether an element is on a pseudo bond: effort times flow is no power there.
     #[must_use]

@@ -1,12 +1,14 @@
 //! What a user should know of a model that compiles: values at the start that are not used, which are warned of too, and
 //! energies that are not what they seem.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::Span;
 
 use crate::answers::Answers;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
-use crate::elaborate::{Elaborated, State};
+use crate::elaborate::{Elaborated, IN_SPACE, Ring, State};
 use crate::graph::{Element, Law, Storage};
 use crate::start::Start;
 use crate::structure::Solved;
@@ -15,6 +17,8 @@ use crate::symbolic::{Expression, Pool, Symbol};
 
 /// A value at the start is another one if it differs by more than this part of it.
 const MET: f64 = 1e-9;
+/// A ring is open if the gap is more than this part of its distance from the origin: initial values have a few digits.
+const CLOSED: f64 = 1e-3;
 
 /// All of them, one a line.
 pub(crate) fn of(
@@ -27,6 +31,10 @@ pub(crate) fn of(
     let mut notes = Vec::new();
     for (span, note) in unused_starts(model, solved, answers, pool) {
         diagnostics.warn(error(codes::UNUSED_START, span, note.clone()));
+        notes.push(note);
+    }
+    for (span, note, help) in open_rings(model, pool) {
+        diagnostics.warn(error(codes::OPEN_RING, span, note.clone()).help(help));
         notes.push(note);
     }
     notes.extend(modulated_energies(model, pool));
@@ -76,6 +84,42 @@ fn unused_starts(
     let all = momenta.chain(flows);
     let given = all.filter(|(_, _, given, _)| *given != Expression::ZERO);
     given.filter_map(note).collect()
+}
+
+/// Rings of joints that are open at the start, with default parameters and without inputs: where, and the way out.
+fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
+    let start = Start::of(model, pool);
+    let mut told = BTreeSet::new();
+    let open = |ring: &Ring| {
+        let place = |by: &Vec<Expression>| by.iter().map(|it| start.value(pool, *it)).collect();
+        let [one, other]: [Vec<f64>; 2] = ring.positions.each_ref().map(place);
+        let far = one
+            .iter()
+            .chain(&other)
+            .fold(0.0, |far, it| it.abs().max(far));
+        let gap: Vec<f64> = other.iter().zip(&one).map(|(b, a)| b - a).collect();
+        let is_open = gap.iter().any(|it| it.abs() > CLOSED * far);
+        if !is_open || !told.insert(ring.frame.clone()) {
+            return None;
+        }
+        let gap: Vec<String> = gap.iter().map(|it| format!("{it:.3}")).collect();
+        let ([first, second], frame) = (&ring.components, &ring.frame);
+        let note = format!(
+            "`{first}` and `{second}` do not meet at `{frame}` at the start: [{}] m are between them, which stay",
+            gap.join(", ")
+        );
+        let cut = if ring.dimension == IN_SPACE {
+            "Cut"
+        } else {
+            "PlanarCut"
+        };
+        let help = format!(
+            "give the joints of the ring `initial` values that close it, or put a `{cut}` in the place of one of them, \
+             which is closed at the start and after each step"
+        );
+        Some((ring.span, note, help))
+    };
+    model.rings.iter().filter_map(open).collect()
 }
 
 /// Storages whose energy changes with more than their own states.

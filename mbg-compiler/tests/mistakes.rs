@@ -185,6 +185,14 @@ const FIXTURES: &[(Code, &str)] = &[
         beside_a_mass!("a -> #[derivative] I n { inertia: 2.0, initial: 1.0 };"),
     ),
     (
+        codes::OPEN_RING,
+        "#[derivative] model M { causality componentwise; 1 ground[3]; 1 pin[3]; 1 end[3]; 1 block[3];
+             Sf fixed[3] { flow: 0.0 } -> ground;
+             crank: PlanarLink { mass: 1.0, inertia: 0.1, centre: 0.0, end: [1.0, 0.0], initial: 1.0 } (ground, pin);
+             rod: PlanarLink { mass: 1.0, inertia: 0.1, centre: 0.0, end: [2.0, 0.0] } (pin, end);
+             slide: PlanarPrismatic {} (ground, block); wrist: PlanarRevolute {} (block, end); }",
+    ),
+    (
         codes::UNIT_MISMATCH,
         beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
     ),

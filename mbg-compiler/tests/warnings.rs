@@ -131,6 +131,30 @@ fn values_at_the_start_that_are_not_used_are_told() {
 }
 
 #[test]
+fn a_ring_that_is_open_at_the_start_is_told() {
+    let slider_crank = |rod: &str, slide: &str| {
+        let link = "mass: 1.0, inertia: 0.1, centre: 0.0";
+        warned(&format!(
+            "#[derivative] model M {{
+                causality componentwise;
+                1 ground[3]; 1 pin[3]; 1 end[3]; 1 block[3];
+                Sf fixed[3] {{ flow: 0.0 }} -> ground;
+                crank: PlanarLink {{ {link}, end: [1.0, 0.0], initial: 1.0 }} (ground, pin);
+                rod: PlanarLink {{ {link}, end: [2.0, 0.0]{rod} }} (pin, end);
+                slide: PlanarPrismatic {{ {slide} }} (ground, block);
+                wrist: PlanarRevolute {{}} (block, end);
+            }}"
+        ))
+    };
+    insta::assert_snapshot!(slider_crank("", "initial: 2.0"), @"
+    8:17 `rod` and `wrist` do not meet at `end` at the start: [0.379, -2.524] m are between them, which stay [MBG0406]
+      help: give the joints of the ring `initial` values that close it, or put a `PlanarCut` in the place of one of them, which is closed at the start and after each step
+    ");
+    // To the digits that are typed: the rod goes down by asin(sin(1) / 2) to the line of the slide.
+    assert_eq!(slider_crank(", initial: -1.4343", "initial: 2.3547"), "");
+}
+
+#[test]
 fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_is_missing() {
     let circuit = |ground: &str| {
         warned(&format!(

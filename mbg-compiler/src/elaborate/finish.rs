@@ -455,7 +455,8 @@ impl<'a> Builder<'a> {
     }
 
     /// Hands over.
-    pub(super) fn finish(self, model: &ast::Model) -> Elaborated {
+    pub(super) fn finish(mut self, model: &ast::Model) -> Elaborated {
+        let rings = self.rings();
         Elaborated {
             documentation: model.documentation.clone(),
             visibility: model.visibility.clone(),
@@ -468,6 +469,7 @@ impl<'a> Builder<'a> {
             attitudes: self.attitudes,
             signals: self.signals,
             assumptions: self.assumptions,
+            rings,
         }
     }
 }

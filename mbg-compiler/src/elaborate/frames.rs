@@ -22,7 +22,7 @@ use crate::graph::{ElementKind, End, JunctionId, JunctionKind};
 use crate::syntax::{ast, dump};
 
 /// Components of a frame in space: those of its angular velocity, then those of its velocity.
-const IN_SPACE: usize = 6;
+pub(crate) const IN_SPACE: usize = 6;
 /// The same in a plane.
 const IN_PLANE: usize = 3;
 
@@ -135,6 +135,7 @@ impl<'a> Builder<'a> {
             for (left, place) in asked {
                 self.hand(left, place, &quantity, &spread);
             }
+            self.note_meetings(&quantity, &spread);
         }
     }
 
@@ -315,7 +316,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Path of the component in use with this scope.
-    fn name_of(&self, scope: usize) -> &str {
+    pub(super) fn name_of(&self, scope: usize) -> &str {
         self.scopes[scope].prefix.trim_end_matches('.')
     }
 }

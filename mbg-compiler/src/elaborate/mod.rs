@@ -30,6 +30,7 @@ mod model;
 mod orientation;
 mod quadrature;
 mod references;
+mod rings;
 mod scope;
 mod size;
 mod spread;
@@ -42,10 +43,12 @@ use proc_macro2::{Ident, Span};
 use syn::Expr;
 
 pub use finish::component_table;
+pub(crate) use frames::IN_SPACE;
 pub use model::{
     Assumption, Attitude, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal,
     Signals, State, StateRate, Variable,
 };
+pub use rings::Ring;
 pub use size::LIMIT;
 pub use unused::warn;
 
@@ -54,6 +57,7 @@ use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::frames::{Frame, LeftOut, Unknown};
+use self::rings::Meeting;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
@@ -218,6 +222,8 @@ struct Builder<'a> {
     is_misled: bool,
     /// Parameters that must be given where they are needed.
     unknown: BTreeMap<usize, Unknown<'a>>,
+    /// Where two ways lead to one frame.
+    meetings: Vec<Meeting>,
     assumptions: Vec<Assumption>,
     pending: Vec<Pending<'a>>,
     integrals: Vec<(usize, &'a Statement)>,
@@ -269,6 +275,7 @@ impl<'a> Builder<'a> {
             left_out: Vec::new(),
             is_misled: false,
             unknown: BTreeMap::new(),
+            meetings: Vec::new(),
             assumptions: Vec::new(),
             pending: Vec::new(),
             integrals: Vec::new(),

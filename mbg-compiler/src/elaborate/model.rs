@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use proc_macro2::{Ident, Span};
 use syn::{Attribute, Visibility};
 
+use super::rings::Ring;
 use crate::graph::{BondGraph, ElementId, JunctionId};
 use crate::symbolic::{Expression, Symbol};
 
@@ -33,6 +34,8 @@ pub struct Elaborated {
     pub signals: Signals,
     /// What parameters must fulfil.
     pub assumptions: Vec<Assumption>,
+    /// Rings of joints that no cut closes.
+    pub rings: Vec<Ring>,
 }
 
 impl Elaborated {

@@ -86,6 +86,20 @@ impl Spread {
         Some(self.tellers[by].definition)
     }
 
+    /// Places to which two ways lead from places that sources hold, with the tellers at both ends: scope and definition.
+    pub(super) fn meetings(&self) -> impl Iterator<Item = (Place, [(usize, usize); 2])> {
+        let leads = |teller: &&Teller| {
+            let mut asks = teller.asks.iter();
+            !teller.asks.is_empty() && asks.all(|place| self.is_held(*place))
+        };
+        let ends = |teller: &Teller| (teller.scope, teller.definition);
+        self.tellers.iter().filter(leads).filter_map(move |teller| {
+            let first = &self.tellers[self.known.get(&teller.at)?.by?];
+            let is_other = first.definition != teller.definition;
+            (is_other && leads(&first)).then(|| (teller.at, [ends(first), ends(teller)]))
+        })
+    }
+
     /// Whether the way to it begins at a place that a source holds.
     pub(super) fn is_held(&self, place: Place) -> bool {
         self.known.get(&place).is_some_and(|known| known.is_held)

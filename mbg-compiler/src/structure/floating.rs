@@ -14,7 +14,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Equation, Owner, Scalars};
-use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of};
+use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of, instances_of};
 use crate::symbolic::Pool;
 
 /// A component of a junction.
@@ -50,7 +50,7 @@ pub fn report_floating(
         JunctionKind::One => "flows",
     };
     let names: BTreeSet<JunctionId> = part.iter().map(|(id, _)| *id).collect();
-    let outermost = |id: &JunctionId| instances(&graph.junctions[id.0].name).last();
+    let outermost = |id: &JunctionId| instances_of(&graph.junctions[id.0].name).last();
     let within: Option<BTreeSet<&str>> = names.iter().map(outermost).collect();
     let span = graph.origins.span(junction.origin);
     if let Some(within) = within
@@ -115,7 +115,7 @@ fn is_bare(graph: &BondGraph, id: JunctionId) -> bool {
             End::Junction(other, _) => Some(graph.junctions[other.0].name.as_str()),
         })
         .collect();
-    let user = |name| instances(name).take_while(|it| Some(*it) != own).last();
+    let user = |name| instances_of(name).take_while(|it| Some(*it) != own).last();
     let users = neighbours.map(|names| names.into_iter().filter_map(user).collect());
     junction.kind == JunctionKind::One
         && users.is_some_and(|users: BTreeSet<&str>| users.len() == 1)
@@ -133,11 +133,6 @@ fn parts(
         .map(|mesh| nodes(graph, scalars, &mesh))
         .filter(|part| part.len() > 1)
         .collect()
-}
-
-/// The components in use in which a path leads, from inside out.
-fn instances(path: &str) -> impl Iterator<Item = &str> {
-    std::iter::successors(instance_of(path), |outer| instance_of(outer))
 }
 
 /// Components between which something is shared that nothing determines.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::answers::Answers;
 use crate::causality::outlook::Outlook;
+use crate::causality::report::COMPONENTWISE;
 use crate::checks::{self, Check};
 use crate::closures;
 use crate::codes;
@@ -142,7 +143,12 @@ pub fn compile(
         Some((verdict, solved))
     });
     let Some((verdict, solved)) = solved else {
-        loose::help(&elaborated.graph, before, diagnostics);
+        let mut helps = loose::holdings(&elaborated.graph);
+        if uniform && let Some(ring) = elaborated.rings.first() {
+            helps.push(ring.cut());
+            helps.push(format!("or {COMPONENTWISE}"));
+        }
+        diagnostics.offer_first(before, &helps);
         return None;
     };
     let answers = Answers::of(&elaborated, &solved, &mut pool, diagnostics)?;

@@ -223,6 +223,16 @@ impl Diagnostics {
         self.places.get(call).copied()
     }
 
+    /// Puts some ways out before those of the mistakes from number `before` on that have any.
+    pub(crate) fn offer_first(&mut self, before: usize, helps: &[String]) {
+        for number in before..self.list().len() {
+            let own = &mut self.get_mut(number).helps;
+            if !own.is_empty() {
+                own.splice(0..0, helps.iter().cloned());
+            }
+        }
+    }
+
     /// A mistake by number.
     pub(crate) fn get_mut(&mut self, number: usize) -> &mut Diagnostic {
         &mut self.list[number]

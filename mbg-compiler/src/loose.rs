@@ -44,15 +44,9 @@ pub(crate) fn warn(model: &Elaborated, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Puts the sources that are missing before the other ways out of mistakes from number `before` on.
-pub(crate) fn help(graph: &BondGraph, before: usize, diagnostics: &mut Diagnostics) {
-    let helps: Vec<String> = all(graph).iter().map(|it| holding(graph, it.id)).collect();
-    for number in before..diagnostics.list().len() {
-        diagnostics
-            .get_mut(number)
-            .helps
-            .splice(0..0, helps.iter().cloned());
-    }
+/// The sources that are missing, as ways out.
+pub(crate) fn holdings(graph: &BondGraph) -> Vec<String> {
+    all(graph).iter().map(|it| holding(graph, it.id)).collect()
 }
 
 fn holding(graph: &BondGraph, id: JunctionId) -> String {

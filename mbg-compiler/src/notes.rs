@@ -8,7 +8,7 @@ use proc_macro2::Span;
 use crate::answers::Answers;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
-use crate::elaborate::{Elaborated, IN_SPACE, Ring, State};
+use crate::elaborate::{Elaborated, Ring, State};
 use crate::graph::{Element, Law, Storage};
 use crate::start::Start;
 use crate::structure::Solved;
@@ -108,14 +108,9 @@ fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
             "`{first}` and `{second}` do not meet at `{frame}` at the start: [{}] m are between them, which stay",
             gap.join(", ")
         );
-        let cut = if ring.dimension == IN_SPACE {
-            "Cut"
-        } else {
-            "PlanarCut"
-        };
         let help = format!(
-            "give the joints of the ring `initial` values that close it, or put a `{cut}` in the place of one of them, \
-             which is closed at the start and after each step"
+            "give its joints `initial` values that close it, or {}, which is closed at the start and after each step",
+            ring.cut()
         );
         Some((ring.span, note, help))
     };

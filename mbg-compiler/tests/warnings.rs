@@ -2,7 +2,7 @@
 
 mod told;
 
-use told::warned;
+use told::{diagnose, warned};
 
 /// Of a model with a wheel, after a component.
 fn around_a_wheel(component: &str, body: &str) -> String {
@@ -148,10 +148,43 @@ fn a_ring_that_is_open_at_the_start_is_told() {
     };
     insta::assert_snapshot!(slider_crank("", "initial: 2.0"), @"
     8:17 `rod` and `wrist` do not meet at `end` at the start: [0.379, -2.524] m are between them, which stay [MBG0406]
-      help: give the joints of the ring `initial` values that close it, or put a `PlanarCut` in the place of one of them, which is closed at the start and after each step
+      help: give its joints `initial` values that close it, or put a `PlanarCut` in the place of a joint of the ring that `rod` and `wrist` close, which is closed at the start and after each step
     ");
     // To the digits that are typed: the rod goes down by asin(sin(1) / 2) to the line of the slide.
     assert_eq!(slider_crank(", initial: -1.4343", "initial: 2.3547"), "");
+}
+
+#[test]
+fn a_ring_that_no_strokes_fit_is_told_how_to_be_closed() {
+    let ring = |last: &str, causality: &str| {
+        let link = "mass: 1.0, inertia: 0.1, centre: 0.0";
+        format!(
+            "#[derivative] model M {{
+                {causality}
+                1 ground[3]; 1 pin[3]; 1 end[3]; 1 far[3]; 1 side[3];
+                Sf fixed[3] {{ flow: 0.0 }} -> ground;
+                crank: PlanarLink {{ {link}, end: [1.0, 0.0], initial: 1.0 }} (ground, pin);
+                rod: PlanarLink {{ {link}, end: [2.0, 0.0] }} (pin, end);
+                base: PlanarOffset {{ x: 2.0 }} (ground, side);
+                rocker: PlanarLink {{ {link}, end: [1.5, 0.0] }} (side, far);
+                {last} (far, end);
+            }}"
+        )
+    };
+    let report = diagnose(&ring("last: PlanarRevolute {}", ""));
+    assert_eq!(
+        report.list()[0].helps[..2],
+        [
+            "put a `PlanarCut` in the place of a joint of the ring that `rod` and `last` close",
+            "or write `causality componentwise;` in the model: one stroke per component instead of one per multibond",
+        ]
+    );
+    for closed in [
+        ring("last: PlanarCut {}", ""),
+        ring("last: PlanarRevolute {}", "causality componentwise;"),
+    ] {
+        assert!(diagnose(&closed).list().is_empty());
+    }
 }
 
 #[test]

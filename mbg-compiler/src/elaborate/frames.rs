@@ -22,7 +22,7 @@ use crate::graph::{ElementKind, End, JunctionId, JunctionKind};
 use crate::syntax::{ast, dump};
 
 /// Components of a frame in space: those of its angular velocity, then those of its velocity.
-pub(crate) const IN_SPACE: usize = 6;
+pub(super) const IN_SPACE: usize = 6;
 /// The same in a plane.
 const IN_PLANE: usize = 3;
 

@@ -43,7 +43,6 @@ use proc_macro2::{Ident, Span};
 use syn::Expr;
 
 pub use finish::component_table;
-pub(crate) use frames::IN_SPACE;
 pub use model::{
     Assumption, Attitude, Condition, Elaborated, Output, Parameter, Place, Quantity, Signal,
     Signals, State, StateRate, Variable,

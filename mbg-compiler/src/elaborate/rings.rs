@@ -7,6 +7,7 @@ use proc_macro2::Span;
 
 use super::Builder;
 use super::definitions::{Definition, Progress};
+use super::frames::IN_SPACE;
 use super::spread::{Place, Spread};
 use crate::diagnostics::Diagnostics;
 use crate::graph::{instance_of, instances_of};
@@ -28,6 +29,20 @@ pub struct Ring {
     pub positions: [Vec<Expression>; 2],
     /// The second component.
     pub span: Span,
+}
+
+impl Ring {
+    /// What closes it.
+    pub(crate) fn cut(&self) -> String {
+        let cut = match self.dimension {
+            IN_SPACE => "Cut",
+            _ => "PlanarCut",
+        };
+        let [first, second] = &self.components;
+        format!(
+            "put a `{cut}` in the place of a joint of the ring that `{first}` and `{second}` close"
+        )
+    }
 }
 
 /// Two scopes and what they tell of one place.
@@ -97,11 +112,7 @@ impl Builder<'_> {
             return None;
         };
         let value = value.clone();
-        let dimension = if size == super::frames::IN_SPACE {
-            3
-        } else {
-            2
-        };
+        let dimension = if size == IN_SPACE { 3 } else { 2 };
         self.entries(&value, dimension, name).ok()
     }
 }

@@ -36,6 +36,27 @@ mbg! {
         output rates[3] = [body.spin.f.x, body.spin.f.y, body.spin.f.z];
     }
 
+    /// Wires in a row, which conduct the better the warmer they are, and leak; at the end of the last is a store.
+    pub(crate) model Leaking {
+        param conductance = 1e-3;
+        let count = 8;
+        1 heating { C heat { compliance: 1.0, initial: 1.0 } Sf flame { flow: 1.0 } }
+        0 source;
+        Se supply { effort: 10.0 } -> source;
+        row: for k in 0..count {
+            0 node; 1 wire;
+            if k == 0 { source -> wire; } else { row[k-1].node -> wire; }
+            wire -> R metal { conductance: conductance * (1.0 + 0.1 * heat.q) };
+            wire -> node;
+            node -> R leak { conductance: 1e-9 };
+        }
+        1 last;
+        row[count-1].node -> last;
+        last -> R end { resistance: 1e6 };
+        last -> C store { compliance: 1e-9, initial: 1e-9 };
+        output potential = row[count-1].node.e;
+    }
+
     /// A hull that floats with a pendulum under it, of one kilogram or much less.
     #[derivative]
     pub(crate) model Swinging {
@@ -177,4 +198,28 @@ fn a_small_machine_is_not_singular() {
             );
         }
     }
+}
+
+/// What a small constant is divided into may be much larger: nothing bounds what stands beside it.
+#[test]
+fn small_leaks_of_wires_are_not_divided_by() {
+    for conductance in [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6] {
+        let model = Leaking::<f64>::new(LeakingParameters { conductance }).unwrap();
+        let x = model.initial_state();
+        // From the source on, each node is the half of a voltage and a resistance.
+        let (mut source, mut resistance) = (10.0, 0.0);
+        for _ in 0..8 {
+            resistance += 1.0 / (1.1 * conductance);
+            source /= 1.0 + 1e-9 * resistance;
+            resistance /= 1.0 + 1e-9 * resistance;
+        }
+        let expected = (source * 1e6 + x[1] * 1e9 * resistance) / (1e6 + resistance);
+        let none = SVector::zeros();
+        let found = model.output(0.0, &x, &none, &mut ())[0];
+        assert_eq!(model.trouble(0.0, &x, &none, &()), None);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+    }
+    let model = Leaking::<f32>::new(LeakingParameters::default()).unwrap();
+    let found = model.output(0.0, &model.initial_state(), &SVector::zeros(), &mut ())[0];
+    assert!((found / 9.934_694_6 - 1.0).abs() < 1e-5, "{found}");
 }

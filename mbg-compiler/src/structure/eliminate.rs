@@ -113,9 +113,10 @@ impl System {
     }
 
     /// How often an entry changes, as a pivot: a constant that is small beside others in its row and in its column counts as if
-    /// it varied. What is divided by it carries their rounding errors, as many times larger.
+    /// it varied. What is divided by it carries their rounding errors, as many times larger. Of an entry that is no constant
+    /// the size is not known, and taken to be one.
     pub(super) fn rate(&self, pool: &Pool, row: usize, column: usize) -> Rate {
-        let size = |entry| pool.constant_value(entry).map_or(0.0, f64::abs);
+        let size = |entry| pool.constant_value(entry).map_or(1.0, f64::abs);
         let entry = self.entry(row, column);
         let own = size(entry);
         let is_small_beside = |other: f64| own < SMALL * other;

@@ -11,24 +11,8 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// attitude count as states, and so do all coordinates of loops that multipliers close: some poles are no motion of such a
 /// model.
 ///
-/// A model with a nonlinear algebraic loop is not [`Convertible`], and is refused while compiling:
-///
-/// ```compile_fail,E0277
-/// # use mbg_runtime::{Linearised, System, mbg};
-/// # use nalgebra::SVector;
-/// mbg! {
-///     model Bearings {
-///         1 shaft {
-///             Se motor { effort: 1.0 }
-///             R grease { effort: powi(f, 3) }
-///             R oil { resistance: 1.0 }
-///         }
-///         integral angle: rad = shaft.f;
-///     }
-/// }
-/// # let model = Bearings::<f64>::new(BearingsParameters::default()).unwrap();
-/// let refused = Linearised::of(&model, 0.0, &model.initial_state(), &SVector::zeros());
-/// ```
+/// A nonlinear algebraic loop is solved from zero, as at the start of a run: of several solutions it may find another one than
+/// a run has found.
 ///
 /// # Example
 ///
@@ -96,8 +80,8 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         Ok(Self {
             state,
             input: system.jacobian_input(t, x, u, &mut memory),
-            output: slopes(x0, |x| dual.output(time, x, &u0, &mut ())),
-            feedthrough: slopes(u0, |u| dual.output(time, &x0, u, &mut ())),
+            output: slopes(x0, |x| dual.output(time, x, &u0, &mut Default::default())),
+            feedthrough: slopes(u0, |u| dual.output(time, &x0, u, &mut Default::default())),
         })
     }
 

@@ -40,6 +40,19 @@ mbg! {
         output place = soft.q;
     }
 
+    /// A store that is filled through a diode and a resistor, whose current is found by iteration.
+    model Filled {
+        input voltage: V;
+        0 source; 0 between; 0 store; 0 ground;
+        Se supply { effort: voltage } -> source;
+        Se earth { effort: 0.0 } -> ground;
+        valve: Diode { saturation: 1e-12, thermal: 0.025 } (source, between);
+        wire: Resistor { resistance: 10.0 } (between, store);
+        full: Capacitor { capacitance: 1e-3 } (store, ground);
+        output drop: V = valve.voltage;
+        output current: A = valve.current;
+    }
+
     /// Pulled through the attitude in which its gimbals lock.
     model Locking {
         input torque[3]: N*m;
@@ -200,4 +213,32 @@ fn what_depends_on_each_other_has_a_pole_at_rest() {
     assert_eq!(linear.response(0.0), None);
     let still = linear.response(1e-6).unwrap()[(0, 0)];
     assert!((still - Complex::from(1.0 / 8.0)).modulus() < 1e-6);
+}
+
+/// The slope of a diode's law stands in for a resistance.
+#[test]
+fn what_is_iterated_has_the_slopes_of_its_law() {
+    let model = Filled::<f64>::new(FilledParameters::default()).unwrap();
+    let (drop, held) = (0.6, 1.5);
+    let current = 1e-12 * f64::exp_m1(drop / 0.025);
+    let own = 0.025 / (current + 1e-12);
+    let (x, u) = (
+        SVector::from([1e-3 * held]),
+        SVector::from([held + drop + 10.0 * current]),
+    );
+    let linear = Linearised::of(&model, 0.0, &x, &u).unwrap();
+    let whole = 10.0 + own;
+    let expected = [
+        (linear.input[(0, 0)], 1.0 / whole),
+        (linear.state[(0, 0)], -1e3 / whole),
+        (linear.feedthrough[(0, 0)], own / whole),
+        (linear.feedthrough[(1, 0)], 1.0 / whole),
+        (linear.output[(0, 0)], -1e3 * own / whole),
+        (linear.output[(1, 0)], -1e3 / whole),
+    ];
+    for (found, expected) in expected {
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+    }
+    let refused = Linearised::of(&model, 0.0, &x, &SVector::from([f64::NAN])).unwrap_err();
+    assert!(matches!(refused, Trouble::Unsolved { .. }), "{refused}");
 }

@@ -190,8 +190,8 @@ fn derivatives(compiled: &Compiled) -> Option<TokenStream> {
     })
 }
 
-/// The model with its numbers in another scalar; none where it remembers.
-fn convertible(compiled: &Compiled) -> Option<TokenStream> {
+/// The model with its numbers in another scalar.
+fn convertible(compiled: &Compiled) -> TokenStream {
     let name = &compiled.model.name;
     let parameters = format_ident!("{}Parameters", name);
     let declared = &compiled.model.parameters;
@@ -213,25 +213,23 @@ fn convertible(compiled: &Compiled) -> Option<TokenStream> {
     let phantom = declared.is_empty().then_some(phantom);
     let steps = &compiled.program.routines[Routines::DERIVATIVE].steps;
     let straight = !steps.iter().any(|step| matches!(step, Step::Solve(_)));
-    compiled.iterations().next().is_none().then(|| {
-        quote! {
-            #[automatically_derived]
-            impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
-                type With<L: ::mbg_runtime::Real> = #name<L>;
-                const STRAIGHT: bool = #straight;
-                #[inline]
-                fn converted<L: ::mbg_runtime::Real>(
-                    &self,
-                    convert: impl ::core::ops::Fn(T) -> L,
-                ) -> #name<L> {
-                    #name {
-                        parameters: #parameters { #(#fields,)* #phantom },
-                        folded: self.folded.map(convert),
-                    }
+    quote! {
+        #[automatically_derived]
+        impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
+            type With<L: ::mbg_runtime::Real> = #name<L>;
+            const STRAIGHT: bool = #straight;
+            #[inline]
+            fn converted<L: ::mbg_runtime::Real>(
+                &self,
+                convert: impl ::core::ops::Fn(T) -> L,
+            ) -> #name<L> {
+                #name {
+                    parameters: #parameters { #(#fields,)* #phantom },
+                    folded: self.folded.map(convert),
                 }
             }
         }
-    })
+    }
 }
 
 /// Makes what a function returns of the results of its routine.

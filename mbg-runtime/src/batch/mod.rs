@@ -224,7 +224,7 @@ fn chosen<L, S, X, const N: usize, const M: usize, const P: usize>(
                             None => L::Part::<X>::from_f64(0.0),
                         });
                         let mut found = SVector::from_element(L::Part::<X>::from_f64(0.0));
-                        model.derivative_into(t, &x, &u, &mut (), &mut found);
+                        model.derivative_into(t, &x, &u, &mut Default::default(), &mut found);
                         for (rate, found) in rates.iter_mut().zip(&found) {
                             found.put(rate, part);
                         }

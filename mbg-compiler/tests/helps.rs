@@ -210,6 +210,30 @@ fn a_tank_between_a_pump_and_a_valve_is_held() {
     }
 }
 
+/// Laws of diodes are turned round by iteration, and cannot be written otherwise: they are of the library.
+#[test]
+fn a_bridge_of_diodes_is_told_what_solves_it() {
+    let bridge = "0 a; 0 b; 0 p; 0 n; Se earth { effort: 0.0 } -> n; 1 winding { R wire { resistance: 0.1 } Se grid { effort: 10.0 } }
+                  b -> winding; winding -> a; d1: Diode { } (a, p); d2: Diode { } (b, p); d3: Diode { } (n, a);
+                  d4: Diode { } (n, b); c: Capacitor { capacitance: 1e-3 } (p, n);";
+    let leg = "0 a; 0 p; 0 n; Se earth { effort: 0.0 } -> n; 0 x; Se grid { effort: 10.0 } -> x;
+               coil: Inductor { inductance: 1e-3 } (x, a); d1: Diode { } (a, p); d2: Diode { } (n, a);
+               c: Capacitor { capacitance: 1e-3 } (p, n);";
+    for (text, code) in [
+        (bridge, codes::FIXED_RESISTOR),
+        (leg, codes::STORAGE_DERIVATIVE),
+    ] {
+        let text = format!("model M {{ {text} }}");
+        let helps = helps(&text, code);
+        assert!(helps[0].contains("`causality componentwise;`"), "{helps:?}");
+        assert!(
+            helps.iter().all(|it| !it.contains("the law of")),
+            "{helps:?}"
+        );
+        compiles(&followed(&text, &helps[0]));
+    }
+}
+
 #[test]
 fn parallel_axes_of_a_joint_are_told_at_the_axes() {
     let scene = |joint: &str, axes: &str| {

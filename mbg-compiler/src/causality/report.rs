@@ -167,6 +167,7 @@ fn ways_out(
         }
     }
     let resistors = chain.fixed.iter();
+    let resistors = resistors.filter(|id| may_be_rewritten(graph, **id, outlook));
     helps.extend(resistors.filter_map(|id| resistor_help(graph, *id)));
     helps.extend(chain.fixed.iter().find_map(|id| turned(graph, *id)));
     if explain::blocks_axes(graph, &chain.fixed) {
@@ -275,6 +276,12 @@ pub fn own_steps(graph: &BondGraph, id: ElementId, steps: &[ChainStep], told: &s
     let whole = format!("the error at `{told}` tells the whole chain");
     let alone = |step: &ChainStep| step.text.trim_start_matches("but ").to_owned();
     own.map(alone).chain([whole]).collect()
+}
+
+/// Whether to tell how the law of a resistor can be written otherwise: not of one inside a component, such as a diode of the
+/// library, where the equations have a solution as they are.
+pub fn may_be_rewritten(graph: &BondGraph, id: ElementId, outlook: &Outlook) -> bool {
+    !outlook.is_soluble() || graph.elements[id.0].instance().is_none()
 }
 
 /// The other law of a resistor that fits one causality only.

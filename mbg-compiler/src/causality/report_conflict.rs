@@ -6,7 +6,9 @@
 use super::conflict::Conflict;
 use super::explain;
 use super::outlook::Outlook;
-use super::report::{COMPONENTWISE, JACOBIAN, alternatives, own_steps, resistor_help};
+use super::report::{
+    COMPONENTWISE, JACOBIAN, alternatives, may_be_rewritten, own_steps, resistor_help,
+};
 use super::strokes::Site;
 use super::ways::{Between, hold, through, turned};
 use super::words;
@@ -124,8 +126,14 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
     let mut helps = Vec::new();
     if conflict.code == codes::FIXED_RESISTOR {
         helps.extend(holding(graph, conflict));
+        if outlook.is_soluble() {
+            helps.push(COMPONENTWISE.to_owned());
+        }
     }
-    helps.extend(elements.iter().filter_map(|id| resistor_help(graph, *id)));
+    let laws = elements
+        .iter()
+        .filter(|id| may_be_rewritten(graph, **id, outlook));
+    helps.extend(laws.filter_map(|id| resistor_help(graph, *id)));
     let end = conflict.place();
     let place = end
         .as_ref()
@@ -156,7 +164,7 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
     if conflict.code == codes::RECTANGULAR_INVERSE {
         helps.extend(elements.iter().find_map(|id| turned(graph, *id)));
     }
-    if outlook.is_soluble() {
+    if outlook.is_soluble() && conflict.code != codes::FIXED_RESISTOR {
         helps.push(COMPONENTWISE.to_owned());
     }
     if explain::blocks_axes(graph, &elements) {

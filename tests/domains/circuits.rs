@@ -38,6 +38,24 @@ mbg! {
         output turned: rad = angle;
     }
 
+    /// Four diodes rectify for a capacitor and a load. Nothing else holds both ends of the source.
+    pub(crate) model Bridge {
+        causality componentwise;
+        input voltage: V;
+        0 a; 0 b; 0 plus; 0 minus;
+        Se earth { effort: 0.0 } -> minus;
+        1 source { R wire { resistance: 0.1 } Se supply { effort: voltage } }
+        b -> source;
+        source -> a;
+        first: Diode { } (a, plus);
+        second: Diode { } (b, plus);
+        third: Diode { } (minus, a);
+        fourth: Diode { } (minus, b);
+        store: Capacitor { capacitance: 1e-3 } (plus, minus);
+        load: Resistor { resistance: 10.0 } (plus, minus);
+        output ends[2]: V = [a.e, b.e];
+    }
+
     /// A charged capacitor swings with a coil on the other side of a transformer.
     pub(crate) model Swing {
         0 left; 0 left_ground; 0 right; 0 right_ground;
@@ -442,4 +460,33 @@ fn a_transformer_carries_a_swing() {
     assert!((found[1] - current).abs() < 1e-12, "{} {current}", found[1]);
     let (_, imbalance) = balance::run(&model, &Constant(SVector::zeros()), 1e-7, 5_000);
     assert!(imbalance < 1e-12, "{imbalance:e}");
+}
+
+/// How high both ends of a source are follows from picoamperes beside ten siemens: rounding leaves it unsharp.
+#[test]
+fn a_bridge_of_diodes_is_solved_at_any_voltage() {
+    let model = Bridge::<f64>::new(BridgeParameters::default()).unwrap();
+    let current = |voltage: f64| 1e-12 * f64::exp_m1(voltage / 0.02585);
+    for number in -60..=60 {
+        for (sign, charge) in [(1.0, 0.0), (-1.0, 1e-6), (1.0, -1e-6), (-1.0, 1e-2)] {
+            let voltage = sign * f64::powf(10.0, 0.1 * f64::from(number) - 3.0);
+            let (x, u) = (SVector::from([charge]), SVector::from([voltage]));
+            let mut memory = Default::default();
+            let [a, b] = model.output(0.0, &x, &u, &mut memory).into();
+            assert_eq!(
+                model.trouble(0.0, &x, &u, &memory),
+                None,
+                "{voltage} {charge}"
+            );
+            if voltage.abs() < 1.0 {
+                let held = 1e3 * charge;
+                let balance = current(-a) - current(a - held) + current(-b) - current(b - held);
+                let most = 1e-15 * voltage.abs() + 1e-12 * current(voltage.abs());
+                assert!(
+                    balance.abs() < 10.0 * most,
+                    "{voltage} {charge} {balance:e}"
+                );
+            }
+        }
+    }
 }

@@ -8,10 +8,12 @@ use crate::Real;
 
 /// Points at which a system is linearised at most.
 pub const ITERATIONS: usize = 50;
-/// Dampings tried at one point at most; the last one is below 1e-14.
+/// Dampings of one step tried at one point at most; the last one is below 1e-14.
 const DAMPINGS: usize = 24;
 /// In units of the precision: changes below it are rounding even of an unknown that is zero.
 const ROUNDING: f64 = 64.0;
+/// In units of the precision: what an evaluation leaves of equations, beside their terms, when nothing but rounding is left.
+const LEFT: f64 = 4.0;
 
 /// What [`newton`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,17 +32,20 @@ pub struct Solved<T, const K: usize> {
 /// Solves `f(x) = 0` of `K` equations for `K` unknowns.
 ///
 /// `evaluate` gives `f` and its Jacobian `∂f/∂x`. From the solution of the last time a smooth loop takes two or
-/// three linearisations. There are never more than 50, with at most 24 evaluations each.
+/// three linearisations. There are never more than 50, with at most 48 evaluations each.
 ///
 /// The iteration is Newton's, damped until the next correction with the *old* Jacobian would be shorter than this one
 /// (natural monotonicity; Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, 3.3.1, with the bound 1 − λ/4).
 /// Unlike the residual, that length does not depend on how the equations are scaled, so that exponential laws with
 /// conductances from 1e-12 to 1e2 do no harm. What is not finite counts as too long. Lengths are relative to the
-/// largest value that each unknown took on the way; an unknown below 64 ε counts as zero.
+/// largest value that each unknown took on the way; an unknown below 64 ε counts as zero. Where a law is flat, as that of a
+/// diode that blocks, a correction may be longer by hundreds of powers of ten: where no damping of the whole helps, that
+/// begins again with what doubles an unknown at most.
 ///
 /// Converged means that two corrections in a row were below the square root of the precision. The first of them leaves
 /// an error of the order of the precision, the second one, at a converged point, gives [`Dual`](crate::Dual) numbers
-/// the slope of the implicit function theorem, `−J⁻¹ ∂f/∂p`.
+/// the slope of the implicit function theorem, `−J⁻¹ ∂f/∂p`. Where the equations leave an unknown less sharp than that, it
+/// is what they leave of it: corrections go no further when each equation is zero but for the rounding of its terms.
 ///
 /// It does not converge where there is no solution, where the Jacobian is singular, or from too far away.
 ///
@@ -68,12 +73,16 @@ pub fn newton<T: Real, const K: usize>(
     let mut point = Point::new(start, &evaluate);
     let mut size = start.map(Real::abs);
     let mut was_settled = false;
+    let mut last = T::from_f64(f64::INFINITY);
     for iterations in 1..=ITERATIONS {
         let factors = Regular::new(point.jacobian);
         let correction = factors.solution(&point.residual);
         let settled = settled(&point.x, &correction, &size);
         let all_settled = everywhere(settled, |lane| lane == 1.0);
-        if all_settled && was_settled {
+        let length = Point::relative(&correction, &size);
+        let shrinks = everywhere(length - T::from_f64(0.5) * last, |lane| lane < 0.0);
+        let sharpest = !shrinks && length.magnitude().is_finite() && point.is_rounding();
+        if all_settled && was_settled || sharpest {
             return Solved {
                 solution: point.x.zip_map(&correction, |x, step| x - step),
                 residual: point.scaled_residual(&size),
@@ -87,6 +96,7 @@ pub fn newton<T: Real, const K: usize>(
         point = next;
         size.zip_apply(&point.x, |size, x| *size = size.max(x.abs()));
         was_settled = all_settled;
+        last = length;
     }
     point.given_up(&size, ITERATIONS)
 }
@@ -134,7 +144,7 @@ impl<T: Real, const K: usize> Point<T, K> {
     /// The next point: the longest damped correction that is monotonic in every lane, if there is one.
     ///
     /// At the level of rounding nothing is monotonic: in settled lanes it is enough that the next correction is not ten
-    /// times longer.
+    /// times longer, and a point at which nothing but rounding is left is taken as it is.
     fn descend(
         &self,
         factors: &Regular<T, K>,
@@ -154,22 +164,48 @@ impl<T: Real, const K: usize> Point<T, K> {
         };
         let here = square(correction);
         let mut damping = one;
-        for _ in 0..DAMPINGS {
+        for number in 1..=2 * DAMPINGS {
             let next = Self::new(
                 self.x.zip_map(correction, |x, step| x - damping * step),
                 evaluate,
             );
-            let shrunk = one - quarter * damping;
+            let shrunk = one - quarter * damping + T::from_f64(ROUNDING * T::EPSILON);
             let factor = zero.select_less(settled, T::from_f64(100.0), shrunk * shrunk);
             let there = square(&factors.solution(&next.residual));
             let monotonic = (factor * here).select_less(there, zero, one);
             let accepted = there.select_less(T::from_f64(f64::INFINITY), monotonic, zero);
-            if everywhere(accepted, |lane| lane == 1.0) {
+            let solved = || there.magnitude().is_finite() && next.is_rounding();
+            if everywhere(accepted, |lane| lane == 1.0) || solved() {
                 return Some(next);
             }
-            damping = T::from_f64(0.5).select_less(accepted, damping, quarter * damping);
+            let mut less = quarter * damping;
+            if number == DAMPINGS {
+                less = less.min(one / Self::relative(correction, size));
+            }
+            damping = T::from_f64(0.5).select_less(accepted, damping, less);
         }
         None
+    }
+
+    /// The length of a correction, beside the largest value that each unknown took on the way.
+    fn relative(correction: &SVector<T, K>, size: &SVector<T, K>) -> T {
+        let unseen = T::from_f64(ROUNDING * T::EPSILON);
+        largest(
+            correction
+                .zip_map(size, |step, size| step / size.max(unseen))
+                .data
+                .0[0],
+        )
+    }
+
+    /// Whether nothing but rounding is left of every equation, in every lane.
+    fn is_rounding(&self) -> bool {
+        let rows = self.jacobian.transpose().data.0;
+        let sizes = self.x.map(Real::abs).data.0[0];
+        self.residual.iter().zip(rows).all(|(residual, row)| {
+            let terms = T::from_f64(LEFT * T::EPSILON) * dot(&row.map(Real::abs), &sizes);
+            everywhere(residual.abs() - terms, |over| over <= 0.0)
+        })
     }
 
     fn scaled_residual(&self, size: &SVector<T, K>) -> T {
@@ -294,6 +330,30 @@ mod tests {
             blocked.converged && (blocked.solution[0] + 1e-12).abs() < 1e-20,
             "{blocked:?}"
         );
+    }
+
+    /// Current and slope of a diode.
+    fn diode(voltage: f64) -> (f64, f64) {
+        let conducted = 1e-12 * (voltage / 0.025).exp();
+        (conducted - 1e-12, conducted / 0.025)
+    }
+
+    /// Two diodes in series block 12 V, and some current goes to the node between them: each law is flat to 1e-200.
+    #[test]
+    fn what_blocks_lets_hardly_any_current_in() {
+        for current in [1e-20, 1e-16, -1e-16, 1e-12, 1e-9, -1e-3] {
+            let solved = newton(SVector::from([0.0; 2]), |x: &SVector<f64, 2>| {
+                let [first, second] = [diode(x[0]), diode(x[1])];
+                (
+                    SVector::from([first.0 - second.0 - current, x[0] + x[1] + 12.0]),
+                    SMatrix::from([[first.1, 1.0], [-second.1, 1.0]]),
+                )
+            });
+            let expected = 0.025 * (current.abs() * 1e12).ln();
+            let found = solved.solution.max();
+            assert!(solved.converged, "{current} {solved:?}");
+            assert!((found - expected).abs() < 1e-9, "{current} {solved:?}");
+        }
     }
 
     #[test]

@@ -223,7 +223,7 @@ fn finish(
         (name, written(value))
     });
     let mut notes = verdict.notes;
-    loose::warn(&model, diagnostics);
+    loose::warn(&model, solved, diagnostics);
     notes.extend(notes::of(&model, solved, &answers, &pool, diagnostics));
     Some(Compiled {
         program,

@@ -1,13 +1,16 @@
 //! Junctions that a bond leads to and nothing else: a node without its ground, a wall without its source.
 //!
 //! Such a 0-junction has no flow, and such a 1-junction no effort. That takes a branch or a spring behind the bond out of
-//! the model, of which it is warned; and where storages lose their states by it, it is the first way out.
+//! the model, of which it is warned; and where storages lose their states by it, it is the first way out. A circuit whose
+//! ground is missing may close among its nodes: then nothing flows through its source.
 
 use crate::causality::ways::hold;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Place};
-use crate::graph::{BondGraph, ElementKind, End, JunctionId, JunctionKind};
+use crate::graph::{BondGraph, ElementKind, End, JunctionId, JunctionKind, Law, instance_of};
+use crate::structure::Solved;
+use crate::symbolic::Expression;
 
 /// A junction, and what it takes out of the model.
 struct Loose {
@@ -16,8 +19,9 @@ struct Loose {
 }
 
 /// Warns of those whose effort or flow nobody asks for.
-pub(crate) fn warn(model: &Elaborated, diagnostics: &mut Diagnostics) {
+pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
+    let mut is_told = false;
     for Loose { id, dead } in all(graph) {
         let junction = &graph.junctions[id.0];
         let mut read = model.signals.list().iter();
@@ -41,7 +45,63 @@ pub(crate) fn warn(model: &Elaborated, diagnostics: &mut Diagnostics) {
             message,
         );
         diagnostics.warn(report.help(holding(graph, id)));
+        is_told = true;
     }
+    if !is_told {
+        warn_of_sources(model, solved, diagnostics);
+    }
+}
+
+/// Warns of effort sources at nodes through which nothing flows, whatever the state, and whose effort nobody asks for.
+fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
+    let graph = &model.graph;
+    let is_zero = |unknown: &usize| solved.solution.values[*unknown] == Expression::ZERO;
+    for bond in &graph.bonds {
+        let (End::OnePort(id), End::Junction(node, _)) = (&bond.from, &bond.to) else {
+            continue;
+        };
+        let element = &graph.elements[id.0];
+        let drives = matches!(&element.law, Law::Source(efforts) if efforts.iter().any(|it| *it != Expression::ZERO));
+        let mut read = model.signals.list().iter();
+        let is_read =
+            read.any(|(_, place, _)| [Place::Junction(*node), Place::Port(*id)].contains(place));
+        let is_idle = solved.scalars.ports[id].flow.iter().all(is_zero);
+        let at_node = graph.junctions[node.0].kind == JunctionKind::Zero;
+        if element.kind != ElementKind::Se || !drives || !at_node || !is_idle || is_read {
+            continue;
+        }
+        let span = graph.origins.span(element.origin);
+        let message = format!(
+            "nothing flows through `{}`, whatever the state",
+            element.name
+        );
+        let report = error(codes::NO_EFFECT, span, message);
+        diagnostics.warn(match ground_of(graph, *node) {
+            Some(ground) => report.help(format!(
+                "if its circuit lacks a ground, {}",
+                holding(graph, ground)
+            )),
+            None => report,
+        });
+    }
+}
+
+/// The last node beside one that no source holds.
+fn ground_of(graph: &BondGraph, node: JunctionId) -> Option<JunctionId> {
+    let own = &graph.junctions[node.0];
+    let is_held = |id: JunctionId| {
+        let mut far = graph.across(id);
+        far.any(
+            |far| matches!(far, End::OnePort(it) if graph.elements[it.0].kind == ElementKind::Se),
+        )
+    };
+    let is_like = |id: &JunctionId| {
+        let other = &graph.junctions[id.0];
+        (other.kind, other.dimension) == (own.kind, own.dimension)
+            && instance_of(&other.name) == instance_of(&own.name)
+    };
+    let mut nodes = (0..graph.junctions.len()).map(JunctionId).filter(is_like);
+    nodes.rfind(|id| !is_held(*id))
 }
 
 /// The sources that are missing, as ways out.

@@ -200,6 +200,18 @@ fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_i
       help: hold `g`: `Se earth { effort: 0.0 } -> g;`
     ");
     assert_eq!(circuit("Se earth { effort: 0.0 } -> g;"), "");
+    // Two branches close among the nodes, without the source.
+    let ring = |ground: &str| {
+        warned(&format!(
+            "model M {{ 0 p; 0 q; 0 n; Se s {{ effort: 5.0 }} -> p; {ground} b: Resistor {{ resistance: 1.0 }} (p, q);
+             r: Resistor {{ resistance: 1.0 }} (q, n); c: Capacitor {{ capacitance: 1e-6 }} (q, n); }}"
+        ))
+    };
+    insta::assert_snapshot!(ring(""), @"
+    1:29 nothing flows through `s`, whatever the state [MBG0224]
+      help: if its circuit lacks a ground, hold `n`: `Se earth { effort: 0.0 } -> n;`
+    ");
+    assert_eq!(ring("Se earth { effort: 0.0 } -> n;"), "");
     let open = around_a_wheel(
         "",
         "0 _open; 1 branch { R r { resistance: 1.0 } } branch -> _open;",

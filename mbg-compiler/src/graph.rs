@@ -299,8 +299,14 @@ pub fn instance_of(mut path: &str) -> Option<&str> {
 }
 
 /// Paths of the components in use in which a path leads, from inside out.
-pub fn instances_of(path: &str) -> impl Iterator<Item = &str> {
+fn instances_of(path: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(instance_of(path), |outer| instance_of(outer))
+}
+
+/// The outermost component in use in which a path leads, inside another one.
+pub fn outermost_instance<'a>(path: &'a str, inside: Option<&str>) -> Option<&'a str> {
+    let instances = instances_of(path);
+    instances.take_while(|it| Some(*it) != inside).last()
 }
 
 impl BondGraph {

@@ -10,7 +10,7 @@ use super::definitions::{Definition, Progress};
 use super::frames::IN_SPACE;
 use super::spread::{Place, Spread};
 use crate::diagnostics::Diagnostics;
-use crate::graph::{instance_of, instances_of};
+use crate::graph::{instance_of, outermost_instance};
 use crate::symbolic::Expression;
 
 /// What tells where a frame is.
@@ -77,22 +77,17 @@ impl Builder<'_> {
         let [first, second] = meeting.tellers;
         let frame = self.graph.junctions[id.0].name.clone();
         // What is inside of a component leads to its port as it does itself.
-        let beside = |path: &str| {
-            let around = instance_of(&frame);
-            let instances = std::iter::once(path).chain(instances_of(path));
-            let outermost = instances.take_while(|it| Some(*it) != around).last();
-            outermost.map(str::to_owned)
-        };
-        let components = [first, second].map(|(scope, _)| beside(self.name_of(scope)));
-        let [Some(one), Some(other)] = components else {
-            return None;
-        };
-        if one == other {
+        let components = [first, second].map(|(scope, _)| {
+            let path = self.name_of(scope);
+            let outermost = outermost_instance(path, instance_of(&frame));
+            outermost.unwrap_or(path).to_owned()
+        });
+        if components[0] == components[1] {
             return None;
         }
         let span = self.called.get(&second.0)?.1.name.span();
         Some(Ring {
-            components: [one, other],
+            components,
             frame,
             dimension: size,
             positions: [

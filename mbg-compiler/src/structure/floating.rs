@@ -14,7 +14,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Equation, Owner, Scalars};
-use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of, instances_of};
+use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of, outermost_instance};
 use crate::symbolic::Pool;
 
 /// A component of a junction.
@@ -50,8 +50,10 @@ pub fn report_floating(
         JunctionKind::One => "flows",
     };
     let names: BTreeSet<JunctionId> = part.iter().map(|(id, _)| *id).collect();
-    let outermost = |id: &JunctionId| instances_of(&graph.junctions[id.0].name).last();
-    let within: Option<BTreeSet<&str>> = names.iter().map(outermost).collect();
+    let within: Option<BTreeSet<&str>> = names
+        .iter()
+        .map(|id| outermost_instance(&graph.junctions[id.0].name, None))
+        .collect();
     let span = graph.origins.span(junction.origin);
     if let Some(within) = within
         && within.len() > 1
@@ -115,8 +117,12 @@ fn is_bare(graph: &BondGraph, id: JunctionId) -> bool {
             End::Junction(other, _) => Some(graph.junctions[other.0].name.as_str()),
         })
         .collect();
-    let user = |name| instances_of(name).take_while(|it| Some(*it) != own).last();
-    let users = neighbours.map(|names| names.into_iter().filter_map(user).collect());
+    let users = neighbours.map(|names| {
+        let users = names.into_iter();
+        users
+            .filter_map(|name| outermost_instance(name, own))
+            .collect()
+    });
     junction.kind == JunctionKind::One
         && users.is_some_and(|users: BTreeSet<&str>| users.len() == 1)
 }

@@ -1,6 +1,8 @@
 //! The joints of the library: what they let move, that blocked axes do no work, and that stiff joints become ideal ones.
 #![allow(clippy::unwrap_used)]
 
+#[path = "joints/bearings.rs"]
+mod bearings;
 #[path = "joints/convergence.rs"]
 mod convergence;
 #[path = "joints/gears.rs"]

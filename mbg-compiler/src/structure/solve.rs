@@ -206,6 +206,7 @@ impl Solver<'_> {
             }
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &passed, column)
+                && self.moves(number, equations[row])
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {
@@ -354,6 +355,21 @@ impl Solver<'_> {
         } else {
             Sign::NotNegative
         })
+    }
+
+    /// Whether what an equation is about moves with the level's own rate. The balance at a junction that does not is that of
+    /// another rate, such as one by which a bearing below gives way: what this rate has there is no inertia, and may vanish.
+    fn moves(&mut self, level: usize, equation: usize) -> bool {
+        let independent = self.scalars.independent.get(&level);
+        let Some(Inertia::Moved { state, .. }) = independent.map(|it| &it.inertia) else {
+            return true;
+        };
+        let mut slope = Differentiator::new(Symbol::State(*state));
+        let about = self.scalars.equations[equation].about;
+        let mut values = about
+            .into_iter()
+            .map(|unknown| self.solution.values[unknown]);
+        values.any(|value| slope.derivative(self.pool, value) != Expression::ZERO)
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.

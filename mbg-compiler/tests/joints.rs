@@ -1,8 +1,6 @@
 //! The joints of the library: what they let move, that blocked axes do no work, and that stiff joints become ideal ones.
 #![allow(clippy::unwrap_used)]
 
-#[path = "joints/bearings.rs"]
-mod bearings;
 #[path = "joints/convergence.rs"]
 mod convergence;
 #[path = "joints/gears.rs"]
@@ -12,6 +10,8 @@ mod loops;
 mod models;
 #[path = "joints/reactions.rs"]
 mod reactions;
+#[path = "joints/regular.rs"]
+mod regular;
 #[path = "joints/scene.rs"]
 mod scene;
 #[path = "joints/scenes.rs"]

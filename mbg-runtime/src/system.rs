@@ -180,7 +180,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero. One whose size is that of inertias is divided by the largest
-    /// that it has at some other orientations of joints, all else at its start.
+    /// that it has at some other orientations of joints, all else at its start. One that is solved with numbers has the
+    /// reciprocal of the largest component of a solution, scaled to rows and columns of about one.
     #[must_use]
     fn conditioning(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Self::Conditioning;
 

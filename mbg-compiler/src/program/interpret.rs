@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::iterate::{consistent, iterate, regular};
+use super::iterate::{consistent, iterate};
 use super::{Columns, Operand, Program, Routine, Solve, Solver, Source, Step};
+use crate::symbolic::evaluate::regular;
 use crate::symbolic::{Kind, Symbol};
 
 /// What a program is run with.

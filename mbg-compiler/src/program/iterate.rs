@@ -1,6 +1,8 @@
 //! The solves of an interpreted program: Newton's iteration, halving steps that do not help, and linear equations
 //! that may be singular.
 
+use crate::symbolic::evaluate::regular;
+
 /// Most evaluations.
 const EVALUATIONS: usize = 1000;
 
@@ -79,37 +81,4 @@ pub(super) fn consistent(right: &[f64], matrix: &[f64]) -> Vec<f64> {
 
 fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum()
-}
-
-/// The solution of `A z = b` with a matrix by rows: Gaussian elimination with pivots that are large in their rows.
-pub(super) fn regular(right: &[f64], matrix: &[f64]) -> Vec<f64> {
-    let size = right.len();
-    let mut rows: Vec<Vec<f64>> = (0..size)
-        .map(|row| {
-            let entries = &matrix[row * size..][..size];
-            let largest = entries
-                .iter()
-                .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-            let scaled = |entry: &f64| entry / largest;
-            entries.iter().chain([&right[row]]).map(scaled).collect()
-        })
-        .collect();
-    for column in 0..size {
-        let largest = (column..size)
-            .max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))
-            .unwrap_or(column);
-        rows.swap(column, largest);
-        let pivot = rows[column].clone();
-        for (row, entries) in rows.iter_mut().enumerate() {
-            if row != column {
-                let factor = entries[column] / pivot[column];
-                for (entry, above) in entries.iter_mut().zip(&pivot) {
-                    *entry -= factor * above;
-                }
-            }
-        }
-    }
-    (0..size)
-        .map(|row| rows[row][size] / rows[row][row])
-        .collect()
 }

@@ -35,9 +35,7 @@ impl Solver<'_> {
         let values = if iterated && !left.is_empty() {
             self.define(left, &matrix, &right, unknowns)?
         } else {
-            let (values, divisor) = self.linear(System::of(&matrix, right), &left)?;
-            self.note(divisor, &[]);
-            values
+            self.linear(System::of(&matrix, right), &left, &[])?.0
         };
         if unknowns.len() > 1 || iterated {
             self.solution.loops.push(Loop {

@@ -8,14 +8,9 @@ use super::solve::{Solver, places};
 use super::tree::Tree;
 use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::{
-    self, Expression, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest, RestSolver, Symbol,
+    Expression, Function, Implicit, Kind, Linear, Matrix, Method, Pool, Rate, Rest, RestSolver,
+    Symbol,
 };
-
-/// Up to this size a determinant is expanded by minors.
-const LAPLACE: usize = 6;
-/// Up to this size nothing is divided by for a determinant, whose steps grow with the fourth power. Larger ones divide by
-/// what may vanish before they do.
-const UNDIVIDED: usize = 16;
 
 impl Solver<'_> {
     /// What is left when no level has it, solved as a whole: the rest and its values.
@@ -35,15 +30,20 @@ impl Solver<'_> {
         Ok(solved)
     }
 
-    /// Solves linear equations: the values, and what was divided by.
+    /// Solves linear equations, whose rows have norms: the values, and what was divided by.
     pub(super) fn linear(
         &mut self,
         mut system: System,
         unknowns: &[usize],
+        norms: &[Expression],
     ) -> Result<(Vec<Expression>, Expression), Failure> {
         let (matrix, right) = system.equations();
         let mut divisor = Expression::ONE;
         let (rest, values) = self.whole(&mut system, unknowns, &|_, _| true, &mut divisor)?;
+        match rest.solver {
+            RestSolver::Numbers(_) => self.note(divisor, &[]),
+            RestSolver::Dense(_) => self.note(divisor, norms),
+        }
         let values = system.back_substitute(self.pool, &rest.columns, &values)?;
         // What was found by numbers has slopes by these equations alone; expressions are differentiated themselves.
         if matches!(rest.solver, RestSolver::Numbers(_)) {
@@ -88,8 +88,10 @@ impl Solver<'_> {
         let rows: Vec<usize> = system.open().iter().copied().collect();
         let (columns, matrix, right) = system.rest();
         if rows.len() > ADJUGATE {
-            let determinant = self.determinant(&matrix, &right)?;
-            *divisor = self.pool.multiply(*divisor, determinant);
+            if !matrix.is_regular(self.pool) {
+                return Err(Failure::Singular);
+            }
+            *divisor = self.distance(&matrix).ok_or(Failure::Singular)?;
             let numbers = columns.iter().map(|column| unknowns[*column]).collect();
             let method = Method::Linear {
                 matrix: matrix.negated(),
@@ -112,24 +114,62 @@ impl Solver<'_> {
         Ok((rest, values))
     }
 
-    /// The determinant of a block that is solved with numbers.
-    fn determinant(
-        &mut self,
-        matrix: &Matrix,
-        right: &[Expression],
-    ) -> Result<Expression, Failure> {
-        let mut determinant = Expression::ONE;
-        if matrix.rows <= LAPLACE {
-            determinant = matrix.determinant(self.pool);
-        } else if matrix.rows <= UNDIVIDED {
-            determinant = symbolic::determinant(self.pool, matrix);
-        } else {
-            dense(self.pool, matrix, right, &mut determinant).ok_or(Failure::Singular)?;
+    /// How far a matrix of numbers is from a singular one: the reciprocal of the largest component of a solution, with rows
+    /// and columns scaled to a largest entry of about one. A determinant would say less: rounding errors of one by ten
+    /// rows are larger than many a regular one.
+    fn distance(&mut self, matrix: &Matrix) -> Option<Expression> {
+        let size = matrix.rows;
+        let mut columns = vec![Expression::ZERO; size];
+        let mut right = Vec::with_capacity(size);
+        for row in 0..size {
+            let entries = &matrix.entries[row * size..][..size];
+            let largest = self.largest(entries);
+            for (scale, entry) in columns.iter_mut().zip(entries) {
+                let entry = self.pool.divide(*entry, largest)?;
+                *scale = self.largest(&[*scale, entry]);
+            }
+            // No two are alike: a right side that is as special as the matrix would have a solution where others have none.
+            let part = format!("{:.3}", 0.5 + (0.618 * (row + 1) as f64).fract());
+            let part = self.pool.literal(&part)?;
+            right.push(self.pool.multiply(part, largest));
         }
-        if determinant == Expression::ZERO {
-            return Err(Failure::Singular);
+        let unknowns: Vec<usize> = (0..size).map(|_| self.pool.fresh_unknown()).collect();
+        let implicit = Implicit {
+            unknowns,
+            method: Method::Linear {
+                matrix: matrix.clone(),
+                right,
+                kind: Kind::Regular,
+            },
+        };
+        let symbols: Vec<Symbol> = implicit.symbols().collect();
+        self.pool.define(implicit);
+        let solution: Vec<Expression> = symbols
+            .into_iter()
+            .zip(columns)
+            .map(|(symbol, scale)| {
+                let value = self.pool.symbol(symbol);
+                self.pool.multiply(scale, value)
+            })
+            .collect();
+        let largest = self.largest(&solution);
+        self.pool.divide(Expression::ONE, largest)
+    }
+
+    /// The largest magnitude of some expressions.
+    fn largest(&mut self, expressions: &[Expression]) -> Expression {
+        let mut largest = Expression::ZERO;
+        for expression in expressions {
+            if *expression == Expression::ZERO {
+                continue;
+            }
+            let size = self.pool.call(Function::Abs, &[*expression]);
+            largest = match largest {
+                Expression::ZERO => size,
+                _ => self.pool.call(Function::Max, &[largest, size]),
+            };
         }
-        Ok(determinant)
+        largest
     }
 
     /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.

@@ -132,8 +132,7 @@ impl Solver<'_> {
             matrix.push(coefficients);
             right.push(rest.negated());
         }
-        let (values, divisor) = self.linear(System::new(matrix, right), unknowns)?;
-        self.note(divisor, &norms);
+        let (values, divisor) = self.linear(System::new(matrix, right), unknowns, &norms)?;
         let by_law = rows
             .iter()
             .any(|row| matches!(row.owner, Owner::Element(..)));

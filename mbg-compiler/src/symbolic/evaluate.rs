@@ -1,6 +1,7 @@
 //! Numeric values at one point.
 
 use super::expression::{Expression, Operation, Symbol};
+use super::implicit::{Kind, Method, Place};
 use super::pool::Pool;
 
 /// Evaluates expressions at one point and remembers what it has done.
@@ -19,7 +20,7 @@ impl<'a> Evaluation<'a> {
         }
     }
 
-    /// The value; not finite where the expression has none.
+    /// The value; not finite where the expression has none. What regular linear equations give is solved for.
     pub fn value(&mut self, pool: &Pool, expression: Expression) -> f64 {
         self.known.resize(pool.len(), None);
         let mut pending = vec![expression.magnitude()];
@@ -29,14 +30,20 @@ impl<'a> Evaluation<'a> {
                 continue;
             }
             let operation = pool.operation(current);
+            let linear = linear(pool, operation);
             let before = pending.len();
-            for part in operation.operands().iter() {
+            let equations = linear.map(|place| pool.implicit()[place.number].evaluated());
+            let equations = equations.iter().flatten();
+            for part in operation.operands().iter().chain(equations) {
                 if self.known[part.node()].is_none() {
                     pending.push(part.magnitude());
                 }
             }
             if pending.len() == before {
-                self.known[current.node()] = Some(self.of_operation(operation));
+                self.known[current.node()] = Some(match linear {
+                    Some(place) => self.of_equations(pool, place),
+                    None => self.of_operation(operation),
+                });
                 pending.pop();
             }
         }
@@ -50,6 +57,14 @@ impl<'a> Evaluation<'a> {
         } else {
             value
         }
+    }
+
+    /// One unknown of linear equations, of which all numbers are known.
+    fn of_equations(&self, pool: &Pool, place: Place) -> f64 {
+        let implicit = &pool.implicit()[place.number];
+        let numbers: Vec<f64> = implicit.evaluated().iter().map(|it| self.of(*it)).collect();
+        let (right, matrix) = numbers.split_at(implicit.unknowns.len());
+        regular(right, matrix)[place.row]
     }
 
     fn of_operation(&self, operation: &Operation) -> f64 {
@@ -67,6 +82,57 @@ impl<'a> Evaluation<'a> {
             }
         }
     }
+}
+
+/// The solution of `A z = b` with a matrix by rows: Gaussian elimination with pivots that are large in their rows.
+pub(crate) fn regular(right: &[f64], matrix: &[f64]) -> Vec<f64> {
+    let size = right.len();
+    let mut rows: Vec<Vec<f64>> = (0..size)
+        .map(|row| {
+            let entries = &matrix[row * size..][..size];
+            let largest = entries
+                .iter()
+                .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+            let scaled = |entry: &f64| entry / largest;
+            entries.iter().chain([&right[row]]).map(scaled).collect()
+        })
+        .collect();
+    for column in 0..size {
+        let largest = (column..size)
+            .max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))
+            .unwrap_or(column);
+        rows.swap(column, largest);
+        let pivot = rows[column].clone();
+        for (row, entries) in rows.iter_mut().enumerate() {
+            if row != column {
+                let factor = entries[column] / pivot[column];
+                for (entry, above) in entries.iter_mut().zip(&pivot) {
+                    *entry -= factor * above;
+                }
+            }
+        }
+    }
+    (0..size)
+        .map(|row| rows[row][size] / rows[row][row])
+        .collect()
+}
+
+/// Where an operation is an unknown of regular linear equations.
+fn linear(pool: &Pool, operation: &Operation) -> Option<Place> {
+    let Operation::Symbol(symbol) = operation else {
+        return None;
+    };
+    let regular = |place: &Place| {
+        let method = &pool.implicit()[place.number].method;
+        matches!(
+            method,
+            Method::Linear {
+                kind: Kind::Regular,
+                ..
+            }
+        )
+    };
+    pool.place(*symbol).filter(regular)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! turned round by changing signs of angles, or split into transformers in a row.
 
 use super::expression::Expression;
+use super::field::Image;
 use super::pool::Pool;
 
 /// A dense matrix, by rows.
@@ -141,6 +142,32 @@ impl Matrix {
             }
         }
         Self::new(size, size, entries)
+    }
+
+    /// Whether a square matrix is regular somewhere, by elimination at the points of the field.
+    #[must_use]
+    pub fn is_regular(&self, pool: &Pool) -> bool {
+        let mut rows: Vec<Vec<Image>> = self
+            .entries
+            .chunks(self.columns)
+            .map(|row| row.iter().map(|entry| pool.image(*entry)).collect())
+            .collect();
+        for column in 0..self.columns {
+            let pivot =
+                (column..self.rows).find_map(|row| Some((row, rows[row][column].inverted()?)));
+            let Some((row, reciprocal)) = pivot else {
+                return false;
+            };
+            rows.swap(column, row);
+            let (above, below) = rows.split_at_mut(column + 1);
+            for row in below {
+                let factor = row[column].times(reciprocal);
+                for (entry, above) in row.iter_mut().zip(&above[column]) {
+                    *entry = entry.minus(factor.times(*above));
+                }
+            }
+        }
+        true
     }
 
     /// Inverse; none if it is identically singular. Diagonal matrices are inverted entry by entry.

@@ -8,7 +8,9 @@ use crate::causality::ways::hold;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Place};
-use crate::graph::{BondGraph, ElementKind, End, JunctionId, JunctionKind, Law, instance_of};
+use crate::graph::{
+    BondGraph, ElementId, ElementKind, End, JunctionId, JunctionKind, Law, instance_of,
+};
 use crate::structure::Solved;
 use crate::symbolic::Expression;
 
@@ -24,9 +26,7 @@ pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagno
     let mut is_told = false;
     for Loose { id, dead } in all(graph) {
         let junction = &graph.junctions[id.0];
-        let mut read = model.signals.list().iter();
-        let is_read = read.any(|(_, place, _)| *place == Place::Junction(id));
-        if is_read || junction.own_name().starts_with('_') {
+        if is_read(model, Place::Junction(id)) || junction.own_name().starts_with('_') {
             continue;
         }
         let message = match junction.kind {
@@ -55,35 +55,48 @@ pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagno
 /// Warns of effort sources at nodes through which nothing flows, whatever the state, and whose effort nobody asks for.
 fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
-    let is_zero = |unknown: &usize| solved.solution.values[*unknown] == Expression::ZERO;
     for bond in &graph.bonds {
         let (End::OnePort(id), End::Junction(node, _)) = (&bond.from, &bond.to) else {
             continue;
         };
-        let element = &graph.elements[id.0];
-        let drives = matches!(&element.law, Law::Source(efforts) if efforts.iter().any(|it| *it != Expression::ZERO));
-        let mut read = model.signals.list().iter();
-        let is_read =
-            read.any(|(_, place, _)| [Place::Junction(*node), Place::Port(*id)].contains(place));
-        let is_idle = solved.scalars.ports[id].flow.iter().all(is_zero);
-        let at_node = graph.junctions[node.0].kind == JunctionKind::Zero;
-        if element.kind != ElementKind::Se || !drives || !at_node || !is_idle || is_read {
+        let asked = [Place::Junction(*node), Place::Port(*id)];
+        let is_asked = asked.into_iter().any(|place| is_read(model, place));
+        if is_asked || !is_driven(graph, *id, *node) || !is_idle(solved, *id) {
             continue;
         }
+        let element = &graph.elements[id.0];
         let span = graph.origins.span(element.origin);
-        let message = format!(
-            "nothing flows through `{}`, whatever the state",
-            element.name
-        );
+        let name = &element.name;
+        let message = format!("nothing flows through `{name}`, whatever the state");
         let report = error(codes::NO_EFFECT, span, message);
-        diagnostics.warn(match ground_of(graph, *node) {
-            Some(ground) => report.help(format!(
-                "if its circuit lacks a ground, {}",
-                holding(graph, ground)
-            )),
+        let ground = ground_of(graph, *node).map(|id| holding(graph, id));
+        diagnostics.warn(match ground {
+            Some(held) => report.help(format!("if its circuit lacks a ground, {held}")),
             None => report,
         });
     }
+}
+
+/// Whether a law or an output asks for an effort or a flow there.
+fn is_read(model: &Elaborated, asked: Place) -> bool {
+    let mut read = model.signals.list().iter();
+    read.any(|(_, place, _)| *place == asked)
+}
+
+/// Whether an effort source that is not zero drives a node.
+fn is_driven(graph: &BondGraph, source: ElementId, node: JunctionId) -> bool {
+    let element = &graph.elements[source.0];
+    let is_node = graph.junctions[node.0].kind == JunctionKind::Zero;
+    let is_zero = |efforts: &[Expression]| efforts.iter().all(|it| *it == Expression::ZERO);
+    is_node
+        && element.kind == ElementKind::Se
+        && matches!(&element.law, Law::Source(efforts) if !is_zero(efforts))
+}
+
+/// Whether the flow of a one-port is zero whatever the state.
+fn is_idle(solved: &Solved, id: ElementId) -> bool {
+    let mut flow = solved.scalars.ports[&id].flow.iter();
+    flow.all(|unknown| solved.solution.values[*unknown] == Expression::ZERO)
 }
 
 /// The last node beside one that no source holds.

@@ -102,14 +102,17 @@ fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
         if !is_open || !told.insert(ring.frame.clone()) {
             return None;
         }
-        let gap: Vec<String> = gap.iter().map(|it| format!("{it:.3}")).collect();
+        // Three digits of the distance, however small the machine.
+        let digits = (3.0 - far.log10().floor()).clamp(0.0, 12.0) as usize;
+        let gap: Vec<String> = gap.iter().map(|it| format!("{it:.digits$}")).collect();
         let ([first, second], frame) = (&ring.components, &ring.frame);
         let note = format!(
             "`{first}` and `{second}` do not meet at `{frame}` at the start: [{}] m are between them, which stay",
             gap.join(", ")
         );
         let help = format!(
-            "give its joints `initial` values that close it, or {}, which is closed at the start and after each step",
+            "give the joints of the ring `initial` values that close it, or put a `{}` in the place of one of them, which \
+             is closed at the start and after each step",
             ring.cut()
         );
         Some((ring.span, note, help))

@@ -148,10 +148,32 @@ fn a_ring_that_is_open_at_the_start_is_told() {
     };
     insta::assert_snapshot!(slider_crank("", "initial: 2.0"), @"
     8:17 `rod` and `wrist` do not meet at `end` at the start: [0.379, -2.524] m are between them, which stay [MBG0406]
-      help: give its joints `initial` values that close it, or put a `PlanarCut` in the place of a joint of the ring that `rod` and `wrist` close, which is closed at the start and after each step
+      help: give the joints of the ring `initial` values that close it, or put a `PlanarCut` in the place of one of them, which is closed at the start and after each step
     ");
     // To the digits that are typed: the rod goes down by asin(sin(1) / 2) to the line of the slide.
     assert_eq!(slider_crank(", initial: -1.4343", "initial: 2.3547"), "");
+}
+
+/// In space, and of a machine of micrometres, whose gap has as many digits.
+#[test]
+fn a_small_ring_in_space_that_is_open_is_told() {
+    let body = "Body { mass: 1e-9, inertia: 1e-18 }";
+    insta::assert_snapshot!(warned(&format!(
+        "#[derivative] model M {{
+            causality componentwise;
+            1 ground[6]; 1 crank[6]; 1 pin[6]; 1 rod[6]; 1 end[6]; 1 block[6];
+            Sf fixed[6] {{ flow: 0.0 }} -> ground;
+            hinge: Revolute {{ axis: 2, initial: 1.0 }} (ground, crank); a: {body} (crank);
+            throw: Mount {{ offset: [1e-5, 0.0, 0.0] }} (crank, pin);
+            big: Spherical {{}} (pin, rod); b: {body} (rod);
+            bar: Mount {{ offset: [2e-5, 0.0, 0.0] }} (rod, end);
+            slide: Prismatic {{ axis: 0, initial: 2e-5 }} (ground, block); c: {body} (block);
+            small: Spherical {{}} (block, end);
+        }}"
+    )), @"
+    8:13 `small` and `bar` do not meet at `end` at the start: [-0.00000379, 0.00002524, 0.00000000] m are between them, which stay [MBG0406]
+      help: give the joints of the ring `initial` values that close it, or put a `Cut` in the place of one of them, which is closed at the start and after each step
+    ");
 }
 
 #[test]

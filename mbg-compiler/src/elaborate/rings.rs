@@ -32,16 +32,12 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// What closes it.
-    pub(crate) fn cut(&self) -> String {
-        let cut = match self.dimension {
+    /// The component of the library that closes it.
+    pub(crate) fn cut(&self) -> &'static str {
+        match self.dimension {
             IN_SPACE => "Cut",
             _ => "PlanarCut",
-        };
-        let [first, second] = &self.components;
-        format!(
-            "put a `{cut}` in the place of a joint of the ring that `{first}` and `{second}` close"
-        )
+        }
     }
 }
 

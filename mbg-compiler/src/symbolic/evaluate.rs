@@ -1,5 +1,7 @@
 //! Numeric values at one point.
 
+use std::collections::BTreeMap;
+
 use super::expression::{Expression, Operation, Symbol};
 use super::implicit::{Kind, Method, Place};
 use super::pool::Pool;
@@ -8,6 +10,8 @@ use super::pool::Pool;
 pub struct Evaluation<'a> {
     symbol: &'a dyn Fn(Symbol) -> f64,
     known: Vec<Option<f64>>,
+    /// Unknowns of linear equations, by number of these.
+    solved: BTreeMap<usize, Vec<f64>>,
 }
 
 impl<'a> Evaluation<'a> {
@@ -17,6 +21,7 @@ impl<'a> Evaluation<'a> {
         Self {
             symbol,
             known: Vec::new(),
+            solved: BTreeMap::new(),
         }
     }
 
@@ -60,11 +65,17 @@ impl<'a> Evaluation<'a> {
     }
 
     /// One unknown of linear equations, of which all numbers are known.
-    fn of_equations(&self, pool: &Pool, place: Place) -> f64 {
+    fn of_equations(&mut self, pool: &Pool, place: Place) -> f64 {
+        if let Some(solved) = self.solved.get(&place.number) {
+            return solved[place.row];
+        }
         let implicit = &pool.implicit()[place.number];
         let numbers: Vec<f64> = implicit.evaluated().iter().map(|it| self.of(*it)).collect();
         let (right, matrix) = numbers.split_at(implicit.unknowns.len());
-        regular(right, matrix)[place.row]
+        let solved = regular(right, matrix);
+        let value = solved[place.row];
+        self.solved.insert(place.number, solved);
+        value
     }
 
     fn of_operation(&self, operation: &Operation) -> f64 {

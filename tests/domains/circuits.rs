@@ -1,8 +1,8 @@
 //! Circuits and a motor.
 
 use mbg_runtime::{
-    Adaptive, Constant, Dop853, Estimating, Input, Integrator, Pulse, Radau5, Rk4, Rodas4, Rodas5P,
-    Smooth, Statistics, System, Tsit5, mbg,
+    Adaptive, Cause, Constant, Dop853, Estimating, Input, Integrator, Pulse, Radau5, Rk4, Rodas4,
+    Rodas5P, Smooth, Statistics, Step, Stopped, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -54,6 +54,25 @@ mbg! {
         store: Capacitor { capacitance: 1e-3 } (plus, minus);
         load: Resistor { resistance: 10.0 } (plus, minus);
         output ends[2]: V = [a.e, b.e];
+    }
+
+    /// A bridge behind a coil, whose current it blocks while the source is low; a resistor lies beside it.
+    #[derivative]
+    pub(crate) model Choked {
+        causality componentwise;
+        param beside: ohm = 1e6;
+        0 source; 0 a; 0 b; 0 plus; 0 minus;
+        Se supply { effort: 10.0 * sin(314.0 * t) } -> source;
+        Se earth { effort: 0.0 } -> b;
+        coil: Inductor { inductance: 1e-3 } (source, a);
+        first: Diode { } (a, plus);
+        second: Diode { } (b, plus);
+        third: Diode { } (minus, a);
+        fourth: Diode { } (minus, b);
+        snubber: Resistor { resistance: beside } (a, b);
+        store: Capacitor { capacitance: 1e-4 } (plus, minus);
+        load: Resistor { resistance: 100.0 } (plus, minus);
+        output voltage: V = store.voltage;
     }
 
     /// A charged capacitor swings with a coil on the other side of a transformer.
@@ -489,4 +508,36 @@ fn a_bridge_of_diodes_is_solved_at_any_voltage() {
             }
         }
     }
+}
+
+/// A coil that a bridge blocks is held at no current within the saturation of the diodes, until a resistor lies beside them.
+#[test]
+fn a_bridge_behind_a_coil_wants_a_snubber() {
+    fn voltage<I: Integrator<2>>(integrator: I, beside: f64) -> Result<f64, Stopped> {
+        let model = Choked::<f64>::new(ChokedParameters { beside }).expect("regular");
+        let start = model.initial_state();
+        let mut last = start;
+        let observe = |step: &mut Step<'_, f64, 2>| last = *step.state();
+        integrator.integrate(&model, &(), 0.0, 0.05, start, observe)?;
+        Ok(model.output(0.05, &last, &SVector::zeros(), &mut Default::default())[0])
+    }
+    // By Kirchhoff's laws: current = voltage / beside + 2 saturation exp(-stored / 2 thermal) sinh(voltage / 2 thermal).
+    let known = 5.808_932_941;
+    for (found, error) in [
+        (voltage(Adaptive::new(Radau5, 1e-8, 1e-13), 1e6), 2e-9),
+        (voltage(Adaptive::new(Radau5, 1e-6, 1e-11), 1e6), 1e-6),
+        (voltage(Adaptive::new(Rodas5P, 1e-6, 1e-11), 1e6), 1e-6),
+    ] {
+        let found = found.expect("the snubber helps");
+        assert!((found - known).abs() < error, "{found}");
+    }
+    let few = Adaptive {
+        most: 20_000,
+        ..Adaptive::new(Radau5, 1e-6, 1e-9)
+    };
+    let stopped = voltage(few, 1e12).expect_err("held too sharply");
+    assert!(
+        matches!(stopped.cause, Cause::TooManySteps { next } if next < 1e-9),
+        "{stopped}"
+    );
 }

@@ -143,7 +143,8 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         loop {
             let taken = problem.statistics.steps;
             if taken.saturating_add(problem.statistics.rejected) >= self.most {
-                return Err(Stopped::new(t, Cause::TooManySteps));
+                let next = control.length.min(self.longest);
+                return Err(Stopped::new(t, Cause::TooManySteps { next }));
             }
             let (span, last) = next_span(t, end, control.length.min(self.longest))?;
             if watch.is_blind(problem, &span) {
@@ -506,7 +507,10 @@ mod tests {
             "{stopped}"
         );
         let stopped = run(Adaptive { most: 5, ..STRICT });
-        assert_eq!(stopped.cause, Cause::TooManySteps);
+        assert!(
+            matches!(stopped.cause, Cause::TooManySteps { next } if (1e-3..1.0).contains(&next)),
+            "{stopped}"
+        );
         assert!(matches!(
             run(Adaptive::new(Tsit5, 1e-6, 0.0)).cause,
             Cause::Argument(_)

@@ -92,8 +92,15 @@ pub enum Cause {
     },
     /// The step is so small that time does not advance by it; the problem is stiff or has a singularity there.
     StepTooSmall,
-    /// More steps than allowed.
-    TooManySteps,
+    /// More steps than allowed, see [`Adaptive::most`].
+    ///
+    /// Where the next step is short, an explicit method meets a stiff model, or a law holds its state where it jumps: a sliding
+    /// mode, dry friction without a width, a coil whose current diodes block. Let such a law rise over a small width, as
+    /// `tanh(v / width)` does, or a resistor beside the diodes.
+    TooManySteps {
+        /// The length that the next step would have, s.
+        next: f64,
+    },
     /// The stages of an implicit method were not found; a shorter step may help.
     Diverged,
     /// The guard of an event is not a number.
@@ -120,7 +127,11 @@ impl fmt::Display for Cause {
                 "the Jacobian is not finite: the derivative of `{of}` by `{by}`"
             ),
             Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
-            Self::TooManySteps => formatter.write_str("more steps than allowed"),
+            Self::TooManySteps { next } => write!(
+                formatter,
+                "more steps than allowed; the next is {next:.1e} s long, which a stiff model asks of an explicit method, and \
+                 a law that jumps where it holds its state asks of any"
+            ),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),
             Self::Guard => formatter.write_str("the guard of the event is not a number"),

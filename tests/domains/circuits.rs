@@ -532,7 +532,7 @@ fn a_bridge_behind_a_coil_wants_a_snubber() {
         assert!((found - known).abs() < error, "{found}");
     }
     let few = Adaptive {
-        most: 20_000,
+        most: 3_000,
         ..Adaptive::new(Radau5, 1e-6, 1e-9)
     };
     let stopped = voltage(few, 1e12).expect_err("held too sharply");

@@ -163,6 +163,18 @@ pub(crate) fn squares(matrix: &Matrix) -> Option<Vec<(f64, Vector)>> {
     nothing.then_some(found)
 }
 
+/// How far beside its centre a mass has an inertia that rounding may have left of zero, in m: some files write -5e-20 kg m².
+const EXTENT: f64 = 1e-8;
+
+/// An entry of the inertia of a mass, zero where no extent could be measured.
+pub(crate) fn measurable(entry: f64, mass: f64) -> f64 {
+    if entry.abs() <= mass * EXTENT * EXTENT {
+        0.0
+    } else {
+        entry
+    }
+}
+
 /// Mass, its centre, and the inertia about that centre, in axes of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {

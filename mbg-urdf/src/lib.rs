@@ -29,7 +29,8 @@
 //!   bodies, too.
 //! - Damping becomes that of the joint, dry friction a resistor `friction tanh(rate / slip)` beside it,
 //!   with `slide_slip` on slides.
-//! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, so that what is zero costs nothing.
+//! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, and inertias that the mass would have 1e-8 m
+//!   beside its centre for zero, so that what is zero costs nothing.
 //! - What shows or collides is left out. Every other tag without an equation is named with its line.
 
 mod geometry;

@@ -5,7 +5,7 @@ use std::fmt;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, rotation, squares};
+use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, measurable, rotation, squares};
 
 /// Something about a line of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -308,7 +308,9 @@ impl<'a> Reader<'a> {
         };
         let mass = self.number(mass, "value")?;
         let inertia = match child(node, "inertia") {
-            Some(tensor) => self.inertia(tensor)?,
+            Some(tensor) => self
+                .inertia(tensor)?
+                .map(|row| row.map(|it| measurable(it, mass))),
             None if mass == 0.0 => return Ok(None),
             None => return self.fail(node, "expected an `inertia` inside `inertial`"),
         };
@@ -327,6 +329,7 @@ impl<'a> Reader<'a> {
         Ok(Some(body.seen(&self.origin(node)?)))
     }
 
+    /// About the centre of mass, by rows.
     fn inertia(&self, node: Node<'a, 'a>) -> Checked<Matrix> {
         let number = |name: &str| match node.attribute(name) {
             Some(_) => self.number(node, name),

@@ -101,6 +101,36 @@ fn any_name_can_be_one_of_a_robot() {
     }
 }
 
+/// As of the robot iCub, whose drawing gave links a mass and what rounding left of no inertia.
+#[test]
+fn what_rounding_left_of_an_inertia_is_zero() {
+    let file = pendulum(["r", "slide", "hinge", "cart", "rod"]);
+    let rounded = "ixx=\"-5e-20\" ixy=\"1e-20\" iyy=\"4e-18\" izz=\"0\"";
+    let points = file.replace("ixx=\"1\" iyy=\"1\" izz=\"1\"", rounded);
+    assert_ne!(points, file);
+    assert!(
+        mbg_urdf::convert(&points, "r.urdf", None)
+            .unwrap()
+            .remarks
+            .is_empty()
+    );
+    assert_eq!(mistakes(&points), <[String; 0]>::default());
+    assert!(
+        mbg_urdf::convert(&points, "r.urdf", None)
+            .unwrap()
+            .text
+            .contains("PointMass")
+    );
+    // Of a mass of micrometres it would be what makes it a body.
+    let small = points.replace("<mass value=\"1\"/>", "<mass value=\"1e-9\"/>");
+    assert!(
+        !mbg_urdf::convert(&small, "r.urdf", None)
+            .unwrap()
+            .remarks
+            .is_empty()
+    );
+}
+
 #[test]
 fn dry_friction_may_be_on_hinges_and_on_slides() {
     let text = pendulum(["robot", "slide", "hinge", "cart", "rod"]);

@@ -521,3 +521,24 @@ fn a_name_given_twice_is_told_alone() {
                   n -> rs; output y = rs.e; }";
     assert_eq!(codes_of(values), ["MBG0202"]);
 }
+
+/// A joint or a body of the plane at frames in space is told what it is called there, and the other way round.
+#[test]
+fn components_are_told_by_their_names_in_the_other_space() {
+    let model = |dimension: usize, joint: &str, body: &str| {
+        format!(
+            "#[derivative] model M {{ 1 ground[{dimension}]; 1 b[{dimension}]; Sf held[{dimension}] {{ flow: 0.0 }} -> ground;
+             hinge: {joint} (ground, b); load: {body} {{ mass: 1.0, inertia: 0.1 }} (b); }}"
+        )
+    };
+    let [plane, space] = ["PlanarRevolute {}", "Revolute { axis: 2 }"];
+    let in_space = helps(&model(6, plane, "Body"), codes::WRONG_DIMENSION);
+    assert_eq!(in_space, ["write `Revolute`, which is for frames in space"]);
+    let in_plane = helps(&model(3, space, "PlanarBody"), codes::WRONG_DIMENSION);
+    assert_eq!(
+        in_plane,
+        ["write `PlanarRevolute`, which is for frames in a plane"]
+    );
+    compiles(&model(6, space, "Body"));
+    compiles(&model(3, plane, "PlanarBody"));
+}

@@ -24,7 +24,7 @@ use crate::syntax::{ast, dump};
 /// Components of a frame in space: those of its angular velocity, then those of its velocity.
 pub(super) const IN_SPACE: usize = 6;
 /// The same in a plane.
-const IN_PLANE: usize = 3;
+pub(super) const IN_PLANE: usize = 3;
 
 /// What a translation leaves as it is.
 const OF_AXES: [&str; 3] = [GRAVITY, "orientation", "angle"];

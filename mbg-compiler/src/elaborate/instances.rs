@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 
 use super::Builder;
 use super::conditions::no_word;
-use super::frames::LeftOut;
+use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
 use super::scope::{Entity, Scope};
 use super::unused::without_effect;
@@ -99,7 +99,13 @@ impl<'a> Builder<'a> {
                             let rate = self.rate_at(scope, id);
                             wrong_size(port, reference, size).help(of_a_frame(reference, rate))
                         }
-                        _ => wrong_size(port, reference, size),
+                        _ => {
+                            let report = wrong_size(port, reference, size);
+                            match counterpart(&component.name.to_string(), size) {
+                                Some(help) => report.help(help),
+                                None => report,
+                            }
+                        }
                     };
                     self.tell(scope, report);
                     Entity::Opaque
@@ -271,6 +277,17 @@ fn wrong_size(port: &ast::Port, reference: &ast::Reference, size: usize) -> Diag
     let text = dump::reference(reference);
     let message = format!("port `{name}` has dimension {dimension}, and `{text}` has {size}");
     error(codes::WRONG_DIMENSION, reference.span, message)
+}
+
+/// The component of the library that is in space what another is in a plane, or the other way round.
+fn counterpart(name: &str, size: usize) -> Option<String> {
+    let (other, frames) = match (name.strip_prefix("Planar"), size) {
+        (Some(other), IN_SPACE) => (other.to_owned(), "space"),
+        (None, IN_PLANE) => (format!("Planar{name}"), "a plane"),
+        _ => return None,
+    };
+    let is_known = library::names().any(|known| known == other);
+    is_known.then(|| format!("write `{other}`, which is for frames in {frames}"))
 }
 
 /// What to give a port for a shaft or a node in the place of a frame.

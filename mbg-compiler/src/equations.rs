@@ -44,6 +44,7 @@ pub struct Equation {
 }
 
 /// The scalar equations of a model.
+#[derive(Clone)]
 pub struct Scalars {
     /// Number of unknowns.
     pub unknowns: usize,

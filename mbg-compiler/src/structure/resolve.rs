@@ -58,8 +58,8 @@ pub fn resolve(
         return None;
     };
     let reduction = reduce(model, scalars, &selection, pool, diagnostics)?;
-    let scalars = reduction.scalars;
-    match formulation::cheapest(&scalars, pool) {
+    let (scalars, solution) = formulation::cheapest(reduction.orders, pool);
+    match solution {
         Ok(solution) => Some(Solved {
             scalars,
             solution,

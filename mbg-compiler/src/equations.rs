@@ -44,7 +44,6 @@ pub struct Equation {
 }
 
 /// The scalar equations of a model.
-#[derive(Clone)]
 pub struct Scalars {
     /// Number of unknowns.
     pub unknowns: usize,

@@ -6,7 +6,6 @@
 //! together as if no joint could move (composite bodies, Walker and Orin 1982), and all joints are released at the end,
 //! which costs less where few follow one another. So both are worked out and counted, unless many do.
 
-use super::levels::Orders;
 use super::{Failure, Solution, solve};
 use crate::equations::Scalars;
 use crate::symbolic::substitute::operations;
@@ -25,39 +24,21 @@ pub enum Formulation {
 /// and counting takes as long as solving.
 const FEW: usize = 6;
 
-/// Solves a reduced system in the order and by the formulation that take the fewest operations.
-pub(super) fn cheapest(
-    orders: Orders<Scalars>,
-    pool: &mut Pool,
-) -> (Scalars, Result<Solution, Failure>) {
-    // Equal functions are one node of a pool, so that each candidate needs its own.
-    let untouched = pool.clone();
-    let Orders { mut likely, other } = orders;
-    let mut taken = solve(&likely, Formulation::Articulated, pool);
-    let mut fewest = match &taken {
-        Ok(solution) => cost(&likely, solution, pool),
-        Err(_) => usize::MAX,
-    };
-    let first = likely.clone();
-    let candidates = [
-        (Some(first), Formulation::Composite),
-        (other.clone(), Formulation::Articulated),
-        (other, Formulation::Composite),
-    ];
-    for (scalars, formulation) in candidates {
-        let Some(scalars) = scalars else { continue };
-        let mut own = untouched.clone();
-        let is_counted =
-            formulation == Formulation::Articulated || (2..=FEW).contains(&scalars.deepest);
-        if is_counted
-            && let Ok(solution) = solve(&scalars, formulation, &mut own)
-            && cost(&scalars, &solution, &own) < fewest
-        {
-            fewest = cost(&scalars, &solution, &own);
-            (*pool, likely, taken) = (own, scalars, Ok(solution));
-        }
+/// Solves a reduced system by the formulation that takes fewer operations.
+pub(super) fn cheapest(scalars: &Scalars, pool: &mut Pool) -> Result<Solution, Failure> {
+    if !(2..=FEW).contains(&scalars.deepest) {
+        return solve(scalars, Formulation::Articulated, pool);
     }
-    (likely, taken)
+    // Equal functions are one node of a pool, so that each formulation needs its own.
+    let mut other = pool.clone();
+    let articulated = solve(scalars, Formulation::Articulated, pool)?;
+    if let Ok(composite) = solve(scalars, Formulation::Composite, &mut other)
+        && cost(scalars, &composite, &other) < cost(scalars, &articulated, pool)
+    {
+        *pool = other;
+        return Ok(composite);
+    }
+    Ok(articulated)
 }
 
 /// Operations of the independent rates.
@@ -111,7 +92,7 @@ mod tests {
         let lost = select(&elaborated, &scalars, &pool, &mut diagnostics).unwrap();
         let reduction =
             reduce(&mut elaborated, scalars, &lost, &mut pool, &mut diagnostics).unwrap();
-        (reduction.orders.likely, pool)
+        (reduction.scalars, pool)
     }
 
     /// The pool's images are equal if the functions are.
@@ -146,12 +127,7 @@ mod tests {
             cost(&scalars, &solution, &pool)
         });
         let mut pool = pool;
-        let orders = Orders {
-            likely: scalars,
-            other: None,
-        };
-        let (scalars, solution) = cheapest(orders, &mut pool);
-        let solution = solution.ok().unwrap();
+        let solution = cheapest(&scalars, &mut pool).ok().unwrap();
         assert_eq!(
             cost(&scalars, &solution, &pool),
             costs.into_iter().min().unwrap()

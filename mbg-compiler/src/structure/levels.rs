@@ -12,26 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::blocks;
 use crate::equations::{Owner, Scalars, Turn};
 
-/// Orders of elimination, each as something.
-pub struct Orders<T> {
-    /// The one that is the cheapest for most.
-    pub likely: T,
-    /// One that is the cheapest for some, if it is another.
-    pub other: Option<T>,
-}
-
-impl<T> Orders<T> {
-    /// The same orders as something else.
-    pub(super) fn map<R>(self, mut to: impl FnMut(T) -> R) -> Orders<R> {
-        Orders {
-            likely: to(self.likely),
-            other: self.other.map(to),
-        }
-    }
-}
-
-/// The turn of every unknown in each order that may be the cheapest; none for those that belong to the base. And the most
-/// independent rates from which one rate follows. `moved` are the co-energy variables of the lost states.
+/// The turn of every unknown; none for those that belong to the base. And the most independent rates from which one rate
+/// follows. `moved` are the co-energy variables of the lost states.
 #[must_use]
 pub(super) fn assign(
     scalars: &Scalars,
@@ -39,10 +21,37 @@ pub(super) fn assign(
     rate_of: &BTreeMap<usize, usize>,
     moved: &[usize],
     is_state: &dyn Fn(Owner) -> bool,
-) -> (Orders<Vec<Option<Turn>>>, usize) {
-    let dependence = Dependence::of(scalars, matched, rate_of, is_state);
-    let ranks = dependence.ranks(scalars, moved);
-    let turns = ranks.map(|rank| dependence.turns(scalars, rate_of, &rank));
+) -> (Vec<Option<Turn>>, usize) {
+    let dependence = Dependence::of(scalars, matched, rate_of, moved, is_state);
+    let mut turns = vec![None; scalars.unknowns];
+    for (unknown, rate) in rate_of {
+        turns[*rate] = dependence.turn(*unknown);
+    }
+    let multipliers: BTreeSet<usize> = scalars
+        .closures
+        .iter()
+        .flat_map(|closure| closure.multipliers.iter().copied())
+        .collect();
+    // The components of a vector stay together, so that no more of a frame is left than it has.
+    for wire in &scalars.wires {
+        for side in [0, 1] {
+            let rates = wire.iter().filter_map(|pair| rate_of.get(&pair[side]));
+            let mut common = None;
+            for rate in rates.clone() {
+                join_turns(&mut common, turns[*rate]);
+            }
+            for rate in rates {
+                join_turns(&mut turns[*rate], common);
+            }
+            for pair in wire
+                .iter()
+                .filter(|pair| !rate_of.contains_key(&pair[1 - side]))
+                .filter(|pair| !multipliers.contains(&pair[0]))
+            {
+                join_turns(&mut turns[pair[1 - side]], common);
+            }
+        }
+    }
     (turns, dependence.deepest())
 }
 
@@ -59,14 +68,10 @@ fn join_turns(place: &mut Option<Turn>, other: Option<Turn>) {
 
 /// Which independent rates each unknown's rate depends on, as sets of bits.
 struct Dependence {
-    /// Place of each unknown among those that follow.
-    place: BTreeMap<usize, usize>,
     /// Set and depth of each unknown.
-    sets: Vec<(Vec<u64>, usize)>,
-    /// The unknowns from which each follows, by place.
-    incidence: Vec<Vec<usize>>,
-    /// Number of independent rates.
-    independent: usize,
+    sets: BTreeMap<usize, (Vec<u64>, usize)>,
+    /// Level of each independent rate.
+    rank: Vec<usize>,
 }
 
 impl Dependence {
@@ -74,6 +79,7 @@ impl Dependence {
         scalars: &Scalars,
         matched: &BTreeMap<usize, usize>,
         rate_of: &BTreeMap<usize, usize>,
+        moved: &[usize],
         is_state: &dyn Fn(Owner) -> bool,
     ) -> Self {
         let unknowns: Vec<usize> = rate_of.keys().copied().collect();
@@ -106,115 +112,38 @@ impl Dependence {
                 sets[member] = (set.clone(), depth);
             }
         }
-        Self {
-            place,
-            sets,
-            incidence,
-            independent,
-        }
-    }
-
-    /// The level of each independent rate: one on which the body that it moves with the fewest others depends is as far from
-    /// the base as these are many.
-    ///
-    /// A component of a storage may depend on fewer than its body does. By these a base that flies is released before what
-    /// turns about one of its axes, which takes fewer operations for some rotors, and many more for most robots.
-    fn ranks(&self, scalars: &Scalars, moved: &[usize]) -> Orders<Vec<usize>> {
-        let mut weight = vec![0usize; self.independent];
-        for (set, _) in &self.sets {
+        let mut weight = vec![0usize; independent];
+        for (set, _) in &sets {
             members(set).for_each(|k| weight[k] += 1);
         }
-        let components: Vec<Vec<u64>> = self.sets.iter().map(|(set, _)| set.clone()).collect();
-        let junctions = self.junctions(scalars);
-        let mut bodies = junctions.clone();
-        for (body, read) in bodies.iter_mut().zip(&self.incidence) {
-            read.iter().for_each(|other| join(body, &junctions[*other]));
-        }
-        let [likely, other] = [bodies, components].map(|sets| self.rank(&sets, &weight, moved));
-        let other = (other != likely).then_some(other);
-        Orders { likely, other }
-    }
-
-    fn rank(&self, sets: &[Vec<u64>], weight: &[usize], moved: &[usize]) -> Vec<usize> {
-        let mut company = vec![usize::MAX; self.independent];
-        let places = moved.iter().filter_map(|unknown| self.place.get(unknown));
-        for set in places.map(|place| &sets[*place]) {
+        // A rate on which the storage that it moves with the fewest others depends is as far from the base as these are
+        // many.
+        let mut company = vec![usize::MAX; independent];
+        let places = moved.iter().filter_map(|unknown| place.get(unknown));
+        for (set, _) in places.map(|place| &sets[*place]) {
             let size = members(set).count();
             members(set).for_each(|k| company[k] = company[k].min(size));
         }
-        let mut order: Vec<usize> = (0..self.independent).collect();
+        let mut order: Vec<usize> = (0..independent).collect();
         order.sort_by_key(|k| (Reverse(company[*k]), weight[*k], Reverse(*k)));
-        let mut rank = vec![0; self.independent];
+        let mut rank = vec![0; independent];
         for (level, k) in order.into_iter().enumerate() {
             rank[k] = level;
         }
-        rank
-    }
-
-    /// For each rate what any component of its junction depends on. What only translates a body moves it as well as what
-    /// turns it, though no angular velocity depends on it.
-    fn junctions(&self, scalars: &Scalars) -> Vec<Vec<u64>> {
-        let mut whole: Vec<Vec<u64>> = self.sets.iter().map(|(set, _)| set.clone()).collect();
-        for junction in &scalars.common {
-            let places = junction
-                .iter()
-                .filter_map(|unknown| self.place.get(unknown));
-            let mut common = Vec::new();
-            for place in places.clone() {
-                join(&mut common, &self.sets[*place].0);
-            }
-            places.for_each(|place| join(&mut whole[*place], &common));
+        Self {
+            sets: unknowns.into_iter().zip(sets).collect(),
+            rank,
         }
-        whole
     }
 
     fn deepest(&self) -> usize {
-        let sizes = self.sets.iter().map(|(set, _)| members(set).count());
+        let sizes = self.sets.values().map(|(set, _)| members(set).count());
         sizes.max().unwrap_or(0)
     }
 
-    /// The turns of all unknowns, given the level of each independent rate.
-    fn turns(
-        &self,
-        scalars: &Scalars,
-        rate_of: &BTreeMap<usize, usize>,
-        rank: &[usize],
-    ) -> Vec<Option<Turn>> {
-        let mut turns = vec![None; scalars.unknowns];
-        for (unknown, rate) in rate_of {
-            turns[*rate] = self.turn(rank, *unknown);
-        }
-        let multipliers: BTreeSet<usize> = scalars
-            .closures
-            .iter()
-            .flat_map(|closure| closure.multipliers.iter().copied())
-            .collect();
-        // The components of a vector stay together, so that no more of a frame is left than it has.
-        for wire in &scalars.wires {
-            for side in [0, 1] {
-                let rates = wire.iter().filter_map(|pair| rate_of.get(&pair[side]));
-                let mut common = None;
-                for rate in rates.clone() {
-                    join_turns(&mut common, turns[*rate]);
-                }
-                for rate in rates {
-                    join_turns(&mut turns[*rate], common);
-                }
-                for pair in wire
-                    .iter()
-                    .filter(|pair| !rate_of.contains_key(&pair[1 - side]))
-                    .filter(|pair| !multipliers.contains(&pair[0]))
-                {
-                    join_turns(&mut turns[pair[1 - side]], common);
-                }
-            }
-        }
-        turns
-    }
-
-    fn turn(&self, rank: &[usize], unknown: usize) -> Option<Turn> {
-        let (set, depth) = &self.sets[self.place[&unknown]];
-        let level = members(set).map(|k| rank[k]).min()?;
+    fn turn(&self, unknown: usize) -> Option<Turn> {
+        let (set, depth) = &self.sets[&unknown];
+        let level = members(set).map(|k| self.rank[k]).min()?;
         Some(Turn {
             level,
             depth: *depth,

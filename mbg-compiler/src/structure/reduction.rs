@@ -8,7 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::levels::{self, Orders};
+use super::levels;
 use super::matching;
 use super::refused::{apart, report_input, report_second_derivative, report_unmoved};
 use super::selection::{Lost, Selection};
@@ -25,8 +25,8 @@ use crate::symbolic::{
 
 /// What replaces the lost states.
 pub struct Reduction {
-    /// The extended equations, in each order of elimination that may be the cheapest.
-    pub orders: Orders<Scalars>,
+    /// The extended equations.
+    pub scalars: Scalars,
     /// Momentum or displacement of each lost state, in signals.
     pub momenta: BTreeMap<usize, Expression>,
 }
@@ -65,10 +65,10 @@ pub fn reduce(
     if diagnostics.list().len() > before {
         return None;
     }
-    let orders = reducer.orders(model, &matched, &selection.lost, &inverses);
+    reducer.order(model, &matched, &selection.lost, &inverses);
     reducer.state_rates(model);
     Some(Reduction {
-        orders,
+        scalars: reducer.scalars,
         momenta: reducer.momenta,
     })
 }
@@ -498,14 +498,14 @@ impl Reducer<'_> {
         }
     }
 
-    /// The equations on their levels, in each order of elimination.
-    fn orders(
+    /// Puts unknowns and equations on their levels.
+    fn order(
         &mut self,
         model: &Elaborated,
         matched: &BTreeMap<usize, usize>,
         lost: &[Lost],
         inverses: &BTreeMap<ElementId, Inverse>,
-    ) -> Orders<Scalars> {
+    ) {
         let is_state = |owner| match owner {
             Owner::Coordinate(..) => true,
             Owner::Element(id, _) => {
@@ -517,32 +517,12 @@ impl Reducer<'_> {
             .iter()
             .map(|lost| self.coenergy(model, lost.element, lost.component))
             .collect();
-        let (orders, deepest) =
+        let (mut turns, deepest) =
             levels::assign(&self.scalars, matched, &self.rate_of, &moved, &is_state);
-        self.scalars.deepest = deepest;
-        self.scalars.rate_of = self.rate_of.clone();
-        let pool = &mut *self.pool;
-        let definite = inverses
-            .values()
-            .all(|inverse| is_definite(model, &inverse.matrix, pool));
-        orders.map(|mut turns| {
-            for unknown in self.known_beforehand(matched, &turns) {
-                turns[unknown] = None;
-            }
-            self.on_levels(model, lost, turns, definite)
-        })
-    }
-
-    /// The equations on the levels of what they are about.
-    fn on_levels(
-        &mut self,
-        model: &Elaborated,
-        lost: &[Lost],
-        turns: Vec<Option<Turn>>,
-        definite: bool,
-    ) -> Scalars {
-        let mut scalars = self.scalars.clone();
-        for equation in &mut scalars.equations {
+        for unknown in self.known_beforehand(matched, &turns) {
+            turns[unknown] = None;
+        }
+        for equation in &mut self.scalars.equations {
             let about = equation
                 .about
                 .iter()
@@ -550,9 +530,14 @@ impl Reducer<'_> {
             let rate = equation.rate.as_ref().or(about);
             equation.level = rate.and_then(|rate| turns[*rate]).map(|turn| turn.level);
         }
-        scalars.independent = self.independent(model, lost, &turns, definite);
-        scalars.turns = turns;
-        scalars
+        let pool = &mut *self.pool;
+        let definite = inverses
+            .values()
+            .all(|inverse| is_definite(model, &inverse.matrix, pool));
+        self.independent(model, lost, &turns, definite);
+        self.scalars.turns = turns;
+        self.scalars.deepest = deepest;
+        self.scalars.rate_of = self.rate_of.clone();
     }
 
     /// Efforts that follow from the states alone and divide by nothing that varies, each after those from which it
@@ -597,8 +582,7 @@ impl Reducer<'_> {
         lost: &[Lost],
         turns: &[Option<Turn>],
         definite: bool,
-    ) -> BTreeMap<usize, Independent> {
-        let mut found = BTreeMap::new();
+    ) {
         for (number, state) in model.states.iter().enumerate() {
             let (unknown, imposed) = match state.rate {
                 StateRate::Unknown(flow) => (self.rate_of.get(&flow).copied(), flow),
@@ -625,9 +609,9 @@ impl Reducer<'_> {
                 },
                 StateRate::Expression(_) => continue,
             };
-            found.insert(level, Independent { unknown, inertia });
+            let independent = Independent { unknown, inertia };
+            self.scalars.independent.insert(level, independent);
         }
-        found
     }
 
     /// Lost storages on the level of a coordinate.

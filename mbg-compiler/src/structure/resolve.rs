@@ -58,8 +58,8 @@ pub fn resolve(
         return None;
     };
     let reduction = reduce(model, scalars, &selection, pool, diagnostics)?;
-    let (scalars, solution) = formulation::cheapest(reduction.orders, pool);
-    match solution {
+    let scalars = reduction.scalars;
+    match formulation::cheapest(&scalars, pool) {
         Ok(solution) => Some(Solved {
             scalars,
             solution,

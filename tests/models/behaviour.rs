@@ -1,7 +1,7 @@
 //! Small models against closed forms.
 
-use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System, mbg};
-use nalgebra::SVector;
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Radau5, System, mbg};
+use nalgebra::{SMatrix, SVector};
 
 use crate::dc_motor::{Motor, MotorParameters, REFERENCE, brake, error};
 
@@ -150,4 +150,36 @@ fn a_storage_that_follows_from_another_is_told() {
     let output = model.output(0.0, &x, &u, &mut ());
     assert!(f64::abs(output[0] - 3.0 * 4.0 * 2.5) < 1e-13);
     assert!(f64::abs(output[1] - 3.0 * 4.0 * acceleration) < 1e-14);
+}
+
+mbg! {
+    /// A ball over a floor after Hertz, with the damping of Tsuji, Tanaka and Ishida, Powder Technology 71 (1992), whose
+    /// slope is infinite where the contact begins.
+    pub(crate) model Dropped {
+        1 upwards {
+            I ball { inertia: 0.5, initial_flow: -1.0 }
+            C floor { effort: -1e5 * pow(max(-q, 0.0), 1.5), initial: 0.05 }
+            R loss { effort: 3.0 * pow(max(-floor.q, 0.0), 0.25) * f }
+            Se weight { effort: -4.905 }
+        }
+    }
+}
+
+/// Above the floor nothing depends on the height, whatever slope the laws have at the contact.
+#[test]
+fn a_ball_falls_on_a_floor() {
+    let model = Dropped::new(DroppedParameters::default()).unwrap();
+    let start = model.initial_state();
+    let nothing = SVector::zeros();
+    let falling = model.jacobian_state(0.0, &start, &nothing, &mut ());
+    assert_eq!(falling, SMatrix::from([[0.0, 2.0], [0.0, 0.0]]));
+    let mut ends = [start; 2];
+    Adaptive::new(Dop853, 1e-10, 1e-12)
+        .integrate(&model, &(), 0.0, 0.5, start, |step| ends[0] = *step.state())
+        .unwrap();
+    Adaptive::new(Radau5, 1e-10, 1e-12)
+        .integrate(&model, &(), 0.0, 0.5, start, |step| ends[1] = *step.state())
+        .unwrap();
+    assert!((ends[0] - ends[1]).norm() < 1e-8, "{ends:?}");
+    assert!(model.energy(0.0, &ends[0]) < model.energy(0.0, &start));
 }

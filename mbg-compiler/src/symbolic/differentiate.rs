@@ -7,7 +7,7 @@ use super::implicit::Method;
 use super::linear::Linear;
 use super::matrix::Matrix;
 use super::pool::{Definition, Pool};
-use super::substitute::symbols;
+use super::substitute::{replace, symbols};
 use super::walk::Rewritten;
 
 /// Differentiates along one direction and remembers what it has done.
@@ -255,8 +255,39 @@ fn call_rule(
         _ if inner == Expression::ZERO => Expression::ZERO,
         _ => {
             let outer = outer(pool, whole, function, arguments[0]);
-            pool.multiply(outer, inner)
+            chain(pool, outer, inner)
         }
+    }
+}
+
+/// `outer inner`, zero wherever a choice makes the inner derivative zero: there the outer one may be infinite, as that of the
+/// root of `max(x, 0)` is.
+fn chain(pool: &mut Pool, outer: Expression, inner: Expression) -> Expression {
+    let Some((choice, [a, b, yes, no])) = vanishing(pool, inner) else {
+        return pool.multiply(outer, inner);
+    };
+    let chosen = if yes == Expression::ZERO { no } else { yes };
+    let inner = replace(pool, inner, &[(choice, chosen)]).unwrap_or(inner);
+    let product = pool.multiply(outer, inner);
+    if yes == Expression::ZERO {
+        select(pool, a, b, yes, product)
+    } else {
+        select(pool, a, b, product, no)
+    }
+}
+
+/// A factor that is a choice between something and zero, with what it compares and chooses from.
+fn vanishing(pool: &Pool, product: Expression) -> Option<(Expression, [Expression; 4])> {
+    match pool.operation(product) {
+        Operation::Multiply(a, b) => vanishing(pool, *a).or_else(|| vanishing(pool, *b)),
+        Operation::Divide(a, _) => vanishing(pool, *a),
+        Operation::Call(Function::SelectLess, arguments) => {
+            let arguments: [Expression; 4] = arguments[..].try_into().ok()?;
+            arguments[2..]
+                .contains(&Expression::ZERO)
+                .then(|| (product.magnitude(), arguments))
+        }
+        _ => None,
     }
 }
 
@@ -294,10 +325,8 @@ fn power_rule(
 ) -> Expression {
     let before = pool.subtract(exponent, Expression::ONE);
     let slope = pool.real_power(base, before).unwrap_or(Expression::ZERO);
-    let factors = [exponent, slope, known.of(base)];
-    let by_base = factors
-        .into_iter()
-        .fold(Expression::ONE, |a, b| pool.multiply(a, b));
+    let outer = pool.multiply(exponent, slope);
+    let by_base = chain(pool, outer, known.of(base));
     if known.of(exponent) == Expression::ZERO {
         return by_base;
     }
@@ -359,6 +388,26 @@ mod tests {
         let slope = Differentiator::new(Symbol::State(0)).derivative(&mut pool, tangent);
         let square = pool.multiply(tangent, tangent);
         assert_eq!(slope, pool.add(Expression::ONE, square));
+    }
+
+    /// Below zero `max(x, 0)` does not change, whatever slope the functions of it have there.
+    #[test]
+    fn infinite_slopes_of_what_does_not_change_are_left_out() {
+        let mut pool = Pool::new();
+        let x = pool.symbol(Symbol::State(0));
+        let above = pool.call(Function::Max, &[x, Expression::ZERO]);
+        let twice = pool.add(above, above);
+        let root = pool.call(Function::Sqrt, &[twice]);
+        let quarter = pool.literal("0.25").unwrap();
+        let power = pool.real_power(above, quarter).unwrap();
+        for function in [root, power] {
+            let slope = Differentiator::new(Symbol::State(0)).derivative(&mut pool, function);
+            let Operation::Call(Function::SelectLess, arguments) = pool.operation(slope) else {
+                panic!("{:?}", pool.operation(slope));
+            };
+            assert_eq!(arguments[..2], [Expression::ZERO, x]);
+            assert_eq!(arguments[3], Expression::ZERO);
+        }
     }
 
     #[test]

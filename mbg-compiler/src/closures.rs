@@ -5,6 +5,8 @@
 //! with the states that are velocities or momenta. That the one is the derivative of the other is proven here, for
 //! every state. Errors: `MBG0309`.
 
+use std::collections::BTreeMap;
+
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, StateRate};
@@ -108,6 +110,49 @@ pub fn positions(
         values,
         closures: displacements.iter().map(|(number, _, _)| *number).collect(),
     }
+}
+
+/// Groups of displacements whose Jacobian has a rank of its own where all loops are closed, which `new` finds.
+#[derive(Clone, Debug, Default)]
+pub struct Ranks {
+    /// The displacements of each group; the first has all of them.
+    pub groups: Vec<Vec<usize>>,
+    /// The group of the multipliers that a definition of the pool solves for, by its number.
+    pub of: BTreeMap<usize, usize>,
+}
+
+/// The groups of those multipliers that are solved together, as far as each has a displacement.
+#[must_use]
+pub fn ranks(
+    scalars: &Scalars,
+    displacements: &[(usize, usize, Expression)],
+    pool: &Pool,
+) -> Ranks {
+    let multiplier =
+        |number: usize, component: usize| scalars.closures[number].multipliers[component];
+    let rows: BTreeMap<usize, usize> = displacements
+        .iter()
+        .enumerate()
+        .map(|(row, (number, component, _))| (multiplier(*number, *component), row))
+        .collect();
+    let mut ranks = Ranks::default();
+    if !displacements.is_empty() {
+        ranks.groups.push((0..displacements.len()).collect());
+    }
+    for (number, implicit) in pool.implicit().iter().enumerate() {
+        let unknowns = implicit.unknowns.iter();
+        let group: Option<Vec<usize>> = unknowns.map(|it| rows.get(it).copied()).collect();
+        let Some(group) = group.filter(|it| !it.is_empty()) else {
+            continue;
+        };
+        let known = ranks.groups.iter().position(|it| *it == group);
+        let place = known.unwrap_or(ranks.groups.len());
+        if known.is_none() {
+            ranks.groups.push(group);
+        }
+        ranks.of.insert(number, place);
+    }
+    ranks
 }
 
 /// Leaves of derivatives by the entries of attitudes what is along them: a matrix X of orthonormal rows stays one to

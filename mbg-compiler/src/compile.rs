@@ -46,6 +46,8 @@ pub struct Compiled {
     pub attitudes: Vec<Vec<Vec<usize>>>,
     /// The closure behind each residual of positions and of flows.
     pub closed: [Vec<usize>; 2],
+    /// Whose ranks `new` finds.
+    pub ranks: closures::Ranks,
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
     pub checks: Vec<Check>,
     /// Names of storages that the drawing puts into derivative causality.
@@ -234,6 +236,7 @@ fn finish(
         loops: loops(&model, scalars, solution),
         eliminated: eliminated.collect(),
         attitudes,
+        ranks: closures::ranks(scalars, &answers.displacements, &pool),
         closed: [positions.closures, flows.closures],
         checks,
         dependent: verdict.dependent,

@@ -4,7 +4,7 @@ pub use core;
 pub use nalgebra::{SMatrix, SVector};
 
 pub use crate::solve::ITERATIONS;
-use crate::solve::project;
+use crate::solve::project_of_rank;
 pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
     Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
@@ -71,29 +71,53 @@ pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
 
 /// How far a projection goes: in units of precision and of what the states contribute to a residual, but at least one.
 const CLOSED: f64 = 16.0;
+/// By how much more it may stay open where constraints are redundant: what is left of them by rounding of the positions has
+/// no correction. States that are only looked at may, too.
+const NEARLY: f64 = 64.0;
 
-/// Projects a state onto residuals, whose closures are numbered in `closures`.
+/// The size that rounding has in residuals with this Jacobian, in units of precision.
+fn size<T: Real, const M: usize, const N: usize>(
+    x: &SVector<T, N>,
+    jacobian: &SMatrix<T, M, N>,
+) -> f64 {
+    (0..M).fold(1.0, |largest: f64, row| {
+        let terms = (0..N).map(|state| (jacobian[(row, state)] * x[state]).magnitude());
+        largest.max(terms.sum())
+    })
+}
+
+/// Ranks of the Jacobian of residuals where they are zero, near `start`: of groups of them.
+pub fn ranks<T: Real, const M: usize, const N: usize, const B: usize>(
+    start: SVector<T, N>,
+    groups: [&[usize]; B],
+    evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+) -> [T; B] {
+    let tolerance = NEARLY * CLOSED * T::EPSILON * size(&start, &evaluate(&start).1);
+    crate::solve::ranks(&start, tolerance, groups, evaluate)
+}
+
+/// Projects a state onto residuals, whose closures are numbered in `closures`, with a Jacobian of this rank at most.
 pub fn close<T: Real, const M: usize, const N: usize>(
     meta: &Meta,
     closures: &[usize; M],
     x: SVector<T, N>,
     held: &[usize],
+    rank: T,
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Result<SVector<T, N>, Trouble> {
-    let jacobian = evaluate(&x).1;
-    let largest = (0..M).fold(1.0, |largest: f64, row| {
-        let terms = (0..N).map(|state| (jacobian[(row, state)] * x[state]).magnitude());
-        largest.max(terms.sum())
-    });
-    let tolerance = CLOSED * T::EPSILON * largest;
-    let found = project(x, tolerance, |x| {
+    let tolerance = CLOSED * T::EPSILON * size(&x, &evaluate(&x).1);
+    let found = project_of_rank(x, tolerance, rank, |x| {
         let (residuals, mut jacobian) = evaluate(x);
         for state in held.iter().filter(|state| **state < N) {
             jacobian.column_mut(*state).fill(T::from_f64(0.0));
         }
         (residuals, jacobian)
     });
-    if found.converged {
+    let nearly = T::from_f64(NEARLY * tolerance);
+    let missing = T::from_f64(M as f64) - rank;
+    let zero = T::from_f64(0.0);
+    let redundant = found.residual.select_less(nearly, missing, zero);
+    if found.converged || redundant.find(|lane| lane <= 0.0).is_none() {
         return Ok(found.point);
     }
     let closure = closures.get(found.worst).copied().unwrap_or(0);

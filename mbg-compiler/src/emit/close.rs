@@ -14,11 +14,23 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     }
     let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
     let attitudes: Vec<TokenStream> = compiled.attitudes.iter().map(|it| attitude(it)).collect();
-    let projections = [Routines::CLOSED_POSITIONS, Routines::CLOSED_FLOWS]
-        .into_iter()
-        .zip(&compiled.closed)
-        .filter(|(_, closed)| !closed.is_empty())
-        .map(|(routine, closed)| projection(compiled, &attitudes, routine, closed));
+    let memory = quote!(Self::Memory);
+    let positions = (!compiled.closed[0].is_empty()).then(|| {
+        let rank = rank(compiled, 0);
+        let evaluated = quote!(|x: &::mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, held));
+        projection(&compiled.closed[0], &rank, &evaluated)
+    });
+    let flows = (!compiled.closed[1].is_empty()).then(|| {
+        let body = residuals(compiled, &attitudes, Routines::CLOSED_FLOWS, &memory);
+        // Flows are as dependent as positions are.
+        let rank = if compiled.closed[0] == compiled.closed[1] {
+            rank(compiled, 0)
+        } else {
+            full(compiled.closed[1].len())
+        };
+        let evaluated = quote!(|x: &::mbg_runtime::__private::SVector<T, #n>| { #body });
+        projection(&compiled.closed[1], &rank, &evaluated)
+    });
     Some(quote! {
         fn close(
             &self,
@@ -27,7 +39,8 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             u: &::mbg_runtime::__private::SVector<T, #m>,
             held: &[usize],
         ) -> ::core::result::Result<::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::Trouble> {
-            #(#projections)*
+            #positions
+            #flows
             #(#attitudes)*
             ::core::result::Result::Ok(x)
         }
@@ -43,34 +56,120 @@ fn attitude(rows: &[Vec<usize>]) -> TokenStream {
     quote!(let x = ::mbg_runtime::__private::orthonormal(x, &[#(#rows),*], held);)
 }
 
-/// Projects onto the residuals of a routine, which are those of the closures given. They are looked at where every
-/// attitude is a rotation, so that what makes it one in the end opens no loop.
-fn projection(
+/// Projects onto residuals, which are those of the closures given.
+fn projection(closed: &[usize], rank: &TokenStream, evaluated: &TokenStream) -> TokenStream {
+    let closures = closed.iter().copied().map(Literal::usize_suffixed);
+    quote! {
+        let x = ::mbg_runtime::__private::close(
+            Self::META, &[#(#closures),*], x, held, #rank, #evaluated,
+        )?;
+    }
+}
+
+/// What a routine's residuals are, with their derivatives. They are looked at where every attitude is a rotation, so that
+/// what makes it one in the end opens no loop.
+fn residuals(
     compiled: &Compiled,
     attitudes: &[TokenStream],
     routine: usize,
-    closed: &[usize],
+    memory: &TokenStream,
 ) -> TokenStream {
-    let n = Literal::usize_suffixed(compiled.states.len());
     let program = &compiled.program.routines[routine];
     let (steps, results) = lines(compiled, program, Setting::Method);
-    let (values, jacobian) = results.split_at(closed.len());
-    let size = Literal::usize_suffixed(closed.len());
-    let closures = closed.iter().copied().map(Literal::usize_suffixed);
-    let memory = cold_memory(compiled, routine);
+    let count = compiled.closed[routine - Routines::CLOSED_POSITIONS].len();
+    let (values, jacobian) = results.split_at(count);
+    let [size, n] = [count, compiled.states.len()].map(Literal::usize_suffixed);
+    let memory = cold_memory(compiled, routine, memory);
     let rotations = (!attitudes.is_empty()).then(|| quote!(let x = *x; #(#attitudes)* let x = &x;));
     quote! {
-        let x = ::mbg_runtime::__private::close(
-            Self::META, &[#(#closures),*], x, held,
-            |x: &::mbg_runtime::__private::SVector<T, #n>| {
-                #rotations
-                #memory
-                #steps
-                (
-                    ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
-                    ::mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
-                )
-            },
-        )?;
+        #rotations
+        #memory
+        #steps
+        (
+            ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
+            ::mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
+        )
     }
+}
+
+/// The positions' residuals as a method of the type.
+pub(super) fn positions(compiled: &Compiled) -> Option<TokenStream> {
+    let count = compiled.closed[0].len();
+    if count == 0 {
+        return None;
+    }
+    let [n, m, p, size] = [
+        compiled.states.len(),
+        compiled.model.inputs.len(),
+        compiled.model.outputs.len(),
+        count,
+    ]
+    .map(Literal::usize_suffixed);
+    let attitudes: Vec<TokenStream> = compiled.attitudes.iter().map(|it| attitude(it)).collect();
+    let memory = quote!(<Self as ::mbg_runtime::System<T, #n, #m, #p>>::Memory);
+    let body = residuals(compiled, &attitudes, Routines::CLOSED_POSITIONS, &memory);
+    Some(quote! {
+        #[inline]
+        fn closed_positions(
+            &self,
+            t: T,
+            x: &::mbg_runtime::__private::SVector<T, #n>,
+            u: &::mbg_runtime::__private::SVector<T, #m>,
+            held: &[usize],
+        ) -> (
+            ::mbg_runtime::__private::SVector<T, #size>,
+            ::mbg_runtime::__private::SMatrix<T, #size, #n>,
+        ) {
+            #body
+        }
+    })
+}
+
+/// What `new` finds of the ranks, once all else of the model is there.
+pub(super) fn ranks(compiled: &Compiled) -> Option<TokenStream> {
+    let groups = &compiled.ranks.groups;
+    if groups.is_empty() {
+        return None;
+    }
+    let [n, m, p] = [
+        compiled.states.len(),
+        compiled.model.inputs.len(),
+        compiled.model.outputs.len(),
+    ]
+    .map(Literal::usize_suffixed);
+    let places = (0..groups.len()).map(|group| place(compiled, group));
+    let found = (0..groups.len()).map(Literal::usize_suffixed);
+    let groups = groups.iter().map(|group| {
+        let rows = group.iter().copied().map(Literal::usize_suffixed);
+        quote!(&[#(#rows),*][..])
+    });
+    Some(quote! {
+        let u = ::mbg_runtime::__private::SVector::<T, #m>::from_element(T::from_f64(0.0));
+        let ranks = ::mbg_runtime::__private::ranks(
+            <Self as ::mbg_runtime::System<T, #n, #m, #p>>::initial_state(&model),
+            [#(#groups),*],
+            |x| model.closed_positions(T::from_f64(0.0), x, &u, &[]),
+        );
+        #(model.folded[#places] = ranks[#found];)*
+    })
+}
+
+/// Ranks before `new` has found them: full ones.
+pub(super) fn unknown_ranks(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
+    compiled.ranks.groups.iter().map(|group| full(group.len()))
+}
+
+fn full(rank: usize) -> TokenStream {
+    let rank = Literal::f64_suffixed(rank as f64);
+    quote!(T::from_f64(#rank))
+}
+
+/// The rank of a group, where a method reads it: behind all that is folded.
+pub(super) fn rank(compiled: &Compiled, group: usize) -> TokenStream {
+    let place = place(compiled, group);
+    quote!(self.folded[#place])
+}
+
+fn place(compiled: &Compiled, group: usize) -> Literal {
+    Literal::usize_suffixed(compiled.program.folded.results.len() + group)
 }

@@ -396,9 +396,16 @@ impl<'a> Writer<'a> {
             Kind::Semidefinite => (quote!(Semidefinite), quote!(symmetric)),
             Kind::Regular => (quote!(Regular), quote!(sparse)),
         };
+        let (new, rank) = match self.compiled.ranks.of.get(&solve.number) {
+            Some(group) => (
+                quote!(of_rank),
+                Some(super::close::rank(self.compiled, *group)),
+            ),
+            None => (quote!(new), None),
+        };
         quote! {
-            let #factors = ::mbg_runtime::solve::#factorised::<T, #size>::new(
-                ::mbg_runtime::__private::#matrix(&[#(#entries),*])
+            let #factors = ::mbg_runtime::solve::#factorised::<T, #size>::#new(
+                ::mbg_runtime::__private::#matrix(&[#(#entries),*]), #rank
             );
             let #unknowns = #factors.solution(&#right);
         }

@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::close::close;
+use super::close::{self, close};
 use super::routine::{Setting, Writer, lines, written_lines};
 use super::tokens::block;
 use super::{jacobians, meta, parameters, sparsity};
@@ -25,7 +25,8 @@ fn structure(compiled: &Compiled) -> TokenStream {
     let model = &compiled.model;
     let (visibility, name, documentation) = (&model.visibility, &model.name, &model.documentation);
     let parameters = format_ident!("{}Parameters", name);
-    let folded = Literal::usize_suffixed(compiled.program.folded.results.len());
+    let folded = compiled.program.folded.results.len() + compiled.ranks.groups.len();
+    let folded = Literal::usize_suffixed(folded);
     let summary = meta::documentation(compiled);
     quote! {
         #(#documentation)*
@@ -66,6 +67,16 @@ fn constructor(compiled: &Compiled) -> TokenStream {
             )?;
         }
     });
+    let folded = folded.into_iter().chain(close::unknown_ranks(compiled));
+    let positions = close::positions(compiled);
+    let built = match close::ranks(compiled) {
+        Some(ranks) => quote! {
+            let mut model = Self { parameters, folded };
+            #ranks
+            ::core::result::Result::Ok(model)
+        },
+        None => quote!(::core::result::Result::Ok(Self { parameters, folded })),
+    };
     quote! {
         #[automatically_derived]
         #[allow(clippy::all, unused_variables, unused_parens)]
@@ -81,7 +92,7 @@ fn constructor(compiled: &Compiled) -> TokenStream {
                 #folding
                 let folded = [#(#folded),*];
                 #(#checks)*
-                ::core::result::Result::Ok(Self { parameters, folded })
+                #built
             }
 
             /// The parameters it was built with.
@@ -89,6 +100,8 @@ fn constructor(compiled: &Compiled) -> TokenStream {
             pub fn parameters(&self) -> &#parameters<T> {
                 &self.parameters
             }
+
+            #positions
         }
     }
 }
@@ -116,8 +129,8 @@ fn system(compiled: &Compiled) -> TokenStream {
         quote!(::mbg_runtime::Power { supplied: #supplied, dissipated: #dissipated })
     });
     let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
-    let [cold_energy, cold_conditioning] =
-        [Routines::ENERGY, Routines::CONDITIONING].map(|routine| cold_memory(compiled, routine));
+    let [cold_energy, cold_conditioning] = [Routines::ENERGY, Routines::CONDITIONING]
+        .map(|routine| cold_memory(compiled, routine, &quote!(Self::Memory)));
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
@@ -270,8 +283,12 @@ fn memory(compiled: &Compiled) -> TokenStream {
 }
 
 /// What is asked without a memory begins at zero, if it needs an iteration at all.
-pub(super) fn cold_memory(compiled: &Compiled, routine: usize) -> Option<TokenStream> {
+pub(super) fn cold_memory(
+    compiled: &Compiled,
+    routine: usize,
+    memory: &TokenStream,
+) -> Option<TokenStream> {
     compiled.program.routines[routine]
         .iterates()
-        .then(|| quote!(let memory = &mut <Self::Memory as ::core::default::Default>::default();))
+        .then(|| quote!(let memory = &mut <#memory as ::core::default::Default>::default();))
 }

@@ -94,12 +94,26 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn new(matrix: SMatrix<T, K, K>) -> Self {
+        Self::of_rank(matrix, T::from_f64(K as f64))
+    }
+
+    /// The same where no more than so many pivots are other than zero, as is known from elsewhere: errors that are larger
+    /// than rounding make more.
+    #[must_use]
+    #[inline]
+    pub fn of_rank(matrix: SMatrix<T, K, K>, rank: T) -> Self {
+        if !everywhere(rank, |rank| rank >= K as f64) {
+            let factors = Factors::Long(Pivoted::new(matrix, rank));
+            return Self { matrix, factors };
+        }
         let short = (K <= SHORT).then(|| Definite::new(&matrix));
         let regular_is = |short: &Definite<T, K>, flag| everywhere(short.regular, |it| it == flag);
         let factors = match short {
             Some(short) if regular_is(&short, 1.0) => Factors::Short(short),
-            Some(short) if !regular_is(&short, 0.0) => Factors::Both(short, Pivoted::new(matrix)),
-            _ => Factors::Long(Pivoted::new(matrix)),
+            Some(short) if !regular_is(&short, 0.0) => {
+                Factors::Both(short, Pivoted::new(matrix, rank))
+            }
+            _ => Factors::Long(Pivoted::new(matrix, rank)),
         };
         Self { matrix, factors }
     }
@@ -141,6 +155,13 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     }
 }
 
+/// The rank of each lane, as [`least_norm`] tells it.
+pub(super) fn rank<T: Real, const K: usize>(matrix: SMatrix<T, K, K>) -> T {
+    let factors = Pivoted::new(matrix, T::from_f64(K as f64));
+    let kept = factors.kept.iter();
+    kept.fold(T::from_f64(0.0), |rank, kept| rank + *kept)
+}
+
 /// `P S Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot.
 #[derive(Clone, Debug)]
 struct Pivoted<T, const K: usize> {
@@ -161,7 +182,7 @@ struct Pivoted<T, const K: usize> {
 impl<T: Real, const K: usize> Pivoted<T, K> {
     #[cold]
     #[inline(never)]
-    fn new(matrix: SMatrix<T, K, K>) -> Self {
+    fn new(matrix: SMatrix<T, K, K>, most: T) -> Self {
         let zero = T::from_f64(0.0);
         let mut factors = Self {
             lower: matrix.transpose().data.0,
@@ -171,7 +192,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
             null: [[zero; K]; K],
             regular: K,
         };
-        factors.factorise();
+        factors.factorise(most);
         factors.span_null_space();
         factors
     }
@@ -185,7 +206,8 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         first.zip_map(&refinement, |first, refinement| first + refinement)
     }
 
-    fn factorise(&mut self) {
+    /// With `most` pivots at most.
+    fn factorise(&mut self, most: T) {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let threshold =
             T::from_f64(RANK * K as f64 * T::EPSILON) * largest((0..K).map(|i| self.lower[i][i]));
@@ -193,6 +215,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
             self.bring_largest(k);
             let pivot = self.lower[k][k];
             let kept = threshold.select_less(pivot, one, zero);
+            let kept = T::from_f64(k as f64).select_less(most, kept, zero);
             if self.regular == K && !everywhere(kept, |lane| lane == 1.0) {
                 self.regular = k;
             }
@@ -201,7 +224,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
                 return;
             }
             self.kept[k] = kept;
-            let root = threshold.select_less(pivot, pivot, one).sqrt();
+            let root = zero.select_less(kept, pivot, one).sqrt();
             self.lower[k][k] = root;
             let mut column = [zero; K];
             for i in k + 1..K {
@@ -343,6 +366,20 @@ mod tests {
         assert!((found.solution - expected).norm() < 1e-14);
         assert!((found.solution[0] - found.solution[2]).abs() < 1e-15);
         assert!((2.0 * found.solution[1] - found.solution[3]).abs() < 1e-15);
+    }
+
+    /// Two rows that are parallel but for an error.
+    #[test]
+    fn errors_make_no_pivots_beyond_the_rank() {
+        let rows = SMatrix::<f64, 2, 3>::from_row_slice(&[1.0, 2.0, 0.0, 1.0, 2.0, 1e-4]);
+        let right = SVector::from([6.0, 6.0 + 1e-4]);
+        let found = Semidefinite::of_rank(rows * rows.transpose(), 1.0).solve(&right);
+        assert_eq!(found.rank, 1);
+        let force = rows.transpose() * found.solution;
+        assert!(
+            (force - SVector::from([1.2, 2.4, 0.0])).norm() < 1e-3,
+            "{force}"
+        );
     }
 
     #[test]

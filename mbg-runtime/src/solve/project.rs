@@ -4,7 +4,8 @@ use core::iter;
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{dot, everywhere, largest, least_norm};
+use super::least_norm::{Semidefinite, rank};
+use super::{dot, everywhere, largest};
 use crate::Real;
 
 /// Corrections at most.
@@ -73,6 +74,16 @@ pub fn project<T: Real, const M: usize, const N: usize>(
     tolerance: f64,
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Projected<T, N> {
+    project_of_rank(start, tolerance, T::from_f64(M as f64), evaluate)
+}
+
+/// The same where `G` has this rank at most wherever the constraints hold, see [`ranks`].
+pub(crate) fn project_of_rank<T: Real, const M: usize, const N: usize>(
+    start: SVector<T, N>,
+    tolerance: f64,
+    rank: T,
+    evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+) -> Projected<T, N> {
     let mut point = start;
     let (mut residual, mut jacobian) = evaluate(&point);
     let mut iterations = 0;
@@ -82,7 +93,7 @@ pub fn project<T: Real, const M: usize, const N: usize>(
             break;
         }
         let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
-        let step = correction(&jacobian, &residual, softening);
+        let step = correction(&jacobian, &residual, softening, rank);
         if let Some((next, values)) = descend(&point, &residual, &step, limits, &evaluate) {
             iterations += 1;
             point = next;
@@ -113,7 +124,8 @@ pub fn project_velocity<T: Real, const M: usize, const N: usize>(
     let mut iterations = 0;
     while iterations < 2 && !holds(&residual, tolerance) {
         iterations += 1;
-        point.zip_apply(&correction(jacobian, &residual, 0.0), |v, step| *v -= step);
+        let step = correction(jacobian, &residual, 0.0, T::from_f64(M as f64));
+        point.zip_apply(&step, |v, step| *v -= step);
         residual = open(&point);
     }
     Projected::new(point, &residual, tolerance, iterations)
@@ -125,16 +137,101 @@ fn correction<T: Real, const M: usize, const N: usize>(
     jacobian: &SMatrix<T, M, N>,
     residual: &SVector<T, M>,
     softening: f64,
+    rank: T,
 ) -> SVector<T, N> {
-    let rows = jacobian.transpose().data.0;
-    let mut square = SMatrix::<T, M, M>::from_fn(|i, j| dot(&rows[i], &rows[j]));
+    let mut square = gram(jacobian);
     let softening = T::from_f64(softening)
         * largest(
             (0..M).map(|i| (0..M).fold(T::from_f64(0.0), |sum, j| sum + square[(i, j)].abs())),
         );
     (0..M).for_each(|i| square[(i, i)] += softening);
-    let multipliers = least_norm(&square, residual).solution;
+    let multipliers = Semidefinite::of_rank(square, rank).solution(residual);
     SVector::from_fn(|j, _| dot(&jacobian.data.0[j], &multipliers.data.0[0]))
+}
+
+/// `G Gᵀ`.
+fn gram<T: Real, const M: usize, const N: usize>(jacobian: &SMatrix<T, M, N>) -> SMatrix<T, M, M> {
+    let rows = jacobian.transpose().data.0;
+    SMatrix::from_fn(|i, j| dot(&rows[i], &rows[j]))
+}
+
+/// How far from the start constraints are looked at, in each coordinate.
+const AROUND: f64 = 0.03;
+/// At how many points.
+const POINTS: usize = 4;
+
+/// The rank that `G` has where the constraints hold, near `start`: of all of them, and of some, by their numbers.
+///
+/// Off these points it may be higher. In an overconstrained mechanism, such as that of Bennett, constraints are redundant
+/// only where all of them hold; a small error makes them independent, and forces that nothing bounds would correct it. And
+/// at a singular position it is lower, so that some points around the start are looked at. Where none can be closed it is
+/// taken to be full.
+pub(crate) fn ranks<T: Real, const M: usize, const N: usize, const B: usize>(
+    start: &SVector<T, N>,
+    tolerance: f64,
+    groups: [&[usize]; B],
+    evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+) -> [T; B] {
+    let full = groups.map(|group| T::from_f64(group.len() as f64));
+    let mut found = [T::from_f64(0.0); B];
+    let mut closed_around = false;
+    for point in 0..=POINTS {
+        let moved = SVector::from_fn(|i, _| {
+            let part = (0.618 * (i + 1) as f64 + 0.414 * point as f64) % 1.0;
+            let by = if point == 0 {
+                0.0
+            } else {
+                AROUND * (2.0 * part - 1.0)
+            };
+            start[i] + T::from_f64(by)
+        });
+        let closed = project(moved, tolerance, &evaluate);
+        if !closed.converged {
+            continue;
+        }
+        closed_around |= point > 0;
+        let square = gram(&balanced(evaluate(&closed.point).1));
+        for (found, group) in found.iter_mut().zip(groups) {
+            *found = found.max(rank(among(&square, group)));
+        }
+        let missing = full.iter().zip(&found).map(|(full, found)| *full - *found);
+        if missing
+            .into_iter()
+            .all(|it| everywhere(it, |lane| lane <= 0.0))
+        {
+            return full;
+        }
+    }
+    if closed_around { found } else { full }
+}
+
+/// A matrix of which every column and then every row has been divided by its largest element, so that units do not decide on
+/// the rank.
+fn balanced<T: Real, const M: usize, const N: usize>(
+    mut matrix: SMatrix<T, M, N>,
+) -> SMatrix<T, M, N> {
+    let zero = T::from_f64(0.0);
+    let scale = |size: T| zero.select_less(size, size, T::from_f64(1.0));
+    for mut column in matrix.column_iter_mut() {
+        let size = scale(largest(column.iter().copied()));
+        column.apply(|element| *element = *element / size);
+    }
+    for mut row in matrix.row_iter_mut() {
+        let size = scale(largest(row.iter().copied()));
+        row.apply(|element| *element = *element / size);
+    }
+    matrix
+}
+
+/// A matrix without the rows and columns that are not in the group.
+fn among<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>, group: &[usize]) -> SMatrix<T, M, M> {
+    SMatrix::from_fn(|i, j| {
+        if group.contains(&i) && group.contains(&j) {
+            matrix[(i, j)]
+        } else {
+            T::from_f64(0.0)
+        }
+    })
 }
 
 /// The next point and what holds there: the longest damped step that lowers `|g|` in every lane that is still out of
@@ -300,6 +397,53 @@ mod tests {
         let thrice = project(disturbed, 1e-13, four_bar::<6>);
         assert!(once.converged && thrice.converged);
         assert!((once.point - thrice.point).norm() < 1e-13);
+    }
+
+    #[test]
+    fn ranks_are_those_of_closed_points() {
+        let ranks = |start: [f64; 3]| {
+            ranks(
+                &start.into(),
+                1e-12,
+                [&[0, 1, 2, 3][..], &[1, 3]],
+                four_bar::<4>,
+            )
+        };
+        assert_eq!(ranks([0.8, 0.01, 0.79]), [2.0, 1.0]);
+        // On one line one row is zero, but not beside.
+        assert_eq!(ranks([0.0, 0.0, 0.0]), [2.0, 1.0]);
+        // The third row is the first one and a square, zero where the second holds: a plane of rank 2.
+        let squared = |q: &SVector<f64, 3>| {
+            let g = SVector::from([q[0], q[1], q[0] + q[1] * q[1]]);
+            let rows = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0 * q[1], 0.0];
+            (g, SMatrix::from_row_slice(&rows))
+        };
+        let all = [&[0, 1, 2][..]];
+        assert_eq!(
+            super::ranks(&SVector::from([0.1, 0.2, 0.3]), 1e-12, all, squared),
+            [2.0]
+        );
+        // Two hinges and a slide of a machine of a hundredth of a millimetre, whose units do not make it redundant.
+        let small = |q: &SVector<f32, 3>| {
+            let arms = [1e-5, 0.0, 1.0, 0.0, 2e-5, 1.0, 1e-5, 1e-5, 1.0];
+            let jacobian = SMatrix::<f32, 3, 3>::from_row_slice(&arms);
+            (jacobian * q, jacobian)
+        };
+        assert_eq!(
+            super::ranks(&SVector::zeros(), 1e-6, [&[0, 1][..]], small),
+            [2.0]
+        );
+        // What cannot be closed may be regular.
+        let open = |q: &SVector<f64, 1>| {
+            (
+                SVector::from([q[0], q[0] - 1.0]),
+                SMatrix::from([[1.0, 1.0]]),
+            )
+        };
+        assert_eq!(
+            super::ranks(&SVector::from([0.0]), 1e-12, [&[0, 1][..]], open),
+            [2.0]
+        );
     }
 
     #[test]

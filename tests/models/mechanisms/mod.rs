@@ -1,6 +1,8 @@
 //! Published mechanisms with closed loops, built from the library and run over their published horizons.
 
 pub(crate) mod andrews;
+#[cfg(test)]
+mod bennett;
 pub(crate) mod bricard;
 pub(crate) mod four_bars;
 pub(crate) mod governor;

@@ -97,3 +97,18 @@ fn names_and_junctions_read_wrongly_are_told_with_what_to_write() {
          motor: DcMotor { resistance: 1.0, inductance: 1e-3, constant: 0.1, inertia: 1e-3 } (a, shaft); }"
     ), @"2:10 `DcMotor` has the ports `a`, `b`, `shaft`, found 2 junctions [MBG0208]");
 }
+
+/// A velocity that reaches a frame directly and by a junction between, whose bonds have no names.
+#[test]
+fn a_mesh_of_bonds_between_junctions_is_told() {
+    insta::assert_snapshot!(told("model M {
+        causality componentwise;
+        1 car[2] { I body { inertia: 2.0 } } 1 yaw { #[derivative] I turning { inertia: 3.0 } }
+        1 front[2] { R tyre { resistance: 2.0 } } 0 arm[2];
+        car -> front; car -> arm; yaw -> TF lever { flow: [[0.0], [1.2]] } -> arm; arm -> front;
+    }"), @"
+    1:7 the junction structure leaves efforts or flows undetermined [MBG0401]
+      2 of its equations say the same thing twice, about bonds between junctions
+      help: take one bond of the mesh away: what it says follows from the others
+    ");
+}

@@ -39,6 +39,9 @@ pub(super) fn report(
         names.dedup();
         report = report.note(match mesh.len() {
             1 => "one of its equations says nothing: what it is about cancels".to_owned(),
+            count if names.is_empty() => format!(
+                "{count} of its equations say the same thing twice, about bonds between junctions"
+            ),
             count => format!(
                 "{count} of its equations say the same thing twice, about {}",
                 listing(names)

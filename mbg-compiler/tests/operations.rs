@@ -137,8 +137,8 @@ fn walker(legs: usize) -> String {
     )
 }
 
-/// The legs go before the trunk that carries them, which moves each of them by its velocity and turns it, too: released before
-/// them it would take eighteen times as many operations with four legs.
+/// The legs go before the trunk that carries them: its velocity moves in the company of two others, a hip in that of one, but a
+/// hip is farther from the base. Released before them, the trunk would take eighteen times as many operations with four legs.
 #[test]
 fn each_leg_of_what_flies_costs_the_same() {
     let counts = [1, 2, 3, 4].map(|legs| {

@@ -66,6 +66,29 @@ fn join_turns(place: &mut Option<Turn>, other: Option<Turn>) {
     };
 }
 
+/// Independent rates from the leaves to the base: each before those of its company, unless they are of each other's, and of
+/// the others that which moves least.
+fn farthest_first(company: &[BTreeSet<usize>], weight: &[usize]) -> Vec<usize> {
+    let nearer = |k: usize| {
+        let others = company[k].iter().copied();
+        others.filter(move |other| !company[*other].contains(&k))
+    };
+    let mut farther = vec![0_usize; weight.len()];
+    for k in 0..weight.len() {
+        nearer(k).for_each(|other| farther[other] += 1);
+    }
+    let mut open: Vec<usize> = (0..weight.len()).collect();
+    open.sort_by_key(|k| (weight[*k], Reverse(*k)));
+    let mut order = Vec::with_capacity(open.len());
+    while !open.is_empty() {
+        let leaf = open.iter().position(|k| farther[*k] == 0);
+        let next = open.remove(leaf.unwrap_or(0));
+        nearer(next).for_each(|other| farther[other] -= 1);
+        order.push(next);
+    }
+    order
+}
+
 /// Which independent rates each unknown's rate depends on, as sets of bits.
 struct Dependence {
     /// Set and depth of each unknown.
@@ -116,16 +139,19 @@ impl Dependence {
         for (set, _) in &sets {
             members(set).for_each(|k| weight[k] += 1);
         }
-        // A rate on which the storage that it moves with the fewest others depends is as far from the base as these are
-        // many.
-        let mut company = vec![usize::MAX; independent];
+        // The rates that the storage follows from that a rate moves with the fewest others: all are nearer to the base.
+        let mut company: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); independent];
         let places = moved.iter().filter_map(|unknown| place.get(unknown));
         for (set, _) in places.map(|place| &sets[*place]) {
-            let size = members(set).count();
-            members(set).for_each(|k| company[k] = company[k].min(size));
+            let together: BTreeSet<usize> = members(set).collect();
+            for k in &together {
+                let fewest = &mut company[*k];
+                if fewest.is_empty() || together.len() < fewest.len() {
+                    fewest.clone_from(&together);
+                }
+            }
         }
-        let mut order: Vec<usize> = (0..independent).collect();
-        order.sort_by_key(|k| (Reverse(company[*k]), weight[*k], Reverse(*k)));
+        let order = farthest_first(&company, &weight);
         let mut rank = vec![0; independent];
         for (level, k) in order.into_iter().enumerate() {
             rank[k] = level;

@@ -10,7 +10,7 @@ use crate::Real;
 pub const ITERATIONS: usize = 50;
 /// Dampings of one step tried at one point at most; the last one is below 1e-14.
 const DAMPINGS: usize = 24;
-/// In units of the precision: changes below it are rounding even of an unknown that is zero.
+/// In units of the precision: changes below it may be rounding of an unknown that is zero.
 const ROUNDING: f64 = 64.0;
 /// In units of the precision: what an evaluation leaves of equations, beside their terms, when nothing but rounding is left.
 const LEFT: f64 = 4.0;
@@ -38,14 +38,15 @@ pub struct Solved<T, const K: usize> {
 /// (natural monotonicity; Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, 3.3.1, with the bound 1 − λ/4).
 /// Unlike the residual, that length does not depend on how the equations are scaled, so that exponential laws with
 /// conductances from 1e-12 to 1e2 do no harm. What is not finite counts as too long. Lengths are relative to the
-/// largest value that each unknown took on the way; an unknown below 64 ε counts as zero. Where a law is flat, as that of a
-/// diode that blocks, a correction may be longer by hundreds of powers of ten: where no damping of the whole helps, that
-/// begins again with what doubles an unknown at most.
+/// largest value that each unknown took on the way. Where a law is flat, as that of a diode that blocks, a correction may be
+/// longer by hundreds of powers of ten: where no damping of the whole helps, that begins again with what doubles an unknown
+/// at most.
 ///
 /// Converged means that two corrections in a row were below the square root of the precision. The first of them leaves
 /// an error of the order of the precision, the second one, at a converged point, gives [`Dual`](crate::Dual) numbers
 /// the slope of the implicit function theorem, `−J⁻¹ ∂f/∂p`. Where the equations leave an unknown less sharp than that, it
-/// is what they leave of it: corrections go no further when each equation is zero but for the rounding of its terms.
+/// is what they leave of it: corrections go no further when each equation is zero but for the rounding of its terms. Of an
+/// unknown below 64 ε they need not settle, since it may be zero, with terms beside it that cancel: it converges where it can.
 ///
 /// It does not converge where there is no solution, where the Jacobian is singular, or from too far away.
 ///
@@ -72,53 +73,59 @@ pub fn newton<T: Real, const K: usize>(
 ) -> Solved<T, K> {
     let mut point = Point::new(start, &evaluate);
     let mut size = start.map(Real::abs);
+    let nowhere = start.map(|_| T::from_f64(0.0));
     let mut was_settled = false;
     let mut last = T::from_f64(f64::INFINITY);
-    for iterations in 1..=ITERATIONS {
+    let mut iterations = 0;
+    loop {
+        iterations += 1;
         let factors = Regular::new(point.jacobian);
         let correction = factors.solution(&point.residual);
-        let settled = settled(&point.x, &correction, &size);
-        let all_settled = everywhere(settled, |lane| lane == 1.0);
+        let is_settled = everywhere(settled(&correction, &size, &nowhere), |lane| lane == 1.0);
+        // As far as it can be told where an unknown may be zero.
+        let as_good_as_settled = settled(&correction, &size, &unseen(&point.x));
         let length = Point::relative(&correction, &size);
         let shrinks = everywhere(length - T::from_f64(0.5) * last, |lane| lane < 0.0);
         let sharpest = !shrinks && length.magnitude().is_finite() && point.is_rounding();
-        if all_settled && was_settled || sharpest {
-            return Solved {
-                solution: point.x.zip_map(&correction, |x, step| x - step),
-                residual: point.scaled_residual(&size),
-                iterations,
-                converged: true,
-            };
+        if is_settled && was_settled || sharpest {
+            return point.ended(&correction, &size, iterations, true);
         }
-        let Some(next) = point.descend(&factors, &correction, settled, &size, &evaluate) else {
-            return point.given_up(&size, iterations);
+        let next = point.descend(&factors, &correction, as_good_as_settled, &size, &evaluate);
+        let Some(next) = next.filter(|_| iterations < ITERATIONS) else {
+            let converged = everywhere(as_good_as_settled, |lane| lane == 1.0);
+            return point.ended(&correction, &size, iterations, converged);
         };
         point = next;
         size.zip_apply(&point.x, |size, x| *size = size.max(x.abs()));
-        was_settled = all_settled;
+        was_settled = is_settled;
         last = length;
     }
-    point.given_up(&size, ITERATIONS)
 }
 
-/// 1 in the lanes where a correction is below the square root of the precision, else 0.
+/// 1 in the lanes where a correction is below the square root of the precision and what may be rounding, else 0.
 fn settled<T: Real, const K: usize>(
-    x: &SVector<T, K>,
     correction: &SVector<T, K>,
     size: &SVector<T, K>,
+    rounding: &SVector<T, K>,
 ) -> T {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    let rounding = T::from_f64(ROUNDING * T::EPSILON);
-    x.iter()
-        .zip(correction.iter())
-        .zip(size.iter())
-        .fold(one, |settled, ((x, step), size)| {
-            let unseen = x.abs().select_less(rounding, rounding, zero);
-            let bound = T::from_f64(T::SINGULAR) * *size + unseen;
+    let bound = size.zip_map(rounding, |size, rounding| {
+        T::from_f64(T::SINGULAR) * size + rounding
+    });
+    correction
+        .iter()
+        .zip(bound.iter())
+        .fold(one, |settled, (step, bound)| {
             // Zero is small enough for the bound zero; NaN is for none.
-            let small = (step.abs() - bound).select_less(one, one, zero);
+            let small = (step.abs() - *bound).select_less(one, one, zero);
             bound.select_less(step.abs(), zero, small * settled)
         })
+}
+
+/// What may be rounding of unknowns that are zero.
+fn unseen<T: Real, const K: usize>(x: &SVector<T, K>) -> SVector<T, K> {
+    let (zero, rounding) = (T::from_f64(0.0), T::from_f64(ROUNDING * T::EPSILON));
+    x.map(|x| x.abs().select_less(rounding, rounding, zero))
 }
 
 /// The equations at a point.
@@ -218,12 +225,20 @@ impl<T: Real, const K: usize> Point<T, K> {
         largest(relative)
     }
 
-    fn given_up(&self, size: &SVector<T, K>, iterations: usize) -> Solved<T, K> {
+    /// What is found here: with the last correction, where that can be trusted.
+    fn ended(
+        &self,
+        correction: &SVector<T, K>,
+        size: &SVector<T, K>,
+        iterations: usize,
+        converged: bool,
+    ) -> Solved<T, K> {
+        let corrected = self.x.zip_map(correction, |x, step| x - step);
         Solved {
-            solution: self.x,
+            solution: if converged { corrected } else { self.x },
             residual: self.scaled_residual(size),
             iterations,
-            converged: false,
+            converged,
         }
     }
 }
@@ -438,6 +453,37 @@ mod tests {
                 solved.converged && solved.solution[0].abs() < 1e-15,
                 "{solved:?}"
             );
+        }
+    }
+
+    /// A flow of some 1e-6 m³/s through a pipe, in single precision, or of a picolitre in double.
+    #[test]
+    fn small_unknowns_are_solved_as_large_ones_are() {
+        fn flow<T: Real>(scale: f64) -> f64 {
+            let [drop, smooth, rough] = [5e5, 1e2 / scale, 4e5 / (scale * scale)].map(T::from_f64);
+            let solved = newton(SVector::from([T::from_f64(0.0)]), |x| {
+                let size = x[0].abs();
+                (
+                    SVector::from([drop - smooth * x[0] - rough * x[0] * size]),
+                    SMatrix::from([[-smooth - (rough + rough) * size]]),
+                )
+            });
+            assert!(solved.converged, "{solved:?}");
+            solved.solution[0].magnitude() / scale
+        }
+        let expected = flow::<f64>(1.0);
+        for power in -18..=3 {
+            let scale = 10.0_f64.powi(power);
+            assert!(
+                (flow::<f64>(scale) / expected - 1.0).abs() < 1e-14,
+                "{scale:e}"
+            );
+            if power > -15 {
+                assert!(
+                    (flow::<f32>(scale) / expected - 1.0).abs() < 1e-6,
+                    "{scale:e}"
+                );
+            }
         }
     }
 

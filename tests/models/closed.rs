@@ -1,6 +1,6 @@
 //! Mechanisms whose loops are closed by multipliers.
 
-use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Real, System, mbg};
 use nalgebra::SVector;
 
 use crate::references::errors::{apart, larger};
@@ -45,6 +45,27 @@ mbg! {
         cargo: Body { mass: 3.0, inertia: diag(0.5, 0.7, 0.9) } (other);
         arm: Offset { by: [0.5, 0.0, 0.0] } (one, tip);
         joint: Cut { joint: spherical } (tip, other);
+    }
+
+    /// A slider-crank whose guide holds an angle beside a length.
+    #[derivative]
+    pub(crate) model Slider {
+        causality componentwise;
+        param length: m = 1.0;
+        param mass: kg = 1.0;
+        gravity [0.0, -9.81];
+        let inertia = mass * length * length / 12.0;
+        1 ground[3]; 1 crank[3]; 1 pin[3]; 1 rod[3]; 1 end[3]; 1 slide[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        first: PlanarRevolute { initial: 0.7, initial_rate: 3.0 } (ground, crank);
+        cranked: PlanarBody { mass: mass, inertia: inertia } (crank);
+        arm: PlanarOffset { x: length } (crank, pin);
+        second: PlanarRevolute { initial: -1.0, initial_rate: 1.0 } (pin, rod);
+        pushed: PlanarBody { mass: mass, inertia: inertia } (rod);
+        long: PlanarOffset { x: 2.0 * length } (rod, end);
+        third: PlanarRevolute { initial: 0.3 } (end, slide);
+        slid: PlanarBody { mass: mass, inertia: inertia } (slide);
+        guide: PlanarCut { joint: prismatic } (ground, slide);
     }
 }
 
@@ -140,4 +161,46 @@ fn a_loop_that_cannot_close_is_named() {
             .to_string()
             .starts_with("the loop `coupler_tip[1..3] -> rocker_tip[1..3]` cannot be closed")
     );
+}
+
+/// The motion of a slider-crank at rest and at speed, in units of its size: that of one of a metre, whatever its size is.
+#[test]
+fn small_and_large_machines_close_and_move_as_others_do() {
+    fn motion<T: Real>(length: f64, mass: f64) -> [f64; 4] {
+        let [length, mass] = [length, mass].map(T::from_f64);
+        let model = Slider::new(SliderParameters { length, mass }).unwrap();
+        let (none, time) = (SVector::from([]), T::from_f64(0.0));
+        // What is closed depends a little on the size, as it goes the way that is shortest for all coordinates.
+        let closed = model
+            .close(time, model.initial_state(), &none, &[])
+            .unwrap();
+        let [crank, rod] = [closed[1], closed[2]].map(|it| it.find(|_| true).unwrap());
+        let open = crank.sin() + 2.0 * (crank + rod).sin();
+        let [moves, turns] = [closed[4], closed[5]].map(|it| it.find(|_| true).unwrap());
+        let slips = crank.cos() * moves + 2.0 * (crank + rod).cos() * (moves + turns);
+        let start = [
+            0.0,
+            0.7,
+            -(0.7 + (0.5 * 0.7_f64.sin()).asin()),
+            (0.5 * 0.7_f64.sin()).asin(),
+            0.0,
+            0.0,
+        ];
+        let falling =
+            model.derivative(time, &SVector::from(start.map(T::from_f64)), &none, &mut ());
+        let falling = [falling[4], falling[5]].map(|rate| (length * rate).find(|_| true).unwrap());
+        [open, slips, falling[0], falling[1]]
+    }
+    let usual = motion::<f64>(1.0, 1.0);
+    let compare = |found: [f64; 4], bound: f64| {
+        for (found, usual) in found.iter().zip(usual) {
+            assert!((found - usual).abs() < bound, "{found:e} {usual:e}");
+        }
+    };
+    for (length, mass) in [(0.05, 1e-4), (1e-2, 1e-2), (1e-6, 1e-9), (1e3, 1e9)] {
+        compare(motion::<f64>(length, mass), 1e-8);
+    }
+    for (length, mass) in [(10.0, 1e4), (1e-2, 1e-2), (1e-3, 1e-3)] {
+        compare(motion::<f32>(length, mass), 1e-3);
+    }
 }

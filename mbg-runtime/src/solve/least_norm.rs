@@ -8,6 +8,8 @@ use crate::Real;
 
 /// In units of precision, size and largest diagonal element: a pivot below it is rounding.
 const RANK: f64 = 8.0;
+/// In units of the largest diagonal element: rows below it are brought to its size.
+const SMALL: f64 = 1e-4;
 /// Up to this size a regular matrix is factorised without exchanges. Larger ones take their time anyway, and are refined.
 const SHORT: usize = 8;
 
@@ -31,7 +33,9 @@ pub struct LeastNorm<T, const K: usize> {
 /// `S` is factorised as `P S Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot (Higham,
 /// *Accuracy and Stability of Numerical Algorithms*, 2nd ed., 10.3). **The rank** is the number of pivots above
 /// `8 K ε max Sᵢᵢ`. That is the level of rounding in `S` and no more, on purpose: near a singular position a smaller
-/// pivot still carries a force, and ignoring it errs more than its rounding does.
+/// pivot still carries a force, and ignoring it errs more than its rounding does. Constraints of lengths and of angles stand
+/// side by side, and those of small machines are small: a row is brought to the size of the largest one first, unless `√Sᵢᵢ`,
+/// which is the size of the constraint's own row in `G`, is below `8 K ε` of that of the largest, as rounding is.
 ///
 /// With the rank `r`, `λ = L (LᵀL)⁻² Lᵀ b` is the solution of least norm. It is computed without the loss of digits of
 /// that formula: remove from `b` its part in the null space, solve the `r` equations of the pivots, and remove from
@@ -162,12 +166,27 @@ pub(super) fn rank<T: Real, const K: usize>(matrix: SMatrix<T, K, K>) -> T {
     kept.fold(T::from_f64(0.0), |rank, kept| rank + *kept)
 }
 
-/// `P S Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot.
+/// What brings each row and column that is small, and more than rounding, to the size of the largest.
+fn scales<T: Real, const K: usize>(matrix: &SMatrix<T, K, K>) -> [T; K] {
+    let one = T::from_f64(1.0);
+    let rounding = RANK * K as f64 * T::EPSILON;
+    let size = largest((0..K).map(|i| matrix[(i, i)]));
+    let [small, lost] = [SMALL, rounding * rounding].map(|bound| T::from_f64(bound) * size);
+    core::array::from_fn(|i| {
+        let own = matrix[(i, i)];
+        let needed = own.select_less(small, lost.select_less(own, own, size), size);
+        needed.select_less(size, (size / needed).sqrt(), one)
+    })
+}
+
+/// `P D S D Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot.
 #[derive(Clone, Debug)]
 struct Pivoted<T, const K: usize> {
     /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
     lower: [[T; K]; K],
     order: Order<T, K>,
+    /// What rows and columns were multiplied by, in the order of the pivots.
+    scale: [T; K],
     /// 1 in the lanes where a pivot counts, else 0.
     kept: [T; K],
     /// The first pivot that counts in no lane.
@@ -184,15 +203,24 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
     #[inline(never)]
     fn new(matrix: SMatrix<T, K, K>, most: T) -> Self {
         let zero = T::from_f64(0.0);
+        let scale = scales(&matrix);
+        let mut lower = matrix.transpose().data.0;
+        for (row, by) in lower.iter_mut().zip(scale) {
+            for (element, other) in row.iter_mut().zip(scale) {
+                *element = by * other * *element;
+            }
+        }
         let mut factors = Self {
-            lower: matrix.transpose().data.0,
+            lower,
             order: Order::unchanged(),
+            scale,
             kept: [zero; K],
             rank: K,
             null: [[zero; K]; K],
             regular: K,
         };
         factors.factorise(most);
+        factors.scale = factors.order.apply(&scale);
         factors.span_null_space();
         factors
     }
@@ -273,6 +301,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
             self.solve_transposed(&mut vector);
             vector = vector.map(|x| -x);
             vector[index] = one;
+            self.scale_each(&mut vector);
             for other in &self.null[self.regular..index] {
                 let part = dot(&vector, other);
                 for (x, other) in vector.iter_mut().zip(other) {
@@ -295,6 +324,12 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         x[self.rank..].fill(T::from_f64(0.0));
     }
 
+    fn scale_each(&self, x: &mut [T; K]) {
+        for (x, scale) in x.iter_mut().zip(&self.scale) {
+            *x = *scale * *x;
+        }
+    }
+
     fn remove_null_space(&self, x: &mut [T; K]) {
         for vector in &self.null[self.regular..] {
             let part = dot(x, vector);
@@ -308,10 +343,12 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
     fn least_squares(&self, right: &SVector<T, K>) -> SVector<T, K> {
         let mut x = self.order.apply(&right.data.0[0]);
         self.remove_null_space(&mut x);
+        self.scale_each(&mut x);
         for k in 0..self.rank {
             x[k] = self.kept[k] * (x[k] - dot(&self.lower[k][..k], &x[..k])) / self.lower[k][k];
         }
         self.solve_transposed(&mut x);
+        self.scale_each(&mut x);
         self.remove_null_space(&mut x);
         SVector::from(self.order.undo(&x))
     }
@@ -429,6 +466,40 @@ mod tests {
                 found.solution.norm() < 1.0 / angle,
                 "{angle:e} {}",
                 found.solution
+            );
+        }
+    }
+
+    /// An angle held on a body of a gram, and a length of its arm of a millimetre: the second row is small, and no rounding.
+    #[test]
+    fn rows_of_other_units_count() {
+        fn solved<T: Real>(arm: f64) -> [f64; 2] {
+            let rows = [
+                [0.0, 0.5, 1.0],
+                [arm, 2.0 * arm, 0.0],
+                [arm, 2.0 * arm, 0.0],
+            ];
+            let matrix = SMatrix::<f64, 3, 3>::from_fn(|i, j| dot(&rows[i], &rows[j]));
+            let right = matrix * SVector::from([2.0, 3.0 / arm, 3.0 / arm]);
+            let found = least_norm(&matrix.map(T::from_f64), &right.map(T::from_f64));
+            assert_eq!(found.rank, 2, "{arm:e}");
+            let [turning, first, second] =
+                found.solution.map(|it| it.find(|_| true).unwrap()).data.0[0];
+            assert!((first / second - 1.0).abs() < 1e-3, "{first} {second}");
+            [turning / 2.0 - 1.0, first * arm / 3.0 - 1.0]
+        }
+        for arm in [1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12] {
+            let errors = solved::<f64>(arm);
+            assert!(
+                errors.iter().all(|error| error.abs() < 1e-12),
+                "{arm:e} {errors:?}"
+            );
+        }
+        for arm in [1e3, 1.0, 1e-3, 1e-4] {
+            let errors = solved::<f32>(arm);
+            assert!(
+                errors.iter().all(|error| error.abs() < 1e-4),
+                "{arm:e} {errors:?}"
             );
         }
     }

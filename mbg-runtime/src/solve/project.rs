@@ -40,7 +40,8 @@ pub struct Projected<T, const N: usize> {
 /// ```
 /// with [`least_norm`] for the pseudoinverse, so that redundant constraints and singular positions do no harm. It is
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
-/// most 32 corrections; after a step of integration it takes one or two.
+/// most 32 corrections; after a step of integration it takes one or two. Where it does not lower `|g|`, constraints are
+/// first divided by the largest number of their rows, since momenta of small machines stand beside rates and lengths.
 ///
 /// **Near a singular position** rounding in `g` divided by a small singular value `σ` of `G` moves the point by far
 /// more than `g` itself, and the velocities that fit the point by as much over `σ²`. So the first correction is softened:
@@ -93,8 +94,14 @@ pub(crate) fn project_of_rank<T: Real, const M: usize, const N: usize>(
             break;
         }
         let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
-        let step = correction(&jacobian, &residual, softening, rank);
-        if let Some((next, values)) = descend(&point, &residual, &step, limits, &evaluate) {
+        let along = |step| descend(&point, &residual, &step, limits, &evaluate);
+        let next = along(correction(&jacobian, &residual, softening, rank)).or_else(|| {
+            // A constraint of small numbers was taken for rounding of one of large numbers.
+            let (jacobian, residual) = in_proportion(&jacobian, &residual);
+            (!met && softening == 0.0)
+                .then(|| along(correction(&jacobian, &residual, 0.0, rank)))?
+        });
+        if let Some((next, values)) = next {
             iterations += 1;
             point = next;
             (residual, jacobian) = values;
@@ -234,6 +241,22 @@ fn among<T: Real, const M: usize>(matrix: &SMatrix<T, M, M>, group: &[usize]) ->
     })
 }
 
+/// Constraints divided by the largest number of their rows.
+fn in_proportion<T: Real, const M: usize, const N: usize>(
+    jacobian: &SMatrix<T, M, N>,
+    residual: &SVector<T, M>,
+) -> (SMatrix<T, M, N>, SVector<T, M>) {
+    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    let by = SVector::<T, M>::from_fn(|i, _| {
+        let size = largest((0..N).map(|j| jacobian[(i, j)]));
+        one / zero.select_less(size, size, one)
+    });
+    (
+        SMatrix::from_fn(|i, j| by[i] * jacobian[(i, j)]),
+        by.zip_map(residual, |by, residual| by * residual),
+    )
+}
+
 /// The next point and what holds there: the longest damped step that lowers `|g|` in every lane that is still out of
 /// tolerance, if there is one.
 #[expect(clippy::type_complexity, reason = "what `evaluate` gives")]
@@ -301,6 +324,17 @@ mod tests {
             SVector::from([g]),
             SMatrix::from([[two * q[0]], [two * q[1]]]),
         )
+    }
+
+    /// A momentum of 1e-20 kg m²/s and a rate that move a slide by micrometres: rows that are 26 powers of ten apart.
+    #[test]
+    fn constraints_of_other_sizes_are_met() {
+        let rows = SMatrix::<f64, 2, 3>::new(1e20, -1.0, 0.0, 0.0, 1e-6, 2e-6);
+        let found = project(SVector::from([3e-20, 2.0, -5.0]), 1e-14, |x| {
+            (rows * x, rows)
+        });
+        assert!(found.converged, "{found:?}");
+        assert!((found.point[1] + 2.0 * found.point[2]).abs() < 1e-8);
     }
 
     #[test]

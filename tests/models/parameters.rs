@@ -44,6 +44,23 @@ mbg! {
     }
 }
 
+mbg! {
+    /// Resistors in a ladder, each rung of twice what leads to it.
+    pub(crate) model Rungs {
+        param resistance: ohm = 1.0;
+        let count = 12;
+        0 ground; Se earth { effort: 0.0 } -> ground;
+        ends: for k in 0..count + 1 { 0 node; }
+        Se supply { effort: 1.0 } -> ends[0].node;
+        rungs: for k in 0..count {
+            along: Resistor { resistance: resistance } (ends[k].node, ends[k + 1].node);
+            across: Resistor { resistance: 2.0 * resistance } (ends[k + 1].node, ground);
+        }
+        coil: Inductor { inductance: 1.0 } (ends[count].node, ground);
+        output current: A = rungs[0].along.current;
+    }
+}
+
 #[track_caller]
 fn refused<T>(result: Result<T, ParameterError>, name: &str, value: f64, reason: &str) {
     match result {
@@ -232,4 +249,14 @@ fn a_loop_is_refused_where_its_determinant_vanishes() {
     // One resistor alone may be a plain wire.
     assert!(ladder(0.0, 3.0).is_ok());
     assert!(ladder(2.0, 0.0).is_ok());
+}
+
+/// The product of all that is divided by would be beyond single precision.
+#[test]
+fn resistances_of_any_size_are_taken_in_single_precision() {
+    for resistance in [1e-9_f32, 1e-3, 1.0, 1e3, 1e6, 1e9] {
+        let model = Rungs::new(RungsParameters { resistance }).unwrap();
+        let current = model.output(0.0, &SVector::from([0.0]), &SVector::zeros(), &mut ())[0];
+        assert!((current * resistance - 0.5).abs() < 1e-6, "{resistance:e}");
+    }
 }

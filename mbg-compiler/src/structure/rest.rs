@@ -12,6 +12,22 @@ use crate::symbolic::{
     Symbol,
 };
 
+/// What linear equations were divided by.
+#[derive(Clone, Copy)]
+struct Divisor {
+    /// The product of pivots that do not vary.
+    pivots: Expression,
+    /// By what was left then.
+    last: Expression,
+}
+
+impl Divisor {
+    const ONE: Self = Self {
+        pivots: Expression::ONE,
+        last: Expression::ONE,
+    };
+}
+
 impl Solver<'_> {
     /// What is left when no level has it, solved as a whole: the rest and its values.
     pub(super) fn rest(
@@ -24,9 +40,9 @@ impl Solver<'_> {
         let columns = (0..system.size()).collect();
         let allowed = |row, column| tree.allows(row, column);
         system.eliminate_constants(self.pool, &rows, &columns, &allowed)?;
-        let mut divisor = Expression::ONE;
+        let mut divisor = Divisor::ONE;
         let solved = self.whole(system, unknowns, &allowed, &mut divisor)?;
-        self.note(divisor, &[]);
+        self.note_last(divisor, &[]);
         Ok(solved)
     }
 
@@ -38,12 +54,13 @@ impl Solver<'_> {
         norms: &[Expression],
     ) -> Result<(Vec<Expression>, Expression), Failure> {
         let (matrix, right) = system.equations();
-        let mut divisor = Expression::ONE;
+        let mut divisor = Divisor::ONE;
         let (rest, values) = self.whole(&mut system, unknowns, &|_, _| true, &mut divisor)?;
         match rest.solver {
-            RestSolver::Numbers(_) => self.note(divisor, &[]),
-            RestSolver::Dense(_) => self.note(divisor, norms),
+            RestSolver::Numbers(_) => self.note_last(divisor, &[]),
+            RestSolver::Dense(_) => self.note_last(divisor, norms),
         }
+        let divisor = self.pool.multiply(divisor.pivots, divisor.last);
         let values = system.back_substitute(self.pool, &rest.columns, &values)?;
         // What was found by numbers has slopes by these equations alone; expressions are differentiated themselves.
         if matches!(rest.solver, RestSolver::Numbers(_)) {
@@ -66,7 +83,7 @@ impl Solver<'_> {
         system: &mut System,
         unknowns: &[usize],
         allowed: &dyn Fn(usize, usize) -> bool,
-        divisor: &mut Expression,
+        divisor: &mut Divisor,
     ) -> Result<(Rest, Vec<Expression>), Failure> {
         let steady = |pool: &Pool, system: &System| {
             system.pivot(
@@ -82,7 +99,7 @@ impl Solver<'_> {
             let pivot = system.entry(row, column);
             // In the determinant of the whole it may cancel.
             self.note(pivot, &[]);
-            *divisor = self.pool.multiply(*divisor, pivot);
+            divisor.pivots = self.pool.multiply(divisor.pivots, pivot);
             system.eliminate(self.pool, row, column)?;
         }
         let rows: Vec<usize> = system.open().iter().copied().collect();
@@ -91,7 +108,10 @@ impl Solver<'_> {
             if !matrix.is_regular(self.pool) {
                 return Err(Failure::Singular);
             }
-            *divisor = self.distance(&matrix).ok_or(Failure::Singular)?;
+            *divisor = Divisor {
+                last: self.distance(&matrix).ok_or(Failure::Singular)?,
+                ..Divisor::ONE
+            };
             let numbers = columns.iter().map(|column| unknowns[*column]).collect();
             let method = Method::Linear {
                 matrix: matrix.negated(),
@@ -103,7 +123,7 @@ impl Solver<'_> {
         let values = if rows.is_empty() {
             Vec::new()
         } else {
-            dense(self.pool, &matrix, &right, divisor).ok_or(Failure::Singular)?
+            dense(self.pool, &matrix, &right, &mut divisor.last).ok_or(Failure::Singular)?
         };
         let solver = RestSolver::Dense(matrix);
         let rest = Rest {
@@ -112,6 +132,20 @@ impl Solver<'_> {
             solver,
         };
         Ok((rest, values))
+    }
+
+    /// Remembers what was divided by beside the pivots, each of which is remembered. Where it varies it is the determinant
+    /// with them, in proportion to norms. Where it does not, their product would say no more, and in single precision those
+    /// of ten resistances of a kiloohm are beyond all numbers.
+    fn note_last(&mut self, divisor: Divisor, norms: &[Expression]) {
+        let varies = self.pool.rate(divisor.last) == Rate::Varying;
+        let pivots = if varies {
+            divisor.pivots
+        } else {
+            Expression::ONE
+        };
+        let noted = self.pool.multiply(pivots, divisor.last);
+        self.note(noted, norms);
     }
 
     /// How far a matrix of numbers is from a singular one: the reciprocal of the largest component of a solution, with rows

@@ -12,6 +12,8 @@ pub const ITERATIONS: usize = 50;
 const DAMPINGS: usize = 24;
 /// In units of the precision: changes below it may be rounding of an unknown that is zero.
 const ROUNDING: f64 = 64.0;
+/// A correction that is longer than this part of the one before comes no nearer.
+const SHRINKS: f64 = 0.9;
 /// In units of the precision: what an evaluation leaves of equations, beside their terms, when nothing but rounding is left.
 const LEFT: f64 = 4.0;
 
@@ -42,7 +44,8 @@ pub struct Solved<T, const K: usize> {
 /// longer by hundreds of powers of ten: where no damping of the whole helps, that begins again with what doubles an unknown
 /// at most.
 ///
-/// Converged means that two corrections in a row were below the square root of the precision. The first of them leaves
+/// Converged means that two corrections in a row were below the square root of the precision of each unknown; of the largest
+/// value that it took on the way, where corrections shrink no more, as of an unknown that is zero. The first of them leaves
 /// an error of the order of the precision, the second one, at a converged point, gives [`Dual`](crate::Dual) numbers
 /// the slope of the implicit function theorem, `−J⁻¹ ∂f/∂p`. Where the equations leave an unknown less sharp than that, it
 /// is what they leave of it: corrections go no further when each equation is zero but for the rounding of its terms. Of an
@@ -73,59 +76,70 @@ pub fn newton<T: Real, const K: usize>(
 ) -> Solved<T, K> {
     let mut point = Point::new(start, &evaluate);
     let mut size = start.map(Real::abs);
-    let nowhere = start.map(|_| T::from_f64(0.0));
-    let mut was_settled = false;
+    let (mut was_settled, mut was_small) = (false, false);
     let mut last = T::from_f64(f64::INFINITY);
     let mut iterations = 0;
     loop {
         iterations += 1;
         let factors = Regular::new(point.jacobian);
         let correction = factors.solution(&point.residual);
-        let is_settled = everywhere(settled(&correction, &size, &nowhere), |lane| lane == 1.0);
-        // As far as it can be told where an unknown may be zero.
-        let as_good_as_settled = settled(&correction, &size, &unseen(&point.x));
+        let settled = below(&correction, &point.x.map(Real::abs), None);
+        let small = below(&correction, &size, None);
+        let [is_settled, is_small] = [settled, small].map(in_all);
         let length = Point::relative(&correction, &size);
-        let shrinks = everywhere(length - T::from_f64(0.5) * last, |lane| lane < 0.0);
-        let sharpest = !shrinks && length.magnitude().is_finite() && point.is_rounding();
-        if is_settled && was_settled || sharpest {
+        let shrinks = |by| everywhere(length - T::from_f64(by) * last, |lane| lane < 0.0);
+        let sharpest = !shrinks(0.5) && length.magnitude().is_finite() && point.is_rounding();
+        let comes_no_nearer = is_small && was_small && !shrinks(SHRINKS);
+        if is_settled && was_settled || comes_no_nearer || sharpest {
             return point.ended(&correction, &size, iterations, true);
         }
-        let next = point.descend(&factors, &correction, as_good_as_settled, &size, &evaluate);
-        let Some(next) = next.filter(|_| iterations < ITERATIONS) else {
-            let converged = everywhere(as_good_as_settled, |lane| lane == 1.0);
+        // What is as good as settled where an unknown may be zero, and rounding.
+        let rounding = below(&correction, &size, Some(&point.x));
+        if iterations == ITERATIONS {
+            let converged = in_all(rounding) && !shrinks(SHRINKS);
             return point.ended(&correction, &size, iterations, converged);
+        }
+        let next = point
+            .descend(&factors, &correction, settled, &size, &evaluate)
+            .or_else(|| match in_all(rounding) {
+                true => None,
+                false => point.descend(&factors, &correction, rounding, &size, &evaluate),
+            });
+        let Some(next) = next else {
+            return point.ended(&correction, &size, iterations, in_all(rounding));
         };
         point = next;
         size.zip_apply(&point.x, |size, x| *size = size.max(x.abs()));
-        was_settled = is_settled;
+        (was_settled, was_small) = (is_settled, is_small);
         last = length;
     }
 }
 
-/// 1 in the lanes where a correction is below the square root of the precision and what may be rounding, else 0.
-fn settled<T: Real, const K: usize>(
-    correction: &SVector<T, K>,
-    size: &SVector<T, K>,
-    rounding: &SVector<T, K>,
-) -> T {
-    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    let bound = size.zip_map(rounding, |size, rounding| {
-        T::from_f64(T::SINGULAR) * size + rounding
-    });
-    correction
-        .iter()
-        .zip(bound.iter())
-        .fold(one, |settled, (step, bound)| {
-            // Zero is small enough for the bound zero; NaN is for none.
-            let small = (step.abs() - *bound).select_less(one, one, zero);
-            bound.select_less(step.abs(), zero, small * settled)
-        })
+/// Whether a flag of lanes is set in every one.
+fn in_all<T: Real>(flag: T) -> bool {
+    everywhere(flag, |lane| lane == 1.0)
 }
 
-/// What may be rounding of unknowns that are zero.
-fn unseen<T: Real, const K: usize>(x: &SVector<T, K>) -> SVector<T, K> {
-    let (zero, rounding) = (T::from_f64(0.0), T::from_f64(ROUNDING * T::EPSILON));
-    x.map(|x| x.abs().select_less(rounding, rounding, zero))
+/// 1 in the lanes where a correction is below the square root of the precision of sizes, else 0. Of unknowns given that may be
+/// zero it may be rounding, too.
+fn below<T: Real, const K: usize>(
+    correction: &SVector<T, K>,
+    sizes: &SVector<T, K>,
+    unknowns: Option<&SVector<T, K>>,
+) -> T {
+    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    let rounding = T::from_f64(ROUNDING * T::EPSILON);
+    let mut all = one;
+    for (place, (step, size)) in correction.iter().zip(sizes.iter()).enumerate() {
+        let unseen = unknowns.map_or(zero, |x| {
+            x[place].abs().select_less(rounding, rounding, zero)
+        });
+        let bound = T::from_f64(T::SINGULAR) * *size + unseen;
+        // Zero is small enough for the bound zero; NaN is for none.
+        let is_small = (step.abs() - bound).select_less(one, one, zero);
+        all = bound.select_less(step.abs(), zero, is_small * all);
+    }
+    all
 }
 
 /// The equations at a point.
@@ -484,6 +498,55 @@ mod tests {
                     "{scale:e}"
                 );
             }
+        }
+    }
+
+    /// `f |f| = drop` and `√f = drop` from one, as after a jump of the drop.
+    #[test]
+    fn small_unknowns_are_solved_from_large_starts() {
+        fn squared<T: Real>(flow: f64) -> Solved<T, 1> {
+            let drop = T::from_f64(flow * flow);
+            newton(SVector::from([T::from_f64(1.0)]), |x| {
+                let size = x[0].abs();
+                (
+                    SVector::from([x[0] * size - drop]),
+                    SMatrix::from([[size + size]]),
+                )
+            })
+        }
+        fn root<T: Real>(flow: f64) -> Solved<T, 1> {
+            let drop = T::from_f64(flow.sqrt());
+            newton(SVector::from([T::from_f64(1.0)]), |x| {
+                let root = x[0].abs().sqrt();
+                let signed = root * x[0].sign();
+                (
+                    SVector::from([signed - drop]),
+                    SMatrix::from([[T::from_f64(0.5) / root]]),
+                )
+            })
+        }
+        fn error<T: Real>(solved: Solved<T, 1>, flow: f64) -> f64 {
+            assert!(solved.converged, "{solved:?}");
+            (solved.solution[0].find(|_| true).unwrap() / flow - 1.0).abs()
+        }
+        for power in -12..=0 {
+            let flow = 10.0_f64.powi(power);
+            let errors = [
+                error(squared::<f64>(flow), flow),
+                error(root::<f64>(flow), flow),
+            ];
+            assert!(
+                errors.iter().all(|error| *error < 1e-14),
+                "{flow:e} {errors:?}"
+            );
+            let errors = [
+                error(squared::<f32>(flow), flow),
+                error(root::<f32>(flow), flow),
+            ];
+            assert!(
+                errors.iter().all(|error| *error < 1e-6),
+                "{flow:e} {errors:?}"
+            );
         }
     }
 

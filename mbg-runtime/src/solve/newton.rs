@@ -34,7 +34,7 @@ pub struct Solved<T, const K: usize> {
 /// Solves `f(x) = 0` of `K` equations for `K` unknowns.
 ///
 /// `evaluate` gives `f` and its Jacobian `∂f/∂x`. From the solution of the last time a smooth loop takes two or
-/// three linearisations. There are never more than 50, with at most 48 evaluations each.
+/// three linearisations. There are never more than 50, with at most 48 evaluations each, or 96 where lanes differ.
 ///
 /// The iteration is Newton's, damped until the next correction with the *old* Jacobian would be shorter than this one
 /// (natural monotonicity; Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, 3.3.1, with the bound 1 − λ/4).
@@ -84,29 +84,33 @@ pub fn newton<T: Real, const K: usize>(
         let factors = Regular::new(point.jacobian);
         let correction = factors.solution(&point.residual);
         let settled = below(&correction, &point.x.map(Real::abs), None);
-        let small = below(&correction, &size, None);
-        let [is_settled, is_small] = [settled, small].map(in_all);
+        let is_settled = in_all(settled);
+        if is_settled && was_settled {
+            return point.ended(&correction, &size, iterations, true);
+        }
+        let is_small = is_settled || in_all(below(&correction, &size, None));
         let length = Point::relative(&correction, &size);
         let shrinks = |by| everywhere(length - T::from_f64(by) * last, |lane| lane < 0.0);
-        let sharpest = !shrinks(0.5) && length.magnitude().is_finite() && point.is_rounding();
         let comes_no_nearer = is_small && was_small && !shrinks(SHRINKS);
-        if is_settled && was_settled || comes_no_nearer || sharpest {
+        let sharpest = || !shrinks(0.5) && length.magnitude().is_finite() && point.is_rounding();
+        if comes_no_nearer || sharpest() {
             return point.ended(&correction, &size, iterations, true);
         }
         // What is as good as settled where an unknown may be zero, and rounding.
-        let rounding = below(&correction, &size, Some(&point.x));
+        let rounding = || below(&correction, &size, Some(&point.x));
         if iterations == ITERATIONS {
-            let converged = in_all(rounding) && !shrinks(SHRINKS);
+            let converged = in_all(rounding()) && !shrinks(SHRINKS);
             return point.ended(&correction, &size, iterations, converged);
         }
-        let next = point
-            .descend(&factors, &correction, settled, &size, &evaluate)
-            .or_else(|| match in_all(rounding) {
-                true => None,
-                false => point.descend(&factors, &correction, rounding, &size, &evaluate),
-            });
+        let next = point.descend(
+            &factors,
+            &correction,
+            (settled, &rounding),
+            &size,
+            &evaluate,
+        );
         let Some(next) = next else {
-            return point.ended(&correction, &size, iterations, in_all(rounding));
+            return point.ended(&correction, &size, iterations, in_all(rounding()));
         };
         point = next;
         size.zip_apply(&point.x, |size, x| *size = size.max(x.abs()));
@@ -165,12 +169,13 @@ impl<T: Real, const K: usize> Point<T, K> {
     /// The next point: the longest damped correction that is monotonic in every lane, if there is one.
     ///
     /// At the level of rounding nothing is monotonic: in settled lanes it is enough that the next correction is not ten
-    /// times longer, and a point at which nothing but rounding is left is taken as it is.
+    /// times longer, and a point at which nothing but rounding is left is taken as it is. Where some lanes find nothing
+    /// better and may be at that level, the others go on.
     fn descend(
         &self,
         factors: &Regular<T, K>,
         correction: &SVector<T, K>,
-        settled: T,
+        (settled, rounding): (T, &impl Fn() -> T),
         size: &SVector<T, K>,
         evaluate: &impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
     ) -> Option<Self> {
@@ -185,13 +190,20 @@ impl<T: Real, const K: usize> Point<T, K> {
         };
         let here = square(correction);
         let mut damping = one;
-        for number in 1..=2 * DAMPINGS {
+        let mut lenient = settled;
+        for number in 1..=4 * DAMPINGS {
+            if number == 2 * DAMPINGS + 1 {
+                (damping, lenient) = (one, rounding());
+                if in_all(lenient) || everywhere(lenient - settled, |more| more == 0.0) {
+                    break;
+                }
+            }
             let next = Self::new(
                 self.x.zip_map(correction, |x, step| x - damping * step),
                 evaluate,
             );
             let shrunk = one - quarter * damping + T::from_f64(ROUNDING * T::EPSILON);
-            let factor = zero.select_less(settled, T::from_f64(100.0), shrunk * shrunk);
+            let factor = zero.select_less(lenient, T::from_f64(100.0), shrunk * shrunk);
             let there = square(&factors.solution(&next.residual));
             let monotonic = (factor * here).select_less(there, zero, one);
             let accepted = there.select_less(T::from_f64(f64::INFINITY), monotonic, zero);
@@ -200,7 +212,7 @@ impl<T: Real, const K: usize> Point<T, K> {
                 return Some(next);
             }
             let mut less = quarter * damping;
-            if number == DAMPINGS {
+            if number % (2 * DAMPINGS) == DAMPINGS {
                 less = less.min(one / Self::relative(correction, size));
             }
             damping = T::from_f64(0.5).select_less(accepted, damping, less);

@@ -234,6 +234,43 @@ fn a_bridge_of_diodes_is_told_what_solves_it() {
     }
 }
 
+/// Not at the pump, whose pressure is imposed.
+#[test]
+fn of_resistors_in_series_one_more_is_put_between() {
+    let cases = [
+        (
+            "1 first { R wall { effort: f * abs(f) } } 1 second { R bend { effort: 2.0 * f * abs(f) } }",
+            "`first -> R damper { conductance: … };`",
+        ),
+        (
+            "1 first; 1 second; 0 drop { R valve { flow: e * abs(e) } } first -> drop; 0 fall { R gate { flow: 2.0 * e * abs(e) } }
+             second -> fall;",
+            "`between -> R damper { resistance: … };`",
+        ),
+    ];
+    for (resistors, typed) in cases {
+        let text = format!(
+            "model M {{ 0 source; 0 between; 0 end; Se pump {{ effort: 2.0 }} -> source; {resistors}
+             source -> first; first -> between; between -> second; second -> end; Se tank {{ effort: 0.0 }} -> end;
+             integral volume = first.f; output flow = volume; }}"
+        );
+        let helps = helps(&text, codes::FIXED_RESISTOR);
+        let help = helps.last().unwrap();
+        assert_eq!(
+            *help,
+            format!(
+                "attach a resistor that can give the {}: {typed}",
+                if typed.contains("cond") {
+                    "flow"
+                } else {
+                    "effort"
+                }
+            )
+        );
+        compiles(&followed(&text, help));
+    }
+}
+
 #[test]
 fn parallel_axes_of_a_joint_are_told_at_the_axes() {
     let scene = |joint: &str, axes: &str| {

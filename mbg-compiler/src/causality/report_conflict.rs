@@ -151,6 +151,9 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         codes::RECTANGULAR_INVERSE => imposing(graph, &elements),
         _ => None,
     };
+    // Beside a source nothing can give what it imposes.
+    let end = without_source(graph, conflict).or(end);
+    let place = end.as_ref().map_or(place, |end| graph.end_name(end));
     helps.push(imposed.unwrap_or_else(|| match (conflict.code, end) {
         (codes::SOURCES_CONFLICT, _) => format!("remove one of {}", names(graph, &elements)),
         (codes::GYROSCOPIC_INVERSE, _) => {
@@ -194,6 +197,31 @@ fn joins_components(graph: &BondGraph, id: JunctionId) -> bool {
     let mut far = graph.across(id).map(|far| graph.end_name(far));
     let is_node = junction.kind == JunctionKind::Zero && junction.dimension == 1;
     is_node && instance_of(&junction.name).is_none() && far.all(|far| instance_of(&far).is_some())
+}
+
+/// The first junction of a conflict at which a resistor more gives what the laws of others take, and no source gives it.
+fn without_source(graph: &BondGraph, conflict: &Conflict) -> Option<End> {
+    let rules = conflict
+        .elements()
+        .into_iter()
+        .map(|id| graph.elements[id.0].rule);
+    let wanted = rules.into_iter().find_map(|rule| match rule {
+        Rule::ResistanceOnly => Some(JunctionKind::One),
+        Rule::ConductanceOnly => Some(JunctionKind::Zero),
+        _ => None,
+    })?;
+    let is_source = |end: &End| match end {
+        End::OnePort(id) => matches!(graph.elements[id.0].rule, Rule::EffortOut | Rule::FlowOut),
+        _ => false,
+    };
+    conflict.sites.iter().find_map(|site| match site {
+        Site::Junction(id, components)
+            if graph.junctions[id.0].kind == wanted && !graph.across(*id).any(is_source) =>
+        {
+            Some(End::Junction(*id, components.clone()))
+        }
+        _ => None,
+    })
 }
 
 /// A storage that would give a place what it lacks, but not with one stroke: elsewhere on its bond that is imposed.

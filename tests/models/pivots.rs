@@ -23,6 +23,25 @@ mbg! {
         output rate: rad/s = turn.rate.f;
     }
 
+    /// Arms on hinges in a row, and a load on a ball joint.
+    #[derivative]
+    pub(crate) model Crane {
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        param mass: kg = 1.0;
+        let inertia = mass * diag(1.0, 2.0, 2.5);
+        frames: for k in 0..4 { 1 end[6]; }
+        1 load[6];
+        Sf fixed[6] { flow: 0.0 } -> frames[0].end;
+        arms: for k in 0..3 {
+            hinge: Revolute { axis: k, initial: 0.3, initial_rate: 0.5, offset: [0.5, 0.2, 1.0], tilt: rot_x(0.3) }
+                (frames[k].end, frames[k + 1].end);
+            body: Body { mass: mass, inertia: inertia, centre: [0.1, 0.2, 0.3] } (frames[k + 1].end);
+        }
+        ball: Spherical { orientation: quaternion, initial: [0.1, 0.2, 0.3], offset: [0.5, 0.2, 1.0] } (frames[3].end, load);
+        hung: Body { mass: mass, inertia: inertia, centre: [0.1, 0.2, 0.3] } (load);
+    }
+
     /// A body that is free, held at a point, and turned about no axis at the start.
     #[derivative]
     pub(crate) model Top {
@@ -197,6 +216,23 @@ fn a_small_machine_is_not_singular() {
                 None
             );
         }
+    }
+}
+
+/// Six inertias are beyond single precision when they are multiplied.
+#[test]
+fn a_large_machine_is_not_singular_in_single_precision() {
+    let usual = Crane::<f64>::new(CraneParameters::default()).unwrap();
+    let expected = usual.derivative(0.0, &usual.initial_state(), &SVector::zeros(), &mut ());
+    for mass in [1e-9_f32, 1e-3, 1e3, 1e6, 1e9] {
+        let model = Crane::new(CraneParameters { mass }).unwrap();
+        let (x, none) = (model.initial_state(), SVector::zeros());
+        assert_eq!(model.trouble(0.0, &x, &none, &()), None, "{mass:e}");
+        let found = model.derivative(0.0, &x, &none, &mut ()).map(f64::from);
+        assert!(
+            apart(&found.data.0[0], &expected.data.0[0]) < 1e-4,
+            "{mass:e}"
+        );
     }
 }
 

@@ -134,12 +134,12 @@ impl Solver<'_> {
         Ok((rest, values))
     }
 
-    /// Remembers what was divided by beside the pivots, each of which is remembered. Where it varies it is the determinant
-    /// with them, in proportion to norms. Where it does not, their product would say no more, and in single precision those
-    /// of ten resistances of a kiloohm are beyond all numbers.
+    /// Remembers what was divided by beside the pivots, each of which is remembered. Where it varies and norms tell its size,
+    /// it is the determinant with them. Otherwise their product would say no more, and in single precision that of ten
+    /// resistances of a kiloohm, or of inertias of a crane, is beyond all numbers.
     fn note_last(&mut self, divisor: Divisor, norms: &[Expression]) {
         let varies = self.pool.rate(divisor.last) == Rate::Varying;
-        let pivots = if varies {
+        let pivots = if varies && !norms.is_empty() {
             divisor.pivots
         } else {
             Expression::ONE

@@ -38,7 +38,7 @@ pub struct Projected<T, const N: usize> {
 /// ```text
 /// q ← q − Gᵀ (G Gᵀ)⁺ g
 /// ```
-/// with [`least_norm`] for the pseudoinverse, so that redundant constraints and singular positions do no harm. It is
+/// with [`least_norm`](super::least_norm) for the pseudoinverse, so that redundant constraints and singular positions do no harm. It is
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
 /// most 32 corrections; after a step of integration it takes one or two. Where it does not lower `|g|`, constraints are
 /// first divided by the largest number of their rows, since momenta of small machines stand beside rates and lengths.

@@ -20,7 +20,7 @@ use crate::network::Network;
 use crate::notes;
 use crate::program::{self, Program, Request};
 use crate::scaling;
-use crate::sparsity::{self, Pattern};
+use crate::sparsity::Pattern;
 use crate::start;
 use crate::structure::{self, Failure, Formulation, Loop, Solution, Solved};
 use crate::symbolic::print::Printer;
@@ -191,14 +191,9 @@ fn finish(
         .map(|state| model.states[*state].initial);
     let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
-    let by_states = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
+    let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
-    let by_inputs = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
-    let pattern = if by_states.columns.is_empty() {
-        sparsity::of_entries(&by_states.results[rates.len()..], by_state.len())
-    } else {
-        sparsity::of_dependence(&pool, rates, &by_state)
-    };
+    let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let requests: [Request; 12] = [
         rates.clone().into(),
         answers.outputs.clone().into(),

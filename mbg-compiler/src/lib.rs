@@ -19,6 +19,7 @@
 //! [`compile`] runs them for one model, [`expand`] for everything inside one `mbg! { … }`; [`explain`] prints them.
 
 pub mod answers;
+mod bits;
 pub mod causality;
 pub mod checks;
 pub mod closures;

@@ -4,10 +4,9 @@
 //! `d I − s ∂f/∂x`, with the patterns of `L` and `U`. What kinematics repeat, such as one row per displacement that holds
 //! nothing but its velocity, costs next to nothing in that order without being recognised.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::symbolic::Expression;
 
 /// The columns of each row that can differ from zero.
 pub type Pattern = Vec<BTreeSet<usize>>;
@@ -33,21 +32,6 @@ pub fn of_entries(entries: &[Expression], columns: usize) -> Pattern {
             .collect()
     };
     entries.chunks(columns.max(1)).map(filled).collect()
-}
-
-/// What rates depend on.
-#[must_use]
-pub fn of_dependence(pool: &Pool, rates: &[Expression], states: &[Symbol]) -> Pattern {
-    let numbered = states.iter().enumerate();
-    let places: BTreeMap<Symbol, usize> = numbered.map(|(place, state)| (*state, place)).collect();
-    let row = |rate: &Expression| {
-        let found = symbols(pool, &[*rate]);
-        found
-            .iter()
-            .filter_map(|it| places.get(it).copied())
-            .collect()
-    };
-    rates.iter().map(row).collect()
 }
 
 impl Elimination {

@@ -84,6 +84,44 @@ fn jacobians_grow_with_the_square() {
     assert!(each[2] < 1.4 * each[1], "{each:?}");
 }
 
+/// What acts on its neighbours alone has a Jacobian with few entries, however long it is: its derivative once more and not once
+/// for each state.
+#[test]
+fn jacobians_of_neighbours_cost_as_much_as_derivatives() {
+    let ladder = "model Ladder {
+        input voltage: V;
+        1 source { Se drive { effort: voltage } }
+        sections: for k in 0..40 {
+            1 line { I coil { inertia: 1e-3 } R wire { resistance: 0.1 } }
+            0 node { C store { effort: 1e6 * q * (1.0 + 0.1 * powi(q, 2)) } R leak { conductance: 1e-6 } }
+            line -> node;
+        }
+        source -> sections[0].line;
+        for k in 0..39 { sections[k].node -> sections[k+1].line; }
+    }";
+    let beam = "model Beam {
+        gravity [0.0, 0.0, -9.81];
+        ends: for k in 0..9 { 1 end[6]; }
+        Sf held[6] { flow: 0.0 } -> ends[0].end;
+        elements: for k in 0..8 {
+            1 rod[6];
+            bend: Revolute { axis: 1, blocked: compliant, stiffness: 1e4, damping: 10.0 } (ends[k].end, rod);
+            body: Body { mass: 1.0, inertia: diag(0.01, 0.02, 0.02), centre: [0.1, 0.0, 0.0] } (rod);
+            length: Offset { by: [0.2, 0.0, 0.0] } (rod, ends[k+1].end);
+        }
+    }";
+    for (name, text) in [("ladder", ladder), ("beam", beam)] {
+        let compiled = models::compiled(text);
+        let (derivative, both) = (
+            compiled.operations(Routines::DERIVATIVE),
+            compiled.operations(Routines::DERIVATIVE_AND_JACOBIAN),
+        );
+        let states = compiled.states.len();
+        println!("{name} of {states} states: {derivative} operations, with its Jacobian {both}");
+        assert!(both < 2 * derivative, "{name}: {derivative}, {both}");
+    }
+}
+
 /// Inertial forces of a body of any shape, on two hinges at right angles: vector by vector they would take 150 operations.
 #[test]
 fn a_turning_body_costs_less_than_its_vectors() {

@@ -131,35 +131,51 @@ pub fn close<T: Real, const M: usize, const N: usize>(
 pub type Slopes<'a, T, const K: usize, const R: usize> =
     dyn Fn(&[<T as Real>::Columns; K]) -> [<T as Real>::Columns; R] + 'a;
 
+/// Variables that change together: one, and others with the rows that depend on them instead of on it.
+pub type Direction<'a> = (usize, &'a [(usize, &'a [usize])]);
+
 /// Fills the columns of a Jacobian that belong to some variables, in some of its rows. `slopes` says how these change with
-/// the variables, for several columns at once.
+/// the variables, for several directions at once.
 // It is called as a function of its own: written into the loop, all that does not depend on the column would be made lanes
 // of before, and kept in memory.
 #[inline(never)]
 pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
     jacobian: &mut SMatrix<T, N, K>,
-    variables: &[usize],
+    directions: &[Direction<'_>],
     rows: &[usize; R],
     slopes: &Slopes<T, K, R>,
 ) {
-    for together in variables.chunks(<T::Columns as Columns<T>>::COUNT) {
+    for together in directions.chunks(<T::Columns as Columns<T>>::COUNT) {
         let mut changes = [<T::Columns as Real>::from_f64(0.0); K];
-        for (column, variable) in together.iter().enumerate() {
-            if let Some(change) = changes.get_mut(*variable) {
-                *change = Columns::<T>::from_columns(|other| {
-                    T::from_f64(if other == column { 1.0 } else { 0.0 })
-                });
+        for (lane, (first, others)) in together.iter().enumerate() {
+            let others = others.iter().map(|(variable, _)| variable);
+            for variable in [first].into_iter().chain(others) {
+                if let Some(change) = changes.get_mut(*variable) {
+                    *change = Columns::<T>::from_columns(|other| {
+                        T::from_f64(if other == lane { 1.0 } else { 0.0 })
+                    });
+                }
             }
         }
         let found = slopes(&changes);
-        for (column, variable) in together.iter().enumerate() {
-            let entries = jacobian.as_mut_slice().chunks_exact_mut(N).nth(*variable);
+        for (lane, (first, others)) in together.iter().enumerate() {
+            let entries = jacobian.as_mut_slice().chunks_exact_mut(N).nth(*first);
             let entries = entries.unwrap_or_default();
             for (row, slope) in rows.iter().zip(&found) {
                 if let (Some(entry), Some(slope)) =
-                    (entries.get_mut(*row), slope.as_columns().get(column))
+                    (entries.get_mut(*row), slope.as_columns().get(lane))
                 {
                     *entry = *slope;
+                }
+            }
+            for (variable, own) in *others {
+                for row in *own {
+                    if let Some(entry) = jacobian.get_mut((*row, *first)) {
+                        let slope = core::mem::replace(entry, T::from_f64(0.0));
+                        if let Some(entry) = jacobian.get_mut((*row, *variable)) {
+                            *entry = slope;
+                        }
+                    }
                 }
             }
         }

@@ -30,6 +30,48 @@ mbg! {
     }
 }
 
+mbg! {
+    component Arm(port 1 base[6], port 1 tip[6]) {
+        param stiffness: N*m/rad;
+        param load: kg;
+
+        ends: for k in 0..4 { 1 end[6]; }
+        base -> ends[0].end;
+        links: for k in 0..4 {
+            1 rod[6];
+            hinge: Revolute { axis: k % 2, stiffness: stiffness, initial: 0.3 } (ends[k].end, rod);
+            body: Body { mass: 1.0, inertia: diag(0.03, 0.04, 0.05), centre: [0.0, 0.02, -0.3] } (rod);
+            if k < 3 { length: Offset { by: [0.0, 0.0, -0.5] } (rod, ends[k+1].end); }
+            if k == 3 { length: Offset { by: [0.0, 0.0, -0.5] } (rod, tip); }
+        }
+        held: PointMass { mass: load } (tip);
+    }
+
+    /// One arm, whose Jacobian is written out.
+    #[derivative]
+    pub(crate) model One {
+        param stiffness: N*m/rad = 2.0;
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        1 stand[6] { Sf still[6] { flow: 0.0 } }
+        1 tip[6];
+        arm: Arm { stiffness: stiffness, load: 0.5 } (stand, tip);
+    }
+
+    /// Five arms on one stand, of which no two act on each other.
+    #[derivative]
+    pub(crate) model Five {
+        param stiffness: N*m/rad = 2.0;
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        1 stand[6] { Sf still[6] { flow: 0.0 } }
+        arms: for k in 0..5 {
+            1 tip[6];
+            arm: Arm { stiffness: (1.0 + k) * stiffness, load: 0.5 } (stand, tip);
+        }
+    }
+}
+
 fn effort(x: f64) -> f64 {
     x + x.powi(3)
 }
@@ -98,4 +140,37 @@ fn a_column_costs_no_more_than_a_derivative() {
     let operations = Mesh::<f64>::META.operations;
     let columns = operations.derivative_and_jacobian - operations.derivative;
     assert!(columns <= CELLS * operations.derivative, "{columns}");
+}
+
+/// Of one of the five arms: places of its states, angles before rates.
+fn own(arm: usize) -> [usize; 8] {
+    std::array::from_fn(|k| 20 * (k / 4) + 4 * arm + k % 4)
+}
+
+#[test]
+fn what_does_not_act_on_each_other_changes_together() {
+    let five = Five::new(FiveParameters::default()).unwrap();
+    let x = SVector::<f64, 40>::from_fn(|k, _| 0.7 * (1.3 * k as f64).sin());
+    let none = SVector::from([]);
+    let (derivative, by_state) = five.derivative_and_jacobian(0.0, &x, &none, &mut ());
+    for arm in 0..5 {
+        let stiffness = 2.0 * (1.0 + arm as f64);
+        let one = One::new(OneParameters { stiffness }).unwrap();
+        let x = SVector::<f64, 8>::from(own(arm).map(|k| x[k]));
+        let alone = one.derivative_and_jacobian(0.0, &x, &none, &mut ());
+        assert!(apart(&own(arm).map(|k| derivative[k]), alone.0.as_slice()) < 1e-13);
+        for (column, place) in own(arm).into_iter().enumerate() {
+            let found = own(arm).map(|row| by_state[(row, place)]);
+            let expected = alone.1.column(column);
+            assert!(apart(&found, expected.as_slice()) < 1e-13, "{arm} {column}");
+            let others = (0..40).filter(|row| !own(arm).contains(row));
+            assert!(others.into_iter().all(|row| by_state[(row, place)] == 0.0));
+        }
+    }
+    let [all, alone] = [Five::<f64>::META, One::<f64>::META].map(|it| it.operations);
+    assert!(all.derivative_and_jacobian < 9 * all.derivative, "{all:?}");
+    assert!(
+        alone.derivative_and_jacobian < all.derivative_and_jacobian,
+        "{alone:?}"
+    );
 }

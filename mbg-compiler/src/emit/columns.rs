@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::routine::{Writer, column_lines};
 use super::tokens::block;
-use crate::program::{Columns, Operand, Routine, Source};
+use crate::program::{Column, Columns, Operand, Routine, Source};
 use crate::symbolic::Symbol;
 
 /// Writes `jacobian`, column by column; the steps of the routine stand before it.
@@ -21,11 +21,9 @@ fn group(writer: &Writer, columns: &Columns) -> TokenStream {
         .filter(|row| is_worked_out(columns.results[*row]))
         .collect();
     let (lines, slopes) = column_lines(writer, columns, &steps);
-    let variables = columns
-        .variables
-        .iter()
-        .copied()
-        .map(Literal::usize_suffixed);
+    let directions = columns.directions.iter();
+    let directions = directions.filter_map(|it| direction(it, &steps));
+    let directions: Vec<_> = directions.collect();
     let steps = steps.into_iter().map(Literal::usize_suffixed);
     let mut body = quote! {
         use ::mbg_runtime::Real as _;
@@ -35,8 +33,21 @@ fn group(writer: &Writer, columns: &Columns) -> TokenStream {
     let body = block(body);
     quote! {
         #(#constant)*
-        ::mbg_runtime::__private::columns(jacobian, &[#(#variables),*], &[#(#steps),*], &|slopes| #body);
+        ::mbg_runtime::__private::columns(jacobian, &[#(#directions),*], &[#(#steps),*], &|slopes| #body);
     }
+}
+
+/// A variable, and those that change with it, with the rows that are worked out and depend on them.
+fn direction(direction: &[Column], steps: &[usize]) -> Option<TokenStream> {
+    let (first, others) = direction.split_first()?;
+    let others = others.iter().map(|column| {
+        let rows = column.rows.iter().filter(|row| steps.contains(row));
+        let rows = rows.map(|row| Literal::usize_unsuffixed(*row));
+        let variable = Literal::usize_unsuffixed(column.variable);
+        quote!((#variable, &[#(#rows),*]))
+    });
+    let first = Literal::usize_unsuffixed(first.variable);
+    Some(quote!((#first, &[#(#others),*])))
 }
 
 fn is_worked_out(result: Operand) -> bool {

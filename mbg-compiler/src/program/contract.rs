@@ -149,7 +149,7 @@ impl Rewrite<'_> {
 
     fn columns(&self, columns: &Columns) -> Columns {
         Columns {
-            variables: columns.variables.clone(),
+            directions: columns.directions.clone(),
             first: self.places[columns.first],
             steps: self.steps(&columns.steps, columns.first),
             results: self.operands(&columns.results),

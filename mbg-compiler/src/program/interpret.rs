@@ -31,7 +31,7 @@ fn run(routine: &Routine, arguments: &Arguments, folded: &[f64]) -> Vec<f64> {
         arguments,
         folded,
         values: Vec::new(),
-        direction: None,
+        changing: Vec::new(),
         solved: BTreeMap::new(),
         matrices: BTreeMap::new(),
     };
@@ -46,8 +46,8 @@ struct Machine<'a> {
     arguments: &'a Arguments<'a>,
     folded: &'a [f64],
     values: Vec<f64>,
-    /// The variable that changes.
-    direction: Option<usize>,
+    /// The variables that change.
+    changing: Vec<usize>,
     /// Unknowns by iteration.
     solved: BTreeMap<usize, Vec<f64>>,
     /// Matrices of linear solves.
@@ -57,17 +57,20 @@ struct Machine<'a> {
 impl Machine<'_> {
     /// A Jacobian by rows.
     fn jacobian(&self, columns: &[Columns]) -> Vec<f64> {
-        let width: usize = columns.iter().map(|it| it.variables.len()).sum();
+        let width: usize = columns.iter().map(Columns::width).sum();
         let rows = columns.first().map_or(0, |it| it.results.len());
         let mut entries = vec![0.0; rows * width];
         for group in columns {
-            for variable in &group.variables {
+            for direction in &group.directions {
                 let mut inner = self.clone();
-                inner.direction = Some(*variable);
+                inner.changing = direction.iter().map(|it| it.variable).collect();
                 inner.values.resize(group.first, f64::NAN);
                 inner.steps(&group.steps);
-                for (row, entry) in inner.results(&group.results).into_iter().enumerate() {
-                    entries[row * width + variable] = entry;
+                let slopes = inner.results(&group.results);
+                for column in direction {
+                    for row in &column.rows {
+                        entries[row * width + column.variable] = slopes[*row];
+                    }
                 }
             }
         }
@@ -139,7 +142,7 @@ impl Machine<'_> {
             Source::Symbol(Symbol::State(index)) => self.arguments.state[index],
             Source::Symbol(Symbol::Input(index)) => self.arguments.input[index],
             Source::Symbol(Symbol::Time) => self.arguments.time,
-            Source::Symbol(Symbol::Slope(index)) => f64::from(self.direction == Some(index)),
+            Source::Symbol(Symbol::Slope(index)) => f64::from(self.changing.contains(&index)),
             Source::Symbol(Symbol::Signal(_) | Symbol::Unknown(_)) => f64::NAN,
             Source::Folded(index) => self.folded[index],
             Source::Value(index) => self.values[index],

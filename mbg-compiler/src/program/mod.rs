@@ -196,11 +196,23 @@ pub struct Request {
     pub columns: Vec<Slopes>,
 }
 
+/// A column of a Jacobian.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// The variable by which it is the derivative.
+    pub variable: usize,
+    /// The rates that depend on it.
+    pub rows: Vec<usize>,
+}
+
+/// Columns of which no two share a row, so that one direction, in which all their variables change, gives them all.
+pub type Direction = Vec<Column>;
+
 /// How rates change along a direction.
 #[derive(Clone, Debug)]
 pub struct Slopes {
-    /// What changes, by place.
-    pub variables: Vec<usize>,
+    /// The directions.
+    pub directions: Vec<Direction>,
     /// Linear in the [`Symbol::Slope`]s of what changes.
     pub rates: Vec<Expression>,
 }
@@ -214,11 +226,11 @@ impl From<Vec<Expression>> for Request {
     }
 }
 
-/// Columns of a Jacobian: steps that are run for each of them, or for several at once.
+/// Columns of a Jacobian: steps that are run for each direction, or for several at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// The variables by which it is differentiated.
-    pub variables: Vec<usize>,
+    /// The directions.
+    pub directions: Vec<Direction>,
     /// Number of the first value.
     pub first: usize,
     /// Steps. All are linear in the slopes of the variables; all else that they read is worked out before.
@@ -228,10 +240,16 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// How many columns they are.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.directions.iter().map(Vec::len).sum()
+    }
+
     /// The same with other steps and results.
     fn with(&self, step: &dyn Fn(&Step) -> Step, result: &dyn Fn(Operand) -> Operand) -> Self {
         Self {
-            variables: self.variables.clone(),
+            directions: self.directions.clone(),
             first: self.first,
             steps: self.steps.iter().map(step).collect(),
             results: self.results.iter().copied().map(result).collect(),
@@ -273,7 +291,7 @@ impl Routine {
     pub fn operations(&self) -> usize {
         let count = |steps: &[Step]| -> usize { steps.iter().map(Step::operations).sum() };
         let columns = self.columns.iter();
-        let columns = columns.map(|it| it.variables.len() * count(&it.steps));
+        let columns = columns.map(|it| it.directions.len() * count(&it.steps));
         count(&self.steps) + columns.sum::<usize>()
     }
 

@@ -10,7 +10,7 @@ use super::contract::contract;
 use super::fixtures::{state, value};
 use super::reorder::reorder;
 use super::signs::signs;
-use super::{Columns, Operand, Routine, Source, Step};
+use super::{Column, Columns, Operand, Routine, Source, Step};
 use crate::symbolic::Symbol;
 
 /// How far back a value may be that a step reads.
@@ -156,7 +156,10 @@ fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
         let begin = count;
         let (steps, end) = share.steps(drafts, begin, &(first..begin));
         columns.push(Columns {
-            variables: vec![0],
+            directions: vec![vec![Column {
+                variable: 0,
+                rows: vec![0],
+            }]],
             first: begin,
             steps,
             results: vec![Operand::plain(Source::Value(end - 1))],

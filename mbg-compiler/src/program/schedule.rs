@@ -296,7 +296,7 @@ impl Context<'_> {
             self.visit(draft, rate.magnitude(), false, &common);
         }
         let columns = Columns {
-            variables: slopes.variables.clone(),
+            directions: slopes.directions.clone(),
             first,
             results: self.operands(draft, &slopes.rates),
             steps: std::mem::replace(&mut draft.routine.steps, before),

@@ -10,6 +10,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::blocks;
+use crate::bits::Bits;
 use crate::equations::{Owner, Scalars, Turn};
 
 /// The turn of every unknown; none for those that belong to the base. And the most independent rates from which one rate
@@ -92,7 +93,7 @@ fn farthest_first(company: &[BTreeSet<usize>], weight: &[usize]) -> Vec<usize> {
 /// Which independent rates each unknown's rate depends on, as sets of bits.
 struct Dependence {
     /// Set and depth of each unknown.
-    sets: BTreeMap<usize, (Vec<u64>, usize)>,
+    sets: BTreeMap<usize, (Bits, usize)>,
     /// Level of each independent rate.
     rank: Vec<usize>,
 }
@@ -116,19 +117,19 @@ impl Dependence {
             })
             .collect();
         let own: Vec<usize> = (0..unknowns.len()).collect();
-        let mut sets: Vec<(Vec<u64>, usize)> = vec![Default::default(); unknowns.len()];
+        let mut sets: Vec<(Bits, usize)> = vec![Default::default(); unknowns.len()];
         let mut independent = 0;
         for block in blocks::ordered(&incidence, &own) {
-            let (mut set, mut depth) = (Vec::new(), 0);
+            let (mut set, mut depth) = (Bits::default(), 0);
             for member in &block {
                 for other in incidence[*member].iter().filter(|k| !block.contains(k)) {
-                    join(&mut set, &sets[*other].0);
+                    set.join(&sets[*other].0);
                     depth = depth.max(sets[*other].1 + 1);
                 }
             }
             let equation = &scalars.equations[matched[&unknowns[block[0]]]];
             if is_state(equation.owner) {
-                insert(&mut set, independent);
+                set.insert(independent);
                 independent += 1;
             }
             for member in block {
@@ -137,13 +138,13 @@ impl Dependence {
         }
         let mut weight = vec![0usize; independent];
         for (set, _) in &sets {
-            members(set).for_each(|k| weight[k] += 1);
+            set.iter().for_each(|k| weight[k] += 1);
         }
         // The rates that the storage follows from that a rate moves with the fewest others: all are nearer to the base.
         let mut company: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); independent];
         let places = moved.iter().filter_map(|unknown| place.get(unknown));
         for (set, _) in places.map(|place| &sets[*place]) {
-            let together: BTreeSet<usize> = members(set).collect();
+            let together: BTreeSet<usize> = set.iter().collect();
             for k in &together {
                 let fewest = &mut company[*k];
                 if fewest.is_empty() || together.len() < fewest.len() {
@@ -163,38 +164,16 @@ impl Dependence {
     }
 
     fn deepest(&self) -> usize {
-        let sizes = self.sets.values().map(|(set, _)| members(set).count());
+        let sizes = self.sets.values().map(|(set, _)| set.len());
         sizes.max().unwrap_or(0)
     }
 
     fn turn(&self, unknown: usize) -> Option<Turn> {
         let (set, depth) = &self.sets[&unknown];
-        let level = members(set).map(|k| self.rank[k]).min()?;
+        let level = set.iter().map(|k| self.rank[k]).min()?;
         Some(Turn {
             level,
             depth: *depth,
         })
     }
-}
-
-fn insert(set: &mut Vec<u64>, member: usize) {
-    if set.len() <= member / 64 {
-        set.resize(member / 64 + 1, 0);
-    }
-    set[member / 64] |= 1 << (member % 64);
-}
-
-fn join(set: &mut Vec<u64>, other: &[u64]) {
-    if set.len() < other.len() {
-        set.resize(other.len(), 0);
-    }
-    set.iter_mut().zip(other).for_each(|(a, b)| *a |= b);
-}
-
-fn members(set: &[u64]) -> impl Iterator<Item = usize> + '_ {
-    set.iter().enumerate().flat_map(|(word, bits)| {
-        (0..64)
-            .filter(move |bit| bits >> bit & 1 == 1)
-            .map(move |bit| word * 64 + bit)
-    })
 }

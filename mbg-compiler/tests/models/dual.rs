@@ -28,7 +28,7 @@ fn run(routine: &Routine, point: &Point, folded: &[Dual<f64>]) -> Vec<Dual<f64>>
         point,
         folded,
         values: Vec::new(),
-        direction: None,
+        changing: Vec::new(),
         solved: BTreeMap::new(),
         matrices: BTreeMap::new(),
     };
@@ -43,8 +43,8 @@ struct Machine<'a> {
     point: &'a Point<'a>,
     folded: &'a [Dual<f64>],
     values: Vec<Dual<f64>>,
-    /// The variable that changes.
-    direction: Option<usize>,
+    /// The variables that change.
+    changing: Vec<usize>,
     /// Unknowns of solves.
     solved: BTreeMap<usize, Vec<Dual<f64>>>,
     /// Their matrices.
@@ -54,17 +54,20 @@ struct Machine<'a> {
 impl Machine<'_> {
     /// A Jacobian by rows.
     fn jacobian(&self, columns: &[Columns]) -> Vec<Dual<f64>> {
-        let width: usize = columns.iter().map(|it| it.variables.len()).sum();
+        let width: usize = columns.iter().map(Columns::width).sum();
         let rows = columns.first().map_or(0, |it| it.results.len());
         let mut entries = vec![Dual::constant(0.0); rows * width];
         for group in columns {
-            for variable in &group.variables {
+            for direction in &group.directions {
                 let mut inner = self.clone();
-                inner.direction = Some(*variable);
+                inner.changing = direction.iter().map(|it| it.variable).collect();
                 inner.values.resize(group.first, Dual::constant(f64::NAN));
                 inner.steps(&group.steps);
-                for (row, entry) in inner.results(&group.results).into_iter().enumerate() {
-                    entries[row * width + variable] = entry;
+                let slopes = inner.results(&group.results);
+                for column in direction {
+                    for row in &column.rows {
+                        entries[row * width + column.variable] = slopes[*row];
+                    }
                 }
             }
         }
@@ -124,7 +127,7 @@ impl Machine<'_> {
                 Dual::constant(self.point.parameters[index])
             }
             Source::Symbol(Symbol::Slope(index)) => {
-                Dual::constant(f64::from(self.direction == Some(index)))
+                Dual::constant(f64::from(self.changing.contains(&index)))
             }
             Source::Symbol(Symbol::Signal(_)) => panic!("no program reads a signal"),
             Source::Symbol(Symbol::Unknown(_)) => panic!("no program reads an unknown"),

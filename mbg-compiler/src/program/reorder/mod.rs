@@ -46,7 +46,7 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
             first,
             steps: numbers.steps(steps, &order, &routine.names),
             results: numbers.operands(&columns.results),
-            variables: columns.variables.clone(),
+            directions: columns.directions.clone(),
         }
     });
     let columns = columns.collect();
@@ -471,7 +471,7 @@ mod tests {
     #[test]
     fn columns_take_no_product_of_other_columns() {
         let columns = |first: usize, steps: &[Step]| Columns {
-            variables: vec![0],
+            directions: Vec::new(),
             first,
             steps: steps.to_vec(),
             results: vec![value(first + steps.len() - 1)],

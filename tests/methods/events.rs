@@ -98,6 +98,38 @@ fn the_search_is_bounded() {
     assert!((arrival.time - std::f64::consts::FRAC_PI_3).abs() < 1e-7);
 }
 
+/// A limiter and a counter of whole steps stay at zero behind the event, or for a while.
+#[test]
+fn a_guard_that_stays_zero_is_met_where_it_becomes_zero() {
+    let times = |guard: fn(f64) -> f64| {
+        [0.1, 0.4].map(|step| {
+            let solver = Fixed::new(Rk4, step);
+            let mut asked = 0;
+            let event = (Direction::Falling, |_t: f64, x: &State| {
+                asked += 1;
+                guard(x[0])
+            });
+            let input = Constant(SVector::from([-9.81]));
+            let start = SVector::from([1.0, 0.0]);
+            let arrival = solver
+                .until(&Written(Falling), &input, 0.0, 0.7, start, event, |_| ())
+                .unwrap();
+            assert!(arrival.found && asked <= 9 * 7 + 64, "{asked}");
+            arrival.time
+        })
+    };
+    let fallen = |way: f64| f64::sqrt(2.0 * way / 9.81);
+    for (guard, way) in [
+        ((|height| height - 0.5) as fn(f64) -> f64, 0.5),
+        (|height| (height - 0.5).max(0.0), 0.5),
+        (|height| (20.0 * height).floor() - 10.0, 0.45),
+    ] {
+        for time in times(guard) {
+            assert!((time - fallen(way)).abs() < 1e-14, "{time} {way}");
+        }
+    }
+}
+
 #[test]
 fn the_observer_is_given_all_steps_up_to_the_event() {
     let guard = |_t: f64, x: &State| x[0] - 0.5;

@@ -179,8 +179,8 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     /// The first time in the step, not counting its start, at which `guard` goes through zero in this direction.
     ///
     /// `guard` is asked at the ends of eight equal parts of the step, so that a pair of crossings closer than that may
-    /// be missed. Within a part the time is found by the Illinois method, and bisection where that is slow, in at most
-    /// [`Step::SEARCH`] evaluations, to the last bits. Lanes share their time: the first decides. On
+    /// be missed. Within a part the time is found by the Illinois method, and bisection where that is slow or the guard stays
+    /// zero, in at most [`Step::SEARCH`] evaluations, to the last bits. Lanes share their time: the first decides. On
     /// [`Dual`](crate::Dual) numbers the time has the slope of the zero, and so has the state there.
     ///
     /// Nothing is found either where the guard is not a number before it goes through zero.
@@ -226,7 +226,7 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     /// Most evaluations of a guard in the search for its zero.
     pub const SEARCH: usize = 64;
 
-    /// The time behind a change of sign; at it, the guard has the sign of the far side or is zero.
+    /// The time behind a change of sign; at it, the guard has the sign of the far side or is zero, and before it neither.
     fn locate(
         &mut self,
         (mut before, mut low): (T, f64),
@@ -235,14 +235,17 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     ) -> Result<T, T> {
         let positive = low > 0.0;
         let mut advanced = None;
+        // Next to a zero the guard is asked once more: a limiter, or a number of whole steps, stays at it.
+        let mut stays = false;
         for round in 0..Self::SEARCH {
             let width = seen(after - before);
             let resolution = 2.0 * T::EPSILON * seen(after.abs()).max(seen(before.abs()));
-            if high == 0.0 || width <= resolution {
+            if width <= resolution {
                 break;
             }
             let secant = low / (low - high);
-            let fraction = if round % 3 == 2 { 0.5 } else { secant };
+            let halves = stays || round % 3 == 2 && high != 0.0;
+            let fraction = if halves { 0.5 } else { secant };
             let inner = (fraction * width).max(0.5 * resolution);
             let t = before + T::from_f64(inner.min(width - 0.5 * resolution));
             if !less(before, t) || !less(t, after) {
@@ -251,6 +254,7 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
             let x = self.at(t);
             let value = number(t, guard(t, &x))?;
             let advances = value != 0.0 && (value > 0.0) == positive;
+            stays |= value == 0.0 && high == 0.0;
             // The end that stays for the second time counts half.
             let half = if advanced == Some(advances) { 0.5 } else { 1.0 };
             advanced = Some(advances);

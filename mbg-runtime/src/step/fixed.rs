@@ -16,7 +16,8 @@ use crate::{Input, Real, System};
 ///
 /// The grid is `t0 + k · h`. It starts anew at each jump of the input; the step before a jump, or before `t1`, is
 /// shortened to end there. Where `h` divides the way up to rounding, all steps are equal and no tiny one remains: of length
-/// `h` where the grid meets the end to the last bit, else next to it.
+/// `h` where the way is `n · h` to the last bit, else next to it. So the state advances by the time that is told, however
+/// many pieces a run has and however its times are rounded.
 ///
 /// # Example
 ///
@@ -198,7 +199,7 @@ impl Rk4 {
     }
 
     /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock, with the least code
-    /// and stack. The same bits as those of [`Fixed`] to a time that is `t0 + n · h` to the last bit, where
+    /// and stack. The same bits as those of [`Fixed`] over a way, `t1 - t0`, that is `n · h` to the last bit, where
     /// [`FUSED`](crate::FUSED) does not hold.
     ///
     /// Nothing is checked: ask [`System::trouble`] and look at the state where it matters.
@@ -288,8 +289,8 @@ fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
     let times = start.magnitude().max(end.magnitude()) / seen(h);
     let rounding = (8.0 * T::EPSILON * (times + ratio)).min(0.25);
     let even = |count: u64| {
-        let meets = start + number(count) * h == end;
-        let step = if meets { h } else { way / number(count) };
+        let steps = number(count);
+        let step = if way == steps * h { h } else { way / steps };
         Division {
             count,
             step,
@@ -312,7 +313,7 @@ fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::models::{Blocked, Explosion, Oscillator};
+    use crate::step::models::{Blocked, Explosion, Oscillator, Pushed};
     use crate::{Constant, Dual, Pulse, Smooth, Trouble};
 
     fn last<T: Real>(h: T, t1: T, input: &impl Input<T, 1>) -> (SVector<T, 2>, Statistics) {
@@ -483,6 +484,33 @@ mod tests {
         compare::<f64>(1e9, 1e-3, 1000);
         let [[plain, compensated], _] = ends::<f32>(0.0, 0.007_812_5, 128);
         assert_ne!(plain, compensated);
+    }
+
+    /// What follows from an input that changes at every sample: rounding of the times must not add up.
+    #[test]
+    fn pieces_are_as_long_as_their_times_are_apart() {
+        fn advanced<T: Real>(t0: f64, samples: u32, every: f64) -> (T, T) {
+            let time = |k: u32| T::from_f64(t0 + every * f64::from(k));
+            let number = T::from_f64;
+            let mut x = SVector::from([number(0.0)]);
+            let solver = Fixed::new(Rk4, every).compensated();
+            let mut expected = number(0.0);
+            for k in 0..samples {
+                // Times of samples in a row round to either side in turns.
+                let push = SVector::from([number(if k % 2 == 0 { 0.875 } else { 1.125 })]);
+                let span = (time(k), time(k + 1));
+                expected += push[0] * (span.1 - span.0);
+                let input = Constant(push);
+                solver
+                    .integrate(&Pushed, &input, span.0, span.1, x, |step| x = *step.state())
+                    .unwrap();
+            }
+            (x[0], expected)
+        }
+        let (moved, expected) = advanced::<f64>(1.7e9, 2000, 1e-3);
+        assert!((moved - expected).abs() < 1e-11, "{moved} {expected}");
+        let (moved, expected) = advanced::<f32>(0.0, 20_000, 1e-3);
+        assert!((moved - expected).abs() < 1e-2, "{moved} {expected}");
     }
 
     #[test]

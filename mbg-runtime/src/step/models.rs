@@ -134,3 +134,10 @@ system! {
     |_t, x, _u| SVector::from([T::from_f64(-1.0) + T::from_f64(0.0) * x[0]]);
     [x[0]]
 }
+
+system! {
+    /// `ẋ = u`.
+    Pushed[1, 1, 0]: ["way"], [];
+    |_t, _x, u| *u;
+    []
+}

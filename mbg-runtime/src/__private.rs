@@ -123,7 +123,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     let closure = closures.get(found.worst).copied().unwrap_or(0);
     Err(Trouble::Open {
         name: meta.closures.get(closure).copied().unwrap_or(""),
-        residual: found.residual.find(|_| true).unwrap_or(f64::NAN),
+        residual: found.residual.magnitude(),
     })
 }
 

@@ -106,7 +106,7 @@ impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UN
         }
         if let Some(outcome) = self.outcomes.get_mut(number) {
             *outcome = Outcome {
-                residual: solved.residual.find(|_| true).unwrap_or(f64::NAN),
+                residual: solved.residual.magnitude(),
                 iterations: solved.iterations,
                 converged: solved.converged,
             };

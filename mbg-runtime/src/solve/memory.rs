@@ -2,7 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Solved, newton};
+use super::Solved;
+use super::newton::attempt;
 use crate::Real;
 
 /// What a model keeps from one evaluation to the next; `()` for a model without bounded solves.
@@ -14,6 +15,9 @@ pub trait Memory: Copy + Default {
 }
 
 impl Memory for () {}
+
+/// How often a solve goes on at most from where it ended.
+const FURTHER: usize = 2;
 
 /// How the last solve of a loop ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,14 +98,23 @@ impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UN
         let last = self.unknowns.iter().skip(first);
         start.iter_mut().zip(last).for_each(|(z, last)| *z = *last);
         let one = zero.map(|_| T::from_f64(1.0));
-        let mut solved = newton(start, &evaluate);
+        let (mut solved, mut is_settled) = attempt(start, &evaluate);
+        let go_on = |solved: &mut Solved<T, K>, from| {
+            let (next, is_settled) = attempt(from, &evaluate);
+            let iterations = solved.iterations + next.iterations;
+            *solved = Solved { iterations, ..next };
+            is_settled
+        };
         for other in [zero, one] {
             if !solved.converged && other != start {
-                let again = newton(other, &evaluate);
-                solved = Solved {
-                    iterations: solved.iterations + again.iterations,
-                    ..again
-                };
+                is_settled = go_on(&mut solved, other);
+            }
+        }
+        // Where it ended it may be near; and a solution beside which values on the way were far larger is none yet.
+        for _ in 0..FURTHER {
+            if !(solved.converged && is_settled) {
+                let from = solved.solution;
+                is_settled = go_on(&mut solved, from);
             }
         }
         if let Some(outcome) = self.outcomes.get_mut(number) {

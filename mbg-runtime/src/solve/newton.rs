@@ -74,9 +74,18 @@ pub fn newton<T: Real, const K: usize>(
     start: SVector<T, K>,
     evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
 ) -> Solved<T, K> {
+    attempt(start, evaluate).0
+}
+
+/// As [`newton`], and whether all unknowns of the solution have settled, or may be zero. Beside the large values that an
+/// unknown took on the way, far from the solution, what is left of it to correct may seem to be none.
+pub(super) fn attempt<T: Real, const K: usize>(
+    start: SVector<T, K>,
+    evaluate: impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
+) -> (Solved<T, K>, bool) {
     let mut point = Point::new(start, &evaluate);
     let mut size = start.map(Real::abs);
-    let (mut was_settled, mut was_small) = (false, false);
+    let (mut was_settled, mut was_small, mut tells) = (false, false, false);
     let mut last = T::from_f64(f64::INFINITY);
     let mut iterations = 0;
     loop {
@@ -91,7 +100,8 @@ pub fn newton<T: Real, const K: usize>(
         let is_small = is_settled || in_all(below(&correction, &size, None));
         let length = Point::relative(&correction, &size);
         let shrinks = |by| everywhere(length - T::from_f64(by) * last, |lane| lane < 0.0);
-        let comes_no_nearer = is_small && was_small && !shrinks(SHRINKS);
+        // A damped correction shrinks little wherever it leads.
+        let comes_no_nearer = is_small && was_small && tells && !shrinks(SHRINKS);
         let sharpest = || !shrinks(0.5) && length.magnitude().is_finite() && point.is_rounding();
         if comes_no_nearer || sharpest() {
             return point.ended(&correction, &size, iterations, true);
@@ -99,7 +109,7 @@ pub fn newton<T: Real, const K: usize>(
         // What is as good as settled where an unknown may be zero, and rounding.
         let rounding = || below(&correction, &size, Some(&point.x));
         if iterations == ITERATIONS {
-            let converged = in_all(rounding()) && !shrinks(SHRINKS);
+            let converged = in_all(rounding()) && tells && !shrinks(SHRINKS);
             return point.ended(&correction, &size, iterations, converged);
         }
         let next = point.descend(
@@ -109,12 +119,12 @@ pub fn newton<T: Real, const K: usize>(
             &size,
             &evaluate,
         );
-        let Some(next) = next else {
+        let Some((next, tells_next)) = next else {
             return point.ended(&correction, &size, iterations, in_all(rounding()));
         };
         point = next;
         size.zip_apply(&point.x, |size, x| *size = size.max(x.abs()));
-        (was_settled, was_small) = (is_settled, is_small);
+        (was_settled, was_small, tells) = (is_settled, is_small, tells_next);
         last = length;
     }
 }
@@ -166,7 +176,8 @@ impl<T: Real, const K: usize> Point<T, K> {
         }
     }
 
-    /// The next point: the longest damped correction that is monotonic in every lane, if there is one.
+    /// The next point: the longest damped correction that is monotonic in every lane, if there is one, and whether the length of
+    /// the one behind it tells how near the solution is: it does not where a damped correction was the longest.
     ///
     /// At the level of rounding nothing is monotonic: in settled lanes it is enough that the next correction is not ten
     /// times longer, and a point at which nothing but rounding is left is taken as it is. Where some lanes find nothing
@@ -178,7 +189,7 @@ impl<T: Real, const K: usize> Point<T, K> {
         (settled, rounding): (T, &impl Fn() -> T),
         size: &SVector<T, K>,
         evaluate: &impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
-    ) -> Option<Self> {
+    ) -> Option<(Self, bool)> {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let quarter = T::from_f64(0.25);
         let unit = size.zip_map(correction, |size, step| {
@@ -209,7 +220,10 @@ impl<T: Real, const K: usize> Point<T, K> {
             let accepted = there.select_less(T::from_f64(f64::INFINITY), monotonic, zero);
             let solved = || there.magnitude().is_finite() && next.is_rounding();
             if everywhere(accepted, |lane| lane == 1.0) || solved() {
-                return Some(next);
+                // So short a one was accepted for rounding alone.
+                let stays = 4.0 * ROUNDING * T::EPSILON;
+                let tells = everywhere(damping, |lane| lane == 1.0 || lane <= stays);
+                return Some((next, tells));
             }
             let mut less = quarter * damping;
             if number % (2 * DAMPINGS) == DAMPINGS {
@@ -258,14 +272,16 @@ impl<T: Real, const K: usize> Point<T, K> {
         size: &SVector<T, K>,
         iterations: usize,
         converged: bool,
-    ) -> Solved<T, K> {
+    ) -> (Solved<T, K>, bool) {
         let corrected = self.x.zip_map(correction, |x, step| x - step);
-        Solved {
+        let settled = below(correction, &self.x.map(Real::abs), Some(&self.x));
+        let solved = Solved {
             solution: if converged { corrected } else { self.x },
             residual: self.scaled_residual(size),
             iterations,
             converged,
-        }
+        };
+        (solved, in_all(settled))
     }
 }
 

@@ -69,19 +69,27 @@ pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
     x
 }
 
-/// How far a projection goes: in units of precision and of what the states contribute to a residual, but at least one.
+/// How far a projection goes: in units of precision and of what the states contribute to a residual.
 const CLOSED: f64 = 16.0;
 /// By how much more it may stay open where constraints are redundant: what is left of them by rounding of the positions has
 /// no correction. States that are only looked at may, too.
 const NEARLY: f64 = 64.0;
 
-/// The size that rounding has in residuals with this Jacobian, in units of precision.
+/// What a displacement counts at least: residuals of positions turn with angles that may be zero, and are as long as links
+/// are then.
+const DISPLACEMENT: f64 = 1.0;
+
+/// The size that rounding has in residuals with this Jacobian, in units of precision, where states count so much at least.
 fn size<T: Real, const M: usize, const N: usize>(
     x: &SVector<T, N>,
     jacobian: &SMatrix<T, M, N>,
+    least: f64,
 ) -> f64 {
-    (0..M).fold(1.0, |largest: f64, row| {
-        let terms = (0..N).map(|state| (jacobian[(row, state)] * x[state]).magnitude());
+    (0..M).fold(0.0, |largest: f64, row| {
+        let terms = (0..N).map(|state| {
+            let least = T::from_f64(least);
+            (jacobian[(row, state)] * x[state].abs().max(least)).magnitude()
+        });
         largest.max(terms.sum())
     })
 }
@@ -92,8 +100,17 @@ pub fn ranks<T: Real, const M: usize, const N: usize, const B: usize>(
     groups: [&[usize]; B],
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> [T; B] {
-    let tolerance = NEARLY * CLOSED * T::EPSILON * size(&start, &evaluate(&start).1);
+    let tolerance = NEARLY * CLOSED * T::EPSILON * size(&start, &evaluate(&start).1, DISPLACEMENT);
     crate::solve::ranks(&start, tolerance, groups, evaluate)
+}
+
+/// Residuals of positions or of flows.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Level {
+    /// Of displacements.
+    Positions,
+    /// Of rates and momenta, in which they are linear.
+    Flows,
 }
 
 /// Projects a state onto residuals, whose closures are numbered in `closures`, with a Jacobian of this rank at most.
@@ -102,10 +119,14 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     closures: &[usize; M],
     x: SVector<T, N>,
     held: &[usize],
-    rank: T,
+    (level, rank): (Level, T),
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Result<SVector<T, N>, Trouble> {
-    let tolerance = CLOSED * T::EPSILON * size(&x, &evaluate(&x).1);
+    let least = match level {
+        Level::Positions => DISPLACEMENT,
+        Level::Flows => 0.0,
+    };
+    let tolerance = CLOSED * T::EPSILON * size(&x, &evaluate(&x).1, least);
     let found = project_of_rank(x, tolerance, rank, |x| {
         let (residuals, mut jacobian) = evaluate(x);
         for state in held.iter().filter(|state| **state < N) {

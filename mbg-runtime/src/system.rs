@@ -219,8 +219,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// The correction of a loop is that of least norm in the states, by Gauss and Newton; that of an attitude is
     /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `held` stay as they are, so that consistent
     /// initial values are found from a part of them, and so does an attitude of which one is held. Steppers ask at the
-    /// start and after each step, with nothing held. What is left of each residual g is below
-    /// 16 ε max(1, Σ |∂g/∂xᵢ xᵢ|).
+    /// start and after each step, with nothing held. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
+    /// for which that is largest; a displacement counts as one at least, an angle being zero somewhere.
     ///
     /// # Errors
     ///

@@ -1,6 +1,6 @@
 //! Mechanisms whose loops are closed by multipliers.
 
-use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Real, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Real, Rk4, System, mbg};
 use nalgebra::SVector;
 
 use crate::references::errors::{apart, larger};
@@ -32,6 +32,31 @@ mbg! {
         output potential: J = 9.81 * (
             crank.position_centre.y + 2.0 * coupler.position_centre.y + 1.5 * rocker.position_centre.y
         );
+    }
+
+    /// A four-bar of any length, whose masses go with the cube of it.
+    #[derivative]
+    pub(crate) model Scaled {
+        causality componentwise;
+        param length: m = 1.0;
+        param apart = 3.0;
+        let mass = 2000.0 * length * length * length;
+        let inertia = 300.0 * length * length * length * length * length;
+        1 ground[3]; 1 crank[3]; 1 crank_tip[3]; 1 coupler[3]; 1 coupler_tip[3]; 1 stand[3]; 1 rocker[3]; 1 rocker_tip[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        shift: PlanarOffset { x: apart * length } (ground, stand);
+        one: PlanarRevolute { initial: 1.2, initial_rate: 0.5 } (ground, crank);
+        first: PlanarOffset { x: length } (crank, crank_tip);
+        light: PlanarBody { mass: mass, inertia: inertia } (crank);
+        two: PlanarRevolute { initial: -0.8 } (crank_tip, coupler);
+        second: PlanarOffset { x: 3.0 * length } (coupler, coupler_tip);
+        long: PlanarBody { mass: mass, inertia: 10.0 * inertia } (coupler);
+        three: PlanarRevolute { initial: 1.6 } (stand, rocker);
+        third: PlanarOffset { x: 2.0 * length } (rocker, rocker_tip);
+        heavy: PlanarBody { mass: mass, inertia: inertia } (rocker);
+        pin: PlanarCut { joint: revolute } (coupler_tip, rocker_tip);
+        output gap[2]: m = pin.gap;
+        output angle: rad = one.angle;
     }
 
     /// Two bodies that float, joined at a point beside their centres.
@@ -202,5 +227,68 @@ fn small_and_large_machines_close_and_move_as_others_do() {
     }
     for (length, mass) in [(10.0, 1e4), (1e-2, 1e-2), (1e-3, 1e-3)] {
         compare(motion::<f32>(length, mass), 1e-3);
+    }
+}
+
+/// A machine of micrometres closes as sharply as one of metres, moves as it does, and one that cannot be closed is told so.
+#[test]
+fn loops_of_any_length_are_closed_alike() {
+    fn angle<T: Real>(length: f64, sharpest: f64) -> f64 {
+        let number = T::from_f64;
+        let parameters = ScaledParameters {
+            length: number(length),
+            apart: number(3.0),
+        };
+        let model = Scaled::<T>::new(parameters).unwrap();
+        let none = SVector::from([]);
+        let gap = |x: &SVector<T, 6>| {
+            let outputs = model.output(number(0.0), x, &none, &mut ());
+            outputs[0].magnitude().max(outputs[1].magnitude()) / length
+        };
+        let x = model
+            .close(number(0.0), model.initial_state(), &none, &[2, 5])
+            .unwrap();
+        assert!(gap(&x) < sharpest, "{length}: {:e}", gap(&x));
+        let (mut last, mut widest) = (x, 0.0);
+        Rk4::fixed(
+            &model,
+            &(),
+            number(0.0),
+            number(1.0),
+            number(1e-2),
+            x,
+            |_, x| {
+                last = *x;
+                widest = larger(widest, gap(x));
+            },
+        )
+        .unwrap();
+        assert!(widest < 20.0 * sharpest, "{length}: {widest:e}");
+        let apart = ScaledParameters {
+            apart: number(6.1),
+            ..parameters
+        };
+        let broken = Scaled::<T>::new(apart).unwrap();
+        assert!(
+            broken.close(number(0.0), x, &none, &[]).is_err(),
+            "{length}"
+        );
+        model.output(number(0.0), &last, &none, &mut ())[2]
+            .find(|_| true)
+            .unwrap()
+    }
+    let expected = angle::<f64>(1.0, 1e-15);
+    // Corrections are of least norm in momenta and rates, so that they are others for a metre, within the error of a step.
+    for length in [1e-3, 1e-5, 1e-8] {
+        assert!(
+            (angle::<f64>(length, 2e-15) - expected).abs() < 1e-11,
+            "{length}"
+        );
+    }
+    for length in [1.0, 1e-3, 1e-5, 1e-6] {
+        assert!(
+            (angle::<f32>(length, 1e-6) - expected).abs() < 2e-5,
+            "{length}"
+        );
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     let positions = (!compiled.closed[0].is_empty()).then(|| {
         let rank = rank(compiled, 0);
         let evaluated = quote!(|x: &::mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, held));
-        projection(&compiled.closed[0], &rank, &evaluated)
+        projection(&compiled.closed[0], &quote!(Positions), &rank, &evaluated)
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
         let body = residuals(compiled, &attitudes, Routines::CLOSED_FLOWS, &memory);
@@ -29,7 +29,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             full(compiled.closed[1].len())
         };
         let evaluated = quote!(|x: &::mbg_runtime::__private::SVector<T, #n>| { #body });
-        projection(&compiled.closed[1], &rank, &evaluated)
+        projection(&compiled.closed[1], &quote!(Flows), &rank, &evaluated)
     });
     Some(quote! {
         fn close(
@@ -57,11 +57,16 @@ fn attitude(rows: &[Vec<usize>]) -> TokenStream {
 }
 
 /// Projects onto residuals, which are those of the closures given.
-fn projection(closed: &[usize], rank: &TokenStream, evaluated: &TokenStream) -> TokenStream {
+fn projection(
+    closed: &[usize],
+    level: &TokenStream,
+    rank: &TokenStream,
+    evaluated: &TokenStream,
+) -> TokenStream {
     let closures = closed.iter().copied().map(Literal::usize_suffixed);
     quote! {
         let x = ::mbg_runtime::__private::close(
-            Self::META, &[#(#closures),*], x, held, #rank, #evaluated,
+            Self::META, &[#(#closures),*], x, held, (::mbg_runtime::__private::Level::#level, #rank), #evaluated,
         )?;
     }
 }

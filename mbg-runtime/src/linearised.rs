@@ -41,6 +41,23 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// let response = linear.response(f64::sqrt(40.0)).unwrap()[(0, 0)];
 /// assert!((response.modulus() - 1.0 / (0.2 * f64::sqrt(40.0))).abs() < 1e-12);
 /// assert!((response.argument() + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+///
+/// // Trim: states and inputs at which nothing changes, next to a guess and with the angle held at 0.5, by
+/// // `solve::project`. The column of what is held is zero.
+/// use mbg_runtime::solve::project;
+/// use nalgebra::SMatrix;
+/// let [momentum, angle, torque] = [0, 1, 2];
+/// let trim = project(SVector::from([0.0, 0.5, 0.0]), 1e-12, |z: &SVector<f64, 3>| {
+///     let (x, u) = (z.fixed_rows::<2>(0).into_owned(), SVector::from([z[torque]]));
+///     let by_state = pendulum.jacobian_state(0.0, &x, &u, &mut ());
+///     let by_input = pendulum.jacobian_input(0.0, &x, &u, &mut ());
+///     let mut slopes = SMatrix::<f64, 2, 3>::zeros();
+///     slopes.set_column(momentum, &by_state.column(0));
+///     slopes.set_column(torque, &by_input.column(0));
+///     (pendulum.derivative(0.0, &x, &u, &mut ()), slopes)
+/// });
+/// assert!(trim.converged && trim.point[angle] == 0.5);
+/// assert!((trim.point[torque] - 20.0 * f64::sin(0.5)).abs() < 1e-12);
 /// # Ok::<(), mbg_runtime::ParameterError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +130,87 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         let is_finite = |it: &Complex<T>| (it.re.magnitude() + it.im.magnitude()).is_finite();
         response.iter().all(is_finite).then_some(response)
     }
+
+    /// The model from sample to sample, where inputs are held for a `period` in s: `Φ = exp(A h)` and `Γ = ∫ exp(A τ) dτ B` of
+    /// `x(t + h) = Φ x(t) + Γ u`, as discrete controllers and filters are designed with. None where they are not finite.
+    ///
+    /// Both are summed for a part of the period that is short enough, whose double is taken as often as needed (scaling and
+    /// squaring; Moler and Van Loan, *SIAM Review* 45 (2003), 3–49, method 3), of `Φ − I`, so that slow motions beside fast
+    /// ones keep their digits.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use mbg_runtime::Linearised;
+    /// use nalgebra::{SMatrix, Matrix2};
+    ///
+    /// // A mass of 1 kg that a force pushes: x = (way, velocity).
+    /// let mass = Linearised {
+    ///     state: Matrix2::new(0.0, 1.0, 0.0, 0.0),
+    ///     input: SMatrix::<f64, 2, 1>::new(0.0, 1.0),
+    ///     output: SMatrix::<f64, 1, 2>::new(1.0, 0.0),
+    ///     feedthrough: SMatrix::<f64, 1, 1>::new(0.0),
+    /// };
+    /// let (transition, push) = mass.held(0.5).unwrap();
+    /// assert_eq!(transition, Matrix2::new(1.0, 0.5, 0.0, 1.0));
+    /// assert_eq!(push, SMatrix::<f64, 2, 1>::new(0.125, 0.5));
+    /// ```
+    #[must_use]
+    pub fn held(&self, period: T) -> Option<(SMatrix<T, N, N>, SMatrix<T, N, M>)> {
+        let columns = self.state.column_iter();
+        let sums = columns.map(|column| column.iter().map(|it| it.magnitude()).sum::<f64>());
+        let norm = sums.fold(0.0, f64::max) * period.magnitude();
+        if !norm.is_finite() {
+            return None;
+        }
+        let (mut doublings, mut part) = (0, 1.0);
+        while norm * part > 0.5 {
+            (doublings, part) = (doublings + 1, 0.5 * part);
+        }
+        let part = T::from_f64(part) * period;
+        // Σ (A h)ᵏ / (k + 1)!, the last terms first.
+        let step = self.state.map(|it| part * it);
+        let mut mean = SMatrix::<T, N, N>::from_element(T::from_f64(0.0));
+        for order in (2..=TERMS).rev() {
+            let shrink = T::from_f64(1.0 / f64::from(order));
+            mean.iter_mut()
+                .step_by(N + 1)
+                .for_each(|it| *it += T::from_f64(1.0));
+            mean = product(&step, &mean).map(|it| shrink * it);
+        }
+        mean.iter_mut()
+            .step_by(N + 1)
+            .for_each(|it| *it += T::from_f64(1.0));
+        let mut change = product(&step, &mean);
+        let mut push = product(&mean, &self.input).map(|it| part * it);
+        for _ in 0..doublings {
+            push += push + product(&change, &push);
+            change += change + product(&change, &change);
+        }
+        change
+            .iter_mut()
+            .step_by(N + 1)
+            .for_each(|it| *it += T::from_f64(1.0));
+        let is_finite = |it: &T| it.magnitude().is_finite();
+        (change.iter().all(is_finite) && push.iter().all(is_finite)).then_some((change, push))
+    }
+}
+
+/// Terms of the exponential of a matrix whose norm is 1/2 at most: what follows is below 1e-19 of it.
+const TERMS: u32 = 16;
+
+fn product<T: Real, const A: usize, const B: usize, const C: usize>(
+    left: &SMatrix<T, A, B>,
+    right: &SMatrix<T, B, C>,
+) -> SMatrix<T, A, C> {
+    let zero = T::from_f64(0.0);
+    SMatrix::from_fn(|row, column| {
+        let pairs = left
+            .row(row)
+            .into_iter()
+            .zip(right.column(column).into_iter());
+        pairs.fold(zero, |sum, (a, b)| sum + *a * *b)
+    })
 }
 
 /// The derivatives of a function by each component.

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use mbg_runtime::{Adaptive, Dop853, Integrator, Linearised, Real, Smooth, System, Trouble, mbg};
+use mbg_runtime::{
+    Adaptive, Constant, Dop853, Integrator, Linearised, Real, Smooth, System, Trouble, mbg,
+};
 use nalgebra::{Complex, ComplexField, SMatrix, SVector};
 
 use crate::references::errors::larger;
@@ -241,4 +243,69 @@ fn what_is_iterated_has_the_slopes_of_its_law() {
     }
     let refused = Linearised::of(&model, 0.0, &x, &SVector::from([f64::NAN])).unwrap_err();
     assert!(matches!(refused, Trouble::Unsolved { .. }), "{refused}");
+}
+
+/// A mass on a spring whose force is held, over less than a millionth and over thirty of its periods.
+#[test]
+fn from_sample_to_sample_a_model_is_its_closed_form() {
+    fn check<T: Real>(period: f64, tolerance: f64) {
+        let number = T::from_f64;
+        let parameters = RingingParameters::default();
+        let model = Ringing::<T>::new(parameters).unwrap();
+        let (x, u) = (model.initial_state(), SVector::from([number(0.0)]));
+        let linear = Linearised::of(&model, number(0.0), &x, &u).unwrap();
+        let (transition, push) = linear.held(number(period)).unwrap();
+        let (sine, cosine) = (2.0 * period).sin_cos();
+        // Momentum and stroke, of 2 kg at 2 rad/s; 1 − cos without cancellation.
+        let rise = 2.0 * period.sin() * period.sin();
+        let expected = [
+            cosine,
+            0.25 * sine,
+            -4.0 * sine,
+            cosine,
+            0.5 * sine,
+            rise / 8.0,
+        ];
+        let found = transition.iter().chain(push.iter());
+        for (found, expected) in found.zip(expected) {
+            let error = (*found - number(expected)).magnitude();
+            assert!(
+                error <= tolerance * expected.abs().max(1e-12),
+                "{period} {error:e}"
+            );
+        }
+    }
+    check::<f64>(1e-6, 1e-14);
+    check::<f64>(0.3, 1e-14);
+    check::<f64>(100.0, 1e-12);
+    check::<f32>(0.3, 1e-6);
+}
+
+/// Stiff tyre, soft suspension.
+#[test]
+fn from_sample_to_sample_a_car_is_its_run() {
+    let car = QuarterCar::<f64>::new(QuarterCarParameters::default()).unwrap();
+    let (start, none) = (car.initial_state(), SVector::from([0.0]));
+    let linear = Linearised::of(&car, 0.0, &start, &none).unwrap();
+    let period = 0.05;
+    let (transition, push) = linear.held(period).unwrap();
+    let mut state = SVector::from_fn(|k, _| 0.1 * (k as f64 + 1.0));
+    let u = SVector::from([0.3]);
+    let expected = transition * state + push * u;
+    let rest = car.derivative(0.0, &SVector::zeros(), &none, &mut ());
+    assert!(rest.norm() == 0.0, "linear");
+    Adaptive::new(Dop853, 1e-13, 1e-13)
+        .integrate(&car, &Constant(u), 0.0, period, state, |step| {
+            state = *step.state()
+        })
+        .unwrap();
+    assert!(
+        (state - expected).norm() < 1e-11 * expected.norm(),
+        "{state} {expected}"
+    );
+    let endless = Linearised {
+        state: linear.state * f64::INFINITY,
+        ..linear
+    };
+    assert!(endless.held(period).is_none());
 }

@@ -129,8 +129,8 @@ impl fmt::Display for Cause {
             Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
             Self::TooManySteps { next } => write!(
                 formatter,
-                "more steps than allowed; the next is {next:.1e} s long, which a stiff model asks of an explicit method, and \
-                 a law that jumps where it holds its state asks of any"
+                "more steps than allowed; the next is {next:.1e} s long, which a stiff model asks of an explicit method, a \
+                 tight tolerance of a method of low order, and a law that jumps where it holds its state of any"
             ),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),

@@ -184,8 +184,8 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         let mut change = product(&step, &mean);
         let mut push = product(&mean, &self.input).map(|it| part * it);
         for _ in 0..doublings {
-            push += push + product(&change, &push);
-            change += change + product(&change, &change);
+            push = push + push + product(&change, &push);
+            change = change + change + product(&change, &change);
         }
         change
             .iter_mut()
@@ -205,10 +205,7 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
 ) -> SMatrix<T, A, C> {
     let zero = T::from_f64(0.0);
     SMatrix::from_fn(|row, column| {
-        let pairs = left
-            .row(row)
-            .into_iter()
-            .zip(right.column(column).into_iter());
+        let pairs = left.row(row).into_iter().zip(right.column(column));
         pairs.fold(zero, |sum, (a, b)| sum + *a * *b)
     })
 }

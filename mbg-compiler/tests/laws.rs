@@ -255,6 +255,64 @@ fn an_accumulator_stores_the_work_of_its_gas() {
     }
 }
 
+/// From zero, where most are infinite, no quadrature gives them.
+#[test]
+fn energies_of_powers_of_quotients_are_exact() {
+    let wells = |q: f64| (0.34 / q).powi(12) - (0.34 / q).powi(6);
+    type Law = (&'static str, fn(f64) -> f64);
+    let laws: [Law; 8] = [
+        ("-3.0 * powi(1 / q, 2)", |q| 3.0 / q),
+        ("-3.0 * powi(a / q, 2)", |q| 3.0 * 0.34 * 0.34 / q),
+        ("powi(a / q, 13)", |q| -0.34 / 12.0 * (0.34 / q).powi(12)),
+        ("pow(a / abs(q), 2.5)", |q| {
+            -q / 1.5 * (0.34 / q.abs()).powf(2.5)
+        }),
+        ("powi(a / (2 * q - a), 3)", |q| {
+            0.34 / 4.0 * (1.0 - (0.34 / (2.0 * q - 0.34)).powi(2))
+        }),
+        ("-3.0 / (q * sqrt(abs(q)))", |q| 6.0 / q.abs().sqrt()),
+        ("1.0 / powi(2 * q, 3)", |q| -1.0 / (16.0 * q * q)),
+        ("powi(1 - a / q, 2)", |q| {
+            q - 0.68 * q.abs().ln() - 0.1156 / q
+        }),
+    ];
+    for (law, expected) in laws {
+        for q in [-2.0, -0.3, 0.39, 2.0] {
+            assert_energy(law, q, expected(q));
+        }
+    }
+    for law in [
+        "-(24.0 / 0.34) * (2 * powi(0.34 / q, 13) - powi(0.34 / q, 7))",
+        "-(24.0 / a) * (2 * powi(a / q, 13) - powi(a / q, 7))",
+        "-(24.0 / a) * (2 * pow(a / q, 13.0) - pow(a / q, 7.0))",
+        "-24.0 * (2 * powi(0.34, 12) / powi(q, 13) - powi(0.34, 6) / powi(q, 7))",
+    ] {
+        for q in [-2.0, -0.3, 0.39, 2.0] {
+            assert_energy(law, q, 4.0 * wells(q));
+        }
+    }
+}
+
+/// It is that of the law at a displacement, and no quadrature.
+fn assert_energy(law: &str, state: f64, expected: f64) {
+    let text = format!(
+        "model M {{ param a = 0.34; 1 v {{ C c {{ effort: {law} }} I m {{ inertia: a }} }} }}"
+    );
+    let model = compiled(&text);
+    assert!(model.notes.is_empty(), "{law}: {:?}", model.notes);
+    let arguments = Arguments {
+        parameters: &[0.34],
+        time: 0.0,
+        state: &[state, 0.0],
+        input: &[],
+    };
+    let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+    assert!(
+        (found - expected).abs() < 1e-13 * (1.0 + expected.abs()),
+        "{law} at {state}: {found}, not {expected}"
+    );
+}
+
 /// Where a quadrature between zero and the state would not see what happens near zero.
 #[test]
 fn energies_of_laws_of_inner_functions_are_exact() {

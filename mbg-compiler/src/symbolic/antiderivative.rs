@@ -13,9 +13,10 @@ const MOST_INNER: usize = 500;
 
 /// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
 /// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root and
-/// hyperbolic tangent of what is affine in the symbol, powers `exp(c ln(…))` of such or of its reciprocal, products of sums
-/// that are a polynomial when they are multiplied out, and all of these with choices, absolute values and signs of what is
-/// affine anywhere in them. Products of the derivative of a function with a function of it are integrated by that one.
+/// hyperbolic tangent of what is affine in the symbol, products, quotients and powers of what is affine and vanishes at one
+/// place, products of sums that are made of such when they are multiplied out, and all of these with choices, absolute values
+/// and signs of what is affine anywhere in them. Products of the derivative of a function with a function of it are integrated
+/// by that one.
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,
@@ -35,7 +36,7 @@ pub(super) struct Integration<'a> {
     pub(super) pool: &'a mut Pool,
     pub(super) symbol: Symbol,
     /// How many more expressions are tried.
-    left: usize,
+    pub(super) left: usize,
     /// How many more inner functions are tried.
     pub(super) inner_left: usize,
 }
@@ -67,6 +68,7 @@ impl Integration<'_> {
             Operation::Call(function, arguments) => self.call(function, &arguments),
         };
         let found = found
+            .or_else(|| self.by_degree(expression.magnitude()))
             .or_else(|| self.split(expression.magnitude()))
             .or_else(|| self.by_substitution(expression.magnitude()));
         found.map(|it| it.flipped(expression.is_negative()))
@@ -84,7 +86,7 @@ impl Integration<'_> {
     }
 
     /// An antiderivative by the affine argument, over its slope.
-    fn inner(&mut self, argument: Expression, value: Expression) -> Option<Expression> {
+    pub(super) fn inner(&mut self, argument: Expression, value: Expression) -> Option<Expression> {
         let slope = self.slope(argument)?;
         self.pool.divide(value, slope)
     }
@@ -96,10 +98,10 @@ impl Integration<'_> {
                 return Some(self.pool.multiply(factor, rest));
             }
         }
-        match self.base(a, b) {
-            Some((base, exponent)) => self.power(base, exponent),
-            None => self.distributed(a, b).or_else(|| self.distributed(b, a)),
-        }
+        let base = self.base(a, b);
+        base.and_then(|(base, exponent)| self.power(base, exponent))
+            .or_else(|| self.distributed(a, b))
+            .or_else(|| self.distributed(b, a))
     }
 
     /// A factor times a sum, or times a multiple of one.
@@ -163,13 +165,10 @@ impl Integration<'_> {
     fn call(&mut self, function: Function, arguments: &[Expression]) -> Option<Expression> {
         let u = arguments[0];
         match function {
-            Function::Exp => match self.slope(u) {
-                Some(_) => {
-                    let value = self.pool.call(Function::Exp, &[u]);
-                    self.inner(u, value)
-                }
-                None => self.real_power(u),
-            },
+            Function::Exp => {
+                let value = self.pool.call(Function::Exp, &[u]);
+                self.inner(u, value)
+            }
             Function::Ln => {
                 let logarithm = self.pool.call(Function::Ln, &[u]);
                 let product = self.pool.multiply(u, logarithm);
@@ -223,37 +222,6 @@ impl Integration<'_> {
         let [numerator, divisor] = [numerator, divisor].map(|it| self.pool.integer(it));
         let product = self.pool.multiply(value, numerator);
         self.pool.divide(product, divisor)
-    }
-
-    /// Of `w^c = exp(c ln w)`: `w^c v / ((1 + c) v')` for `w = v`, and `w^c v / ((1 − c) v')` for `w = k / v`.
-    fn real_power(&mut self, exponent: Expression) -> Option<Expression> {
-        let (factor, logarithm) = match self.pool.operation(exponent) {
-            Operation::Call(Function::Ln, _) => (Expression::ONE, exponent.magnitude()),
-            Operation::Multiply(a, b) => {
-                let is_logarithm = |it: &Expression| {
-                    matches!(self.pool.operation(*it), Operation::Call(Function::Ln, _))
-                };
-                let logarithm = [*a, *b].into_iter().find(is_logarithm)?;
-                (if logarithm == *a { *b } else { *a }, logarithm)
-            }
-            _ => return None,
-        };
-        let factor = factor.flipped(exponent.is_negative());
-        let Operation::Call(_, arguments) = self.pool.operation(logarithm).clone() else {
-            return None;
-        };
-        let (argument, factor_of_argument) = match self.pool.operation(arguments[0]) {
-            Operation::Divide(k, v) if self.is_free(*k) => (*v, factor.negated()),
-            _ => (arguments[0], factor),
-        };
-        if !self.is_free(factor) {
-            return None;
-        }
-        let next = self.pool.add(factor_of_argument, Expression::ONE);
-        let power = self.pool.call(Function::Exp, &[exponent]);
-        let product = self.pool.multiply(power, argument);
-        let value = self.pool.divide(product, next)?;
-        self.inner(argument, value)
     }
 
     /// `|u| + ln((1 + exp(−2 |u|)) / 2)`, which overflows nowhere.

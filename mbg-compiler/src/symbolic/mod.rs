@@ -12,6 +12,7 @@ pub mod differentiate;
 pub mod evaluate;
 pub mod expression;
 pub mod field;
+mod growth;
 pub mod identity;
 pub mod implicit;
 pub mod linear;

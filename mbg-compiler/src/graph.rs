@@ -229,8 +229,19 @@ pub struct Storage {
     pub coenergy: Vec<Expression>,
     /// Stored energy.
     pub energy: Expression,
-    /// Whether the energy is that of the law, and no quadrature of it.
-    pub is_exact: bool,
+    /// How the energy is found.
+    pub integral: Integral,
+}
+
+/// How the energy of a storage is found from its law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integral {
+    /// In closed form.
+    Exact,
+    /// By a quadrature from the state zero.
+    FromZero,
+    /// By a quadrature from the state at the start, since the law has no integral from zero.
+    FromStart,
 }
 
 impl Junction {

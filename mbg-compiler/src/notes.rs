@@ -9,7 +9,7 @@ use crate::answers::Answers;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Ring, State};
-use crate::graph::{Element, Law, Storage};
+use crate::graph::{Element, Integral, Law, Storage};
 use crate::start::Start;
 use crate::structure::Solved;
 use crate::symbolic::substitute::symbols;
@@ -143,14 +143,22 @@ fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<String> {
 
 /// Storages whose law has no integral in closed form.
 fn approximate_energies(model: &Elaborated) -> Vec<String> {
-    let elements = model.graph.elements.iter();
-    let approximate = elements.filter(|it| matches!(&it.law, Law::Storage(it) if !it.is_exact));
     let note = |element: &Element| {
-        let name = &element.name;
-        format!(
-            "the energy of `{name}` is a quadrature of its law at sixteen points, good to rounding only where the law is \
-             that smooth"
-        )
+        let Law::Storage(storage) = &element.law else {
+            return None;
+        };
+        let from = match storage.integral {
+            Integral::Exact => return None,
+            Integral::FromZero => "",
+            Integral::FromStart => {
+                " from its state at the start, where it is zero, as the law has no integral from the state zero;"
+            }
+        };
+        Some(format!(
+            "the energy of `{}` is a quadrature of its law at sixteen points,{from} good to rounding only where the law is \
+             that smooth",
+            element.name
+        ))
     };
-    approximate.map(note).collect()
+    model.graph.elements.iter().filter_map(note).collect()
 }

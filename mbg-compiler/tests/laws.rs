@@ -357,6 +357,102 @@ fn energies_of_laws_of_inner_functions_are_exact() {
     }
 }
 
+/// Where an integral from zero would cross a pole, or places where the law has no value.
+#[test]
+fn energies_without_an_integral_from_zero_are_counted_from_the_start() {
+    type Law = (&'static str, [f64; 2], fn(f64) -> f64);
+    let laws: [Law; 5] = [
+        ("exp(-q) / (q * q)", [0.5, 0.8], |q| (-q).exp() / (q * q)),
+        ("exp(-q) / (q * q)", [-0.5, -0.8], |q| (-q).exp() / (q * q)),
+        ("cos(q) / q", [0.5, 0.4], |q| q.cos() / q),
+        ("exp(-q) / powi(q - 1, 2)", [2.0, 1.8], |q| {
+            (-q).exp() / (q - 1.0).powi(2)
+        }),
+        ("ln(q - 1) / q", [2.0, 2.2], |q| (q - 1.0).ln() / q),
+    ];
+    for (law, [start, end], value) in laws {
+        let text = format!(
+            "model M {{ param start = {start:?};
+             1 v {{ I m {{ inertia: 1.0 }} C c {{ effort: {law}, initial: start }} }} }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes[0].contains("from its state at the start"));
+        let energy = |start: f64, state: f64| {
+            let arguments = Arguments {
+                parameters: &[start],
+                time: 0.0,
+                state: &[0.0, state],
+                input: &[],
+            };
+            program::evaluate(&model.program, Routines::ENERGY, &arguments)[0]
+        };
+        assert_eq!(energy(start, start), 0.0, "{law}");
+        // Another value of the parameter is another start.
+        let near = 0.9 * start + 0.1 * end;
+        for start in [start, near] {
+            let expected = integral(value, start, end);
+            let found = energy(start, end);
+            assert!(
+                (found - expected).abs() < 1e-10,
+                "{law}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+/// By Simpson's rule.
+fn integral(value: fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let count = 4096;
+    let step = (to - from) / f64::from(count);
+    let parts = (0..count).map(|k| {
+        let left = from + step * f64::from(k);
+        value(left) + 4.0 * value(left + step / 2.0) + value(left + step)
+    });
+    step / 6.0 * parts.sum::<f64>()
+}
+
+#[test]
+fn energies_with_an_integral_from_zero_are_counted_from_there() {
+    // Such as Langevin's, whose terms are infinite at zero and their difference is not.
+    for (law, initial) in [
+        ("exp(-powi(q, 3))", "0.3"),
+        ("1.0 / tanh(q) - 1.0 / q", "0.3"),
+        ("1.0 / tanh(q) - 1.0 / q", "0.0"),
+        ("exp(-q) * ln(abs(q))", "0.0"),
+        ("sqrt(q) * cos(q)", "0.0"),
+        ("exp(-q) / powi(q - 1, 2)", "0.0"),
+        ("exp(-q) / powi(q - 1, 2)", "0.5"),
+    ] {
+        let text = format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0 }} C c {{ effort: {law}, initial: {initial} }} }} }}"
+        );
+        let [note] = &compiled(&text).notes[..] else {
+            panic!("{law} has one note")
+        };
+        assert!(!note.contains("from its state at the start"), "{note}");
+    }
+}
+
+#[test]
+fn energies_that_have_no_start_are_told() {
+    let told = |law: &str| mistake(&format!("1 b {{ C c {{ {law} }} }}"));
+    insta::assert_snapshot!(told("effort: exp(-q) / (q * q)"), @r"
+    2:21 the energy of `c` is not known: its law has no integral from zero, and no finite value at the start [MBG0216]
+      help: give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere
+    
+");
+    insta::assert_snapshot!(told("effort: cos(q) / q, initial: 0.0"), @r"
+    2:21 the energy of `c` is not known: its law has no integral from zero, and no finite value at the start [MBG0216]
+      help: give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere
+    
+");
+    insta::assert_snapshot!(told("effort: exp(-q) / (q - 1.0), initial: 1.0"), @r"
+    2:21 the energy of `c` is not known: its law has no integral from zero, and no finite value at the start [MBG0216]
+      help: give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere
+    
+");
+}
+
 /// What its energy is changed by besides its own state is no port, so that the balance lacks that power.
 #[test]
 fn energies_that_are_modulated_are_noted() {

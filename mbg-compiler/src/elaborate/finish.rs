@@ -216,6 +216,7 @@ impl<'a> Builder<'a> {
             own: None,
             claims: self.claims.as_mut(),
             assumptions: &mut self.assumptions,
+            parameters: &self.parameters,
         };
         (self.pool, lookup)
     }

@@ -10,17 +10,21 @@ use super::bonds::is_two_port;
 use super::expressions::{Evaluator, Result, Value};
 use super::model::{Assumption, Condition, Place, Quantity};
 use super::quadrature;
+use super::rays::is_integrable;
 use super::scope::{Lookup, Own};
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{ElementKind, Law, Rule, Storage, component_name};
+use crate::graph::{ElementKind, Integral, Law, Rule, Storage, component_name};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
-    Differentiator, Evaluation, Expression, Factor, Matrix, Pool, Product, Substitution, Symbol,
-    antiderivative, linear_part,
+    Differentiator, Evaluation, Expression, Factor, Matrix, Pool, Product, Rate, Substitution,
+    Symbol, antiderivative, linear_part,
 };
 use crate::syntax::ast::{Element, Field};
 use crate::syntax::words::law_words;
+
+/// How near to zero a law is looked at that starts there: nearer than the sizes of what is built.
+const NEAR: f64 = 1e-12;
 
 /// What reading the fields of an element gives.
 pub(super) struct Reading {
@@ -316,7 +320,7 @@ impl Reader<'_, '_, '_> {
             .map(|state| self.pool.symbol(Symbol::State(state)))
             .collect();
         let mut assumptions = Vec::new();
-        let (coenergy, (energy, is_exact)) = match word {
+        let (coenergy, (energy, integral)) = match word {
             "inertia" | "compliance" | "stiffness" => {
                 let matrix = self.coefficient(value)?;
                 self.check_symmetry(&matrix, value.span())?;
@@ -334,13 +338,13 @@ impl Reader<'_, '_, '_> {
                 let energy = if self.changes_with_its_state(&matrix) {
                     self.potential(&coenergy, value.span())?
                 } else {
-                    (self.half_product(&states, &coenergy), true)
+                    (self.half_product(&states, &coenergy), Integral::Exact)
                 };
                 (coenergy, energy)
             }
             "energy" => {
                 let (coenergy, energy) = self.by_energy(value)?;
-                (coenergy, (energy, true))
+                (coenergy, (energy, Integral::Exact))
             }
             _ => {
                 let coenergy = self.by_component(value)?;
@@ -358,7 +362,7 @@ impl Reader<'_, '_, '_> {
             states: self.own.states.clone(),
             coenergy,
             energy,
-            is_exact,
+            integral,
         });
         Ok(Reading {
             law,
@@ -374,18 +378,105 @@ impl Reader<'_, '_, '_> {
         states.any(|state| read.contains(&state))
     }
 
-    /// The energy of a law that is no multiple of the state, and whether it is exact.
-    fn potential(&mut self, law: &[Expression], span: Span) -> Result<(Expression, bool)> {
+    /// The energy of a law that is no multiple of the state, and how it is found.
+    fn potential(&mut self, law: &[Expression], span: Span) -> Result<(Expression, Integral)> {
         self.check_potential(law, span)?;
-        let is_exact = quadrature::is_exact(self.pool, &self.own.states, law);
-        if !is_exact && let Some(energy) = self.integral(law) {
-            return Ok((energy, true));
+        let is_polynomial = quadrature::is_exact(self.pool, &self.own.states, law);
+        if !is_polynomial && let Some(energy) = self.integral(law) {
+            return Ok((energy, Integral::Exact));
         }
-        let energy = quadrature::energy(self.pool, &self.own.states, law).ok_or_else(|| {
+        let zero = vec![Expression::ZERO; law.len()];
+        if is_polynomial || self.has_integral_from_zero(law)? {
+            let energy = self.quadrature(law, &zero, span)?;
+            let integral = if is_polynomial {
+                Integral::Exact
+            } else {
+                Integral::FromZero
+            };
+            return Ok((energy, integral));
+        }
+        match self.regular_start(law)? {
+            Some(start) => Ok((self.quadrature(law, &start, span)?, Integral::FromStart)),
+            None => self.has_no_integral(span),
+        }
+    }
+
+    fn quadrature(
+        &mut self,
+        law: &[Expression],
+        start: &[Expression],
+        span: Span,
+    ) -> Result<Expression> {
+        quadrature::energy(self.pool, &self.own.states, law, start).ok_or_else(|| {
             let message = format!("the law of `{}` divides by zero", self.element.name);
             Box::new(error(codes::NOT_FINITE, span, message))
-        })?;
-        Ok((energy, is_exact))
+        })
+    }
+
+    fn has_no_integral<T>(&self, span: Span) -> Result<T> {
+        let message = format!(
+            "the energy of `{}` is not known: its law has no integral from zero, and no finite value at the start",
+            self.element.name
+        );
+        let report = error(codes::NOT_FINITE, span, message);
+        Err(Box::new(report.help(
+            "give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums \
+             of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere",
+        )))
+    }
+
+    /// Whether the law has an integral from zero to the start, for default values of parameters. From a start at zero that
+    /// is asked near it, on both sides.
+    fn has_integral_from_zero(&mut self, law: &[Expression]) -> Result<bool> {
+        let start = self.start(law)?.unwrap_or_default();
+        let ends: Vec<f64> = start.iter().map(|it| self.usual(*it, &[])).collect();
+        if ends.iter().any(|end| *end != 0.0) {
+            return Ok(is_integrable(|part| self.power_along(law, &ends, part)));
+        }
+        let is_regular = |side: f64| {
+            let ends = vec![side * NEAR; law.len()];
+            let value = |part| self.power_along(law, &ends, part);
+            // Many laws are defined on one side alone.
+            value(0.5).is_nan() || is_integrable(value)
+        };
+        Ok(is_regular(1.0) && is_regular(-1.0))
+    }
+
+    /// The sum of the sizes of what is integrated, at a part of the way from zero to the end.
+    fn power_along(&self, law: &[Expression], ends: &[f64], part: f64) -> f64 {
+        let states: Vec<f64> = ends.iter().map(|end| part * end).collect();
+        let rows = law.iter().zip(ends);
+        rows.map(|(row, end)| (self.usual(*row, &states) * end).abs())
+            .sum()
+    }
+
+    /// A value at states of the storage, for default values of parameters, and somewhere else.
+    fn usual(&self, expression: Expression, states: &[f64]) -> f64 {
+        let value = |symbol| match symbol {
+            Symbol::Parameter(index) => self.lookup.parameters.get(index).map(|it| it.default),
+            Symbol::State(state) => {
+                let own = state.checked_sub(self.own.states.start);
+                own.and_then(|own| states.get(own)).copied()
+            }
+            _ => None,
+        };
+        Evaluation::new(&|symbol| value(symbol).unwrap_or(0.5)).value(self.pool, expression)
+    }
+
+    /// The state at the start, if it is given in numbers and parameters.
+    fn start(&mut self, law: &[Expression]) -> Result<Option<Vec<Expression>>> {
+        let start = self.initial(law)?;
+        let is_fixed = |it: &Expression| self.pool.rate(*it) != Rate::Varying;
+        Ok(start.filter(|start| start.iter().all(is_fixed)))
+    }
+
+    /// The state at the start, if the law is finite there.
+    fn regular_start(&mut self, law: &[Expression]) -> Result<Option<Vec<Expression>>> {
+        let start = self.start(law)?;
+        Ok(start.filter(|start| {
+            let states: Vec<f64> = start.iter().map(|it| self.usual(*it, &[])).collect();
+            law.iter().all(|row| self.usual(*row, &states).is_finite())
+        }))
     }
 
     /// The energy of a law in closed form, of which each component reads its own state alone. It is counted from the state

@@ -29,6 +29,7 @@ mod mentions;
 mod model;
 mod orientation;
 mod quadrature;
+mod rays;
 mod references;
 mod rings;
 mod scope;

@@ -1,4 +1,4 @@
-//! Energy of a storage whose law is given as effort or flow: `∫₀¹ y(s x)·x ds`, along the ray from the origin.
+//! Energy of a storage whose law is given as effort or flow: `∫₀¹ y(a + s (x − a))·(x − a) ds`, along the ray from a state `a`.
 
 use std::ops::Range;
 
@@ -13,22 +13,28 @@ pub(super) fn energy(
     pool: &mut Pool,
     states: &Range<usize>,
     law: &[Expression],
+    start: &[Expression],
 ) -> Option<Expression> {
+    let way = |pool: &mut Pool, state: usize| {
+        let symbol = pool.symbol(Symbol::State(state));
+        pool.subtract(symbol, start[state - states.start])
+    };
     let degree = largest_degree(pool, states, law);
     let count = degree.map_or(NODES, |degree| (degree as usize / 2 + 1).min(NODES));
     let mut total = Expression::ZERO;
     for (node, weight) in gauss_legendre(count) {
         let (node, weight) = (exact(pool, node)?, exact(pool, weight)?);
         let mut substitution = Substitution::new();
-        for state in states.clone() {
-            let symbol = pool.symbol(Symbol::State(state));
-            let scaled = pool.multiply(node, symbol);
-            substitution.set(Symbol::State(state), scaled);
+        for (state, start) in states.clone().zip(start) {
+            let way = way(pool, state);
+            let scaled = pool.multiply(node, way);
+            let place = pool.add(scaled, *start);
+            substitution.set(Symbol::State(state), place);
         }
         for (row, state) in law.iter().zip(states.clone()) {
             let value = substitution.apply(pool, *row)?;
-            let symbol = pool.symbol(Symbol::State(state));
-            let product = pool.multiply(value, symbol);
+            let way = way(pool, state);
+            let product = pool.multiply(value, way);
             let term = pool.multiply(weight, product);
             total = pool.add(total, term);
         }

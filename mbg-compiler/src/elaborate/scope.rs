@@ -11,7 +11,7 @@ use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, OWN, Result, Step, Value, fail};
-use super::model::{Assumption, Place, Quantity, Signals};
+use super::model::{Assumption, Parameter, Place, Quantity, Signals};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
@@ -224,6 +224,8 @@ pub(super) struct Lookup<'a, 'm> {
     pub(super) claims: Option<&'a mut Claims>,
     /// What `new` checks of parameters.
     pub(super) assumptions: &'a mut Vec<Assumption>,
+    /// Parameters of the model.
+    pub(super) parameters: &'a [Parameter],
 }
 
 impl Names for Lookup<'_, '_> {

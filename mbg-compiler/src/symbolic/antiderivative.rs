@@ -268,7 +268,7 @@ impl Integration<'_> {
         self.choice(a, b, c, d)
     }
 
-    /// Of `c` where `a < b`, else of `d`; both are counted from where they meet.
+    /// Of `c` where `a < b`, else of `d`; both are counted from where they meet, which takes a value there.
     fn choice(
         &mut self,
         a: Expression,
@@ -286,6 +286,9 @@ impl Integration<'_> {
             there.set(symbol, place);
             for part in &mut parts {
                 let start = there.apply(self.pool, *part)?;
+                if self.is_infinite(start) {
+                    return None;
+                }
                 *part = self.pool.subtract(*part, start);
             }
         }
@@ -293,6 +296,18 @@ impl Integration<'_> {
             self.pool
                 .call(Function::SelectLess, &[a, b, parts[0], parts[1]]),
         )
+    }
+
+    /// Whether a part of it has no finite value for any parameters: calls of constants are numbers otherwise.
+    fn is_infinite(&self, expression: Expression) -> bool {
+        let is_constant = |it: &Expression| self.pool.constant_value(*it).is_some();
+        let mut found = false;
+        visit(self.pool, &[expression], |_, operation| {
+            if let Operation::Call(_, arguments) = operation {
+                found |= arguments.iter().all(is_constant);
+            }
+        });
+        found
     }
 }
 
@@ -453,6 +468,19 @@ mod tests {
             },
             [-1.0, 1.0],
         );
+    }
+
+    #[test]
+    fn what_is_infinite_where_choices_change_is_not_known() {
+        // a / (x − b) beyond b, else 1
+        let mut pool = Pool::new();
+        let [x, a, b] =
+            [X, Symbol::Parameter(0), Symbol::Parameter(1)].map(|symbol| pool.symbol(symbol));
+        let way = pool.subtract(x, b);
+        let force = pool.divide(a, way).expect("a quotient");
+        let choice = [b, x, force, Expression::ONE];
+        let law = pool.call(Function::SelectLess, &choice);
+        assert_eq!(antiderivative(&mut pool, law, X), None);
     }
 
     #[test]

@@ -190,3 +190,40 @@ fn a_junction_without_any_bond_is_told_as_a_whole() {
       help: write an arrow to it: `v[1] -> …;`
     ");
 }
+
+#[test]
+fn an_output_that_a_law_reads_is_told_with_its_value() {
+    let text = |read: &str| {
+        format!(
+            "model M {{ input r: m; param gain: N/m = 2.0; 1 v {{ I m {{ inertia: 1.0 }} C k {{ stiffness: 4.0 }}\nSe s {{ effort: gain * (r - {read}) }} }}
+             output x: m = k.q; output w[2] = [k.q, 2.0 * k.q]; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("x")), @"
+    2:28 `x` is not declared [MBG0203]
+      help: `x` is an output, which laws do not read: declare its value besides, `let x: m = k.q;`, or write `k.q`
+    ");
+    for (read, place) in [("x", 2), ("w.x", 2), ("w[0]", 2), ("x", 1)] {
+        let help = typed(&text(read));
+        let [_, declared, value] = &help[..] else {
+            panic!("{help:?}")
+        };
+        let read = if place == 1 { value } else { read };
+        let besides = text(read).replace("output x", &format!("{declared} output x"));
+        let followed = if place == 1 { text(read) } else { besides };
+        assert_eq!(told(&followed), "");
+    }
+}
+
+#[test]
+fn a_product_of_two_vectors_is_told_as_a_number() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ param k[2] = [3.0, 1.0]; 1 v {{ I m {{ inertia: 1.0 }} C c {{ stiffness: 4.0 }} Se s {{ effort: {law} }} }} }}"
+        )
+    };
+    let help = typed(&text("-k * [c.q, v.f]")).remove(0);
+    assert_eq!(help, "transpose(-k) * [c.q, v.f]");
+    assert_eq!(told(&text(&help)), "");
+    assert_eq!(typed(&text("k * [c.q, v.f, 1.0]")), [""; 0]);
+}

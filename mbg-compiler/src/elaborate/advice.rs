@@ -17,9 +17,18 @@ impl Lookup<'_, '_> {
                 let id = *id;
                 self.at_junction(pool, path, count, id)
             }
-            Ok(None) => self.in_instance(path),
+            Ok(None) => self.in_instance(path).or_else(|| self.of_output(path)),
             _ => None,
         }
+    }
+
+    /// Outputs are for the surroundings; a law reads the value behind one.
+    fn of_output(&self, path: &[Step]) -> Option<String> {
+        let name = path.first()?.name.to_string();
+        let [declared, value] = self.scopes.output(self.scope, &name)?;
+        Some(format!(
+            "`{name}` is an output, which laws do not read: declare its value besides, `{declared}`, or write `{value}`"
+        ))
     }
 
     /// `hub.x.f`, `hub[1].f`, `hub.spring.q` or `hub.q`, of a junction that is found after `count` steps.

@@ -105,6 +105,13 @@ pub(super) fn by_quaternion(product: &ExprBinary) -> String {
     format!("to turn a vector by a quaternion write `{text}`")
 }
 
+/// What to type where two vectors are to give a number.
+pub(super) fn by_scalar_product(product: &ExprBinary) -> String {
+    let places = [("a", &*product.left), ("b", &*product.right)];
+    let text = filled("transpose(a) * b", &places);
+    format!("for the number that two vectors give write `{text}`")
+}
+
 /// The whole part of a quotient of whole numbers.
 pub(super) fn whole_part(quotient: &ExprBinary) -> String {
     let places = [("a", &*quotient.left), ("b", &*quotient.right)];

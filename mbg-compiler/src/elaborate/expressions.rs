@@ -300,11 +300,14 @@ impl<N: Names> Evaluator<'_, N> {
             format!("`{text}` is not declared"),
         );
         if let [first, _, ..] = &steps[..] {
-            let (first, known) = (&first.name, self.names.all());
-            if !known.iter().any(|name| first == name) {
+            let first = &first.name;
+            if !self.names.all().iter().any(|name| first == name) {
                 let message = format!("`{first}` is not declared");
                 let report = error(codes::UNKNOWN_NAME, first.span(), message);
-                return Err(Box::new(report.did_you_mean(&first.to_string(), &known)));
+                return Err(Box::new(match self.names.advice(self.pool, &steps) {
+                    Some(help) => report.help(help),
+                    None => report.did_you_mean(&first.to_string(), &self.names.all()),
+                }));
             }
         }
         let help = elsewhere::instead(&text, &[]);
@@ -393,11 +396,11 @@ impl<N: Names> Evaluator<'_, N> {
             BinOp::Add(_) => self.sum(left, right, false, span),
             BinOp::Sub(_) => self.sum(left, right, true, span),
             BinOp::Mul(_) => {
-                let is_turn = left.is_vector_of(4) && right.is_vector_of(3);
+                let help = instead_of_product(&left, &right);
                 let product = self.product(left, right, span);
-                product.map_err(|report| match is_turn {
-                    true => Box::new(report.help(elsewhere::by_quaternion(binary))),
-                    false => report,
+                product.map_err(|report| match help {
+                    Some(help) => Box::new(report.help(help(binary))),
+                    None => report,
                 })
             }
             _ => {
@@ -700,6 +703,18 @@ pub(super) fn number(value: &Value, span: Span) -> Result<Expression> {
         Value::Scalar(value) => Ok(*value),
         other => mismatch(span, format!("expected a number, found {}", other.shape())),
     }
+}
+
+/// What tells how a product of two vectors is written.
+fn instead_of_product(left: &Value, right: &Value) -> Option<fn(&syn::ExprBinary) -> String> {
+    let (Value::Matrix(a), Value::Matrix(b)) = (left, right) else {
+        return None;
+    };
+    if left.is_vector_of(4) && right.is_vector_of(3) {
+        return Some(elsewhere::by_quaternion);
+    }
+    let are_vectors = a.columns() == 1 && b.columns() == 1;
+    (are_vectors && a.rows() == b.rows()).then_some(elsewhere::by_scalar_product)
 }
 
 /// Where the sign of an operator or the name of a function stands.

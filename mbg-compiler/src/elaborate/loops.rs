@@ -38,7 +38,7 @@ impl<'a> Builder<'a> {
                         repeated.variable.to_string(),
                         Entity::Value(Value::Scalar(variable)),
                     )]),
-                    loops: Vec::new(),
+                    ..Scope::default()
                 };
                 let inner = self.scopes.add(iteration);
                 self.declare_names(inner, &repeated.statements);

@@ -64,6 +64,7 @@ use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::graph::{BondGraph, Causality, ElementId, JunctionId, Origins};
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, Statement};
+use crate::syntax::dump;
 
 /// Elaborates one model; none if anything was reported.
 #[must_use]
@@ -313,7 +314,11 @@ impl<'a> Builder<'a> {
                 Statement::Integral(_) | Statement::Attitude(_) => {
                     self.integrals.push((scope, statement))
                 }
-                Statement::Output(output) => self.pending.push(Pending::Output { scope, output }),
+                Statement::Output(output) => {
+                    let outputs = &mut self.scopes[scope].outputs;
+                    outputs.insert(output.name.to_string(), as_value(output));
+                    self.pending.push(Pending::Output { scope, output });
+                }
                 _ => {}
             }
         }
@@ -370,6 +375,18 @@ impl<'a> Builder<'a> {
         let library = self.scopes[scope].library.as_ref();
         library.map_or(span, |(_, instance)| *instance)
     }
+}
+
+/// What declares the value of an output for laws as well, and that value.
+fn as_value(output: &ast::Output) -> [String; 2] {
+    let size = match output.dimension {
+        1 => String::new(),
+        size => format!("[{size}]"),
+    };
+    let unit = output.unit.as_ref();
+    let unit = unit.map_or_else(String::new, |unit| format!(": {}", unit.text));
+    let (name, value) = (&output.name, dump::expression(&output.value));
+    [format!("let {name}{size}{unit} = {value};"), value]
 }
 
 /// `name`, or `name.x`, `name.y`, … for more than one component.

@@ -78,6 +78,8 @@ pub(super) struct Scope {
     pub(super) constants: Constants,
     /// Names.
     pub(super) names: BTreeMap<String, Entity>,
+    /// Outputs, which no law reads, by name: what declares a value for laws, and the value itself.
+    pub(super) outputs: BTreeMap<String, [String; 2]>,
     /// Loops in order of declaration: their paths, and the scopes of their iterations.
     pub(super) loops: Vec<(String, Vec<usize>)>,
 }
@@ -120,6 +122,13 @@ impl Scopes {
             current = self.0[scope].around;
         }
         None
+    }
+
+    /// What laws may read in place of an output of this name, if a scope sees one.
+    pub(super) fn output(&self, scope: usize, name: &str) -> Option<&[String; 2]> {
+        let around = |scope: &usize| self.0[*scope].around;
+        let mut seen = std::iter::successors(Some(scope), around);
+        seen.find_map(|scope| self.0[scope].outputs.get(name))
     }
 
     /// Where something in a scope stands in the user's text, and in which component of the library if in one.

@@ -227,3 +227,66 @@ fn a_product_of_two_vectors_is_told_as_a_number() {
     assert_eq!(told(&text(&help)), "");
     assert_eq!(typed(&text("k * [c.q, v.f, 1.0]")), [""; 0]);
 }
+
+#[test]
+fn functions_that_laws_lack_are_told_with_what_stands_for_them() {
+    let text = |law: &str, besides: &str| {
+        format!(
+            "model M {{ input r; {besides} 1 v {{ I m {{ inertia: 1.0 }} C k {{ stiffness: 4.0 }}\nSe s {{ effort: r + {law} }} }} }}"
+        )
+    };
+    let read = |law: &str| text(law, "");
+    for name in ["saturate", "saturation", "sat", "limit"] {
+        let help = typed(&read(&format!("{name}(2.0 * r, -1.0, 1.0)"))).remove(0);
+        assert_eq!(help, "min(max(2.0 * r, -1.0), 1.0)");
+        assert_eq!(told(&read(&help)), "");
+    }
+    for (law, choice) in [
+        ("step(t - 1.0)", "(if t < 1.0 { 0.0 } else { 1.0 })"),
+        (
+            "2.0 * heaviside(2.0 * t + r)",
+            "(if (2.0 * t + r) < 0.0 { 0.0 } else { 1.0 })",
+        ),
+    ] {
+        let help = typed(&read(law)).remove(0);
+        assert_eq!(help, choice);
+        assert_eq!(told(&read(&help)), "");
+    }
+    for (law, rate) in [("der(k.q)", "k.f"), ("2.0 * ddt(m.p)", "m.e")] {
+        let help = typed(&read(law)).remove(1);
+        assert_eq!(help, rate);
+        assert_eq!(told(&read(&format!("0.5 * {help}"))), "");
+    }
+    let [input, declared, rate] = &typed(&read("0.5 * der(r)"))[..] else {
+        panic!("three texts")
+    };
+    assert_eq!(input, "r");
+    let followed = read(&format!("0.5 * {rate}")).replace("input r;", declared);
+    assert_eq!(told(&followed), "");
+    let [late, declared, ..] = &typed(&read("delay(r, 0.1)"))[..] else {
+        panic!("two texts")
+    };
+    assert_eq!(told(&text(late, declared)), "");
+}
+
+#[test]
+fn remainders_and_whole_parts_in_laws_are_told_to_jump() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ input r; param n = 2.0; 1 v {{ I m {{ inertia: 1.0 }} C k {{ stiffness: 4.0 }}\nSe s {{ effort: {law} }} }} }}"
+        )
+    };
+    for name in ["floor(r)", "ceil(r)", "round(r)", "fmod(r, 2)", "rem(r, 2)"] {
+        assert_eq!(typed(&text(name)), ["input", "Pulse"]);
+    }
+    insta::assert_snapshot!(told(&text("if t % 1e-3 < 5e-4 { 24.0 } else { 0.0 }")), @"
+    2:21 `%` stands between whole numbers, and `t` changes while the model runs, so that the remainder jumps [MBG0217]
+      help: what jumps is given from outside, by an `input` that tells when its next jump comes, as a `Pulse` does
+    ");
+    // Of what stays the same, another cause is told.
+    insta::assert_snapshot!(told(&text("n % 2")), @"
+    2:16 expected a whole number that is known while the model is compiled, found `n % 2` [MBG0217]
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+}

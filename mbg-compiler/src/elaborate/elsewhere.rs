@@ -4,6 +4,7 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{BinOp, Expr, ExprBinary, Lit, UnOp};
 
+use super::constants::plain_name;
 use crate::syntax::dump;
 
 /// The number π, as constants of other languages round it.
@@ -32,6 +33,10 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("signum", &["x"], "sign(x)"),
     ("fabs", &["x"], "abs(x)"),
     ("clamp", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("saturate", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("saturation", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("sat", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("limit", &["x", "a", "b"], "min(max(x, a), b)"),
     (
         "interp",
         &["x", "places", "values"],
@@ -50,10 +55,34 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("deg2rad", &["x"], "(0.017453292519943295 * x)"),
 ];
 
+/// Functions whose value jumps, which a law cannot have.
+const JUMPING: &[&str] = &[
+    "floor",
+    "ceil",
+    "round",
+    "trunc",
+    "rem",
+    "fmod",
+    "rem_euclid",
+];
+
+/// Where jumps are told to what runs the model.
+pub(super) const JUMPING_INPUT: &str = "what jumps is given from outside, by an `input` that tells when its next jump comes, \
+     as a `Pulse` does";
+
 /// What to type here for a word of another language with these arguments.
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
-    if let ("powf", [base, exponent]) = (word, arguments) {
-        return Some(power(base, exponent));
+    match (word, arguments) {
+        ("powf", [base, exponent]) => return Some(power(base, exponent)),
+        ("der" | "ddt" | "derivative", [of]) => return Some(rate(of)),
+        ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
+        ("delay", [value, by]) => return Some(delay(value, by)),
+        _ if JUMPING.contains(&word) => {
+            return Some(format!(
+                "its value jumps, and a law has no such function: {JUMPING_INPUT}"
+            ));
+        }
+        _ => {}
     }
     let (_, places, text) = WORDS.iter().find(|(known, _, _)| *known == word)?;
     if places.len() != arguments.len() {
@@ -62,6 +91,50 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     }
     let places: Vec<(&str, &Expr)> = places.iter().copied().zip(arguments).collect();
     Some(format!("write `{}`", filled(text, &places)))
+}
+
+/// What to read or declare where a rate is meant. Nothing differentiates an input.
+fn rate(of: &Expr) -> String {
+    let text = dump::expression(of);
+    let of_state = |state: &str, rate: &str| {
+        let owner = text.strip_suffix(state)?;
+        Some(format!("the rate of `{text}` is `{owner}{rate}`"))
+    };
+    if let Some(help) = of_state(".q", ".f").or_else(|| of_state(".p", ".e")) {
+        return help;
+    }
+    let rule = "laws take no derivatives";
+    match plain_name(of) {
+        Some(name) => format!(
+            "{rule}: where `{name}` is an input, give its rate in its place, `input {name}_rate; integral {name} = \
+             {name}_rate;`, and read `{name}_rate`"
+        ),
+        None => format!("{rule}: read the flow `….f` or the effort `….e` that is this rate"),
+    }
+}
+
+/// What to type for zero before a time and one after it.
+fn step(since: &Expr) -> String {
+    let (text, places) = match bare(since) {
+        Expr::Binary(binary) if matches!(binary.op, BinOp::Sub(_)) => {
+            let places = vec![("a", &*binary.left), ("b", &*binary.right)];
+            ("(if a < b { 0.0 } else { 1.0 })", places)
+        }
+        since => ("(if a < 0.0 { 0.0 } else { 1.0 })", vec![("a", since)]),
+    };
+    format!(
+        "write `{}`, or give it from outside, by an `input` that tells when it jumps, as a `Pulse` does",
+        filled(text, &places)
+    )
+}
+
+/// What to type for a value of the past, which nothing keeps.
+fn delay(value: &Expr, by: &Expr) -> String {
+    let lag = filled("(x - late) / d", &[("x", value), ("d", by)]);
+    format!(
+        "nothing keeps values of the past: write `late` for a lag of first order, `integral late = {lag};`, or delay the \
+         value outside and give it by an `input`"
+    )
 }
 
 /// What to type for a power.

@@ -377,9 +377,7 @@ impl<N: Names> Evaluator<'_, N> {
             return Err(Box::new(report.help(help)));
         }
         if matches!(binary.op, BinOp::Rem(_)) {
-            let whole = Expr::Binary(binary.clone());
-            let number = self.names.whole(&whole)?;
-            return Ok(Value::Scalar(self.pool.integer(number)));
+            return self.remainder(binary);
         }
         if !matches!(
             binary.op,
@@ -429,6 +427,37 @@ impl<N: Names> Evaluator<'_, N> {
                 })
             }
         }
+    }
+
+    /// A remainder is one of whole numbers, since that of a value that varies would jump.
+    fn remainder(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
+        let known = self.names.whole(&Expr::Binary(binary.clone()));
+        let varying = match known {
+            Err(_) => self.varying(&[&binary.left, &binary.right]),
+            Ok(_) => None,
+        };
+        match (known, varying) {
+            (Err(_), Some(varying)) => {
+                let message = format!(
+                    "`%` stands between whole numbers, and `{varying}` changes while the model runs, so that the remainder jumps"
+                );
+                let report = error(codes::WHOLE_NUMBER, binary.op.span(), message);
+                Err(Box::new(report.help(elsewhere::JUMPING_INPUT)))
+            }
+            (known, _) => Ok(Value::Scalar(self.pool.integer(known?))),
+        }
+    }
+
+    /// The first of these whose value changes while the model runs.
+    fn varying(&mut self, expressions: &[&Expr]) -> Option<String> {
+        let is_varying = |expression: &&&Expr| {
+            let value = self.evaluate(expression);
+            let entries = value.ok().and_then(|value| value.entries(self.pool));
+            let mut entries = entries.into_iter().flatten();
+            entries.any(|entry| self.pool.rate(entry) == Rate::Varying)
+        };
+        let varying = expressions.iter().find(is_varying)?;
+        Some(dump::expression(varying))
     }
 
     fn quotient(

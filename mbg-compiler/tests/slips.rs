@@ -290,3 +290,68 @@ fn remainders_and_whole_parts_in_laws_are_told_to_jump() {
       help: a `param` of a model is no such number, because it can change after the model is compiled
     ");
 }
+
+#[test]
+fn matrices_are_declared_by_rows() {
+    let text = |statement: &str| {
+        format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0 }} C c {{ stiffness: 4.0 }} Se s {{ effort: (k * [c.q, v.f])[0] }} }}\n{statement} }}"
+        )
+    };
+    let followed = |help: &str| {
+        let values = help.replacen("= …", "= [1.0, 0.0]", 1);
+        text(&values.replace("= …", "= [0.0, 1.0]"))
+    };
+    insta::assert_snapshot!(told(&text("param k[1][2]: N = [[3.0, 1.0]];")), @"
+    2:11 expected one dimension of `k`, found `[` [MBG0101]
+      help: `param` declares a number or a vector: write `param k_0[2] = …; let k = [[k_0[0], k_0[1]]];`
+    ");
+    let declared = "k_0[2] = …;WORD k_1[2] = …; let k = [[k_0[0], k_0[1]], [k_1[0], k_1[1]]];";
+    for word in ["param", "integral"] {
+        let help = typed(&text(&format!(
+            "{word} k[2][2] = [[1.0, 0.0], [0.0, 1.0]];"
+        )))
+        .remove(1);
+        let declared = declared.replace("WORD", &format!(" {word}"));
+        assert_eq!(help, format!("{word} {declared}"));
+        assert_eq!(told(&followed(&help)), "");
+    }
+    let help = typed(&text("input k[2][2];")).remove(1);
+    assert_eq!(told(&followed(&help)), "");
+    let help = typed(&text("let k[2][2] = [[1.0, 0.0], [0.0, 1.0]];")).remove(0);
+    assert_eq!(
+        told(&text(&help.replace("[[…], …]", "[[1.0, 0.0], [0.0, 1.0]]"))),
+        ""
+    );
+    let output = "let k = diag(1.0, 2.0); output a[2][2] = k;";
+    let help = typed(&text(output)).remove(1);
+    assert_eq!(help, "output a_0[2] = …; output a_1[2] = …;");
+    assert_eq!(
+        told(&followed(&format!("let k = diag(1.0, 2.0); {help}"))),
+        ""
+    );
+}
+
+#[test]
+fn coefficients_are_told_by_the_words_of_their_elements() {
+    let text = |element: &str, law: &str| {
+        format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0 }} Se s {{ effort: 0.0 }} }} 0 n {{ C c {{ compliance: 1.0 }} R r {{ resistance: 1.0 }} }}
+             1 w {{ R d {{ resistance: 1.0 }} {element} x {{ {law} }} }} v -> n; n -> w; }}"
+        )
+    };
+    for (element, word, law) in [
+        ("C", "capacitance", "compliance"),
+        ("C", "spring_constant", "stiffness"),
+        ("C", "k", "stiffness"),
+        ("I", "inductance", "inertia"),
+        ("I", "mass", "inertia"),
+        ("I", "moment", "inertia"),
+        ("R", "damping", "resistance"),
+        ("Se", "voltage", "effort"),
+    ] {
+        let help = typed(&text(element, &format!("{word}: 2.0 * 3.0"))).remove(0);
+        assert_eq!(help, format!("{law}: 2.0 * 3.0"));
+        assert_eq!(told(&text(element, &help)), "");
+    }
+}

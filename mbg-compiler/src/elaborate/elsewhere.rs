@@ -1,10 +1,11 @@
 //! Words of other languages and tools, and what is written here instead.
 
-use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{BinOp, Expr, ExprBinary, Lit, UnOp};
 
 use super::constants::plain_name;
+use crate::graph::ElementKind;
 use crate::syntax::dump;
 
 /// The number π, as constants of other languages round it.
@@ -54,6 +55,51 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("radians", &["x"], "(0.017453292519943295 * x)"),
     ("deg2rad", &["x"], "(0.017453292519943295 * x)"),
 ];
+
+/// What the coefficients of elements are called in the parts of physics, and the words of their laws.
+const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
+    (
+        ElementKind::I,
+        &[
+            "inductance",
+            "mass",
+            "moment",
+            "moment_of_inertia",
+            "inertance",
+        ],
+        "inertia",
+    ),
+    // A capacity is flow gathered by effort: the inverse of what a spring is known by.
+    (ElementKind::C, &["capacitance", "capacity"], "compliance"),
+    (
+        ElementKind::C,
+        &["spring_constant", "spring_rate", "k", "elastance"],
+        "stiffness",
+    ),
+    (
+        ElementKind::R,
+        &["damping", "friction", "viscosity", "drag", "impedance"],
+        "resistance",
+    ),
+    (ElementKind::R, &["admittance", "mobility"], "conductance"),
+    (
+        ElementKind::Se,
+        &["voltage", "force", "torque", "moment", "pressure", "value"],
+        "effort",
+    ),
+    (
+        ElementKind::Sf,
+        &["current", "velocity", "speed", "rate", "value"],
+        "flow",
+    ),
+];
+
+/// The word for the law of an element that has another name in a part of physics.
+pub(super) fn law_word(kind: ElementKind, word: &Ident) -> Option<&'static str> {
+    let mut own = COEFFICIENTS.iter().filter(|(owner, ..)| *owner == kind);
+    let (.., law) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
+    Some(law)
+}
 
 /// Functions whose value jumps, which a law cannot have.
 const JUMPING: &[&str] = &[

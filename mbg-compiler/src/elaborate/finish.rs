@@ -7,6 +7,7 @@ use syn::spanned::Spanned;
 
 use super::claims::Subject;
 use super::definitions::{Missing, by_component};
+use super::elsewhere;
 use super::expressions::{Evaluator, Result, Step, Value};
 use super::laws::{Reader, words_of};
 use super::mentions::mentioned;
@@ -287,10 +288,15 @@ impl<'a> Builder<'a> {
             }
             let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
             let known = words.iter().map(|word| (*word).to_owned());
-            let report = error(codes::UNKNOWN_FIELD, field.name.span(), message)
-                .did_you_mean(&field.name.to_string(), &words)
-                .help(format!("its words are {}", listing(known)));
-            self.tell(scope, report);
+            let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
+            let report = match elsewhere::law_word(element.kind, &field.name) {
+                Some(law) => report.help(format!("write `{law}: {}`", value(field))),
+                None => report.did_you_mean(&field.name.to_string(), &words),
+            };
+            self.tell(
+                scope,
+                report.help(format!("its words are {}", listing(known))),
+            );
         }
     }
 
@@ -299,7 +305,8 @@ impl<'a> Builder<'a> {
             let words = words_of(element.kind);
             let found = || element.fields.iter().map(|field| &field.name);
             let mut laws = law_words(element.kind).iter();
-            if laws.any(|law| is_misspelt(law, found(), &words)) {
+            let is_other = found().any(|it| elsewhere::law_word(element.kind, it).is_some());
+            if is_other || laws.any(|law| is_misspelt(law, found(), &words)) {
                 self.missing = Some(Missing::Broken);
             }
         })?;
@@ -473,6 +480,12 @@ impl<'a> Builder<'a> {
             rings,
         }
     }
+}
+
+/// What stands behind a word, or a place for it.
+fn value(field: &ast::Field) -> String {
+    let value = field.value.as_ref();
+    value.map_or_else(|| "…".to_owned(), dump::expression)
 }
 
 /// The one field that carries the law.

@@ -31,6 +31,33 @@ pub(super) fn written(
     format!("an instance is written `{name}: {component}{parameters} ({ports});`")
 }
 
+/// How many rows and columns of a matrix are written out.
+const WRITTEN_OUT: usize = 4;
+
+/// What declares the rows of a matrix as vectors, and the matrix of them for laws.
+pub(super) fn by_rows(word: &str, name: &str, [rows, columns]: [usize; 2]) -> String {
+    let end = if word == "input" { "" } else { " = …" };
+    let row = |row: usize| format!("{word} {name}_{row}[{columns}]{end};");
+    let entries = |row: usize| {
+        let entry = |column: usize| format!("{name}_{row}[{column}]");
+        format!("[{}]", listed(columns, entry, ", "))
+    };
+    let declared = listed(rows, row, " ");
+    match word {
+        "output" => declared,
+        _ => format!("{declared} let {name} = [{}];", listed(rows, entries, ", ")),
+    }
+}
+
+/// So many texts, of which the last stand for themselves where there are many.
+fn listed(count: usize, text: impl Fn(usize) -> String, between: &str) -> String {
+    let mut texts: Vec<String> = (0..count.min(WRITTEN_OUT)).map(text).collect();
+    if count > WRITTEN_OUT {
+        texts.push("…".to_owned());
+    }
+    texts.join(between)
+}
+
 /// What to type for an entry `m[0, 1]` among these tokens or in a group of theirs.
 pub(super) fn entry(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
     tokens.iter().enumerate().find_map(|(at, token)| {

@@ -231,7 +231,7 @@ fn parameter(
     sink: &mut Sink<'_>,
 ) -> Parsed<Parameter> {
     let name = cursor.name("the name of the parameter after `param`")?;
-    let dimension = cursor.dimension()?;
+    let dimension = vector_size(cursor, "param", &name)?;
     let unit = unit(cursor, sink);
     let equals = cursor.take_punct('=');
     let default = if equals {
@@ -264,7 +264,7 @@ fn parameter(
 
 fn input(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Input> {
     let name = cursor.name("the name of the input after `input`")?;
-    let dimension = cursor.dimension()?;
+    let dimension = vector_size(cursor, "input", &name)?;
     let unit = unit(cursor, sink);
     if cursor.punct(0, '=') {
         no_default(cursor, &name, dimension, unit.as_ref(), sink)?;
@@ -335,7 +335,7 @@ fn named_value(
 ) -> Parsed<Let> {
     let owner = if word == "let" { "value" } else { word };
     let name = cursor.name(&format!("the name of the {owner} after `{word}`"))?;
-    let dimension = cursor.dimension()?;
+    let dimension = vector_size(cursor, word, &name)?;
     let unit = unit(cursor, sink);
     equals(cursor, dimension.is_some(), unit.is_some())?;
     let value = expression(cursor, &format!("the value of `{name}` after `=`"))?;
@@ -358,7 +358,7 @@ fn gravity(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Grav
 
 fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Integral> {
     let name = cursor.name("the name of the integral after `integral`")?;
-    let dimension = cursor.dimension()?;
+    let dimension = vector_size(cursor, "integral", &name)?;
     let unit = unit(cursor, sink);
     equals(cursor, dimension.is_some(), unit.is_some())?;
     let rate = expression(cursor, &format!("the rate of `{name}` after `=`"))?;
@@ -408,6 +408,26 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
         angular_velocity,
         initial,
     })
+}
+
+/// Reads the dimension of what a word declares, which is a vector at most.
+fn vector_size(cursor: &mut Cursor, word: &str, name: &Ident) -> Parsed<Option<usize>> {
+    let rows = cursor.dimension()?;
+    let (Some(count), Some(_)) = (rows, cursor.group(0, Delimiter::Bracket)) else {
+        return Ok(rows);
+    };
+    let report = *cursor.expected(&format!("one dimension of `{name}`"));
+    let Some(columns) = cursor.dimension()? else {
+        return Ok(rows);
+    };
+    let help = match word {
+        "let" => format!("a matrix is a value without a dimension: write `let {name} = [[…], …];`"),
+        _ => format!(
+            "`{word}` declares a number or a vector: write `{}`",
+            slips::by_rows(word, &name.to_string(), [count, columns])
+        ),
+    };
+    Err(Box::new(report.help(help)))
 }
 
 /// Reads the `=` before a value.

@@ -355,3 +355,57 @@ fn coefficients_are_told_by_the_words_of_their_elements() {
         assert_eq!(told(&text(element, &help)), "");
     }
 }
+
+#[test]
+fn elements_apart_from_their_junction_are_told_at_its_declaration() {
+    let text = |declared: &str, apart: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} {declared} {apart} a -> TF gear {{ flow: 2.0 }} -> nut; }}"
+        )
+    };
+    let apart = "nut { #[derivative] I body { inertia: 0.1 } R r { resistance: 2.0 } }";
+    for declared in ["1 nut", "1 nut[1]"] {
+        let help = typed(&text(&format!("{declared};"), apart)).remove(0);
+        let elements = apart.trim_start_matches("nut");
+        assert_eq!(help, format!("{declared}{elements}"));
+        assert_eq!(told(&text(&help, "")), "");
+    }
+    let help = typed(&text("", apart)).remove(0);
+    assert_eq!(told(&text(&help, "")), "");
+    let help = typed(&text("1 nut;", "nut { resistance: 1.0 }"));
+    assert_eq!(help, ["nut", "R name { resistance: 1.0 } -> nut;"]);
+    assert_eq!(told(&text("1 nut;", &help[1])), "");
+}
+
+#[test]
+fn joints_are_told_by_their_names_in_the_library() {
+    let joint = |name: &str| arm(&format!("joint: {name} (ground, arm);"));
+    for (name, here) in [
+        ("Floating", "Free"),
+        ("Hinge", "Revolute"),
+        ("Pin", "Revolute"),
+        ("Slider", "Prismatic"),
+        ("Ball", "Spherical"),
+        ("Weld", "Fixed"),
+    ] {
+        let written = match here {
+            "Revolute" | "Prismatic" => " { axis: 1 }",
+            _ => "",
+        };
+        assert_eq!(typed(&joint(&format!("{name}{written}"))), [here]);
+        let answers = told(&joint(&format!("{here}{written}")));
+        assert!(!answers.contains("not declared"), "{answers}");
+    }
+}
+
+#[test]
+fn a_joint_in_the_place_of_a_junction_is_told_its_junctions() {
+    let motor = |at: &str| {
+        arm(&format!(
+            "hinge: Revolute {{ axis: 1 }} (ground, arm);\nSe motor {{ effort: 1.0 }} -> {at};"
+        ))
+    };
+    let help = typed(&motor("hinge"));
+    assert_eq!(help[..2], ["hinge", "hinge.rate"]);
+    assert_eq!(told(&motor(&help[1])), "");
+}

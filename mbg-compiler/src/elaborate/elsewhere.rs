@@ -101,6 +101,26 @@ pub(super) fn law_word(kind: ElementKind, word: &Ident) -> Option<&'static str> 
     Some(law)
 }
 
+/// What joints and bodies are called elsewhere, without regard to capitals, and in the library.
+const COMPONENTS: &[(&[&str], &str)] = &[
+    (&["floating", "freeflyer", "free_flyer", "sixdof"], "Free"),
+    (&["hinge", "pin", "continuous", "rotary"], "Revolute"),
+    (&["slider", "sliding", "translational"], "Prismatic"),
+    (&["ball", "balljoint", "ballandsocket"], "Spherical"),
+    (&["weld", "welded", "rigid"], "Fixed"),
+    (&["cardan", "hooke"], "Universal"),
+    (&["rigidbody", "link"], "Body"),
+    (&["particle"], "PointMass"),
+];
+
+/// The component of the library that has this name elsewhere.
+pub(super) fn component(name: &str) -> Option<&'static str> {
+    let name = name.to_lowercase();
+    let mut components = COMPONENTS.iter();
+    let (_, here) = components.find(|(names, _)| names.contains(&name.as_str()))?;
+    Some(here)
+}
+
 /// Functions whose value jumps, which a law cannot have.
 const JUMPING: &[&str] = &[
     "floor",

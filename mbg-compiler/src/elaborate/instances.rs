@@ -4,6 +4,7 @@ use proc_macro2::Ident;
 
 use super::Builder;
 use super::conditions::no_word;
+use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
 use super::scope::{Entity, Scope};
@@ -237,8 +238,11 @@ impl<'a> Builder<'a> {
         let components = self.components;
         let mut known: Vec<&str> = library::names().collect();
         known.extend(components.keys().map(String::as_str));
-        let mut report = error(codes::UNKNOWN_NAME, name.span(), message)
-            .did_you_mean(&name.to_string(), &known);
+        let report = error(codes::UNKNOWN_NAME, name.span(), message);
+        let mut report = match elsewhere::component(&name.to_string()) {
+            Some(here) => report.help(format!("write `{here}`, as it is called here")),
+            None => report.did_you_mean(&name.to_string(), &known),
+        };
         if report.helps.is_empty() {
             let names = listing(library::names().map(str::to_owned));
             report = report.help(format!("the library has {names}"));

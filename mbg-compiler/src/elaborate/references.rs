@@ -9,7 +9,7 @@ use super::expressions::{Result, Step, component_index};
 use super::scope::Entity;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
-use crate::graph::End;
+use crate::graph::{End, JunctionKind};
 use crate::syntax::ast::{Reference, Segment, Selection};
 use crate::syntax::dump;
 
@@ -74,13 +74,39 @@ impl Builder<'_> {
             _ => {
                 let text = dump::reference(reference);
                 let message = format!("expected a junction or an element, found `{text}`");
-                Err(Box::new(error(
-                    codes::UNKNOWN_NAME,
-                    reference.span,
-                    message,
-                )))
+                let report = error(codes::UNKNOWN_NAME, reference.span, message);
+                let junctions = match entity {
+                    Entity::Instance(inner) => self.junctions_in(*inner),
+                    _ => Vec::new(),
+                };
+                if junctions.is_empty() {
+                    return Err(Box::new(report));
+                }
+                let junctions = junctions.iter().map(|name| format!("{text}.{name}"));
+                let help = format!("junctions of `{text}` are {}", listing(junctions));
+                Err(Box::new(report.help(help)))
             }
         }
+    }
+
+    /// The junctions of a component in use, without those that it was given: first those of a shaft or a node.
+    fn junctions_in(&self, scope: usize) -> Vec<&str> {
+        let within = &self.scopes[scope];
+        let own = within.names.iter().filter_map(|(name, entity)| {
+            let Entity::Junction(id, _) = entity else {
+                return None;
+            };
+            let junction = &self.graph.junctions[id.0];
+            let is_own = junction.name == format!("{}{name}", within.prefix);
+            is_own.then_some((
+                junction.dimension,
+                junction.kind == JunctionKind::Zero,
+                name.as_str(),
+            ))
+        });
+        let mut own: Vec<_> = own.collect();
+        own.sort_unstable();
+        own.into_iter().map(|(.., name)| name).collect()
     }
 
     /// One step of a path; what stands in brackets after the last one selects components.

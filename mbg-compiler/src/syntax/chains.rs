@@ -127,9 +127,14 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
                 if let Some(help) = slips::ahead(cursor, 0, "name", &name.to_string()) {
                     return Some(Box::new((*cursor.expected(&wanted)).help(help)));
                 }
-                (*cursor.expected(&wanted)).help(format!(
-                    "an element is written `R {name} {{ … }}`, with its kind before its name"
-                ))
+                let braces = cursor.group(0, Delimiter::Brace);
+                let help = braces.and_then(|braces| slips::apart(cursor, reference, braces));
+                let element = || {
+                    format!(
+                        "an element is written `R {name} {{ … }}`, with its kind before its name"
+                    )
+                };
+                (*cursor.expected(&wanted)).help(help.unwrap_or_else(element))
             }
             _ => return None,
         },

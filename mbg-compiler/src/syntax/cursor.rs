@@ -317,6 +317,25 @@ impl Cursor {
         &self.tokens[self.at..(self.at + length).min(self.tokens.len())]
     }
 
+    /// How a junction of this name is declared among these tokens, as far as its dimension, if it is.
+    pub(super) fn declaration(&self, name: &Ident) -> Option<String> {
+        let mut places = self.tokens.windows(2).enumerate();
+        let (at, digit) = places.find_map(|(at, pair)| match pair {
+            [TokenTree::Literal(digit), TokenTree::Ident(found)] if found == name => {
+                let digit = digit.to_string();
+                matches!(digit.as_str(), "0" | "1").then_some((at, digit))
+            }
+            _ => None,
+        })?;
+        let size = match self.tokens.get(at + 2) {
+            Some(TokenTree::Group(size)) if size.delimiter() == Delimiter::Bracket => {
+                size.to_string()
+            }
+            _ => String::new(),
+        };
+        Some(format!("{digit} {name}{size}"))
+    }
+
     /// The operator `offset` places ahead, joined from its characters.
     fn operator(&self, offset: usize) -> Option<String> {
         let mut text = String::new();

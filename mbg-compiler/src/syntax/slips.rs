@@ -2,8 +2,9 @@
 
 use proc_macro2::{Delimiter, Group, TokenTree};
 
+use super::ast::{Reference, Segment};
 use super::cursor::Cursor;
-use super::dump;
+use super::{dump, elements};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 
@@ -14,6 +15,36 @@ pub(super) fn ahead(cursor: &Cursor, offset: usize, name: &str, component: &str)
         places.find_map(|place| cursor.group(place, delimiter))
     });
     Some(written(name, component, braces, parentheses?))
+}
+
+/// What to type for the elements of a junction that stand apart from its declaration.
+pub(super) fn apart(cursor: &Cursor, junction: &Reference, braces: &Group) -> Option<String> {
+    let [
+        Segment {
+            name,
+            selection: None,
+        },
+    ] = &junction.path[..]
+    else {
+        return None;
+    };
+    let inside = Cursor::inside(braces);
+    let first = if inside.punct(0, '#') { 2 } else { 0 };
+    let has_elements =
+        elements::kind(&inside, first).is_some() && inside.ident(first + 1).is_some();
+    let elements = dump::tokens(braces.stream());
+    match cursor.declaration(name) {
+        Some(declaration) if has_elements => Some(format!(
+            "the elements of a junction stand in the braces of its declaration: `{declaration} {{ {elements} }}`"
+        )),
+        Some(_) => Some(format!(
+            "`{name}` is a junction; an element there has a kind and a name of its own: `R name {{ {elements} }} -> {name};`"
+        )),
+        None if has_elements => Some(format!(
+            "a junction has its digit before its name: `1 {name} {{ {elements} }}`"
+        )),
+        None => None,
+    }
 }
 
 /// How an instance with these parameters and junctions is written.

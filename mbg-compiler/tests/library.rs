@@ -505,8 +505,9 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     let axis = "model M { 1 a[6]; 1 b[6];
         hinge: Revolute { axis: 3 } (a, b); }";
     insta::assert_snapshot!(elaborated(axis).err().unwrap(), @"
-    2:33 `axis` does not fit in `Revolute`: `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
+    2:33 `axis` does not fit in `Revolute`: found `3` [MBG0204]
       `axis`: 0, 1 or 2 for x, y or z
+      inside it, `moment` has 3 components, `moment[axis]` asks for more
     ");
     let undecided = "model M { param n = 1.0; 1 a[6]; 1 b[6];
         hinge: Revolute { axis: n, blocked: compliant } (a, b); }";

@@ -570,18 +570,21 @@ fn a_mistake_inside_a_component_is_told_at_the_argument_behind_it() {
     insta::assert_snapshot!(hinge("axis: [0.0, 0.0, 1.0]"), @"
     2:25 `axis` does not fit in `Revolute`: expected a whole number that is known while the model is compiled, found `[0.0, 0.0, 1.0]` [MBG0217]
       `axis`: 0, 1 or 2 for x, y or z
+      help: `[0.0, 0.0, 1.0]` is 2: write `axis: 2`
       help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
       help: a `param` of a model is no such number, because it can change after the model is compiled
     ");
     insta::assert_snapshot!(hinge("axis: y"), @"
     2:25 `axis` does not fit in `Revolute`: expected a whole number that is known while the model is compiled, found `y` [MBG0217]
       `axis`: 0, 1 or 2 for x, y or z
+      help: `y` is 1: write `axis: 1`
       help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
       help: a `param` of a model is no such number, because it can change after the model is compiled
     ");
     insta::assert_snapshot!(hinge("axis: 3"), @"
-    2:25 `axis` does not fit in `Revolute`: `moment` has 3 components, `moment[axis]` asks for more [MBG0204]
+    2:25 `axis` does not fit in `Revolute`: found `3` [MBG0204]
       `axis`: 0, 1 or 2 for x, y or z
+      inside it, `moment` has 3 components, `moment[axis]` asks for more
     ");
     insta::assert_snapshot!(hinge("axis: 1, torque: [0.0, 1.0, 0.0]"), @"
     2:36 `torque` does not fit in `Revolute`: expected a number, found a vector of 3 [MBG0204]

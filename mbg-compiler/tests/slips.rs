@@ -409,3 +409,96 @@ fn a_joint_in_the_place_of_a_junction_is_told_its_junctions() {
     assert_eq!(help[..2], ["hinge", "hinge.rate"]);
     assert_eq!(told(&motor(&help[1])), "");
 }
+
+#[test]
+fn an_axis_is_told_by_its_number() {
+    let hinge = |axis: &str| {
+        arm(&format!(
+            "hinge: Revolute {{ axis: {axis} }} (ground, arm);"
+        ))
+    };
+    for (axis, number) in [
+        ("x", "axis: 0"),
+        ("y", "axis: 1"),
+        ("z", "axis: 2"),
+        ("[0.0, 0.0, 1.0]", "axis: 2"),
+    ] {
+        let help = typed(&hinge(axis));
+        assert_eq!(help[..2], [axis, number]);
+        assert_eq!(
+            told(&hinge(axis).replace(&format!("axis: {axis}"), number)),
+            ""
+        );
+    }
+    insta::assert_snapshot!(told(&hinge("3")), @"
+    3:25 `axis` does not fit in `Revolute`: found `3` [MBG0204]
+      `axis`: 0, 1 or 2 for x, y or z
+      inside it, `moment` has 3 components, `moment[axis]` asks for more
+    ");
+}
+
+#[test]
+fn numbers_with_units_are_told_without_them() {
+    let start = |angle: &str| {
+        arm(&format!(
+            "hinge: Revolute {{ axis: 1, initial: {angle} }} (ground, arm);"
+        ))
+    };
+    for (angle, value) in [
+        ("30 deg", "30.0 * 0.017453292519943295"),
+        ("30.0deg", "30.0 * 0.017453292519943295"),
+        ("0.5 rad", "0.5"),
+    ] {
+        let help = typed(&start(angle)).pop().unwrap();
+        assert_eq!(help, value);
+        assert_eq!(told(&start(&help)), "");
+    }
+    insta::assert_snapshot!(told("model M { 1 a { I l { inertia: 1.0 }\nSe s { effort: 12 V } } }"), @"
+    2:19 expected `,` or `}` after `12`, found `V` [MBG0101]
+      help: numbers carry no unit, declarations do, such as `param x: V = …;`: write `12.0`
+      help: for a product write `12 * V`
+    ");
+    insta::assert_snapshot!(told("model M { 1 a { I l { inertia: 1.0 } Se s { effort: v } }\nparam v = 12 kV; }"), @"
+    2:14 expected `;` after `12`, found `kV` [MBG0101]
+      help: numbers carry no unit, declarations do, such as `param x: V = …;`: write `12.0 * 1000`
+    ");
+}
+
+#[test]
+fn a_product_without_its_sign_is_told_with_it() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ param w = 3.0; input r; 1 v {{ I m {{ inertia: 1.0 }} C k {{ stiffness: 4.0 }}\nSe s {{ effort: r + {law} }} }} }}"
+        )
+    };
+    for (law, product) in [
+        ("sin(w t)", "w * t"),
+        ("cos(2 t)", "2 * t"),
+        ("sin(2.0 * w k.q)", "w * k.q"),
+        ("exp(k.q sin(t))", "k.q * sin(t)"),
+        ("exp((1.0 + w) t)", "(1.0 + w) * t"),
+    ] {
+        let help = typed(&text(law)).pop().unwrap();
+        assert_eq!(help, product);
+        let (before, after) = (product.replace(" * ", " "), product);
+        assert_eq!(told(&text(&law.replace(&before, after))), "");
+    }
+    assert_eq!(typed(&text("w t")), ["w * t"]);
+    assert_eq!(typed(&text("mod(r, 2)")), ["input", "Pulse"]);
+    // Another language's `if` has no product in it.
+    assert_eq!(typed(&text("(if w > r then w else r)")), [""; 0]);
+}
+
+#[test]
+fn entries_that_break_a_symmetry_are_told() {
+    let text =
+        |law: &str| format!("model M {{ param c = 2.0; 1 a[2] {{\nI l {{ inertia: {law} }} }} }}");
+    insta::assert_snapshot!(told(&text("[[1e-3, 2e-3], [1e-3, 4e-3]]")), @"
+    2:16 the matrix of a storage must be symmetric, or it would create energy [MBG0213]
+      two of its entries differ: entry `[0][1]` is 0.002, entry `[1][0]` is 0.001
+    ");
+    insta::assert_snapshot!(told(&text("[[1.0, c], [-c, 4.0]]")), @"
+    2:16 the matrix of a storage must be symmetric, or it would create energy [MBG0213]
+      two of its entries differ: entry `[0][1]`, entry `[1][0]`
+    ");
+}

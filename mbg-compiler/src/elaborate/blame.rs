@@ -8,8 +8,9 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue};
 
 use super::Builder;
-use super::definitions::Progress;
-use super::expressions::Value;
+use super::definitions::{Definition, Progress};
+use super::elsewhere;
+use super::expressions::{Value, component_index};
 use super::mentions::mentioned;
 use super::scope::Entity;
 use crate::codes;
@@ -143,20 +144,56 @@ impl Builder<'_> {
         // The component calls it by its parameter's name, the user wrote this.
         let found = format!("found `{name}`");
         let message = inner.message.replace(&found, &format!("found `{value}`"));
-        let report = Diagnostic {
+        let documentation = definition.parameter.map(|it| text(&it.documentation));
+        let documentation = documentation.filter(|text| !text.is_empty());
+        // Of a number that is out of range only the component's own names speak.
+        let is_inner = inner.code == codes::WRONG_DIMENSION
+            && documentation.is_some()
+            && !message.starts_with("expected")
+            && self.is_whole(culprit);
+        let (told, inside) = match is_inner {
+            true => (format!("found `{value}`"), Some(message)),
+            false => (message, None),
+        };
+        let mut report = Diagnostic {
             span: place,
-            message: format!("`{name}` does not fit in `{component}`: {message}"),
+            message: format!("`{name}` does not fit in `{component}`: {told}"),
             ..inner
         };
-        match definition.parameter.map(|it| text(&it.documentation)) {
-            Some(text) if !text.is_empty() => report.note(format!("`{name}`: {text}")),
-            _ => report,
+        if let Some(axis) = axis(definition.value).filter(|_| report.code == codes::WHOLE_NUMBER) {
+            let help = format!("`{value}` is {axis}: write `{name}: {axis}`");
+            report.helps.insert(0, help);
         }
+        let notes = documentation.map(|text| format!("`{name}`: {text}"));
+        let inside = inside.map(|message| format!("inside it, {message}"));
+        report.notes.extend(notes.into_iter().chain(inside));
+        report
+    }
+
+    /// Whether a value is a number that is known while the model is compiled.
+    fn is_whole(&self, definition: usize) -> bool {
+        let Definition { scope, value, .. } = self.definitions[definition];
+        self.scopes[scope].constants.evaluate(value).is_ok()
     }
 
     /// Where a value is written.
     fn written(&self, definition: usize) -> Span {
         self.definitions[definition].value.span()
+    }
+}
+
+/// The number of the axis that a letter or a unit vector means.
+fn axis(value: &Expr) -> Option<usize> {
+    match value {
+        Expr::Path(path) => component_index(path.path.get_ident()?),
+        Expr::Array(array) => {
+            let entries: Option<Vec<f64>> = array.elems.iter().map(elsewhere::number).collect();
+            let entries = entries?;
+            let along = entries.iter().position(|entry| *entry == 1.0)?;
+            let zeros = entries.iter().filter(|entry| **entry == 0.0).count();
+            (entries.len() == 3 && zeros == 2).then_some(along)
+        }
+        _ => None,
     }
 }
 

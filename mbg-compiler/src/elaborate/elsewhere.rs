@@ -7,6 +7,7 @@ use syn::{BinOp, Expr, ExprBinary, Lit, UnOp};
 use super::constants::plain_name;
 use crate::graph::ElementKind;
 use crate::syntax::dump;
+use crate::syntax::words::JUMPING_INPUT;
 
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
@@ -131,10 +132,6 @@ const JUMPING: &[&str] = &[
     "fmod",
     "rem_euclid",
 ];
-
-/// Where jumps are told to what runs the model.
-pub(super) const JUMPING_INPUT: &str = "what jumps is given from outside, by an `input` that tells when its next jump comes, \
-     as a `Pulse` does";
 
 /// What to type here for a word of another language with these arguments.
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {

@@ -10,6 +10,8 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Pool, Product, Rate};
 use crate::syntax::dump;
+use crate::syntax::words::JUMPING_INPUT;
+use crate::units::without_unit;
 
 /// What an expression stands for.
 #[derive(Clone, Debug)]
@@ -245,10 +247,14 @@ impl<N: Names> Evaluator<'_, N> {
                     value
                 }))
             }
-            Some(_) => fail(
-                literal.span(),
-                format!("expected a number without suffix, found `{suffix}`"),
-            ),
+            Some(_) => {
+                let message = format!("expected a number without suffix, found `{suffix}`");
+                let report = error(codes::EXPRESSION, literal.span(), message);
+                Err(Box::new(match without_unit(&text, &suffix) {
+                    Some(help) => report.help(help),
+                    None => report,
+                }))
+            }
             None => Err(Box::new(error(
                 codes::LITERAL,
                 literal.span(),
@@ -442,7 +448,7 @@ impl<N: Names> Evaluator<'_, N> {
                     "`%` stands between whole numbers, and `{varying}` changes while the model runs, so that the remainder jumps"
                 );
                 let report = error(codes::WHOLE_NUMBER, binary.op.span(), message);
-                Err(Box::new(report.help(elsewhere::JUMPING_INPUT)))
+                Err(Box::new(report.help(JUMPING_INPUT)))
             }
             (known, _) => Ok(Value::Scalar(self.pool.integer(known?))),
         }

@@ -15,6 +15,7 @@ use super::scope::{Lookup, Own};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{ElementKind, Integral, Law, Rule, Storage, component_name};
+use crate::symbolic::print::number;
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Differentiator, Evaluation, Expression, Factor, Matrix, Pool, Product, Rate, Substitution,
@@ -558,12 +559,31 @@ impl Reader<'_, '_, '_> {
         self.pool.divide(sum, two).unwrap_or(Expression::ZERO)
     }
 
+    /// The first two entries that would be equal in a symmetric matrix, and are not.
+    fn asymmetry(&self, matrix: &Matrix) -> Option<String> {
+        let pairs = (0..matrix.rows).flat_map(|row| (0..row).map(move |column| (column, row)));
+        let mut pairs = pairs.map(|(row, column)| [(row, column), (column, row)]);
+        let entry = |(row, column): (usize, usize)| matrix.at(row, column);
+        let [first, second] = pairs.find(|[a, b]| entry(*a) != entry(*b))?;
+        let text = |(row, column): (usize, usize)| {
+            let value = self.pool.constant_value(matrix.at(row, column));
+            let value = value.map_or_else(String::new, |value| format!(" is {}", number(value)));
+            format!("entry `[{row}][{column}]`{value}")
+        };
+        let (first, second) = (text(first), text(second));
+        Some(format!("two of its entries differ: {first}, {second}"))
+    }
+
     fn check_symmetry(&self, matrix: &Matrix, span: Span) -> Result<()> {
         if matrix.is_symmetric() {
             return Ok(());
         }
         let message = "the matrix of a storage must be symmetric, or it would create energy";
-        Err(Box::new(error(codes::EXPRESSION, span, message)))
+        let report = error(codes::EXPRESSION, span, message);
+        Err(Box::new(match self.asymmetry(matrix) {
+            Some(note) => report.note(note),
+            None => report,
+        }))
     }
 
     /// A storage has an energy only if a law's derivatives across its components are equal.

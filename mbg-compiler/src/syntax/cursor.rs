@@ -273,6 +273,11 @@ impl Cursor {
         }
     }
 
+    /// The token just read.
+    pub(super) fn last(&self) -> Option<&TokenTree> {
+        self.tokens.get(self.at.checked_sub(1)?)
+    }
+
     /// The token just read as errors show it.
     pub(super) fn previous(&self) -> String {
         match self

@@ -7,7 +7,7 @@ use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
 use super::expressions::expression;
 use super::recovery::Sink;
-use super::words;
+use super::{slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
@@ -81,6 +81,11 @@ pub(super) fn fields(group: &Group, owner: &str, sink: &mut Sink<'_>) -> Parsed<
                 return Err(error);
             }
             sink.report(error);
+            // What belongs to the value is no word.
+            if !slips::behind_value(&cursor).is_empty() {
+                cursor.advance(1);
+                cursor.take_punct(',');
+            }
         }
     }
 }
@@ -95,6 +100,9 @@ fn unseparated(cursor: &Cursor, bare: bool) -> Box<Diagnostic> {
     let mut error = *cursor.expected(&format!("{wanted} after {}", cursor.previous()));
     if bare && cursor.punct(0, '=') {
         error = error.help("a value follows a colon: `word: value`");
+    }
+    if !bare {
+        error.helps.extend(slips::behind_value(cursor));
     }
     Box::new(error)
 }

@@ -89,7 +89,8 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         cursor.advance(length);
         return Err(report);
     }
-    let tokens: TokenStream = cursor.ahead(length).iter().cloned().collect();
+    let law = cursor.ahead(length).to_vec();
+    let tokens: TokenStream = law.iter().cloned().collect();
     let mut unread = 0;
     let parser = |input: ParseStream<'_>| {
         let parsed = input.parse::<Expr>();
@@ -99,7 +100,10 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
     };
     let parsed = parser.parse2(tokens);
     cursor.advance(length - unread.min(length));
-    parsed.map_err(|failure| translated(cursor, &failure, unread == 0))
+    parsed.map_err(|failure| {
+        let slip = slips::remainder(&law).or_else(|| slips::side_by_side(&law));
+        slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
+    })
 }
 
 /// What to write for `a ? b : c` among these tokens or in a group of theirs. What stands behind the first `:` may look

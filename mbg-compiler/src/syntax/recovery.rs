@@ -3,7 +3,7 @@
 use proc_macro2::{Delimiter, Ident, Span, TokenTree};
 
 use super::cursor::{Cursor, Parsed};
-use super::words;
+use super::{slips, words};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, error};
 
 /// How deep the names of a broken statement are looked for: a loop, a junction, an element.
@@ -113,7 +113,11 @@ pub(super) fn finish(cursor: &mut Cursor, sink: &mut Sink<'_>, expected: &str) -
         return Ok(());
     }
     if !cursor.ended() && !may_open(cursor) {
-        return Err(cursor.expected(expected));
+        let mut error = *cursor.expected(expected);
+        if matches!(cursor.last(), Some(TokenTree::Literal(_))) {
+            error.helps.extend(slips::behind_value(cursor));
+        }
+        return Err(Box::new(error));
     }
     let message = format!(
         "expected `;` after {}, found {}",

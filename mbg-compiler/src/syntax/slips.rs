@@ -1,12 +1,13 @@
 //! Instances and entries of matrices in the order and spelling of other languages, and what to type instead.
 
-use proc_macro2::{Delimiter, Group, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, TokenTree};
 
 use super::ast::{Reference, Segment};
 use super::cursor::Cursor;
-use super::{dump, elements};
+use super::{dump, elements, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
+use crate::units::without_unit;
 
 /// The instance that was probably meant, whose parameters and junctions stand `offset` places ahead.
 pub(super) fn ahead(cursor: &Cursor, offset: usize, name: &str, component: &str) -> Option<String> {
@@ -60,6 +61,113 @@ pub(super) fn written(
         _ => String::new(),
     };
     format!("an instance is written `{name}: {component}{parameters} ({ports});`")
+}
+
+/// Words that stand between values in other languages.
+const BETWEEN: &[&str] = &[
+    "then", "and", "or", "not", "elif", "elsif", "xor", "div", "is", "end",
+];
+
+/// What to type for a word that stands behind a value, or for a number with a unit.
+pub(super) fn behind_value(cursor: &Cursor) -> Vec<String> {
+    let (Some(before), Some(word)) = (cursor.last(), cursor.ident(0)) else {
+        return Vec::new();
+    };
+    let is_bare_word = word == "gyroscopic" || is_between(word);
+    if cursor.punct(1, ':') || is_bare_word || !is_operand(before) {
+        return Vec::new();
+    }
+    let (before, word) = (before.to_string(), word.to_string());
+    multiplied(&before, &word)
+}
+
+/// What to type for two values side by side.
+fn multiplied(first: &str, second: &str) -> Vec<String> {
+    let is_number = first.starts_with(|digit: char| digit.is_ascii_digit());
+    // Time is told more often than a tonne.
+    let unit = without_unit(first, second).filter(|_| is_number && second != "t");
+    let is_name = unit.is_none() || second.len() == 1;
+    let product = is_name.then(|| format!("for a product write `{first} * {second}`"));
+    unit.into_iter().chain(product).collect()
+}
+
+fn is_between(word: &Ident) -> bool {
+    let others = words::STATEMENTS.iter().chain(BETWEEN);
+    words::is_reserved(&word.to_string()) || others.into_iter().any(|known| word == known)
+}
+
+/// Whether a value can end or begin with this token.
+fn is_operand(token: &TokenTree) -> bool {
+    match token {
+        TokenTree::Ident(word) => !is_between(word),
+        TokenTree::Literal(_) => true,
+        TokenTree::Group(group) => group.delimiter() == Delimiter::Parenthesis,
+        TokenTree::Punct(_) => false,
+    }
+}
+
+/// What to type for two values without an operator between them, among these tokens or in a group of theirs.
+pub(super) fn side_by_side(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    let is_dot =
+        |at: usize| matches!(tokens.get(at), Some(TokenTree::Punct(mark)) if mark.as_char() == '.');
+    let is_name = |at: usize| matches!(tokens.get(at), Some(TokenTree::Ident(_)));
+    let text = |part: &[TokenTree]| dump::tokens(part.iter().cloned().collect());
+    let joint = (1..tokens.len()).find(|at| {
+        let begins = !matches!(tokens[*at], TokenTree::Group(_));
+        begins && is_operand(&tokens[at - 1]) && is_operand(&tokens[*at])
+    });
+    let Some(at) = joint else {
+        return tokens.iter().find_map(|token| match token {
+            TokenTree::Group(group) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                side_by_side(&inside)
+            }
+            _ => None,
+        });
+    };
+    let (mut start, mut end) = (at - 1, at);
+    let is_call = matches!(tokens[start], TokenTree::Group(_));
+    if is_call && start > 0 && is_operand(&tokens[start - 1]) {
+        start -= 1;
+    }
+    while start >= 2 && is_dot(start - 1) && is_name(start - 2) {
+        start -= 2;
+    }
+    while is_dot(end + 1) && is_name(end + 2) {
+        end += 2;
+    }
+    if matches!(tokens.get(end + 1), Some(TokenTree::Group(_))) {
+        end += 1;
+    }
+    let (first, second) = (text(&tokens[start..at]), text(&tokens[at..=end]));
+    let message = format!("expected an operator between `{first}` and `{second}`");
+    let mut report = error(codes::SYNTAX, tokens[at].span(), message);
+    report.helps = multiplied(&first, &second);
+    Some(Box::new(report))
+}
+
+/// A remainder by its name in other languages, which is a keyword of Rust.
+pub(super) fn remainder(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    tokens
+        .iter()
+        .enumerate()
+        .find_map(|(at, token)| match token {
+            TokenTree::Ident(word)
+                if word == "mod" && matches!(tokens.get(at + 1), Some(TokenTree::Group(_))) =>
+            {
+                let message = "`mod` is not a function of the language";
+                let report = error(codes::UNKNOWN_NAME, word.span(), message);
+                Some(Box::new(report.help(format!(
+                    "its value jumps, and a law has no such function: {}",
+                    words::JUMPING_INPUT
+                ))))
+            }
+            TokenTree::Group(group) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                remainder(&inside)
+            }
+            _ => None,
+        })
 }
 
 /// How many rows and columns of a matrix are written out.

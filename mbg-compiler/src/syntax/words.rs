@@ -47,6 +47,10 @@ const RESERVED: &[&str] = &[
     "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
+/// Where jumps are told to what runs the model.
+pub(crate) const JUMPING_INPUT: &str = "what jumps is given from outside, by an `input` that tells when its next jump comes, \
+     as a `Pulse` does";
+
 /// Whether this is a keyword of Rust.
 pub(super) fn is_reserved(word: &str) -> bool {
     RESERVED.contains(&word)

@@ -18,7 +18,7 @@ mod spellings;
 
 use std::collections::BTreeMap;
 
-pub(crate) use names::acceleration;
+pub(crate) use names::{acceleration, without_unit};
 
 use self::dimension::{Dimension, Ratio, Unknowns};
 use self::inference::{Inference, Measure};

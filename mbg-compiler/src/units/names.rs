@@ -257,6 +257,20 @@ impl Known {
     }
 }
 
+/// What to type for a number with a unit behind it.
+pub(crate) fn without_unit(number_text: &str, unit: &str) -> Option<String> {
+    let known = lookup(unit).or_else(|| spellings::meant(unit, 1))?;
+    let is_integer = number_text.chars().all(|digit| digit.is_ascii_digit());
+    let mut value = number_text.to_owned() + if is_integer { ".0" } else { "" };
+    if known.scales() {
+        value += &format!(" * {}", number(known.scale * 10f64.powi(known.tens)));
+    }
+    let unit = spell(&known.factors);
+    Some(format!(
+        "numbers carry no unit, declarations do, such as `param x: {unit} = …;`: write `{value}`"
+    ))
+}
+
 /// What a name stands for.
 pub(super) fn lookup(name: &str) -> Option<Known> {
     if let Some(name) = coherent(name) {

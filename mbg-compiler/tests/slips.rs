@@ -201,7 +201,7 @@ fn an_output_that_a_law_reads_is_told_with_its_value() {
     };
     insta::assert_snapshot!(told(&text("x")), @"
     2:28 `x` is not declared [MBG0203]
-      help: `x` is an output, which laws do not read: declare its value besides, `let x: m = k.q;`, or write `k.q`
+      help: `x` is an output, which nothing in the model reads: declare its value besides, `let x: m = k.q;`, or write `k.q`
     ");
     for (read, place) in [("x", 2), ("w.x", 2), ("w[0]", 2), ("x", 1)] {
         let help = typed(&text(read));
@@ -213,6 +213,9 @@ fn an_output_that_a_law_reads_is_told_with_its_value() {
         let followed = if place == 1 { text(read) } else { besides };
         assert_eq!(told(&followed), "");
     }
+    // What reads its own name would be defined by itself.
+    let own = text("k.q").replace("= k.q", "= x");
+    assert_eq!(typed(&own), [""; 0]);
 }
 
 #[test]
@@ -375,6 +378,8 @@ fn elements_apart_from_their_junction_are_told_at_its_declaration() {
     let help = typed(&text("1 nut;", "nut { resistance: 1.0 }"));
     assert_eq!(help, ["nut", "R name { resistance: 1.0 } -> nut;"]);
     assert_eq!(told(&text("1 nut;", &help[1])), "");
+    let help = typed(&text("1 nut;", "nut { inertia: 1.0 }")).remove(1);
+    assert_eq!(help, "I name { inertia: 1.0 } -> nut;");
 }
 
 #[test]

@@ -27,7 +27,7 @@ impl Lookup<'_, '_> {
         let name = path.first()?.name.to_string();
         let [declared, value] = self.scopes.output(self.scope, &name)?;
         Some(format!(
-            "`{name}` is an output, which laws do not read: declare its value besides, `{declared}`, or write `{value}`"
+            "`{name}` is an output, which nothing in the model reads: declare its value besides, `{declared}`, or write `{value}`"
         ))
     }
 

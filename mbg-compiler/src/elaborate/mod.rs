@@ -57,6 +57,7 @@ use self::constants::Constants;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::frames::{Frame, LeftOut, Unknown};
+use self::mentions::mentioned;
 use self::rings::Meeting;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use crate::codes;
@@ -315,8 +316,10 @@ impl<'a> Builder<'a> {
                     self.integrals.push((scope, statement))
                 }
                 Statement::Output(output) => {
-                    let outputs = &mut self.scopes[scope].outputs;
-                    outputs.insert(output.name.to_string(), as_value(output));
+                    if let Some(value) = as_value(output) {
+                        let outputs = &mut self.scopes[scope].outputs;
+                        outputs.insert(output.name.to_string(), value);
+                    }
                     self.pending.push(Pending::Output { scope, output });
                 }
                 _ => {}
@@ -377,8 +380,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// What declares the value of an output for laws as well, and that value.
-fn as_value(output: &ast::Output) -> [String; 2] {
+/// What declares the value of an output for laws as well, and that value; none of one that reads its own name.
+fn as_value(output: &ast::Output) -> Option<[String; 2]> {
+    let paths = mentioned(&output.value);
+    if paths.iter().any(|path| path[0].name == output.name) {
+        return None;
+    }
     let size = match output.dimension {
         1 => String::new(),
         size => format!("[{size}]"),
@@ -386,7 +393,7 @@ fn as_value(output: &ast::Output) -> [String; 2] {
     let unit = output.unit.as_ref();
     let unit = unit.map_or_else(String::new, |unit| format!(": {}", unit.text));
     let (name, value) = (&output.name, dump::expression(&output.value));
-    [format!("let {name}{size}{unit} = {value};"), value]
+    Some([format!("let {name}{size}{unit} = {value};"), value])
 }
 
 /// `name`, or `name.x`, `name.y`, … for more than one component.

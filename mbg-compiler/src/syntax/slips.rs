@@ -39,13 +39,22 @@ pub(super) fn apart(cursor: &Cursor, junction: &Reference, braces: &Group) -> Op
             "the elements of a junction stand in the braces of its declaration: `{declaration} {{ {elements} }}`"
         )),
         Some(_) => Some(format!(
-            "`{name}` is a junction; an element there has a kind and a name of its own: `R name {{ {elements} }} -> {name};`"
+            "`{name}` is a junction; an element there has a kind and a name of its own: `{} name {{ {elements} }} -> {name};`",
+            kind_with(&inside)
         )),
         None if has_elements => Some(format!(
             "a junction has its digit before its name: `1 {name} {{ {elements} }}`"
         )),
         None => None,
     }
+}
+
+/// The kind of element whose law the first word here tells.
+fn kind_with(fields: &Cursor) -> &'static str {
+    let first = fields.ident(0).map(ToString::to_string).unwrap_or_default();
+    let mut kinds = words::ELEMENTS.iter();
+    let kind = kinds.find(|(_, kind)| words::law_words(*kind).contains(&first.as_str()));
+    kind.map_or("R", |(name, _)| name)
 }
 
 /// How an instance with these parameters and junctions is written.

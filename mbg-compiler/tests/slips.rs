@@ -490,6 +490,11 @@ fn a_product_without_its_sign_is_told_with_it() {
     }
     assert_eq!(typed(&text("w t")), ["w * t"]);
     assert_eq!(typed(&text("mod(r, 2)")), ["input", "Pulse"]);
+    // A word of the element lacks its comma alone.
+    let mass = |law: &str| format!("model M {{ param m = 1.0; 1 a[3] {{ I i {{ {law} }} }} }}");
+    for law in ["inertia: m initial: 2.0", "inertia: m gyroscopic"] {
+        assert_eq!(typed(&mass(law)), [""; 0]);
+    }
     // Another language's `if` has no product in it.
     assert_eq!(typed(&text("(if w > r then w else r)")), [""; 0]);
 }

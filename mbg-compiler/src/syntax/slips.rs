@@ -82,8 +82,9 @@ pub(super) fn behind_value(cursor: &Cursor) -> Vec<String> {
     let (Some(before), Some(word)) = (cursor.last(), cursor.ident(0)) else {
         return Vec::new();
     };
-    let is_bare_word = word == "gyroscopic" || is_between(word);
-    if cursor.punct(1, ':') || is_bare_word || !is_operand(before) {
+    // A word of the element, or a name before a value, lacks its comma.
+    let is_field = is_field(word) || cursor.punct(1, ':') || cursor.peek(1).is_some_and(is_operand);
+    if is_field || is_between(word) || !is_operand(before) {
         return Vec::new();
     }
     let (before, word) = (before.to_string(), word.to_string());
@@ -98,6 +99,18 @@ fn multiplied(first: &str, second: &str) -> Vec<String> {
     let is_name = unit.is_none() || second.len() == 1;
     let product = is_name.then(|| format!("for a product write `{first} * {second}`"));
     unit.into_iter().chain(product).collect()
+}
+
+/// Whether this is a word of an element.
+fn is_field(word: &Ident) -> bool {
+    let mut laws = words::ELEMENTS
+        .iter()
+        .flat_map(|(_, kind)| words::law_words(*kind));
+    let is_law = laws.any(|law| word == law);
+    is_law
+        || ["initial", "initial_flow", "gyroscopic"]
+            .iter()
+            .any(|known| word == known)
 }
 
 fn is_between(word: &Ident) -> bool {

@@ -293,6 +293,32 @@ fn energies_of_powers_of_quotients_are_exact() {
     }
 }
 
+/// Of gases, plates, fibres and the like, counted from zero.
+#[test]
+fn energies_of_polynomials_beside_other_functions_are_exact() {
+    type Law = (&'static str, fn(f64) -> f64);
+    let laws: [Law; 7] = [
+        ("pow(2.0 / (2.0 - q), 1.4)", |q| {
+            5.0 * ((1.0 - q / 2.0).powf(-0.4) - 1.0)
+        }),
+        ("q / (1 + abs(q))", |q| q.abs() - q.abs().ln_1p()),
+        ("powi(sin(q), 2)", |q| (q - q.sin() * q.cos()) / 2.0),
+        ("q * exp(-q)", |q| 1.0 - (1.0 + q) * (-q).exp()),
+        ("0.5 * ln((1 + q) / (1 - q))", |q| {
+            ((1.0 + q) * q.ln_1p() + (1.0 - q) * (-q).ln_1p()) / 2.0
+        }),
+        ("q / powi(1 + q, 2)", |q| q.ln_1p() + 1.0 / (1.0 + q) - 1.0),
+        ("q * sin(q / a)", |q| {
+            0.34 * (0.34 * (q / 0.34).sin() - q * (q / 0.34).cos())
+        }),
+    ];
+    for (law, expected) in laws {
+        for q in [-0.8, 0.0, 0.3, 0.9] {
+            assert_energy(law, q, expected(q));
+        }
+    }
+}
+
 /// It is that of the law at a displacement, and no quadrature.
 fn assert_energy(law: &str, state: f64, expected: f64) {
     let text = format!(

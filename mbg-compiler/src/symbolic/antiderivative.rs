@@ -15,7 +15,8 @@ const MOST_INNER: usize = 500;
 /// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root and
 /// hyperbolic tangent of what is affine in the symbol, products, quotients and powers of what is affine and vanishes at one
 /// place, products of sums that are made of such when they are multiplied out, and all of these with choices, absolute values
-/// and signs of what is affine anywhere in them. Products of the derivative of a function with a function of it are integrated
+/// and signs of what is affine anywhere in them; polynomials beside such a power, an exponential, a sine or a cosine; whole
+/// powers of sines and cosines, and logarithms of products and quotients of what is affine. Products of the derivative of a function with a function of it are integrated
 /// by that one.
 #[must_use]
 pub fn antiderivative(
@@ -69,6 +70,7 @@ impl Integration<'_> {
         };
         let found = found
             .or_else(|| self.by_degree(expression.magnitude()))
+            .or_else(|| self.by_factors(expression.magnitude()))
             .or_else(|| self.split(expression.magnitude()))
             .or_else(|| self.by_substitution(expression.magnitude()));
         found.map(|it| it.flipped(expression.is_negative()))
@@ -99,9 +101,12 @@ impl Integration<'_> {
             }
         }
         let base = self.base(a, b);
-        base.and_then(|(base, exponent)| self.power(base, exponent))
-            .or_else(|| self.distributed(a, b))
-            .or_else(|| self.distributed(b, a))
+        base.and_then(|(base, exponent)| {
+            self.power(base, exponent)
+                .or_else(|| self.power_of_wave(base, exponent))
+        })
+        .or_else(|| self.distributed(a, b))
+        .or_else(|| self.distributed(b, a))
     }
 
     /// A factor times a sum, or times a multiple of one.
@@ -151,6 +156,12 @@ impl Integration<'_> {
             let value = self.of(a)?;
             return self.pool.divide(value, b);
         }
+        if let Operation::Add(c, d) = *self.pool.operation(a) {
+            let [c, d] = [c, d].map(|term| self.pool.divide(term, b));
+            let (c, d) = (self.of(c?)?, self.of(d?)?);
+            let sum = self.pool.add(c, d);
+            return Some(sum.flipped(a.is_negative()));
+        }
         if !self.is_free(a) {
             return None;
         }
@@ -174,6 +185,7 @@ impl Integration<'_> {
                 let product = self.pool.multiply(u, logarithm);
                 let value = self.pool.subtract(product, u);
                 self.inner(u, value)
+                    .or_else(|| self.logarithm_of_product(u))
             }
             Function::Pow => {
                 let next = self.pool.add(arguments[1], Expression::ONE);
@@ -488,7 +500,8 @@ mod tests {
         let mut pool = Pool::new();
         let x = pool.symbol(X);
         let sine = pool.sine(x);
-        let product = pool.multiply(x, sine);
+        let rising = pool.call(Function::Exp, &[x]);
+        let product = pool.multiply(rising, sine);
         assert_eq!(antiderivative(&mut pool, product, X), None);
         let nested = pool.call(Function::Exp, &[sine]);
         assert_eq!(antiderivative(&mut pool, nested, X), None);

@@ -11,6 +11,7 @@ pub mod dependence;
 pub mod differentiate;
 pub mod evaluate;
 pub mod expression;
+mod factors;
 pub mod field;
 mod growth;
 pub mod identity;

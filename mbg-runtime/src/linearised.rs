@@ -173,31 +173,31 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         let mut mean = SMatrix::<T, N, N>::from_element(T::from_f64(0.0));
         for order in (2..=TERMS).rev() {
             let shrink = T::from_f64(1.0 / f64::from(order));
-            mean.iter_mut()
-                .step_by(N + 1)
-                .for_each(|it| *it += T::from_f64(1.0));
-            mean = product(&step, &mean).map(|it| shrink * it);
+            mean = product(&step, &beside_one(mean)).map(|it| shrink * it);
         }
-        mean.iter_mut()
-            .step_by(N + 1)
-            .for_each(|it| *it += T::from_f64(1.0));
+        let mean = beside_one(mean);
         let mut change = product(&step, &mean);
         let mut push = product(&mean, &self.input).map(|it| part * it);
         for _ in 0..doublings {
             push = push + push + product(&change, &push);
             change = change + change + product(&change, &change);
         }
-        change
-            .iter_mut()
-            .step_by(N + 1)
-            .for_each(|it| *it += T::from_f64(1.0));
+        let transition = beside_one(change);
         let is_finite = |it: &T| it.magnitude().is_finite();
-        (change.iter().all(is_finite) && push.iter().all(is_finite)).then_some((change, push))
+        let are_finite = transition.iter().all(is_finite) && push.iter().all(is_finite);
+        are_finite.then_some((transition, push))
     }
 }
 
 /// Terms of the exponential of a matrix whose norm is 1/2 at most: what follows is below 1e-19 of it.
 const TERMS: u32 = 16;
+
+/// The matrix and the identity.
+fn beside_one<T: Real, const N: usize>(mut matrix: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    let diagonal = matrix.iter_mut().step_by(N + 1);
+    diagonal.for_each(|it| *it += T::from_f64(1.0));
+    matrix
+}
 
 fn product<T: Real, const A: usize, const B: usize, const C: usize>(
     left: &SMatrix<T, A, B>,

@@ -13,11 +13,11 @@ const MOST_INNER: usize = 500;
 
 /// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
 /// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root and
-/// hyperbolic tangent of what is affine in the symbol, products, quotients and powers of what is affine and vanishes at one
-/// place, products of sums that are made of such when they are multiplied out, and all of these with choices, absolute values
-/// and signs of what is affine anywhere in them; polynomials beside such a power, an exponential, a sine or a cosine; whole
-/// powers of sines and cosines, and logarithms of products and quotients of what is affine. Products of the derivative of a function with a function of it are integrated
-/// by that one.
+/// hyperbolic tangent of what is affine in the symbol; products, quotients and powers of what is affine and vanishes at one
+/// place; products of sums that are made of such when they are multiplied out; and all of these with choices, absolute
+/// values and signs of what is affine anywhere in them. Further polynomials beside such a power, an exponential, a sine or a
+/// cosine, whole powers of sines and cosines, and logarithms of products and quotients of what is affine. Products of the
+/// derivative of a function with a function of it are integrated by that one.
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,

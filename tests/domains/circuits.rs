@@ -1,8 +1,8 @@
 //! Circuits and a motor.
 
 use mbg_runtime::{
-    Adaptive, Cause, Constant, Dop853, Estimating, Input, Integrator, Pulse, Radau5, Rk4, Rodas4,
-    Rodas5P, Smooth, Statistics, Step, Stopped, System, Tsit5, mbg,
+    Adaptive, Cause, Constant, Dop853, Estimating, Input, Integrator, Pulse, Radau5, Real, Rk4,
+    Rodas4, Rodas5P, Smooth, Statistics, Step, Stopped, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -54,6 +54,18 @@ mbg! {
         store: Capacitor { capacitance: 1e-3 } (plus, minus);
         load: Resistor { resistance: 10.0 } (plus, minus);
         output ends[2]: V = [a.e, b.e];
+    }
+
+    /// Two diodes in series across a capacitor.
+    pub(crate) model InSeries {
+        causality componentwise;
+        0 supply; 0 middle; 0 ground;
+        store: Capacitor { capacitance: 1.0 } (supply, ground);
+        Se earth { effort: 0.0 } -> ground;
+        first: Diode { } (supply, middle);
+        second: Diode { } (middle, ground);
+        output between: V = middle.e;
+        output current: A = second.current;
     }
 
     /// A bridge behind a coil, whose current it blocks while the source is low; a resistor lies beside it.
@@ -504,6 +516,45 @@ fn a_bridge_of_diodes_is_solved_at_any_voltage() {
                 assert!(
                     balance.abs() < 10.0 * most,
                     "{voltage} {charge} {balance:e}"
+                );
+            }
+        }
+    }
+}
+
+/// Where both block, the exponentials are gone, and the little that they leak shares the voltage out.
+#[test]
+fn diodes_in_series_share_any_voltage() {
+    fn found<T: Real>(voltage: f64) -> [f64; 2] {
+        let model = InSeries::<T>::new(InSeriesParameters::default()).expect("regular");
+        let (x, u) = (SVector::from([T::from_f64(voltage)]), SVector::from([]));
+        let mut memory = Default::default();
+        let found = model.output(T::from_f64(0.0), &x, &u, &mut memory);
+        let trouble = model.trouble(T::from_f64(0.0), &x, &u, &memory);
+        assert_eq!(trouble, None, "{voltage}");
+        found.map(|it| it.magnitude().copysign(voltage)).into()
+    }
+    for number in -60..=60 {
+        for sign in [1.0, -1.0] {
+            let voltage = sign * f64::powf(10.0, 0.1 * f64::from(number) - 3.0);
+            let half = 0.5 * voltage;
+            let most = f64::min(half, 40.0 * 0.02585);
+            let current =
+                1e-12 * (f64::exp(most / 0.02585) * (1.0 + (half - most) / 0.02585) - 1.0 + half);
+            for ([between, through], precision) in [
+                (found::<f64>(voltage), f64::EPSILON),
+                (found::<f32>(voltage), f64::from(f32::EPSILON)),
+            ] {
+                let rounding = 100.0 * precision;
+                let error = between - half;
+                assert!(
+                    error.abs() < rounding * (0.02585 + half.abs()),
+                    "{voltage} {error:e}"
+                );
+                let error = through - current;
+                assert!(
+                    error.abs() < rounding * (1e-12 + current.abs()),
+                    "{voltage} {error:e}"
                 );
             }
         }

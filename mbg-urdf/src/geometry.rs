@@ -11,6 +11,9 @@ pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0
 /// Angles this near to a multiple of a right angle are meant to be one, in rad: files give eleven digits of π/2.
 pub(crate) const RIGHT: f64 = 1e-9;
 
+/// What is this small in a rotation is what rounding leaves of zero.
+const ROUNDED: f64 = 1e-15;
+
 /// A matrix times a matrix. Adding a zero makes no zero negative.
 pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let entry = |i: usize, j: usize| (0..3).map(|k| a[i][k] * b[k][j]).sum::<f64>() + 0.0;
@@ -30,10 +33,10 @@ pub(crate) fn plus(a: &Vector, b: &Vector) -> Vector {
     [0, 1, 2].map(|i| a[i] + b[i])
 }
 
-/// Sine and cosine, exact at multiples of a right angle.
-fn sin_cos(angle: f64) -> (f64, f64) {
+/// Sine and cosine, exact where the angle is this near to a multiple of a right angle.
+fn sin_cos(angle: f64, near: f64) -> (f64, f64) {
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
-    if (angle - quarters * std::f64::consts::FRAC_PI_2).abs() > RIGHT {
+    if (angle - quarters * std::f64::consts::FRAC_PI_2).abs() > near {
         return angle.sin_cos();
     }
     match quarters.rem_euclid(4.0) {
@@ -44,13 +47,72 @@ fn sin_cos(angle: f64) -> (f64, f64) {
     }
 }
 
-/// The rotation by roll, pitch and yaw about fixed axes: `R_z(yaw) R_y(pitch) R_x(roll)`.
-pub(crate) fn rotation([roll, pitch, yaw]: Vector) -> Matrix {
-    let ((a, b), (c, d), (e, f)) = (sin_cos(roll), sin_cos(pitch), sin_cos(yaw));
+/// The rotation by roll, pitch and yaw about fixed axes: `R_z(yaw) R_y(pitch) R_x(roll)`. Right angles are those of files.
+pub(crate) fn rotation(angles: Vector) -> Matrix {
+    turns(angles, RIGHT)
+}
+
+fn turns(angles: Vector, near: f64) -> Matrix {
+    let [(a, b), (c, d), (e, f)] = angles.map(|it| sin_cos(it, near));
     let about_x = [[1.0, 0.0, 0.0], [0.0, b, -a], [0.0, a, b]];
     let about_y = [[d, 0.0, c], [0.0, 1.0, 0.0], [-c, 0.0, d]];
     let about_z = [[f, -e, 0.0], [e, f, 0.0], [0.0, 0.0, 1.0]];
     product(&product(&about_z, &about_y), &about_x)
+}
+
+/// The rotation about a coordinate axis, by number.
+pub(crate) fn about(axis: usize, angle: f64) -> Matrix {
+    let mut angles = [0.0; 3];
+    angles[axis] = angle;
+    turns(angles, ROUNDED)
+}
+
+/// A coordinate axis that is across both of these.
+pub(crate) fn across(a: usize, b: usize) -> usize {
+    if a == b { (a + 1) % 3 } else { 3 - a - b }
+}
+
+/// Whether the matrix takes every coordinate axis to one, or to the opposite of one.
+pub(crate) fn is_permutation(turn: &Matrix) -> bool {
+    turn.iter()
+        .flatten()
+        .all(|it| [0.0, 1.0].contains(&it.abs()))
+}
+
+/// Whether two rotations differ by rounding alone.
+pub(crate) fn is_near(a: &Matrix, b: &Matrix) -> bool {
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs()).all(|off| off <= ROUNDED)
+}
+
+/// The angles of a rotation about `first`, the axis [`across`] and `last`, in a row. Where it takes `last` to `first` or
+/// to its opposite the first angle is zero.
+pub(crate) fn between(turn: &Matrix, first: usize, last: usize) -> [f64; 3] {
+    let middle = across(first, last);
+    // Turned back by the first angle, what `last` is taken to has no component along the middle axis.
+    let [along, beside] = [middle, across(first, middle)].map(|it| turn[it][last]);
+    let right_handed = middle == (first + 1) % 3;
+    let tangent = if right_handed { -along } else { along };
+    let angle = if along.abs() <= ROUNDED {
+        0.0
+    } else {
+        tangent.atan2(beside.abs()) * 1.0_f64.copysign(beside)
+    };
+    let rest = product(&about(first, -angle), turn);
+    let tilt = angle_about(middle, &rest, last);
+    let rest = product(&about(middle, -tilt), &rest);
+    [angle, tilt, angle_about(last, &rest, (last + 1) % 3)]
+}
+
+/// The angle about `axis` by which a rotation takes the axis `from` across it to where the matrix does.
+fn angle_about(axis: usize, turn: &Matrix, from: usize) -> f64 {
+    let next = [1, 2, 0][from];
+    if next == axis {
+        let before = [2, 0, 1][from];
+        (-turn[before][from]).atan2(turn[from][from])
+    } else {
+        turn[next][from].atan2(turn[from][from])
+    }
 }
 
 /// A coordinate axis, and a rotation that takes it to the direction of `axis`.
@@ -89,6 +151,14 @@ fn tilted([x, y, z]: Vector) -> Matrix {
     ]
 }
 
+/// No length below this is meant, in m: some files write -2.7e-51.
+pub(crate) const LENGTH: f64 = 1e-12;
+
+/// A place without what no length can be.
+pub(crate) fn measured(place: &Vector) -> Vector {
+    place.map(|it| if it.abs() < LENGTH { 0.0 } else { it })
+}
+
 /// Where a frame stands in another one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose {
@@ -106,9 +176,7 @@ impl Pose {
     /// Turned about an axis.
     pub(crate) fn turned(axis: &Vector, angle: f64) -> Self {
         let (along, tilt) = aligned(axis);
-        let mut angles = [0.0; 3];
-        angles[along] = angle;
-        let turn = product(&product(&tilt, &rotation(angles)), &transposed(&tilt));
+        let turn = product(&product(&tilt, &about(along, angle)), &transposed(&tilt));
         Self { turn, ..Self::NONE }
     }
 
@@ -270,6 +338,39 @@ mod tests {
                 assert!((turn[i][along] - axis[i] / length).abs() < 1e-15);
             }
         }
+    }
+
+    #[test]
+    fn rotations_are_three_about_two_axes_and_what_is_across() {
+        for turn in [
+            rotation([0.3, -0.4, 1.1]),
+            rotation([2.9, 1.2, -2.8]),
+            rotation([1.5709, 0.0, -1.5709]),
+            about(1, 0.7),
+            about(0, std::f64::consts::PI),
+            IDENTITY,
+        ] {
+            for (first, last) in [
+                (0, 0),
+                (0, 1),
+                (0, 2),
+                (1, 0),
+                (1, 1),
+                (1, 2),
+                (2, 0),
+                (2, 1),
+                (2, 2),
+            ] {
+                let [a, b, c] = between(&turn, first, last);
+                let middle = about(across(first, last), b);
+                assert_near(
+                    &product(&product(&about(first, a), &middle), &about(last, c)),
+                    &turn,
+                );
+            }
+        }
+        assert_eq!(between(&rotation([0.0, 0.0, 0.5]), 2, 2), [0.0, 0.0, 0.5]);
+        assert_eq!(between(&rotation([0.0, 0.5, 0.0]), 0, 2), [0.0, 0.5, 0.0]);
     }
 
     #[test]

@@ -20,7 +20,8 @@
 //!
 //! - Joints: `fixed`, `revolute`, `continuous`, `prismatic`, `planar` and `floating`, about any axis. Links that fixed
 //!   joints hold together become one body. Where an axis is no coordinate axis, the printed frame of the link is turned so
-//!   that it is one.
+//!   that it is one; where the next joint is neither aligned, so that one turn leads there, as in the frames of Denavit and
+//!   Hartenberg (1955). Positions and orientations are those of the file's links all the same.
 //! - Planar and floating joints are none of the numbered joints: each has parameters of its own for its start, such as
 //!   `table_initial_travel`.
 //! - A joint that mimics another one has the rate of that, by a transformer, and is none of the numbered joints; the angle
@@ -29,10 +30,11 @@
 //!   bodies, too.
 //! - Damping becomes that of the joint, dry friction a resistor `friction tanh(rate / slip)` beside it,
 //!   with `slide_slip` on slides.
-//! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, and inertias that the mass would have 1e-8 m
-//!   beside its centre for zero, so that what is zero costs nothing.
+//! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, or within as much as [`Options`] say; lengths
+//!   below 1e-12 m and inertias that the mass would have 1e-8 m beside its centre for zero: what is zero costs nothing.
 //! - What shows or collides is left out. Every other tag without an equation is named with its line.
 
+mod assembly;
 mod geometry;
 mod names;
 mod print;
@@ -49,8 +51,28 @@ pub struct Conversion {
     pub remarks: Vec<Remark>,
 }
 
+/// How a file is printed.
+#[derive(Clone, Copy, Debug)]
+pub struct Options<'a> {
+    /// A model of this name follows the component, in which the base is at rest.
+    pub model: Option<&'a str>,
+    /// Angles this near to a multiple of a right angle, in rad, are taken for it: where a file says 1.5708, 1e-5 leaves
+    /// fewer operations.
+    pub right_angles: f64,
+}
+
+impl Default for Options<'_> {
+    /// No model, and 1e-9 rad.
+    fn default() -> Self {
+        Self {
+            model: None,
+            right_angles: geometry::RIGHT,
+        }
+    }
+}
+
 /// Prints the text of a URDF file as a component that is named after the robot; `source` says in its documentation where
-/// it is from. With `model`, a model of that name follows, in which the base is at rest.
+/// it is from.
 ///
 /// ```
 /// let text = r#"
@@ -65,7 +87,7 @@ pub struct Conversion {
 ///         <parent link="frame"/> <child link="leaf"/> <axis xyz="0 0 1"/>
 ///       </joint>
 ///     </robot>"#;
-/// let found = mbg_urdf::convert(text, "door.urdf", None).unwrap();
+/// let found = mbg_urdf::convert(text, "door.urdf", &Default::default()).unwrap();
 /// assert!(found.text.contains("hinge: Revolute {"));
 /// assert_eq!(found.remarks, []);
 /// ```
@@ -73,10 +95,10 @@ pub struct Conversion {
 /// # Errors
 ///
 /// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of no known type.
-pub fn convert(text: &str, source: &str, model: Option<&str>) -> Result<Conversion, Remark> {
-    let (robot, remarks) = robot::read(text)?;
+pub fn convert(text: &str, source: &str, options: &Options<'_>) -> Result<Conversion, Remark> {
+    let (robot, remarks) = robot::read(text, options.right_angles)?;
     Ok(Conversion {
-        text: print::print(&robot, source, model),
+        text: print::print(&robot, source, options.model),
         remarks,
     })
 }

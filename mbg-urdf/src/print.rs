@@ -1,23 +1,11 @@
 //! A robot as text in the language.
 
-use crate::geometry::{Body, IDENTITY, Matrix, Pose, Vector, aligned, squares, transposed};
+use crate::assembly::{Assembly, Seat};
+use crate::geometry::{
+    Body, IDENTITY, Matrix, Pose, Vector, about, is_near, is_permutation, squares,
+};
 use crate::names::{Names, component};
 use crate::robot::{Joint, Motion, Robot, shown};
-
-/// A link, as part of the rigid body to which fixed joints make it.
-struct Part {
-    /// The number of that body.
-    rigid: usize,
-    /// The link's frame in that of the body.
-    pose: Pose,
-}
-
-/// Links that fixed joints hold together.
-struct Rigid {
-    body: Option<Body>,
-    /// Its frame.
-    frame: Frame,
-}
 
 /// A frame.
 #[derive(Clone)]
@@ -61,8 +49,9 @@ struct Printer<'a> {
     free: Vec<&'a str>,
     /// The joints of one coordinate, with their names in the language.
     single: Vec<(&'a Joint, String)>,
-    parts: Vec<Option<Part>>,
-    rigid: Vec<Rigid>,
+    assembly: Assembly<'a>,
+    /// The frames of rigid bodies, as far as joints have been printed.
+    frames: Vec<Frame>,
     /// How joints of several coordinates start.
     parameters: String,
     text: String,
@@ -77,23 +66,15 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
         free: free.map(|it| it.name.as_str()).collect(),
         single: Vec::new(),
         parameters: String::new(),
-        parts: robot.links.iter().map(|_| None).collect(),
-        rigid: Vec::new(),
-        text: String::new(),
-    };
-    printer.parts[robot.root] = Some(Part {
-        rigid: 0,
-        pose: Pose::NONE,
-    });
-    printer.rigid.push(Rigid {
-        body: robot.links[robot.root].body,
-        frame: Frame {
+        assembly: Assembly::new(robot),
+        frames: vec![Frame {
             junction: "base".to_owned(),
             joint: None,
-        },
-    });
-    for joint in &robot.joints {
-        printer.joint(joint);
+        }],
+        text: String::new(),
+    };
+    for seat in 0..printer.assembly.seats.len() {
+        printer.joint(seat);
     }
     printer.mimics();
     printer.bodies();
@@ -189,31 +170,23 @@ fn at_rest(robot: &str, component: &str, model: &str, count: usize) -> String {
 }
 
 impl<'a> Printer<'a> {
-    fn joint(&mut self, joint: &'a Joint) {
-        // A joint comes after the one that holds its parent.
-        let Some(parent) = &self.parts[joint.parent] else {
-            return;
-        };
-        let (above, at) = (parent.rigid, parent.pose.of(&joint.origin));
-        if joint.motion == Motion::Fixed {
-            self.hold(joint.child, above, at);
-            return;
-        }
-        let (axis, turn) = aligned(&joint.axis);
-        let in_joint = Pose {
-            place: [0.0; 3],
-            turn,
-        };
+    fn joint(&mut self, seat: usize) {
+        let Seat {
+            joint,
+            above,
+            pose,
+            axis,
+            zero,
+        } = self.assembly.seats[seat];
         let name = self.names.take(&joint.name);
-        let (parent, child) = (joint.parent, joint.child);
-        let [from, to] = [parent, child].map(|link| &self.robot.links[link].name);
+        let [from, to] = [joint.parent, joint.child].map(|link| &self.robot.links[link].name);
         self.text += &format!("\n    // {}: from {from} to {to}.\n", joint.name);
-        let foot = self.moved(&name, above, &at.of(&in_joint));
-        let junction = self.names.take(&self.robot.links[child].name);
+        let foot = self.moved(&name, above, &pose);
+        let junction = self.names.take(to);
         self.text += &format!("    1 {junction}[6];\n");
         match joint.motion {
             Motion::Float | Motion::Plane => self.several(joint, &name, (&foot, &junction), axis),
-            _ => self.single(joint, &name, (&foot, &junction), axis),
+            _ => self.single(joint, &name, (&foot, &junction), (axis, zero)),
         }
         if has_friction(joint) {
             let friction = self.names.take(&format!("{name}_friction"));
@@ -226,34 +199,15 @@ impl<'a> Printer<'a> {
         if joint.motion.is_single() {
             self.single.push((joint, name.clone()));
         }
-        self.rigid.push(Rigid {
-            body: None,
-            frame: Frame {
-                junction,
-                joint: Some(name),
-            },
+        self.frames.push(Frame {
+            junction,
+            joint: Some(name),
         });
-        let back = Pose {
-            place: [0.0; 3],
-            turn: transposed(&turn),
-        };
-        let rigid = self.rigid.len() - 1;
-        self.hold(child, rigid, back);
-    }
-
-    /// Makes a link part of a rigid body.
-    fn hold(&mut self, link: usize, rigid: usize, pose: Pose) {
-        if let Some(body) = self.robot.links[link].body {
-            let body = body.seen(&pose);
-            let whole = &mut self.rigid[rigid].body;
-            *whole = Some(whole.map_or(body, |whole| whole.with(&body)));
-        }
-        self.parts[link] = Some(Part { rigid, pose });
     }
 
     /// The frame of a rigid body moved to a pose in it, before the joint `name`.
     fn moved(&mut self, name: &str, rigid: usize, pose: &Pose) -> Frame {
-        let mut frame = self.rigid[rigid].frame.clone();
+        let mut frame = self.frames[rigid].clone();
         if pose.place != [0.0; 3] {
             let by = column(&pose.place);
             frame = self.step(
@@ -264,7 +218,7 @@ impl<'a> Printer<'a> {
             );
         }
         if pose.turn != IDENTITY {
-            let by = matrix(&pose.turn);
+            let by = rotation(&pose.turn);
             frame = self.step(
                 &frame,
                 "Turn",
@@ -290,14 +244,21 @@ impl<'a> Printer<'a> {
     }
 
     /// A joint of one coordinate.
-    fn single(&mut self, joint: &Joint, name: &str, (foot, junction): (&Frame, &str), axis: usize) {
+    fn single(
+        &mut self,
+        joint: &Joint,
+        name: &str,
+        (foot, junction): (&Frame, &str),
+        (axis, zero): (usize, f64),
+    ) {
         let (kind, effort) = match joint.motion {
             Motion::Slide => ("Prismatic", "force"),
             _ => ("Revolute", "torque"),
         };
         self.text += &format!(
-            "    {name}: {kind} {{ axis: {axis}, {}{}{} }} ({}, {junction});\n",
+            "    {name}: {kind} {{ axis: {axis}, {}{}{}{} }} ({}, {junction});\n",
             self.start(joint, effort),
+            begin(zero),
             damping(joint),
             foot.all_given(),
             foot.junction
@@ -374,8 +335,8 @@ impl<'a> Printer<'a> {
 
     fn bodies(&mut self) {
         self.text += "\n    // Links that fixed joints hold together are one body.\n";
-        for number in 0..self.rigid.len() {
-            let Some(body) = self.rigid[number].body else {
+        for number in 0..self.frames.len() {
+            let Some(body) = self.assembly.bodies[number] else {
                 continue;
             };
             match squares(&body.inertia) {
@@ -389,7 +350,7 @@ impl<'a> Printer<'a> {
     }
 
     fn body(&mut self, rigid: usize, body: &Body) {
-        let frame = &self.rigid[rigid].frame;
+        let frame = &self.frames[rigid];
         let name = self.names.take(&format!("{}_body", frame.junction));
         self.text += &format!(
             "    {name}: Body {{\n        mass: {:?},\n        centre: {},\n        inertia: {}{}\n    }} ({});\n",
@@ -406,7 +367,7 @@ impl<'a> Printer<'a> {
         if body.mass == 0.0 {
             return;
         }
-        let mut frame = self.rigid[rigid].frame.clone();
+        let mut frame = self.frames[rigid].clone();
         let [arm, centre, mass] =
             ["arm", "centre", "mass"].map(|ending| format!("{}_{ending}", frame.junction));
         if body.centre != [0.0; 3] {
@@ -423,7 +384,7 @@ impl<'a> Printer<'a> {
 
     /// An inertia beside a point mass or alone.
     fn inertia(&mut self, rigid: usize, inertia: &Matrix, parts: &[(f64, Vector)]) {
-        let junction = self.rigid[rigid].frame.junction.clone();
+        let junction = self.frames[rigid].junction.clone();
         match parts.len() {
             0 => {}
             3 => {
@@ -461,16 +422,16 @@ impl<'a> Printer<'a> {
     /// Where each link is, and the motion of the joints.
     fn poses(&mut self) {
         self.text += "\n    // Where the links are in the world, and how their axes lie.\n";
-        for (link, part) in self.robot.links.iter().zip(&self.parts) {
+        for (link, part) in self.robot.links.iter().zip(&self.assembly.parts) {
             let Some(part) = part else { continue };
-            let frame = &self.rigid[part.rigid].frame;
+            let frame = &self.frames[part.rigid];
             let (mut position, mut orientation) =
                 (frame.told("position"), frame.told("orientation"));
             if part.pose.place != [0.0; 3] {
                 position += &format!(" + {orientation} * {}", column(&part.pose.place));
             }
             if part.pose.turn != IDENTITY {
-                orientation += &format!(" * {}", matrix(&part.pose.turn));
+                orientation += &format!(" * {}", rotation(&part.pose.turn));
             }
             let [at, axes] = ["position", "orientation"]
                 .map(|it| self.names.take(&format!("{}_{it}", link.name)));
@@ -560,6 +521,14 @@ fn damping(joint: &Joint) -> String {
     }
 }
 
+/// The argument for the angle at which the frames of a hinge coincide, if that is not zero.
+fn begin(zero: f64) -> String {
+    match zero {
+        0.0 => String::new(),
+        zero => format!(", zero: {zero:?}"),
+    }
+}
+
 /// A column, each number with the digits that it needs.
 fn column(vector: &Vector) -> String {
     let [x, y, z] = vector.map(|it| it + 0.0);
@@ -575,4 +544,16 @@ fn matrix(matrix: &Matrix) -> String {
     }
     let rows: Vec<String> = matrix.iter().map(column).collect();
     format!("[{}]", rows.join(", "))
+}
+
+/// A rotation by its angle where it is about a coordinate axis, else by its matrix.
+fn rotation(turn: &Matrix) -> String {
+    for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+        let [p, q] = [1, 2].map(|it| (axis + it) % 3);
+        let angle = turn[q][p].atan2(turn[p][p]);
+        if !is_permutation(turn) && is_near(turn, &about(axis, angle)) {
+            return format!("rot_{letter}({angle:?})");
+        }
+    }
+    matrix(turn)
 }

@@ -1,6 +1,7 @@
 //! A robot as a URDF file gives it, checked to be a tree.
 
 use std::collections::BTreeSet;
+use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 use roxmltree::{Document, Node, ParsingOptions};
@@ -142,7 +143,7 @@ impl Load {
 type Checked<T> = Result<T, Remark>;
 
 /// Reads a file, and lists what of it means nothing to the equations of motion.
-pub(crate) fn read(text: &str) -> Checked<(Robot, Vec<Remark>)> {
+pub(crate) fn read(text: &str, right_angles: f64) -> Checked<(Robot, Vec<Remark>)> {
     // A line `<!DOCTYPE robot>` says nothing more, and is no mistake.
     let options = ParsingOptions {
         allow_dtd: true,
@@ -154,6 +155,7 @@ pub(crate) fn read(text: &str) -> Checked<(Robot, Vec<Remark>)> {
     })?;
     let mut reader = Reader {
         document: &document,
+        right_angles,
         remarks: Vec::new(),
     };
     let robot = reader.robot(document.root_element())?;
@@ -163,6 +165,8 @@ pub(crate) fn read(text: &str) -> Checked<(Robot, Vec<Remark>)> {
 
 struct Reader<'a> {
     document: &'a Document<'a>,
+    /// How near to a multiple of a right angle an angle is taken for it.
+    right_angles: f64,
     remarks: Vec<Remark>,
 }
 
@@ -404,7 +408,8 @@ impl<'a> Reader<'a> {
         if axis == [0.0; 3] {
             return self.fail(element, "an axis has a direction");
         }
-        Ok(axis)
+        let least = self.right_angles * axis.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+        Ok(axis.map(|it| if it.abs() <= least { 0.0 } else { it }))
     }
 
     fn mimic(&mut self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<Mimic>> {
@@ -442,21 +447,27 @@ impl<'a> Reader<'a> {
             None => Ok([0.0; 3]),
         };
         let (place, angles) = (given("xyz")?, given("rpy")?);
-        for angle in angles {
-            let right = std::f64::consts::FRAC_PI_2;
-            let off = (angle - right * (angle / right).round()).abs();
-            if off > RIGHT && off < 1e-4 {
-                let text = format!(
-                    "{angle} is {off:.1e} rad beside a right angle; with {:?} fewer operations are left",
-                    right * (angle / right).round()
-                );
-                self.note(element, text);
-            }
-        }
         Ok(Pose {
             place,
-            turn: rotation(angles),
+            turn: rotation(angles.map(|angle| self.angle(element, angle))),
         })
+    }
+
+    /// An angle, or the multiple of a right angle that it is near.
+    fn angle(&mut self, node: Node<'a, 'a>, angle: f64) -> f64 {
+        let right = FRAC_PI_2 * (angle / FRAC_PI_2).round();
+        let off = (angle - right).abs();
+        if off <= self.right_angles {
+            return right;
+        }
+        if off > RIGHT && off < 1e-4 {
+            let next = 10.0_f64.powf(off.log10().ceil());
+            self.note(
+                node,
+                format!("{angle} is {off:.1e} rad beside a right angle; with `--right-angles {next:e}` fewer operations are left"),
+            );
+        }
+        angle
     }
 
     fn attribute(&self, node: Node<'a, 'a>, name: &str) -> Checked<&'a str> {

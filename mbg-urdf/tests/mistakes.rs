@@ -3,6 +3,8 @@
 
 use std::process::Command;
 
+use mbg_urdf::Options;
+
 /// A file of two links with `changed` in place of a part of it.
 fn file(part: &str, changed: &str) -> String {
     let text = "<robot name=\"r\">
@@ -136,7 +138,8 @@ const MISTAKES: &[(&str, &str, &str)] = &[
 #[test]
 fn mistakes_are_told_with_their_lines() {
     for (part, changed, expected) in MISTAKES {
-        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap_err();
+        let found =
+            mbg_urdf::convert(&file(part, changed), "r.urdf", &Options::default()).unwrap_err();
         assert!(
             found.to_string().starts_with(expected),
             "found {found}\nexpected {expected}"
@@ -179,7 +182,7 @@ fn what_is_left_out_is_told() {
         ),
     ];
     for (part, changed, expected) in cases {
-        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap();
+        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", &Options::default()).unwrap();
         let told: Vec<String> = found.remarks.iter().map(ToString::to_string).collect();
         assert_eq!(told, [expected], "{changed}");
     }
@@ -189,7 +192,7 @@ fn what_is_left_out_is_told() {
 fn a_fixed_joint_mimics_none() {
     let text = file("type=\"revolute\"", "type=\"fixed\"");
     let text = text.replace("<axis ", "<mimic joint=\"j\"/><axis ");
-    let found = mbg_urdf::convert(&text, "r.urdf", None).unwrap();
+    let found = mbg_urdf::convert(&text, "r.urdf", &Options::default()).unwrap();
     assert_eq!(
         found.remarks[0].to_string(),
         "11: a fixed joint mimics none"
@@ -199,7 +202,7 @@ fn a_fixed_joint_mimics_none() {
 #[test]
 fn what_means_nothing_is_no_mistake() {
     let plain = |part: &str, changed: &str| {
-        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", None).unwrap();
+        let found = mbg_urdf::convert(&file(part, changed), "r.urdf", &Options::default()).unwrap();
         assert_eq!(found.remarks, []);
         found.text
     };
@@ -235,7 +238,11 @@ fn the_command_prints_the_component() {
     let text = file("<axis ", "<limit effort=\"1\"/><axis ");
     std::fs::write(&path, &text).unwrap();
     let (printed, told, code) = run(&["--model", "Bench", &path]);
-    let expected = mbg_urdf::convert(&text, &path, Some("Bench")).unwrap();
+    let options = Options {
+        model: Some("Bench"),
+        ..Options::default()
+    };
+    let expected = mbg_urdf::convert(&text, &path, &options).unwrap();
     assert_eq!(printed, expected.text);
     assert!(printed.contains("pub model Bench {"));
     assert_eq!(told, format!("{path}:11: `limit` is not converted\n"));
@@ -243,11 +250,29 @@ fn the_command_prints_the_component() {
 }
 
 #[test]
+fn an_angle_beside_a_right_one_is_told_with_what_to_type() {
+    let path = format!("{}/beside.urdf", env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(&path, file("rpy=\"0 0 0\"", "rpy=\"1.5708 0 0\"")).unwrap();
+    let (printed, told, code) = run(&[&path]);
+    let told = told.strip_prefix(&format!("{path}:8: ")).unwrap();
+    assert_eq!(
+        told,
+        "1.5708 is 3.7e-6 rad beside a right angle; with `--right-angles 1e-5` fewer operations are left\n"
+    );
+    assert!(printed.contains("Turn { by: rot_x(1.5708"), "{printed}");
+    assert_eq!(code, Some(0));
+    let (printed, told, _) = run(&["--right-angles", "1e-5", &path]);
+    let right = "Turn { by: [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]";
+    assert!(printed.contains(right), "{printed}");
+    assert_eq!(told, "");
+}
+
+#[test]
 fn the_command_says_how_it_is_used() {
     let (help, told, code) = run(&["--help"]);
     assert!(help.contains("example:\n  mbg-urdf robots/arm.urdf > robots/arm.mbg"));
     assert_eq!((told.as_str(), code), ("", Some(0)));
-    let cases: [(&[&str], &str); 5] = [
+    let cases: [(&[&str], &str); 7] = [
         (&[], "mbg-urdf: a file is missing"),
         (&["a", "b"], "mbg-urdf: one file at a time"),
         (&["--mode", "b"], "mbg-urdf: `--mode` is not known"),
@@ -255,6 +280,14 @@ fn the_command_says_how_it_is_used() {
         (
             &["--model", "my arm", "a"],
             "mbg-urdf: `my arm` cannot be the name of a model",
+        ),
+        (
+            &["--right-angles"],
+            "mbg-urdf: `--right-angles` needs an angle below 0.1 rad, such as 1e-5",
+        ),
+        (
+            &["--right-angles", "1.6", "a"],
+            "mbg-urdf: `--right-angles` needs an angle below 0.1 rad, such as 1e-5",
         ),
     ];
     for (arguments, expected) in cases {

@@ -3,6 +3,12 @@
 
 use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::items;
+use mbg_urdf::Options;
+
+const BENCH: Options<'_> = Options {
+    model: Some("Bench"),
+    right_angles: 1e-9,
+};
 
 /// A file of a pendulum on a slide, with damping and friction, an axis along no coordinate axis and a fixed link.
 fn pendulum([robot, slide, hinge, cart, rod]: [&str; 5]) -> String {
@@ -30,7 +36,7 @@ fn pendulum([robot, slide, hinge, cart, rod]: [&str; 5]) -> String {
 
 /// What is wrong with what a file is printed as.
 fn mistakes(file: &str) -> Vec<String> {
-    let printed = mbg_urdf::convert(file, "r.urdf", Some("Bench")).unwrap();
+    let printed = mbg_urdf::convert(file, "r.urdf", &BENCH).unwrap();
     let mut diagnostics = Diagnostics::new();
     let _ = items(printed.text.parse().unwrap(), &mut diagnostics);
     let list = diagnostics.list().iter();
@@ -109,14 +115,14 @@ fn what_rounding_left_of_an_inertia_is_zero() {
     let points = file.replace("ixx=\"1\" iyy=\"1\" izz=\"1\"", rounded);
     assert_ne!(points, file);
     assert!(
-        mbg_urdf::convert(&points, "r.urdf", None)
+        mbg_urdf::convert(&points, "r.urdf", &Options::default())
             .unwrap()
             .remarks
             .is_empty()
     );
     assert_eq!(mistakes(&points), <[String; 0]>::default());
     assert!(
-        mbg_urdf::convert(&points, "r.urdf", None)
+        mbg_urdf::convert(&points, "r.urdf", &Options::default())
             .unwrap()
             .text
             .contains("PointMass")
@@ -124,7 +130,7 @@ fn what_rounding_left_of_an_inertia_is_zero() {
     // Of a mass of micrometres it would be what makes it a body.
     let small = points.replace("<mass value=\"1\"/>", "<mass value=\"1e-9\"/>");
     assert!(
-        !mbg_urdf::convert(&small, "r.urdf", None)
+        !mbg_urdf::convert(&small, "r.urdf", &Options::default())
             .unwrap()
             .remarks
             .is_empty()
@@ -135,7 +141,9 @@ fn what_rounding_left_of_an_inertia_is_zero() {
 fn dry_friction_may_be_on_hinges_and_on_slides() {
     let text = pendulum(["robot", "slide", "hinge", "cart", "rod"]);
     assert_eq!(mistakes(&text), [""; 0]);
-    let printed = mbg_urdf::convert(&text, "r.urdf", None).unwrap().text;
+    let printed = mbg_urdf::convert(&text, "r.urdf", &Options::default())
+        .unwrap()
+        .text;
     assert!(printed.contains("0.2 * tanh(f / slide_slip)"), "{printed}");
     assert!(printed.contains("0.2 * tanh(f / slip)"), "{printed}");
 }
@@ -162,13 +170,43 @@ fn a_drive_without_a_mass_moves_what_mimics_it() {
         )
     );
     assert_eq!(mistakes(&text), [""; 0]);
-    let found = mbg_urdf::convert(&text, "r.urdf", None).unwrap();
+    let found = mbg_urdf::convert(&text, "r.urdf", &Options::default()).unwrap();
     assert_eq!(found.remarks, []);
     let alone = text.replace("<mimic joint=\"drive\" multiplier=\"-0.5\"/>", "");
-    let found = mbg_urdf::convert(&alone, "r.urdf", None).unwrap();
+    let found = mbg_urdf::convert(&alone, "r.urdf", &Options::default()).unwrap();
     let told: Vec<&str> = found.remarks.iter().map(|it| it.text.as_str()).collect();
     assert_eq!(
         told,
         ["nothing that `drive` moves has a mass, which `mbg!` will refuse"]
     );
+}
+
+/// Three hinges whose axes lie anywhere, the second of which is the first one's parallel.
+#[test]
+fn one_turn_leads_from_a_hinge_to_the_next() {
+    let joint = |number: usize, angles: &str| {
+        format!(
+            "<link name=\"l{number}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link>
+            <joint name=\"j{number}\" type=\"continuous\">
+              <origin xyz=\"0.1 0.2 0.3\" rpy=\"{angles}\"/>
+              <parent link=\"l{}\"/><child link=\"l{number}\"/><axis xyz=\"0.3 -0.4 1.2\"/>
+            </joint>",
+            number - 1
+        )
+    };
+    let [first, second, third, fourth] = [
+        joint(1, "0.3 -0.4 1.1"),
+        joint(2, "0 0 0"),
+        joint(3, "-1.2 0.7 2.9"),
+        joint(4, "1 1 1"),
+    ];
+    let text =
+        format!("<robot name=\"r\"><link name=\"l0\"/>{first}{second}{third}{fourth}</robot>");
+    let found = mbg_urdf::convert(&text, "r.urdf", &Options::default()).unwrap();
+    let turns: Vec<&str> = (found.text.lines())
+        .filter_map(|line| line.split_once("Turn { by: "))
+        .map(|(_, by)| &by[..6])
+        .collect();
+    // Onto the base, which cannot be turned, it is two; parallel axes need none.
+    assert_eq!(turns, ["[[0.88", "rot_x(", "rot_x("], "{}", found.text);
 }

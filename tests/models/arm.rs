@@ -1,6 +1,7 @@
 //! Robots out of their URDF files and out of their parameters, against recursive Newton-Euler.
 
 use mbg_runtime::{Smooth, System, mbg};
+use mbg_urdf::Options;
 use nalgebra::SVector;
 
 use super::energy::imbalance;
@@ -157,7 +158,7 @@ fn files_are_printed_as_they_are_included() {
             Some("Crane"),
             &[
                 "57: `limit` is not converted",
-                "91: 1.5708 is 3.7e-6 rad beside a right angle; with 1.5707963267948966 fewer operations are left",
+                "91: 1.5708 is 3.7e-6 rad beside a right angle; with `--right-angles 1e-5` fewer operations are left",
                 "96: `gazebo` is not converted",
             ],
         ),
@@ -167,7 +168,11 @@ fn files_are_printed_as_they_are_included() {
     ];
     for (file, model, remarks) in files {
         let read = |ending: &str| std::fs::read_to_string(format!("{file}.{ending}")).unwrap();
-        let found = mbg_urdf::convert(&read("urdf"), &format!("{file}.urdf"), model).unwrap();
+        let options = Options {
+            model,
+            ..Options::default()
+        };
+        let found = mbg_urdf::convert(&read("urdf"), &format!("{file}.urdf"), &options).unwrap();
         assert!(
             found.text == read("mbg"),
             "{file}.mbg is not what the tool prints"

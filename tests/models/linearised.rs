@@ -222,8 +222,10 @@ fn what_depends_on_each_other_has_a_pole_at_rest() {
 fn what_is_iterated_has_the_slopes_of_its_law() {
     let model = Filled::<f64>::new(FilledParameters::default()).unwrap();
     let (drop, held) = (0.6, 1.5);
-    let current = 1e-12 * f64::exp_m1(drop / 0.025);
-    let own = 0.025 / (current + 1e-12);
+    let leakage = 1e-12;
+    let forward = 1e-12 * f64::exp_m1(drop / 0.025);
+    let current = forward + leakage * drop;
+    let own = 1.0 / ((forward + 1e-12) / 0.025 + leakage);
     let (x, u) = (
         SVector::from([1e-3 * held]),
         SVector::from([held + drop + 10.0 * current]),

@@ -52,7 +52,8 @@ pub fn judge(
         return None;
     }
     let marked = graph.elements.iter().any(|element| element.derivative);
-    let notes = if marked && verdict.dependent.is_empty() {
+    // Sums of efforts or flows may make storages dependent that strokes let be states.
+    let notes = if marked && verdict.dependent.is_empty() && outlook().is_soluble() {
         vec!["`#[derivative]` is not needed: every storage is in integral causality".to_owned()]
     } else {
         Vec::new()

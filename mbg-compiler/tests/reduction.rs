@@ -16,11 +16,15 @@ mod reduction {
 
 use std::cell::Cell;
 
+use mbg_compiler::compile::Routines;
+use mbg_compiler::program::{self, Arguments};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use reduction::elements::{Entry, Kind, Law};
 use reduction::graph::{Drawing, Graph, Link, Verdict};
 use reduction::truth::{self, Fate};
+
+use models::compiled;
 
 fn law(number: usize, inertia: bool, diagonal: i64, coupling: i64) -> Law {
     match number {
@@ -201,6 +205,43 @@ fn survey(cases: u32) {
         "{} of {cases}",
         dependent.get()
     );
+}
+
+/// No row of the junctions by itself tells of what such storages follow from the states: sums of rows do, in which voltages of
+/// nodes or currents into them cancel.
+#[test]
+fn what_depends_through_sums_of_rows_is_eliminated() {
+    let rate = |statements: &str| {
+        let text = format!(
+            "#[derivative] model M {{ causality componentwise; input u;
+             0 ground; Se earth {{ effort: 0.0 }} -> ground; 0 plus; Se source {{ effort: u }} -> plus; {statements} }}"
+        );
+        let model = compiled(&text);
+        assert_eq!((model.states.len(), model.notes.as_slice()), (1, &[][..]));
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[0.6],
+            input: &[5.0],
+        };
+        program::evaluate(&model.program, Routines::DERIVATIVE, &arguments)[0]
+    };
+    // Capacitors beside each other, none of whose nodes is held: R i = u − q / C, and a part of the current is q̇.
+    let current = (5.0 - 0.6 / 2.0) / (3.0 + 7.0);
+    let beside = rate(
+        "0 a; 0 b; first: Resistor { resistance: 3.0 } (plus, a);
+         one: Capacitor { capacitance: 2.0 } (a, b); other: Capacitor { capacitance: 6.0 } (a, b);
+         second: Resistor { resistance: 7.0 } (b, ground);",
+    );
+    assert!((beside - 2.0 / (2.0 + 6.0) * current).abs() < 1e-15);
+    // Coils on both sides of resistors beside each other: (L + M) i̇ = u − R i, of which L i̇ is ṗ.
+    let voltage = 5.0 - 2.0 * 0.6 / 4.0;
+    let between = rate(
+        "0 a; 0 b; one: Inductor { inductance: 4.0 } (plus, a);
+         first: Resistor { resistance: 3.0 } (a, b); second: Resistor { resistance: 6.0 } (a, b);
+         other: Inductor { inductance: 1.0 } (b, ground);",
+    );
+    assert!((between - 4.0 / (4.0 + 1.0) * voltage).abs() < 1e-15);
 }
 
 #[test]

@@ -54,7 +54,21 @@ pub fn reduce(
     }
     reducer.express_momenta(model, &selection.lost, &inverses);
     reducer.replace_rows(model, selection);
-    let matched = reducer.matched()?;
+    let mut matched = reducer.matched()?;
+    let moved: BTreeSet<usize> = selection
+        .lost
+        .iter()
+        .flat_map(|lost| reducer.imposed(model, lost, &inverses))
+        .collect();
+    let follow = reducer.close(
+        &mut BTreeSet::new(),
+        moved.iter().copied().collect(),
+        &matched,
+    );
+    if follow.is_none() {
+        reducer.expose(&moved);
+        matched = reducer.matched()?;
+    }
     let needed = reducer.closure(model, &matched, &selection.lost, &inverses, diagnostics)?;
     reducer.declare_rates(&needed);
     for unknown in &needed {
@@ -71,6 +85,27 @@ pub fn reduce(
         scalars: reducer.scalars,
         momenta: reducer.momenta,
     })
+}
+
+/// Whether a coefficient is 1 or −1.
+fn is_unit(coefficient: &Expression) -> bool {
+    [Expression::ONE, Expression::ONE.negated()].contains(coefficient)
+}
+
+/// Takes so much of another equation, in which the unknown has the coefficient 1 or −1, that the unknown cancels.
+fn cancel(pool: &mut Pool, equation: &mut Equation, other: &Equation, unknown: usize) {
+    let Some(own) = equation.terms.get(&unknown).copied() else {
+        return;
+    };
+    let factor = own.flipped(other.terms[&unknown].is_negative());
+    for (unknown, coefficient) in &other.terms {
+        let product = pool.multiply(factor, *coefficient);
+        let term = equation.terms.entry(*unknown).or_insert(Expression::ZERO);
+        *term = pool.subtract(*term, product);
+    }
+    equation.terms.retain(|_, term| *term != Expression::ZERO);
+    let product = pool.multiply(factor, other.constant);
+    equation.constant = pool.subtract(equation.constant, product);
 }
 
 /// A storage's linear law `p = J (y − y₀)`.
@@ -289,6 +324,65 @@ impl Reducer<'_> {
         )
     }
 
+    /// Co-energy variables that the momentum or displacement of a lost state holds.
+    fn imposed(
+        &self,
+        model: &Elaborated,
+        lost: &Lost,
+        inverses: &BTreeMap<ElementId, Inverse>,
+    ) -> Vec<usize> {
+        let matrix = &inverses[&lost.element].matrix;
+        (0..matrix.columns)
+            .filter(|column| matrix.at(lost.component, *column) != Expression::ZERO)
+            .map(|column| self.coenergy(model, lost.element, column))
+            .collect()
+    }
+
+    /// Puts sums of rows in their place in which open unknowns cancel.
+    ///
+    /// Efforts around a mesh and flows into a part of the network may sum up to nothing but what follows from the states and
+    /// the co-energy variables of lost ones, while no row by itself does: as where two capacitors lie beside each other
+    /// between nodes of which neither is held. Which unknowns the rows hold does not tell that. Each such sum takes the
+    /// place of one of its rows, so that the equations stay equivalent.
+    fn expose(&mut self, moved: &BTreeSet<usize>) {
+        let mut rows: BTreeMap<usize, Equation> = self
+            .scalars
+            .equations
+            .iter()
+            .enumerate()
+            .filter(|(_, it)| it.owner == Owner::Structure && it.signals.is_empty())
+            .map(|(row, equation)| (row, equation.clone()))
+            .collect();
+        let open: BTreeSet<usize> = rows
+            .values()
+            .flat_map(|equation| equation.terms.keys().copied())
+            .filter(|unknown| !self.determined[*unknown] && !moved.contains(unknown))
+            .collect();
+        for unknown in &open {
+            // Nothing is divided by, and rows of lost storages are kept for what is left.
+            let pivot = rows
+                .iter()
+                .filter(|(_, it)| it.terms.get(unknown).is_some_and(is_unit))
+                .min_by_key(|(row, it)| {
+                    let is_kept = it.terms.keys().any(|unknown| moved.contains(unknown));
+                    (is_kept, it.terms.len(), **row)
+                })
+                .map(|(row, _)| *row);
+            let Some(pivot) = pivot.and_then(|row| rows.remove(&row)) else {
+                continue;
+            };
+            for equation in rows.values_mut() {
+                cancel(self.pool, equation, &pivot, *unknown);
+            }
+        }
+        for (row, equation) in rows {
+            let holds_any = |of: &BTreeSet<usize>| equation.terms.keys().any(|it| of.contains(it));
+            if holds_any(moved) && !holds_any(&open) {
+                self.scalars.equations[row] = equation;
+            }
+        }
+    }
+
     /// Unknowns whose rates are needed: those that lost momenta hold, and whatever these follow from. None if one of
     /// them follows from a rate itself.
     fn closure(
@@ -301,11 +395,7 @@ impl Reducer<'_> {
     ) -> Option<BTreeSet<usize>> {
         let mut needed = BTreeSet::new();
         for lost in lost {
-            let matrix = &inverses[&lost.element].matrix;
-            let open = (0..matrix.columns)
-                .filter(|column| matrix.at(lost.component, *column) != Expression::ZERO)
-                .map(|column| self.coenergy(model, lost.element, column))
-                .collect();
+            let open = self.imposed(model, lost, inverses);
             if self.close(&mut needed, open, matched).is_none() {
                 report_second_derivative(model, lost.element, diagnostics);
                 return None;

@@ -83,23 +83,7 @@ impl Answers {
             return None;
         }
         let (supplied, dissipated) = powers(model, scalars, solution, pool);
-        let energies: Vec<Expression> = model
-            .graph
-            .elements
-            .iter()
-            .enumerate()
-            .filter_map(|(id, element)| match &element.law {
-                Law::Storage(storage) if !model.graph.is_pseudo(ElementId(id)) => {
-                    Some(storage.energy)
-                }
-                _ => None,
-            })
-            .collect();
-        let energies: Vec<Expression> = energies
-            .into_iter()
-            .map(|energy| substitution.apply(pool, energy))
-            .collect::<Option<_>>()?;
-        let energy = pool.sum(&energies);
+        let energy = energy(model, &mut substitution, pool, diagnostics)?;
         let mut told = vec![energy, supplied, dissipated];
         told.extend(&outputs);
         told.extend(displacements.iter().map(|(_, _, value)| *value));
@@ -155,6 +139,33 @@ fn storage_rate(
     } else {
         solution.values[port.flow[component]].flipped(port.flow_reversed)
     }
+}
+
+/// What storages hold, those of pseudo bonds left out; none if something was reported.
+fn energy(
+    model: &Elaborated,
+    substitution: &mut Substitution,
+    pool: &mut Pool,
+    diagnostics: &mut Diagnostics,
+) -> Option<Expression> {
+    let mut energies = Vec::new();
+    for (id, element) in model.graph.elements.iter().enumerate() {
+        if let Law::Storage(storage) = &element.law
+            && !model.graph.is_pseudo(ElementId(id))
+        {
+            let energy = substitution.apply(pool, storage.energy)?;
+            let mut read = symbols(pool, &[energy]).into_iter();
+            let input = read.find_map(|symbol| match symbol {
+                Symbol::Input(input) => Some(input),
+                _ => None,
+            });
+            if let Some(input) = input {
+                structure::report_energy(model, element, input, diagnostics);
+            }
+            energies.push(energy);
+        }
+    }
+    (!diagnostics.any()).then(|| pool.sum(&energies))
 }
 
 /// Storages, and the integrals and attitudes that their rates read, or what is `told`.

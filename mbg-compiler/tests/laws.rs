@@ -174,6 +174,19 @@ fn laws_that_jump_keep_both_sides() {
     assert_eq!(attempted(text).err(), Some(vec!["MBG0403"]));
 }
 
+/// `System::energy` is given no inputs: code that read one there would not compile.
+#[test]
+fn storages_that_an_input_changes_are_told() {
+    let text = |inputs: &str| {
+        format!(
+            "model M {{ {inputs} 1 v {{ C c {{ stiffness: 10.0 + u }} I m {{ inertia: 1.0 }} }} }}"
+        )
+    };
+    assert_eq!(attempted(&text("input u;")).err(), Some(vec!["MBG0213"]));
+    let by_rate = attempted(&text("input u_rate; integral u = u_rate;"));
+    assert!(by_rate.is_ok());
+}
+
 /// A stiffness that changes with the displacement it multiplies is a law `k(q) q`, whose energy is its integral.
 #[test]
 fn coefficients_may_change_with_the_state_they_multiply() {

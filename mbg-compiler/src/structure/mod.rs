@@ -41,6 +41,7 @@ pub use floating::report_floating;
 pub use formulation::Formulation;
 pub use outlook::outlook;
 pub use reduction::{Reduction, reduce};
+pub use refused::report_energy;
 pub use resolve::{Solved, resolve};
 pub use selection::{Lost, Selection, select};
 pub use starting::starting_momenta;

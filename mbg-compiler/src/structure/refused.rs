@@ -6,7 +6,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Variable};
 use crate::equations::Owner;
-use crate::graph::{ElementId, ElementKind};
+use crate::graph::{Element, ElementId, ElementKind};
 
 /// What keeps storages of a kind from depending on each other.
 pub(super) fn apart(kind: ElementKind) -> &'static str {
@@ -81,6 +81,24 @@ pub(super) fn report_input(
             .help(by_rate(model, input))
             .help(format!("or {IN_PLACE} the input write a law of `t`")),
     );
+}
+
+/// A storage whose energy follows from an input: energies are asked for without any.
+pub fn report_energy(
+    model: &Elaborated,
+    element: &Element,
+    input: usize,
+    diagnostics: &mut Diagnostics,
+) {
+    let message = format!(
+        "the energy of `{}` follows from the input `{}`, and energies are asked for without inputs",
+        element.name, model.inputs[input].name
+    );
+    let span = model.graph.origins.span(element.origin);
+    let report = error(codes::EXPRESSION, span, message);
+    let by_rate = by_rate(model, input);
+    let help = by_rate.trim_start_matches("or ").to_owned();
+    diagnostics.report(report.help(help));
 }
 
 /// How an input is given by its rate instead.

@@ -13,7 +13,7 @@ use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Expression, Function, Operation, Pool, Substitution, Symbol};
 
 /// How many orientations are looked at.
-const SAMPLES: usize = 3;
+pub(crate) const SAMPLES: usize = 3;
 
 /// Quaternions of length one in decimals.
 const QUATERNIONS: [[f64; 4]; SAMPLES] = [
@@ -99,7 +99,7 @@ fn angles(divisor: Expression, read: &[Symbol], pool: &Pool) -> BTreeSet<usize> 
 }
 
 /// Values for angles and for the states of attitudes.
-fn sample(
+pub(crate) fn sample(
     model: &Elaborated,
     angles: &BTreeSet<usize>,
     number: usize,

@@ -402,3 +402,64 @@ fn an_attitude_starts_as_a_rotation() {
         0.0,
     );
 }
+
+/// Three hinges in a row, each tilted against the one before, whose end is held.
+fn ring(tilts: [&str; 3], closure: &str) -> String {
+    let [first, second, third] = tilts;
+    format!(
+        "#[derivative]
+        model M {{
+            causality componentwise;
+            gravity [0.0, 0.0, -9.81];
+            1 base[6]; 1 a[6]; 1 b[6]; 1 c[6]; 1 end[6];
+            Sf ground[6] {{ flow: 0.0 }} -> base;
+            one: Revolute {{ axis: 2, tilt: {first}, initial: 1.0, initial_rate: 0.4 }} (base, a);
+            two: Revolute {{ axis: 2, offset: [1.0, 0.0, 0.0], tilt: {second}, initial: 0.9 }} (a, b);
+            three: Revolute {{ axis: 2, offset: [1.5, 0.0, 0.0], tilt: {third}, initial: -1.0 }} (b, c);
+            far: Offset {{ by: [1.0, 0.2, 0.0] }} (c, end);
+            upper: Body {{ mass: 1.0, inertia: 0.1, centre: [0.5, 0.0, 0.0] }} (a);
+            middle: Body {{ mass: 2.0, inertia: 0.2 }} (b);
+            lower: Body {{ mass: 1.0, inertia: 0.1 }} (c);
+            {closure}
+        }}"
+    )
+}
+
+#[test]
+fn a_loop_is_closed_whose_turns_are_written_as_numbers() {
+    let cut = "cut: Cut (end, base);";
+    let named = ["rot_y(0.3) * rot_x(0.7)", "rot_x(0.7)", "rot_z(0.2)"];
+    let turns = [about(1, 0.3) * about(0, 0.7), about(0, 0.7), about(2, 0.2)];
+    let numbers = turns.map(|turn| {
+        let rows = turn.row_iter();
+        let rows = rows.map(|row| format!("[{:?}, {:?}, {:?}]", row[0], row[1], row[2]));
+        format!("[{}]", rows.collect::<Vec<_>>().join(", "))
+    });
+    let numbers = numbers.each_ref().map(String::as_str);
+    let [expected, found] = [named, numbers].map(|tilts| {
+        let model = compiled(&ring(tilts, cut));
+        let start = run(&model, Routines::INITIAL, &[]);
+        run(&model, Routines::DERIVATIVE, &start)
+    });
+    assert_close(&found, &expected, 1e-12);
+}
+
+#[test]
+fn a_wrong_displacement_is_told_whose_turns_are_written_as_numbers() {
+    let turn = "[[1.0, 0.0, 0.0], [0.0, 0.7648421872844885, -0.644217687237691], [0.0, 0.644217687237691, 0.7648421872844885]]";
+    for wrong in [
+        "1.001 * far.position_b",
+        "far.position_b + play * [one.angle, 0.0, 0.0]",
+        "far.position_b + play * [t, 0.0, 0.0]",
+    ] {
+        let closure = format!(
+            "param play = 0.0;
+            1 point[3]; 1 rest[3];
+            base[3..6] -> rest;
+            end[3..6] -> MTF place {{ flow: far.orientation_b }} -> point;
+            close point -> rest by multipliers, displacement: {wrong};"
+        );
+        let told = attempted(&ring([turn; 3], &closure)).map(|_| ());
+        assert_eq!(told, Err(vec!["MBG0309"]), "{wrong}");
+    }
+}

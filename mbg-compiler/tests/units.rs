@@ -254,6 +254,29 @@ fn a_unit_that_would_scale_values_is_answered_with_the_text_to_type() {
     assert!(diagnose(&mass("param x: mV/ms = 1.0; output y: V/s = x;")).is_empty());
 }
 
+/// A factor there would be a wrong number without a word: one with a decimal point may carry any unit.
+#[test]
+fn what_is_read_is_in_si_and_takes_no_factor() {
+    for (statement, help) in [
+        (
+            "output y: mm = x;",
+            "write `m`, which is what the value has: what is read is in SI",
+        ),
+        (
+            "output y: mm = 2.0 * x;",
+            "write `m`, which is what the value has: what is read is in SI",
+        ),
+        (
+            "output y: mm = 2.0;",
+            "write `m`, and each value times 0.001",
+        ),
+    ] {
+        let (found, text) = told(&mass(&format!("param x: m = 1.0; {statement}")));
+        assert!(found.starts_with("mm"), "{statement}: at `{found}`");
+        assert!(text.contains("MBG0503") && text.ends_with(help), "{text}");
+    }
+}
+
 #[test]
 fn a_unit_in_another_spelling_is_answered_with_the_text_to_type() {
     for (unit, place, help) in [

@@ -28,7 +28,7 @@ use crate::diagnostics::Diagnostics;
 use crate::elaborate::claims::{self, Claim, Claims, Subject};
 use crate::elaborate::{Elaborated, Quantity};
 use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId};
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::symbolic::{Expression, Pool, Symbol, substitute};
 use crate::syntax::ast::{self, Unit};
 
 /// Whether a unit is that of a pure number, such as an angle.
@@ -50,7 +50,7 @@ pub fn check(
         return;
     }
     let mut reporter = Reporter::new(elaborated, &claims, &pool, diagnostics);
-    let Some(declared) = declared(&claims, &mut reporter) else {
+    let Some(declared) = declared(&claims, &pool, &mut reporter) else {
         return;
     };
     let mut unknowns = Unknowns::default();
@@ -67,7 +67,11 @@ pub fn check(
 }
 
 /// The units that are declared; none if one of them is no unit of SI, which is told.
-fn declared(claims: &Claims, reporter: &mut Reporter<'_>) -> Option<BTreeMap<Symbol, Dimension>> {
+fn declared(
+    claims: &Claims,
+    pool: &Pool,
+    reporter: &mut Reporter<'_>,
+) -> Option<BTreeMap<Symbol, Dimension>> {
     let mut declared = BTreeMap::new();
     let mut sound = true;
     for (symbol, unit, place) in &claims.units {
@@ -82,9 +86,19 @@ fn declared(claims: &Claims, reporter: &mut Reporter<'_>) -> Option<BTreeMap<Sym
         }
     }
     for claim in &claims.list {
-        if let Subject::Declared(_, unit) = &claim.subject
-            && let Err(report) = names::dimension(unit)
-        {
+        let Subject::Declared(_, unit) = &claim.subject else {
+            continue;
+        };
+        let read = substitute::symbols(pool, &claim.entries);
+        let is_number = |symbol: Symbol| match symbol {
+            Symbol::Unknown(index) => claims.hidden[index].number,
+            _ => false,
+        };
+        let found = match read.into_iter().all(is_number) {
+            true => names::dimension(unit),
+            false => names::dimension_of_read(unit),
+        };
+        if let Err(report) = found {
             reporter.tell(&claim.place, *report);
             sound = false;
         }

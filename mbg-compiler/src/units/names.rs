@@ -164,6 +164,20 @@ const SPELLINGS: &[&[(&str, i32)]] = &[
 ///
 /// A name that is not of SI, or that would scale the values.
 pub(super) fn dimension(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
+    checked(unit, Known::instead)
+}
+
+/// The dimension of the unit of a value that is read of the model, which is in SI whatever unit it is given.
+///
+/// # Errors
+///
+/// As those of [`dimension`].
+pub(super) fn dimension_of_read(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
+    checked(unit, Known::instead_of_read)
+}
+
+/// The dimension of a unit, or a mistake in it with what to type in its place.
+fn checked(unit: &Unit, instead: fn(&Known) -> String) -> Result<Dimension, Box<Diagnostic>> {
     let (mut whole, mut apart) = (Known::default(), Known::default());
     let (mut misspelt, mut scaling, mut beside) = (None, None, None);
     for (name, exponent) in &unit.factors {
@@ -187,18 +201,18 @@ pub(super) fn dimension(unit: &Unit) -> Result<Dimension, Box<Diagnostic>> {
     if let (None, Some(name)) = (misspelt, beside) {
         let message = format!("`{name}` below a stroke may be one unit or two");
         let report = error(codes::UNIT_SCALE, name.span(), message);
-        let second = format!("{} where `{name}` is one unit", whole.instead());
-        return Err(Box::new(report.help(apart.instead()).help(second)));
+        let second = format!("{} where `{name}` is one unit", instead(&whole));
+        return Err(Box::new(report.help(instead(&apart)).help(second)));
     }
     match (misspelt, scaling) {
-        (Some(name), _) => Err(Box::new(no_unit(name).help(whole.instead()))),
+        (Some(name), _) => Err(Box::new(no_unit(name).help(instead(&whole)))),
         (None, Some(name)) if whole.scales() => {
             let message = format!(
                 "values in `{}` are not in SI: `{name}` scales them",
                 unit.text
             );
             let report = error(codes::UNIT_SCALE, name.span(), message);
-            Err(Box::new(report.help(whole.instead())))
+            Err(Box::new(report.help(instead(&whole))))
         }
         _ => Ok(product(&whole.factors)),
     }
@@ -254,6 +268,15 @@ impl Known {
         }
         let factor = number(self.scale * 10f64.powi(self.tens));
         format!("write `{unit}`, and each value times {factor}")
+    }
+
+    /// What to type for a value that is read.
+    fn instead_of_read(&self) -> String {
+        let unit = spell(&self.factors);
+        if !self.scales() {
+            return format!("write `{unit}`");
+        }
+        format!("write `{unit}`, which is what the value has: what is read is in SI")
     }
 }
 

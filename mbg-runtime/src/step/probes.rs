@@ -1,4 +1,4 @@
-//! What a driven model does between the stages of a step.
+//! What a model does between the stages of a step.
 
 use super::dense::Polynomial;
 use super::elimination::Shifted;
@@ -16,7 +16,7 @@ use crate::{Input, Real, System};
 /// Steps become short where something happens; probes are half that length apart and a part of the time since. So a run at
 /// steps of much the same length needs none after a while, and what comes again is seen again. Estimates of the error
 /// presume that the solution is smooth: where something begins within a step they may be small by chance, so such steps are
-/// looked into as well. A model that nothing but its state drives is left alone.
+/// looked into as well, and they alone where nothing but its state drives a model: that may meet a stiff wall behind free flight.
 #[derive(Clone, Copy)]
 pub(super) struct Probes {
     /// Since when steps have not become short.
@@ -106,11 +106,13 @@ where
         tolerance: &Tolerance<N>,
         polynomial: impl FnOnce(&mut Self) -> Polynomial<T, N>,
     ) -> Option<f64> {
-        if self.is_left_alone() {
-            return None;
-        }
         let (time, length) = (seen(start.span.start), seen(start.span.length));
-        let mut parts = self.probes.parts(time, length);
+        // What nothing drives does not pulse by itself.
+        let mut parts = if self.is_left_alone() {
+            1
+        } else {
+            self.probes.parts(time, length)
+        };
         if start.again || self.probes.is_sudden(length, trial.coarse) {
             parts = parts.max(FEW);
         }

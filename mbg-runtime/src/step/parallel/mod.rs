@@ -170,7 +170,7 @@ where
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
         let mut end = start.x;
-        let (mut left, mut missed) = (sweeps, 0.0);
+        let (mut left, mut missed, mut highest) = (sweeps, 0.0, 0.0);
         let error = loop {
             for number in 0..left {
                 sweep.slopes(problem, &stages, slopes);
@@ -178,7 +178,7 @@ where
                     && left > 1
                     && let Some(measure) = &measure
                 {
-                    missed = Self::truncation(measure, start, slopes);
+                    [missed, highest] = Self::truncation(measure, start, slopes);
                 }
                 end = last::<T, N, G>(&stages);
                 sweep.advance(&mut stages, slopes);
@@ -199,7 +199,7 @@ where
             change: last::<T, N, G>(&stages) - start.x,
             slope: Some(last::<T, N, G>(slopes)),
             error,
-            coarse: error * error,
+            coarse: highest,
         }
     }
 
@@ -280,13 +280,14 @@ where
         advance::<T, N, S, G>(&mut step.others, &base, &weights, &before.others);
     }
 
-    /// What the method misses even where the sweeps come to their end: the mean square in units of the tolerance.
+    /// What the method misses even where the sweeps come to their end, and the last of Legendre's coefficients: mean squares
+    /// in units of the tolerance.
     ///
     /// Legendre's coefficients of smooth slopes fall by a ratio r from half the last degree to the last, and by r² or less from
     /// there to twice the last degree, which is the first that the method takes for another. Of a sine it is r² times
     /// [`Swept::SINE`], and a quarter of that counts. Where slopes jump r is near one, and all of the last counts.
     #[inline(never)]
-    fn truncation(measure: &Measure<N>, start: &Start<T, N>, slopes: &Nodes<T, N, G>) -> f64 {
+    fn truncation(measure: &Measure<N>, start: &Start<T, N>, slopes: &Nodes<T, N, G>) -> [f64; 2] {
         let length = start.span.length;
         let weights = const { &A::TABLEAU.legendre }
             .map(|[half, last]| [scaled::<T>(length, [half, last, 0.0, 0.0])]);
@@ -299,7 +300,7 @@ where
         let [half, last] = [square(0), square(1)];
         let ratio = last / (last + half).max(f64::MIN_POSITIVE);
         let smooth = 0.25 * A::SINE;
-        last * ratio * ratio * (ratio + smooth * smooth)
+        [last * ratio * ratio * (ratio + smooth * smooth), last]
     }
 }
 
@@ -495,11 +496,8 @@ mod tests {
     fn missed<A: Swept<S, G>, const S: usize, const G: usize>(slope: impl Fn(f64) -> f64) -> f64 {
         let measure = Tolerance::<1>::new(0.0, 1.0, &[]).around(&SVector::from([0.0]));
         let (start, slopes) = sampled::<A, 1, S, G>(OVER_ONE, |_, t| slope(t));
-        Real::sqrt(Stages::<A, f64, 1, S, G>::truncation(
-            &measure,
-            &start,
-            &slopes.others,
-        ))
+        let [missed, _] = Stages::<A, f64, 1, S, G>::truncation(&measure, &start, &slopes.others);
+        Real::sqrt(missed)
     }
 
     /// What is estimated, over what the method misses, of slopes with this integral over the step.

@@ -264,6 +264,9 @@ impl Integration<'_> {
     }
 
     /// A choice inside an expression is one between two expressions: `u |u|` is `-u²` where `u < 0`, else `u²`.
+    ///
+    /// All choices that change where it does are made with it. One that was left, such as the sign in `sign(u) f(|u|)`, would
+    /// later be counted from there inside of others, of which one may have no value there: a root beyond a gap.
     fn split(&mut self, expression: Expression) -> Option<Expression> {
         let mut parts = Vec::new();
         visit(self.pool, &[expression], |part, operation| {
@@ -271,12 +274,29 @@ impl Integration<'_> {
                 parts.push((part, choice));
             }
         });
-        let (part, [a, b, c, d]) = parts.into_iter().find(|(_, [a, b, ..])| {
-            let difference = self.pool.subtract(*a, *b);
-            self.is_free(difference) || self.slope(difference).is_some()
+        let differences: Vec<_> = parts
+            .iter()
+            .map(|(_, [a, b, ..])| self.pool.subtract(*a, *b))
+            .collect();
+        let first = differences.iter().position(|difference| {
+            self.is_free(*difference) || self.slope(*difference).is_some()
         })?;
-        let c = replace(self.pool, expression, &[(part, c)])?;
-        let d = replace(self.pool, expression, &[(part, d)])?;
+        let (_, [a, b, ..]) = parts[first];
+        let mut branches = [Vec::new(), Vec::new()];
+        for ((part, [_, _, c, d]), difference) in parts.into_iter().zip(&differences) {
+            let values = if *difference == differences[first] {
+                [c, d]
+            } else if *difference == differences[first].negated() {
+                [d, c]
+            } else {
+                continue;
+            };
+            for (branch, value) in branches.iter_mut().zip(values) {
+                branch.push((part, value));
+            }
+        }
+        let c = replace(self.pool, expression, &branches[0])?;
+        let d = replace(self.pool, expression, &branches[1])?;
         self.choice(a, b, c, d)
     }
 
@@ -480,6 +500,37 @@ mod tests {
             },
             [-1.0, 1.0],
         );
+    }
+
+    /// Of the teeth of a gear, which touch beyond half the gap on both sides: `k sign(x) max(|x| − g, 0)^1.5`.
+    #[test]
+    fn what_rises_beyond_a_gap_is_integrated() {
+        let mut pool = Pool::new();
+        let [x, stiffness, gap] =
+            [X, Symbol::Parameter(0), Symbol::Parameter(1)].map(|symbol| pool.symbol(symbol));
+        let [size, sign] =
+            [Function::Abs, Function::Sign].map(|function| pool.call(function, &[x]));
+        let way = pool.subtract(size, gap);
+        let beyond = pool.call(Function::Max, &[way, Expression::ZERO]);
+        let exponent = pool.literal("1.5").expect("a number");
+        let power = pool.real_power(beyond, exponent).expect("a power");
+        let side = pool.multiply(stiffness, sign);
+        let law = pool.multiply(side, power);
+        let found = antiderivative(&mut pool, law, X).expect("it has an antiderivative");
+        let at = |x: f64| {
+            let symbol = |symbol| match symbol {
+                X => x,
+                Symbol::Parameter(0) => 10.0,
+                _ => 0.25,
+            };
+            Evaluation::new(&symbol).value(&pool, found)
+        };
+        for (place, expected) in [(0.1, 0.0), (0.5, 0.125), (1.25, 4.0)] {
+            for x in [place, -place] {
+                let energy = at(x) - at(0.0);
+                assert!((energy - expected).abs() < 1e-14, "{x}: {energy}");
+            }
+        }
     }
 
     #[test]

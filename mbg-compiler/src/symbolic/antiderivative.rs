@@ -265,22 +265,36 @@ impl Integration<'_> {
 
     /// A choice inside an expression is one between two expressions: `u |u|` is `-u²` where `u < 0`, else `u²`.
     ///
-    /// All choices that change where it does are made with it. One that was left, such as the sign in `sign(u) f(|u|)`, would
-    /// later be counted from there inside of others, of which one may have no value there: a root beyond a gap.
+    /// All choices that change where it does are made with it, and those beside powers, roots and logarithms before those inside
+    /// of them. One that was left, such as the sign in `sign(u) f(|u|)`, would later be counted from there inside of others, of
+    /// which one may have no value there: a root beyond a gap.
     fn split(&mut self, expression: Expression) -> Option<Expression> {
         let mut parts = Vec::new();
+        let mut limited = Vec::new();
         visit(self.pool, &[expression], |part, operation| {
             if let Some(choice) = choice_of(operation) {
                 parts.push((part, choice));
             }
+            if let Operation::Call(Function::Pow | Function::Sqrt | Function::Ln, arguments) =
+                operation
+            {
+                limited.extend_from_slice(arguments);
+            }
         });
+        let mut inside = Vec::new();
+        visit(self.pool, &limited, |part, _| inside.push(part));
         let differences: Vec<_> = parts
             .iter()
             .map(|(_, [a, b, ..])| self.pool.subtract(*a, *b))
             .collect();
-        let first = differences.iter().position(|difference| {
-            self.is_free(*difference) || self.slope(*difference).is_some()
-        })?;
+        let mut known = Vec::new();
+        for (place, difference) in differences.iter().enumerate() {
+            if self.is_free(*difference) || self.slope(*difference).is_some() {
+                known.push(place);
+            }
+        }
+        let is_beside = |place: &&usize| !inside.contains(&parts[**place].0);
+        let first = *known.iter().find(is_beside).or(known.first())?;
         let (_, [a, b, ..]) = parts[first];
         let mut branches = [Vec::new(), Vec::new()];
         for ((part, [_, _, c, d]), difference) in parts.into_iter().zip(&differences) {
@@ -505,17 +519,27 @@ mod tests {
     /// Of the teeth of a gear, which touch beyond half the gap on both sides: `k sign(x) max(|x| − g, 0)^1.5`.
     #[test]
     fn what_rises_beyond_a_gap_is_integrated() {
+        assert_energy_beyond_a_gap(|_, x| x);
+        // Within the gap the sign may change anywhere.
+        assert_energy_beyond_a_gap(|pool, x| {
+            let place = pool.literal("0.125").expect("a number");
+            pool.subtract(x, place)
+        });
+    }
+
+    fn assert_energy_beyond_a_gap(side: impl Fn(&mut Pool, Expression) -> Expression) {
         let mut pool = Pool::new();
         let [x, stiffness, gap] =
             [X, Symbol::Parameter(0), Symbol::Parameter(1)].map(|symbol| pool.symbol(symbol));
-        let [size, sign] =
-            [Function::Abs, Function::Sign].map(|function| pool.call(function, &[x]));
+        let side = side(&mut pool, x);
+        let [size, sign] = [(Function::Abs, x), (Function::Sign, side)]
+            .map(|(function, argument)| pool.call(function, &[argument]));
         let way = pool.subtract(size, gap);
         let beyond = pool.call(Function::Max, &[way, Expression::ZERO]);
         let exponent = pool.literal("1.5").expect("a number");
         let power = pool.real_power(beyond, exponent).expect("a power");
-        let side = pool.multiply(stiffness, sign);
-        let law = pool.multiply(side, power);
+        let factor = pool.multiply(stiffness, sign);
+        let law = pool.multiply(factor, power);
         let found = antiderivative(&mut pool, law, X).expect("it has an antiderivative");
         let at = |x: f64| {
             let symbol = |symbol| match symbol {

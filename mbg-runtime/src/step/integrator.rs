@@ -169,6 +169,8 @@ pub trait Integrator<const N: usize> {
     /// The time of the event is found as [`Step::crossing`] tells, in a bounded number of evaluations of the guard. To
     /// go on, change the state and run again from there: a guard that is zero, or on the far side by rounding, at
     /// the start counts when it comes back.
+    /// One that is back before an eighth of the first step is missed, with all that follows: a ball that bounces falls through
+    /// the floor when its flights have become that short. Let it rest before.
     ///
     /// # Errors
     ///

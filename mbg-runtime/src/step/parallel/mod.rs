@@ -170,7 +170,7 @@ where
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
         let mut end = start.x;
-        let (mut left, mut missed, mut highest) = (sweeps, 0.0, 0.0);
+        let (mut left, mut missed, mut coarse) = (sweeps, 0.0, 0.0);
         let error = loop {
             for number in 0..left {
                 sweep.slopes(problem, &stages, slopes);
@@ -178,7 +178,7 @@ where
                     && left > 1
                     && let Some(measure) = &measure
                 {
-                    [missed, highest] = Self::truncation(measure, start, slopes);
+                    [missed, coarse] = Self::truncation(measure, start, slopes);
                 }
                 end = last::<T, N, G>(&stages);
                 sweep.advance(&mut stages, slopes);
@@ -199,7 +199,7 @@ where
             change: last::<T, N, G>(&stages) - start.x,
             slope: Some(last::<T, N, G>(slopes)),
             error,
-            coarse: highest,
+            coarse,
         }
     }
 
@@ -280,8 +280,8 @@ where
         advance::<T, N, S, G>(&mut step.others, &base, &weights, &before.others);
     }
 
-    /// What the method misses even where the sweeps come to their end, and the last of Legendre's coefficients: mean squares
-    /// in units of the tolerance.
+    /// What the method misses even where the sweeps come to their end, and r², which is near one where slopes jump, as far as
+    /// it is none of rounding: mean squares in units of the tolerance.
     ///
     /// Legendre's coefficients of smooth slopes fall by a ratio r from half the last degree to the last, and by r² or less from
     /// there to twice the last degree, which is the first that the method takes for another. Of a sine it is r² times
@@ -300,7 +300,8 @@ where
         let [half, last] = [square(0), square(1)];
         let ratio = last / (last + half).max(f64::MIN_POSITIVE);
         let smooth = 0.25 * A::SINE;
-        [last * ratio * ratio * (ratio + smooth * smooth), last]
+        let missed = last * ratio * ratio * (ratio + smooth * smooth);
+        [missed, last.min(1.0) * ratio * ratio]
     }
 }
 

@@ -35,9 +35,9 @@ use crate::{Input, Real, System};
 /// long beside those before are therefore checked in between: model and dense output must have much the same derivative.
 /// The checks are half as far apart as steps were when they last became short, and a 24th of the time since: what lasts
 /// longer is seen, once or again and again. At steps of much the same length there are none after a while. Checked at
-/// three points, whatever drives the model, is each step behind a refused one, and each whose estimate of the error has grown
-/// by more than its length explains: an estimate presumes a smooth solution, and where a pulse or a contact begins it may be
-/// small by chance.
+/// three points is each step behind a refused one of a driven model, and of any model each whose estimate of the error has
+/// grown by more than its length explains: an estimate presumes a smooth solution, and where a pulse or a contact begins it
+/// may be small by chance.
 ///
 /// # Example
 ///

@@ -16,7 +16,8 @@ use crate::{Input, Real, System};
 /// Steps become short where something happens; probes are half that length apart and a part of the time since. So a run at
 /// steps of much the same length needs none after a while, and what comes again is seen again. Estimates of the error
 /// presume that the solution is smooth: where something begins within a step they may be small by chance, so such steps are
-/// looked into as well, and they alone where nothing but its state drives a model: that may meet a stiff wall behind free flight.
+/// looked into as well: behind a refused step, and where an estimate grows suddenly. The latter is all that is looked into where
+/// nothing but its state drives a model, which may meet a stiff wall behind free flight.
 #[derive(Clone, Copy)]
 pub(super) struct Probes {
     /// Since when steps have not become short.
@@ -60,6 +61,7 @@ impl Probes {
             self.begin(time, length, length);
         }
         self.longest = length;
+        self.last = [0.0; 2];
     }
 
     /// Takes note of a step that has been taken, unless it had to end where it does.
@@ -99,6 +101,7 @@ where
     I: Input<T, M>,
 {
     /// Where a step has missed something: the length up to which it has not. `polynomial` is its dense output.
+    #[inline]
     pub(super) fn clear_length<A: Family>(
         &mut self,
         start: &Start<T, N>,
@@ -108,17 +111,33 @@ where
     ) -> Option<f64> {
         let (time, length) = (seen(start.span.start), seen(start.span.length));
         // What nothing drives does not pulse by itself.
-        let mut parts = if self.is_left_alone() {
-            1
-        } else {
+        let is_driven = !self.is_left_alone();
+        let mut parts = if is_driven {
             self.probes.parts(time, length)
+        } else {
+            1
         };
-        if start.again || self.probes.is_sudden(length, trial.coarse) {
+        if (is_driven && start.again) || self.probes.is_sudden(length, trial.coarse) {
             parts = parts.max(FEW);
         }
         if parts == 1 {
-            return None;
+            None
+        } else {
+            self.clear_parts::<A>(start, trial, tolerance, polynomial, parts)
         }
+    }
+
+    /// The same of a step that is looked into between so many parts, apart from a loop that seldom comes here.
+    #[inline(never)]
+    fn clear_parts<A: Family>(
+        &mut self,
+        start: &Start<T, N>,
+        trial: &Trial<T, N>,
+        tolerance: &Tolerance<N>,
+        polynomial: impl FnOnce(&mut Self) -> Polynomial<T, N>,
+        parts: u32,
+    ) -> Option<f64> {
+        let (time, length) = (seen(start.span.start), seen(start.span.length));
         let memory = self.memory;
         let polynomial = polynomial(self);
         let measure = tolerance.between(&start.x, &trial.change);

@@ -111,6 +111,15 @@ impl<T: Real, const N: usize, const G: usize> Slopes<T, N, G> {
     }
 }
 
+/// What Legendre's coefficients of the slopes tell, as mean squares in units of the tolerance.
+#[derive(Clone, Copy, Default)]
+struct Truncation {
+    /// What the end of the step misses.
+    missed: f64,
+    /// How slowly the coefficients fall, near one where slopes jump, as far as they are not of rounding.
+    bend: f64,
+}
+
 /// The last step that was taken, and the one that was tried last.
 ///
 /// Both keep their place, and what is as large as slopes at all nodes is written where it stays: copied as a whole it goes
@@ -170,7 +179,7 @@ where
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
         let mut end = start.x;
-        let (mut left, mut missed, mut coarse) = (sweeps, 0.0, 0.0);
+        let (mut left, mut found) = (sweeps, Truncation::default());
         let error = loop {
             for number in 0..left {
                 sweep.slopes(problem, &stages, slopes);
@@ -178,14 +187,14 @@ where
                     && left > 1
                     && let Some(measure) = &measure
                 {
-                    [missed, coarse] = Self::truncation(measure, start, slopes);
+                    found = Self::truncation(measure, start, slopes);
                 }
                 end = last::<T, N, G>(&stages);
                 sweep.advance(&mut stages, slopes);
             }
             let change = last::<T, N, G>(&stages) - end;
             let square = measure.as_ref().map_or(0.0, |it| it.square(&change));
-            let error = Real::sqrt(square + missed);
+            let error = Real::sqrt(square + found.missed);
             if left == 1 {
                 // Good enough or not, the next step shall be shorter.
                 break error.max(1.0);
@@ -199,7 +208,7 @@ where
             change: last::<T, N, G>(&stages) - start.x,
             slope: Some(last::<T, N, G>(slopes)),
             error,
-            coarse,
+            coarse: found.bend,
         }
     }
 
@@ -280,14 +289,17 @@ where
         advance::<T, N, S, G>(&mut step.others, &base, &weights, &before.others);
     }
 
-    /// What the method misses even where the sweeps come to their end, and r², which is near one where slopes jump, as far as
-    /// it is none of rounding: mean squares in units of the tolerance.
+    /// What the method misses even where the sweeps come to their end.
     ///
     /// Legendre's coefficients of smooth slopes fall by a ratio r from half the last degree to the last, and by r² or less from
     /// there to twice the last degree, which is the first that the method takes for another. Of a sine it is r² times
     /// [`Swept::SINE`], and a quarter of that counts. Where slopes jump r is near one, and all of the last counts.
     #[inline(never)]
-    fn truncation(measure: &Measure<N>, start: &Start<T, N>, slopes: &Nodes<T, N, G>) -> [f64; 2] {
+    fn truncation(
+        measure: &Measure<N>,
+        start: &Start<T, N>,
+        slopes: &Nodes<T, N, G>,
+    ) -> Truncation {
         let length = start.span.length;
         let weights = const { &A::TABLEAU.legendre }
             .map(|[half, last]| [scaled::<T>(length, [half, last, 0.0, 0.0])]);
@@ -300,8 +312,10 @@ where
         let [half, last] = [square(0), square(1)];
         let ratio = last / (last + half).max(f64::MIN_POSITIVE);
         let smooth = 0.25 * A::SINE;
-        let missed = last * ratio * ratio * (ratio + smooth * smooth);
-        [missed, last.min(1.0) * ratio * ratio]
+        Truncation {
+            missed: last * ratio * ratio * (ratio + smooth * smooth),
+            bend: last.min(1.0) * ratio * ratio,
+        }
     }
 }
 
@@ -497,8 +511,8 @@ mod tests {
     fn missed<A: Swept<S, G>, const S: usize, const G: usize>(slope: impl Fn(f64) -> f64) -> f64 {
         let measure = Tolerance::<1>::new(0.0, 1.0, &[]).around(&SVector::from([0.0]));
         let (start, slopes) = sampled::<A, 1, S, G>(OVER_ONE, |_, t| slope(t));
-        let [missed, _] = Stages::<A, f64, 1, S, G>::truncation(&measure, &start, &slopes.others);
-        Real::sqrt(missed)
+        let found = Stages::<A, f64, 1, S, G>::truncation(&measure, &start, &slopes.others);
+        Real::sqrt(found.missed)
     }
 
     /// What is estimated, over what the method misses, of slopes with this integral over the step.

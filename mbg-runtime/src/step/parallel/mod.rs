@@ -30,6 +30,9 @@ use crate::{Columns, Input, Real, System};
 /// time than one ([`System::derivatives`]). Without lanes, in `f32`, on dual numbers and for models with nonlinear loops it
 /// gives the same, and [`Dop853`](super::Dop853) is faster. So it is for a handful of products per state.
 ///
+/// Not for laws that bend, as at contacts: a ball that bounces off a stiff floor is 0.7 mm off after 5 s at a tolerance of
+/// 1e-8, where the other adaptive methods are some micrometres off at most.
+///
 /// Sweeps begin with the polynomial of the step before. At the start and behind a jump there is none, and three more are
 /// taken. The limits of stability are those of steps of one length.
 ///
@@ -111,15 +114,6 @@ impl<T: Real, const N: usize, const G: usize> Slopes<T, N, G> {
     }
 }
 
-/// What Legendre's coefficients of the slopes tell, as mean squares in units of the tolerance.
-#[derive(Clone, Copy, Default)]
-struct Truncation {
-    /// What the end of the step misses.
-    missed: f64,
-    /// How slowly the coefficients fall, near one where slopes jump, as far as they are not of rounding.
-    bend: f64,
-}
-
 /// The last step that was taken, and the one that was tried last.
 ///
 /// Both keep their place, and what is as large as slopes at all nodes is written where it stays: copied as a whole it goes
@@ -179,7 +173,7 @@ where
         let measure =
             tolerance.map(|it| it.between(&start.x, &(last::<T, N, G>(&stages) - start.x)));
         let mut end = start.x;
-        let (mut left, mut found) = (sweeps, Truncation::default());
+        let (mut left, mut missed) = (sweeps, 0.0);
         let error = loop {
             for number in 0..left {
                 sweep.slopes(problem, &stages, slopes);
@@ -187,14 +181,14 @@ where
                     && left > 1
                     && let Some(measure) = &measure
                 {
-                    found = Self::truncation(measure, start, slopes);
+                    missed = Self::truncation(measure, start, slopes);
                 }
                 end = last::<T, N, G>(&stages);
                 sweep.advance(&mut stages, slopes);
             }
             let change = last::<T, N, G>(&stages) - end;
             let square = measure.as_ref().map_or(0.0, |it| it.square(&change));
-            let error = Real::sqrt(square + found.missed);
+            let error = Real::sqrt(square + missed);
             if left == 1 {
                 // Good enough or not, the next step shall be shorter.
                 break error.max(1.0);
@@ -208,7 +202,7 @@ where
             change: last::<T, N, G>(&stages) - start.x,
             slope: Some(last::<T, N, G>(slopes)),
             error,
-            coarse: found.bend,
+            coarse: error * error,
         }
     }
 
@@ -289,17 +283,13 @@ where
         advance::<T, N, S, G>(&mut step.others, &base, &weights, &before.others);
     }
 
-    /// What the method misses even where the sweeps come to their end.
+    /// What the method misses even where the sweeps come to their end: the mean square in units of the tolerance.
     ///
     /// Legendre's coefficients of smooth slopes fall by a ratio r from half the last degree to the last, and by r² or less from
     /// there to twice the last degree, which is the first that the method takes for another. Of a sine it is r² times
     /// [`Swept::SINE`], and a quarter of that counts. Where slopes jump r is near one, and all of the last counts.
     #[inline(never)]
-    fn truncation(
-        measure: &Measure<N>,
-        start: &Start<T, N>,
-        slopes: &Nodes<T, N, G>,
-    ) -> Truncation {
+    fn truncation(measure: &Measure<N>, start: &Start<T, N>, slopes: &Nodes<T, N, G>) -> f64 {
         let length = start.span.length;
         let weights = const { &A::TABLEAU.legendre }
             .map(|[half, last]| [scaled::<T>(length, [half, last, 0.0, 0.0])]);
@@ -312,10 +302,7 @@ where
         let [half, last] = [square(0), square(1)];
         let ratio = last / (last + half).max(f64::MIN_POSITIVE);
         let smooth = 0.25 * A::SINE;
-        Truncation {
-            missed: last * ratio * ratio * (ratio + smooth * smooth),
-            bend: last.min(1.0) * ratio * ratio,
-        }
+        last * ratio * ratio * (ratio + smooth * smooth)
     }
 }
 
@@ -511,8 +498,11 @@ mod tests {
     fn missed<A: Swept<S, G>, const S: usize, const G: usize>(slope: impl Fn(f64) -> f64) -> f64 {
         let measure = Tolerance::<1>::new(0.0, 1.0, &[]).around(&SVector::from([0.0]));
         let (start, slopes) = sampled::<A, 1, S, G>(OVER_ONE, |_, t| slope(t));
-        let found = Stages::<A, f64, 1, S, G>::truncation(&measure, &start, &slopes.others);
-        Real::sqrt(found.missed)
+        Real::sqrt(Stages::<A, f64, 1, S, G>::truncation(
+            &measure,
+            &start,
+            &slopes.others,
+        ))
     }
 
     /// What is estimated, over what the method misses, of slopes with this integral over the step.

@@ -61,7 +61,6 @@ impl Probes {
             self.begin(time, length, length);
         }
         self.longest = length;
-        self.last = [0.0; 2];
     }
 
     /// Takes note of a step that has been taken, unless it had to end where it does.

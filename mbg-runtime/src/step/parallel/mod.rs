@@ -198,11 +198,14 @@ where
             }
             left = 1;
         };
+        // What is in between is of far lower order than the end, and would be taken for what a probe looks for: that is worth
+        // it where sources may pulse.
+        let is_probed = !problem.is_left_alone();
         Trial {
             change: last::<T, N, G>(&stages) - start.x,
             slope: Some(last::<T, N, G>(slopes)),
             error,
-            coarse: error * error,
+            coarse: if is_probed { error * error } else { 0.0 },
         }
     }
 

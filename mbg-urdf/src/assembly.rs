@@ -2,7 +2,7 @@
 //!
 //! A hinge leaves open where along its axis its body's frame is, where that is turned to about it, and at which angle. They
 //! are chosen so that from one hinge to the next it is one turn about a line across both axes, as Denavit and Hartenberg
-//! (1955) have it, instead of three, and no way along the first.
+//! (1955) have it, instead of three, and no way along the first where fewer lengths are left so.
 
 use crate::geometry::{
     Body, IDENTITY, LENGTH, Matrix, Pose, Vector, about, across, aligned, between, is_permutation,

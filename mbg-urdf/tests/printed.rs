@@ -210,3 +210,28 @@ fn one_turn_leads_from_a_hinge_to_the_next() {
     // Onto the base, which cannot be turned, it is two; parallel axes need none.
     assert_eq!(turns, ["[[0.88", "rot_x(", "rot_x("], "{}", found.text);
 }
+
+#[test]
+fn frames_move_along_hinges_to_where_fewer_lengths_are_left() {
+    let link = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>";
+    let text = format!(
+        "<robot name=\"r\"><link name=\"foot\"/><link name=\"post\">{link}</link><link name=\"arm\">{link}</link>
+        <joint name=\"turn\" type=\"continuous\">
+          <origin xyz=\"0 0 1\"/><parent link=\"foot\"/><child link=\"post\"/><axis xyz=\"0 0 1\"/>
+        </joint>
+        <joint name=\"lift\" type=\"continuous\">
+          <origin xyz=\"0.5 0 0.25\"/><parent link=\"post\"/><child link=\"arm\"/><axis xyz=\"1 0 0\"/>
+        </joint></robot>"
+    );
+    let printed = mbg_urdf::convert(&text, "r.urdf", &Options::default())
+        .unwrap()
+        .text;
+    for expected in [
+        "turn_place: Offset { by: [0.0, 0.0, 1.25],",
+        "lift_place: Offset { by: [0.5, 0.0, 0.0] }",
+        // The link stays where it was.
+        "let post_position[3] = turn.position_b + turn.orientation_b * [0.0, 0.0, -0.25];",
+    ] {
+        assert!(printed.contains(expected), "{expected}\n{printed}");
+    }
+}

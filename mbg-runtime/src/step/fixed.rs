@@ -72,7 +72,9 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
             return Err(Stopped::new(t0, Cause::Argument(what)));
         }
         if self.step <= 4.0 * T::EPSILON * t0.magnitude().max(t1.magnitude()) {
-            return Err(Stopped::new(t0, Cause::StepTooSmall));
+            let what = "the step is lost in the rounding of times as large as those of the run: take a longer one, double \
+                        precision, or pieces that begin at zero";
+            return Err(Stopped::new(t0, Cause::Argument(what)));
         }
         Ok(())
     }
@@ -577,13 +579,12 @@ mod tests {
             .unwrap_err()
             .cause
         };
-        for h in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for h in [0.0, -1.0, 1e-17, f64::NAN, f64::INFINITY] {
             assert!(matches!(run(0.0, 1.0, h, 0.0), Cause::Argument(_)));
         }
         for (t0, t1) in [(1.0, 0.0), (0.0, f64::NAN), (f64::NEG_INFINITY, 0.0)] {
             assert!(matches!(run(t0, t1, 0.1, 0.0), Cause::Argument(_)));
         }
-        assert_eq!(run(0.0, 1.0, 1e-17, 0.0), Cause::StepTooSmall);
         assert_eq!(
             run(0.0, 1.0, 0.1, f64::NAN),
             Cause::NotFinite {

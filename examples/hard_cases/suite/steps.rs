@@ -155,7 +155,7 @@ pub(crate) fn too_short() -> Vec<Line> {
         let statistics = solver.integrate(&Written(Pendulum), &(), 0.0, 10.0, start, keep)?;
         Ok(Found::new((ends[1] - ends[0]).norm(), statistics))
     }
-    let small = "step is too small";
+    let small = "the step is lost in the rounding";
     vec![
         Line::run(
             ("step of 1e-16 s over 10 s", Rk4::NAME, "refusal"),

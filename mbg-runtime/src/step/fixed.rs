@@ -72,8 +72,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
             return Err(Stopped::new(t0, Cause::Argument(what)));
         }
         if self.step <= 4.0 * T::EPSILON * t0.magnitude().max(t1.magnitude()) {
-            let what = "the step is lost in the rounding of times as large as those of the run: take a longer one, double \
-                        precision, or pieces that begin at zero";
+            let what = "the step is lost in the rounding of so large times: take a longer one, f64, or pieces from zero";
             return Err(Stopped::new(t0, Cause::Argument(what)));
         }
         Ok(())

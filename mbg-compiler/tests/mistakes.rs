@@ -593,6 +593,7 @@ fn a_mistake_inside_a_component_is_told_at_the_argument_behind_it() {
     insta::assert_snapshot!(hinge("axis: 1, tilt: [0.0, 1.0, 0.0]"), @"
     2:34 `tilt` does not fit in `Revolute`: expected a 3×3 matrix, found a vector of 3 [MBG0204]
       `tilt`: Takes axes of the joint to axes of a, such as `rot_x(0.5)`
+      help: for roll, pitch and yaw write `tilt: rot_y(1.0)`
     ");
     insta::assert_snapshot!(hinge("axis: 1, initial: hinge.angle"), @"
     2:37 `initial` does not fit in `Revolute`: expected an initial value of numbers and parameters alone [MBG0213]

@@ -351,12 +351,95 @@ fn coefficients_are_told_by_the_words_of_their_elements() {
         ("I", "mass", "inertia"),
         ("I", "moment", "inertia"),
         ("R", "damping", "resistance"),
+        ("R", "r", "resistance"),
         ("Se", "voltage", "effort"),
+        ("Se", "e", "effort"),
     ] {
         let help = typed(&text(element, &format!("{word}: 2.0 * 3.0"))).remove(0);
         assert_eq!(help, format!("{law}: 2.0 * 3.0"));
         assert_eq!(told(&text(element, &help)), "");
     }
+}
+
+#[test]
+fn a_source_of_flow_is_told_by_its_letter() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ 0 n {{ C c {{ compliance: 1.0 }} R r {{ resistance: 1.0 }} Sf s {{ {law} }} }} }}"
+        )
+    };
+    let help = typed(&text("f: 2.0")).remove(0);
+    assert_eq!(help, "flow: 2.0");
+    assert_eq!(told(&text(&help)), "");
+}
+
+#[test]
+fn converters_are_told_what_their_number_multiplies() {
+    let text = |element: &str, law: &str| {
+        format!(
+            "model M {{ param d = 2.0; 1 v {{ I m {{ inertia: 1.0 }} }} 1 w {{ R r {{ resistance: d }} }}
+             v -> {element} x {{ {law} }} -> w; }}"
+        )
+    };
+    for (element, slip, laws) in [
+        ("TF", "ratio: d", &["flow: d", "flow: 1 / d"][..]),
+        (
+            "MTF",
+            "n: 2.0 * d",
+            &["flow: 2.0 * d", "flow: 1 / (2.0 * d)"],
+        ),
+        ("TF", "effort: d", &["flow: 1 / d"]),
+        ("TF", "effort: 2.0 * d", &["flow: 1 / (2.0 * d)"]),
+        ("GY", "r: d", &["effort: d"]),
+        ("MGY", "ratio: d", &["effort: d"]),
+        ("GY", "flow: d", &["effort: 1 / d"]),
+    ] {
+        let helps = typed(&text(element, slip));
+        assert_eq!(helps[..laws.len()], *laws);
+        for law in laws {
+            assert_eq!(told(&text(element, law)), "");
+        }
+    }
+    insta::assert_snapshot!(told(&text("TF", "ratio: 2.0")), @"
+    2:26 `TF` does not know `ratio` [MBG0207]
+      help: write `flow: 2.0`: the flow behind it is that times the flow before it; write `flow: 1 / 2.0` if the flow is divided by it
+      help: its words are `flow`
+    ");
+    insta::assert_snapshot!(told(&text("TF", "effort: [[1.0, 0.0], [0.0, 2.0]]")), @"
+    2:26 `TF` does not know `effort` [MBG0207]
+      help: write `flow: …` with the inverse of it: the flow behind it is that times the flow before it
+      help: its words are `flow`
+    ");
+    insta::assert_snapshot!(told(&text("GY", "r: 2.0")), @"
+    2:26 `GY` does not know `r` [MBG0207]
+      help: write `effort: 2.0`: the effort behind it is that times the flow before it
+      help: its words are `effort`
+    ");
+}
+
+#[test]
+fn a_parameter_is_told_by_the_end_of_its_name() {
+    let hinge = |parameter: &str| {
+        arm(&format!(
+            "hinge: Revolute {{ axis: 1, blocked: compliant, {parameter}: 1.0 }} (ground, arm);"
+        ))
+    };
+    let help = typed(&hinge("torsional_stiffness")).remove(0);
+    assert_eq!(help, "blocked_torsional_stiffness");
+    assert!(!told(&hinge(&help)).contains("no parameter"));
+    // Nothing else is told of a value that was meant to be given so.
+    let text = |parameter: &str| {
+        format!(
+            "component Shaft(port 1 a) {{ param left_stiffness; param right_stiffness; C l {{ stiffness: left_stiffness + right_stiffness }} -> a; }}
+             model M {{ 1 v {{ I m {{ inertia: 1.0 }} }} shaft: Shaft {{ {parameter}: 2.0 }} (v); }}"
+        )
+    };
+    assert_eq!(
+        typed(&text("stiffness"))[..2],
+        ["left_stiffness", "right_stiffness"]
+    );
+    // The end of a word is no word.
+    assert_eq!(typed(&hinge("orsional_stiffness"))[0], "axis");
 }
 
 #[test]
@@ -440,6 +523,97 @@ fn an_axis_is_told_by_its_number() {
       `axis`: 0, 1 or 2 for x, y or z
       inside it, `moment` has 3 components, `moment[axis]` asks for more
     ");
+}
+
+#[test]
+fn a_direction_is_told_by_an_axis_and_its_tilt() {
+    let joint = |component: &str, axis: &str| {
+        arm(&format!("joint: {component} {{ {axis} }} (ground, arm);"))
+    };
+    for (direction, written) in [
+        ("[0.0, 0.0, 2.0]", "axis: 2"),
+        ("[-1, 0, 0]", "tilt: rot_z(3.141592653589793), axis: 0"),
+        ("-y", "tilt: rot_x(3.141592653589793), axis: 1"),
+        (
+            "[0.0, 0.0, -1.0]",
+            "tilt: rot_x(3.141592653589793), axis: 2",
+        ),
+        (
+            "[0.0, 1.0, 1.0]",
+            "tilt: rot_x(-0.7853981633974483), axis: 2",
+        ),
+        (
+            "[-1.0, 0.0, 1.0]",
+            "tilt: rot_y(-0.7853981633974483), axis: 2",
+        ),
+        (
+            "[3.0, 4.0, 5.0]",
+            "tilt: rot_z(0.9272952180016122) * rot_y(0.7853981633974483), axis: 2",
+        ),
+    ] {
+        for component in ["Revolute", "Prismatic"] {
+            let help = typed(&joint(component, &format!("axis: {direction}")));
+            assert!(help.iter().any(|it| it == written), "{help:?}");
+            assert_eq!(told(&joint(component, written)), "");
+        }
+    }
+    insta::assert_snapshot!(told(&joint("Revolute", "axis: [0.0, 0.6, 0.8]")), @"
+    3:25 `axis` does not fit in `Revolute`: expected a whole number that is known while the model is compiled, found `[0.0, 0.6, 0.8]` [MBG0217]
+      `axis`: 0, 1 or 2 for x, y or z
+      help: an axis is 0, 1 or 2, and `tilt:` turns it, and the axes of the second frame with it: write `tilt: rot_x(-0.6435011087932844), axis: 2`
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+    insta::assert_snapshot!(told(&joint("Revolute", "axis: [0.0, 0.0, 0.0]")), @"
+    3:25 `axis` does not fit in `Revolute`: expected a whole number that is known while the model is compiled, found `[0.0, 0.0, 0.0]` [MBG0217]
+      `axis`: 0, 1 or 2 for x, y or z
+      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
+      help: a `param` of a model is no such number, because it can change after the model is compiled
+    ");
+}
+
+#[test]
+fn a_tilt_by_three_angles_is_told_as_turns() {
+    let tilted = |tilt: &str| {
+        arm(&format!(
+            "hinge: Revolute {{ axis: 2, tilt: {tilt} }} (ground, arm);"
+        ))
+    };
+    for (angles, turns) in [
+        ("[0.1, 0.2, 0.3]", "rot_z(0.3) * rot_y(0.2) * rot_x(0.1)"),
+        ("[0.0, 0.5 + 0.1, 0]", "rot_y(0.5 + 0.1)"),
+        ("[0.0, 0.0, 0.0]", "1.0"),
+    ] {
+        let help = typed(&tilted(angles)).pop().unwrap();
+        assert_eq!(help, format!("tilt: {turns}"));
+        assert_eq!(told(&tilted(turns)), "");
+    }
+    insta::assert_snapshot!(told(&tilted("[0.1, 0.2, 0.3]")), @"
+    3:34 `tilt` does not fit in `Revolute`: found `[0.1, 0.2, 0.3]` [MBG0204]
+      `tilt`: Takes axes of the joint to axes of a, such as `rot_x(0.5)`
+      inside it, `gravity_b` has dimension 3, found a 3×3 matrix
+      help: for roll, pitch and yaw write `tilt: rot_z(0.3) * rot_y(0.2) * rot_x(0.1)`
+    ");
+}
+
+#[test]
+fn orientations_are_told_by_their_words() {
+    let free = |word: &str| {
+        arm(&format!(
+            "free: Free {{ orientation: {word} }} (ground, arm);"
+        ))
+    };
+    for (word, here) in [
+        ("euler", "angles"),
+        ("rpy", "angles"),
+        ("quaternions", "quaternion"),
+        ("quat", "quaternion"),
+        ("dcm", "matrix"),
+        ("rotation", "matrix"),
+    ] {
+        assert_eq!(typed(&free(word)), [here]);
+        assert_eq!(told(&free(here)), "");
+    }
 }
 
 #[test]

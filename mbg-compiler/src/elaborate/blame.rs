@@ -1,11 +1,12 @@
 //! Mistakes inside components of the library, which the user does not see, told at the value of the user's behind them.
 
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 
 use proc_macro2::Span;
 use quote::ToTokens;
 use syn::spanned::Spanned;
-use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue};
+use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, UnOp};
 
 use super::Builder;
 use super::definitions::{Definition, Progress};
@@ -146,11 +147,13 @@ impl Builder<'_> {
         let message = inner.message.replace(&found, &format!("found `{value}`"));
         let documentation = definition.parameter.map(|it| text(&it.documentation));
         let documentation = documentation.filter(|text| !text.is_empty());
-        // Of a number that is out of range only the component's own names speak.
-        let is_inner = inner.code == codes::WRONG_DIMENSION
+        let is_shape = inner.code == codes::WRONG_DIMENSION;
+        let turns = elsewhere::turns(definition.value).filter(|_| is_shape && name == "tilt");
+        // Of a number that is out of range, or of angles, only the component's own names speak.
+        let is_inner = is_shape
             && documentation.is_some()
             && !message.starts_with("expected")
-            && self.is_whole(culprit);
+            && (turns.is_some() || self.is_whole(culprit));
         let (told, inside) = match is_inner {
             true => (format!("found `{value}`"), Some(message)),
             false => (message, None),
@@ -160,10 +163,16 @@ impl Builder<'_> {
             message: format!("`{name}` does not fit in `{component}`: {told}"),
             ..inner
         };
-        if let Some(axis) = axis(definition.value).filter(|_| report.code == codes::WHOLE_NUMBER) {
-            let help = format!("`{value}` is {axis}: write `{name}: {axis}`");
-            report.helps.insert(0, help);
+        if report.code == codes::WHOLE_NUMBER {
+            let tilts = self.components.get(component);
+            let tilts =
+                tilts.is_some_and(|it| it.parameters().any(|parameter| parameter.name == "tilt"));
+            let help = direction(definition.value)
+                .and_then(|direction| along(&name.to_string(), &value, direction, tilts));
+            report.helps.splice(0..0, help);
         }
+        let turns = turns.map(|turns| format!("for roll, pitch and yaw write `{name}: {turns}`"));
+        report.helps.splice(0..0, turns);
         let notes = documentation.map(|text| format!("`{name}`: {text}"));
         let inside = inside.map(|message| format!("inside it, {message}"));
         report.notes.extend(notes.into_iter().chain(inside));
@@ -182,19 +191,55 @@ impl Builder<'_> {
     }
 }
 
-/// The number of the axis that a letter or a unit vector means.
-fn axis(value: &Expr) -> Option<usize> {
+/// The direction that a letter or a vector of numbers means.
+fn direction(value: &Expr) -> Option<[f64; 3]> {
     match value {
-        Expr::Path(path) => component_index(path.path.get_ident()?),
+        Expr::Path(path) => {
+            let along = component_index(path.path.get_ident()?)?;
+            Some([0, 1, 2].map(|axis| f64::from(u8::from(axis == along))))
+        }
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+            Some(direction(&unary.expr)?.map(|entry| -entry))
+        }
         Expr::Array(array) => {
             let entries: Option<Vec<f64>> = array.elems.iter().map(elsewhere::number).collect();
-            let entries = entries?;
-            let along = entries.iter().position(|entry| *entry == 1.0)?;
-            let zeros = entries.iter().filter(|entry| **entry == 0.0).count();
-            (entries.len() == 3 && zeros == 2).then_some(along)
+            entries?.try_into().ok()
         }
         _ => None,
     }
+}
+
+/// What to type for an axis along a direction; `tilts` where a tilt may turn it.
+fn along(name: &str, value: &str, direction: [f64; 3], tilts: bool) -> Option<String> {
+    let parts = [0, 1, 2].into_iter().filter(|axis| direction[*axis] != 0.0);
+    let (axis, tilt) = match parts.collect::<Vec<usize>>()[..] {
+        [] => return None,
+        [axis] if direction[axis] > 0.0 => {
+            return Some(format!("`{value}` is {axis}: write `{name}: {axis}`"));
+        }
+        // A half turn about another axis.
+        [axis] => {
+            let about = if axis == 0 { "z" } else { "x" };
+            (axis, format!("rot_{about}({PI})"))
+        }
+        _ => (2, turned(direction)),
+    };
+    tilts.then(|| {
+        format!(
+            "an axis is 0, 1 or 2, and `tilt:` turns it, and the axes of the second frame with it: write `tilt: {tilt}, {name}: {axis}`"
+        )
+    })
+}
+
+/// The rotation that takes the axis z to a direction.
+fn turned([x, y, z]: [f64; 3]) -> String {
+    if x == 0.0 {
+        return format!("rot_x({})", (-y).atan2(z));
+    }
+    if y == 0.0 {
+        return format!("rot_y({})", x.atan2(z));
+    }
+    format!("rot_z({}) * rot_y({})", y.atan2(x), x.hypot(y).atan2(z))
 }
 
 /// What documentation comments say.

@@ -4,6 +4,7 @@ use syn::spanned::Spanned;
 use syn::{BinOp, Expr, ExprBinary, ExprCall, UnOp};
 
 use super::constants::{Chosen, Constants, plain_name};
+use super::elsewhere;
 use super::expressions::Result;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -115,7 +116,13 @@ pub(super) fn no_word(found: &Expr, words: &[String]) -> Box<Diagnostic> {
     let text = dump::expression(found);
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let message = format!("expected {}, found `{text}`", alternatives(&words));
-    Box::new(error(codes::WORD, found.span(), message).did_you_mean(&text, &words))
+    let report = error(codes::WORD, found.span(), message);
+    Box::new(
+        match elsewhere::choice(&text).filter(|word| words.contains(word)) {
+            Some(word) => report.help(format!("write `{word}`")),
+            None => report.did_you_mean(&text, &words),
+        },
+    )
 }
 
 fn undecided(condition: &Expr) -> Box<Diagnostic> {

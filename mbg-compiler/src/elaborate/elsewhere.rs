@@ -79,27 +79,70 @@ const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
     ),
     (
         ElementKind::R,
-        &["damping", "friction", "viscosity", "drag", "impedance"],
+        &["damping", "friction", "viscosity", "drag", "impedance", "r"],
         "resistance",
     ),
     (ElementKind::R, &["admittance", "mobility"], "conductance"),
     (
         ElementKind::Se,
-        &["voltage", "force", "torque", "moment", "pressure", "value"],
+        &[
+            "voltage", "force", "torque", "moment", "pressure", "value", "e",
+        ],
         "effort",
     ),
     (
         ElementKind::Sf,
-        &["current", "velocity", "speed", "rate", "value"],
+        &["current", "velocity", "speed", "rate", "value", "f"],
         "flow",
     ),
 ];
 
-/// The word for the law of an element that has another name in a part of physics.
-pub(super) fn law_word(kind: ElementKind, word: &Ident) -> Option<&'static str> {
+/// What the number of a transformer or gyrator is called.
+const RATIOS: &[&str] = &["ratio", "modulus", "gain", "n", "m", "r"];
+
+/// What to type for the law of an element that stands behind a word of another name.
+pub(super) fn law(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
+    if let Some(law) = converter_law(kind) {
+        return by_converter(law, &word.to_string(), value);
+    }
     let mut own = COEFFICIENTS.iter().filter(|(owner, ..)| *owner == kind);
     let (.., law) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
-    Some(law)
+    Some(format!("write `{law}: {}`", value_text(value)))
+}
+
+/// What stands behind a word, or a place for it.
+fn value_text(value: Option<&Expr>) -> String {
+    value.map_or_else(|| "…".to_owned(), dump::expression)
+}
+
+/// What the law of an element with two ports gives behind it.
+fn converter_law(kind: ElementKind) -> Option<&'static str> {
+    match kind {
+        ElementKind::TF | ElementKind::MTF => Some("flow"),
+        ElementKind::GY | ElementKind::MGY => Some("effort"),
+        _ => None,
+    }
+}
+
+/// What to type for the number of a transformer or gyrator: its law multiplies the flow before it.
+fn by_converter(law: &str, word: &str, value: Option<&Expr>) -> Option<String> {
+    let text = value_text(value);
+    let number = value.filter(|value| !matches!(value, Expr::Array(_)));
+    let inverse = number.map(|value| filled("1 / x", &[("x", value)]));
+    let rule = format!("the {law} behind it is that times the flow before it");
+    match (word, inverse) {
+        // What one variable is multiplied by, the other is divided by, as power stays.
+        ("effort" | "flow", Some(inverse)) => Some(format!("write `{law}: {inverse}`: {rule}")),
+        ("effort" | "flow", None) => {
+            Some(format!("write `{law}: …` with the inverse of it: {rule}"))
+        }
+        _ if !RATIOS.contains(&word) => None,
+        // The ratio of a gear is told either way.
+        (_, Some(inverse)) if law == "flow" => Some(format!(
+            "write `flow: {text}`: {rule}; write `flow: {inverse}` if the flow is divided by it"
+        )),
+        _ => Some(format!("write `{law}: {text}`: {rule}")),
+    }
 }
 
 /// What joints and bodies are called elsewhere, without regard to capitals, and in the library.
@@ -119,6 +162,21 @@ pub(super) fn component(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();
     let mut components = COMPONENTS.iter();
     let (_, here) = components.find(|(names, _)| names.contains(&name.as_str()))?;
+    Some(here)
+}
+
+/// What the words of a choice are called elsewhere, and here.
+const CHOICES: &[(&[&str], &str)] = &[
+    (&["euler", "euler_angles", "rpy", "cardan"], "angles"),
+    (&["quat", "quaternions"], "quaternion"),
+    (&["dcm", "rotation", "rotation_matrix"], "matrix"),
+];
+
+/// The word of a choice that has this name elsewhere.
+pub(super) fn choice(word: &str) -> Option<&'static str> {
+    let word = word.to_lowercase();
+    let mut choices = CHOICES.iter();
+    let (_, here) = choices.find(|(words, _)| words.contains(&word.as_str()))?;
     Some(here)
 }
 
@@ -246,6 +304,25 @@ pub(super) fn by_scalar_product(product: &ExprBinary) -> String {
     let places = [("a", &*product.left), ("b", &*product.right)];
     let text = filled("transpose(a) * b", &places);
     format!("for the number that two vectors give write `{text}`")
+}
+
+/// A vector of roll, pitch and yaw as the turns that it stands for, the first innermost, as URDF has them.
+pub(super) fn turns(angles: &Expr) -> Option<String> {
+    let Expr::Array(angles) = bare(angles) else {
+        return None;
+    };
+    let names = ["x", "y", "z"];
+    if angles.elems.len() != names.len() {
+        return None;
+    }
+    let turns = names.iter().zip(&angles.elems).rev();
+    let turns = turns.filter(|(_, angle)| number(angle) != Some(0.0));
+    let turns = turns.map(|(axis, angle)| format!("rot_{axis}({})", dump::expression(angle)));
+    let turns: Vec<String> = turns.collect();
+    Some(match turns.is_empty() {
+        true => "1.0".to_owned(),
+        false => turns.join(" * "),
+    })
 }
 
 /// The whole part of a quotient of whole numbers.

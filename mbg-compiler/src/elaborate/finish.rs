@@ -289,8 +289,8 @@ impl<'a> Builder<'a> {
             let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
             let known = words.iter().map(|word| (*word).to_owned());
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
-            let report = match elsewhere::law_word(element.kind, &field.name) {
-                Some(law) => report.help(format!("write `{law}: {}`", value(field))),
+            let report = match elsewhere::law(element.kind, &field.name, field.value.as_ref()) {
+                Some(help) => report.help(help),
                 None => report.did_you_mean(&field.name.to_string(), &words),
             };
             self.tell(
@@ -305,7 +305,7 @@ impl<'a> Builder<'a> {
             let words = words_of(element.kind);
             let found = || element.fields.iter().map(|field| &field.name);
             let mut laws = law_words(element.kind).iter();
-            let is_other = found().any(|it| elsewhere::law_word(element.kind, it).is_some());
+            let is_other = found().any(|it| elsewhere::law(element.kind, it, None).is_some());
             if is_other || laws.any(|law| is_misspelt(law, found(), &words)) {
                 self.missing = Some(Missing::Broken);
             }
@@ -480,12 +480,6 @@ impl<'a> Builder<'a> {
             rings,
         }
     }
-}
-
-/// What stands behind a word, or a place for it.
-fn value(field: &ast::Field) -> String {
-    let value = field.value.as_ref();
-    value.map_or_else(|| "…".to_owned(), dump::expression)
 }
 
 /// The one field that carries the law.

@@ -12,7 +12,7 @@ use super::unused::without_effect;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
-use crate::syntax::words::is_misspelt;
+use crate::syntax::words::{alternatives, is_misspelt};
 use crate::syntax::{ast, dump, library};
 
 impl<'a> Builder<'a> {
@@ -153,8 +153,12 @@ impl<'a> Builder<'a> {
         for argument in &instance.arguments {
             if !names.iter().any(|known| argument.name == known) {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
-                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message)
-                    .did_you_mean(&argument.name.to_string(), &names);
+                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+                let longer = ending_in(&argument.name.to_string(), &names);
+                let report = match longer.is_empty() {
+                    true => report.did_you_mean(&argument.name.to_string(), &names),
+                    false => report.help(format!("write {}", alternatives(&longer))),
+                };
                 let help = format!("its parameters are {}", listing(known.clone()));
                 self.tell(scope, report.help(help));
             }
@@ -200,8 +204,13 @@ impl<'a> Builder<'a> {
     ) {
         let known = parameter_names(component);
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
-        let arguments = instance.arguments.iter().map(|argument| &argument.name);
-        if is_misspelt(&name.to_string(), arguments, &known) {
+        let mut arguments = instance.arguments.iter().map(|argument| &argument.name);
+        let name_text = name.to_string();
+        let is_shortened = |found: &Ident| {
+            let found = found.to_string();
+            !known.contains(&found.as_str()) && !ending_in(&found, &[&name_text]).is_empty()
+        };
+        if is_misspelt(&name_text, arguments.clone(), &known) || arguments.any(is_shortened) {
             return;
         }
         let message = format!("`{}` needs a value for `{name}`", instance.component);
@@ -249,6 +258,15 @@ impl<'a> Builder<'a> {
         }
         self.tell(scope, report);
     }
+}
+
+/// The names that end in these words, as `blocked_torsional_stiffness` does in `torsional_stiffness`.
+fn ending_in<'a>(words: &str, names: &[&'a str]) -> Vec<&'a str> {
+    let front = |name: &&&str| {
+        let front = name.strip_suffix(words);
+        front.is_some_and(|front| front.ends_with('_'))
+    };
+    names.iter().filter(front).copied().collect()
 }
 
 /// What a component can be given.

@@ -617,6 +617,54 @@ fn orientations_are_told_by_their_words() {
 }
 
 #[test]
+fn what_a_running_model_gives_is_told_as_that() {
+    let text = |statement: &str| {
+        format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0 }} R r {{ resistance: 1.0 }} }} {statement} }}"
+        )
+    };
+    assert_eq!(typed(&text("output E = energy;")), ["System::energy"]);
+    assert_eq!(typed(&text("output P = 2.0 * power;")), ["System::power"]);
+    assert_eq!(told(&text("let energy = m.p; output E = energy;")), "");
+    for event in [
+        "when m.f > 1.0 { }",
+        "when (m.f > 1.0) { m.p = 0.0; }",
+        "when m.f > 1.0 then reinit(m.p, 0.0); end when;",
+    ] {
+        let told = told(&text(event));
+        let first = told.lines().nth(1).unwrap();
+        assert!(first.contains("`Integrator::until`"), "{told}");
+    }
+    assert_eq!(told(&text("1 when; v -> when;")), "");
+    insta::assert_snapshot!(told(&text("when m.f > 1.0 { }")), @"
+    1:64 expected a statement, found `when` [MBG0101]
+      help: events are found while a model runs: `Integrator::until` stops where a guard goes through zero, and the next run starts from there
+    ");
+}
+
+#[test]
+fn a_dead_zone_and_a_choice_of_one_side_are_told_whole() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ param w: m/s = 0.1; param k: N*s/m = 2.0; param mass: kg = 1.0;
+             1 v {{ I m {{ inertia: mass }} R r {{ effort: k * {law} }} }} }}"
+        )
+    };
+    let help = typed(&text("deadzone(f, w)")).remove(0);
+    assert_eq!(help, "(sign(f) * max(abs(f) - w, 0.0))");
+    assert_eq!(told(&text(&help)), "");
+    for choice in [
+        "(if f > w { f })",
+        "(if f > w { f } else if f < -w { 2.0 * f })",
+    ] {
+        let help = typed(&text(choice)).pop().unwrap();
+        assert_eq!(help, "else { 0.0 }");
+        let whole = choice.replace(" })", &format!(" }} {help})"));
+        assert_eq!(told(&text(&whole)), "");
+    }
+}
+
+#[test]
 fn numbers_with_units_are_told_without_them() {
     let start = |angle: &str| {
         arm(&format!(

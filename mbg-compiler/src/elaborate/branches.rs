@@ -5,6 +5,7 @@ use syn::{BinOp, Expr, UnOp};
 
 use super::expressions::{Evaluator, Names, Result, Value, fail, number};
 use crate::codes;
+use crate::diagnostics::error;
 use crate::symbolic::{Expression, Function};
 
 /// What a choice between values depends on.
@@ -23,10 +24,11 @@ const NO_TEST: &str = "expected a comparison with < <= > or >=";
 impl<N: Names> Evaluator<'_, N> {
     pub(super) fn choice(&mut self, choice: &syn::ExprIf) -> Result<Value> {
         let Some((_, otherwise)) = &choice.else_branch else {
-            return fail(
-                choice.span(),
-                "expected an `else`: an `if` has a value on both sides",
-            );
+            let message = "expected an `else`: an `if` has a value on both sides";
+            let report = error(codes::EXPRESSION, choice.span(), message);
+            return Err(Box::new(report.help(
+                "where it adds nothing otherwise, write `else { 0.0 }` behind it",
+            )));
         };
         let test = self.test(&choice.cond)?;
         // What is known chooses while the model is compiled: the other branch need not even exist.

@@ -12,6 +12,9 @@ use crate::syntax::words::JUMPING_INPUT;
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
 
+/// What is zero up to a width on both sides.
+const DEAD_ZONE: &str = "(sign(x) * max(abs(x) - width, 0.0))";
+
 /// A word, its arguments, and what is written here: in parentheses where another operator could come between.
 const WORDS: &[(&str, &[&str], &str)] = &[
     ("pi", &[], PI),
@@ -39,6 +42,9 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("saturation", &["x", "a", "b"], "min(max(x, a), b)"),
     ("sat", &["x", "a", "b"], "min(max(x, a), b)"),
     ("limit", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("deadzone", &["x", "width"], DEAD_ZONE),
+    ("dead_zone", &["x", "width"], DEAD_ZONE),
+    ("deadband", &["x", "width"], DEAD_ZONE),
     (
         "interp",
         &["x", "places", "values"],
@@ -198,6 +204,7 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         ("der" | "ddt" | "derivative", [of]) => return Some(rate(of)),
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
         ("delay", [value, by]) => return Some(delay(value, by)),
+        ("energy" | "power", []) => return Some(of_system(word)),
         _ if JUMPING.contains(&word) => {
             return Some(format!(
                 "its value jumps, and a law has no such function: {JUMPING_INPUT}"
@@ -232,6 +239,15 @@ fn rate(of: &Expr) -> String {
         ),
         None => format!("{rule}: read the flow `….f` or the effort `….e` that is this rate"),
     }
+}
+
+/// Where the energy of a whole model and its rate are found.
+fn of_system(word: &str) -> String {
+    let of = match word {
+        "energy" => "what all storages hold",
+        _ => "the rate of what all storages hold",
+    };
+    format!("`System::{word}` gives {of} at a state: no output is needed for it")
 }
 
 /// What to type for zero before a time and one after it.

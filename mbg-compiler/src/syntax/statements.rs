@@ -96,7 +96,8 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
         return conditional(cursor, first, sink).map(Statement::Conditional);
     }
     let misspelt = cursor.ident(1).is_some() && words::element(&word).is_none();
-    if misspelt || words::is_reserved(&word) {
+    let is_event = word == words::EVENT && cursor.group(1, Delimiter::Parenthesis).is_some();
+    if misspelt || is_event || words::is_reserved(&word) {
         return Err(no_statement(cursor));
     }
     if cursor.punct(1, ':') && cursor.ident(2).is_some_and(|word| word == "for") {
@@ -138,6 +139,12 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
         return Box::new(
             error.note("models and components stand side by side, not inside each other"),
         );
+    }
+    if word == words::EVENT {
+        return Box::new(error.help(
+            "events are found while a model runs: `Integrator::until` stops where a guard goes through zero, and the next \
+             run starts from there",
+        ));
     }
     if let Some(near) = words::nearest(
         &word,

@@ -21,6 +21,9 @@ pub(super) const STATEMENTS: &[&str] = &[
 /// The word that takes a file into the macro call, before anything else.
 pub(super) const INCLUDE: &str = "include";
 
+/// The word that begins an event in other languages.
+pub(super) const EVENT: &str = "when";
+
 /// Words that begin an item.
 pub(super) const ITEMS: &[&str] = &["model", "component"];
 

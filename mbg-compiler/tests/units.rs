@@ -267,6 +267,22 @@ fn what_is_read_is_in_si_and_takes_no_factor() {
             "write `m`, which is what the value has: what is read is in SI",
         ),
         (
+            "let y: mm = 2.0 * x; output z = y;",
+            "write `m`, which is what the value has: what is read is in SI",
+        ),
+        (
+            "integral y: mm = m.f; output z = y;",
+            "write `m`, which is what the value has: what is read is in SI",
+        ),
+        (
+            "integral y: mm = 2.0; output z = y;",
+            "write `m`, and each value times 0.001",
+        ),
+        (
+            "let y: mm = 2.0; output z = y;",
+            "write `m`, and each value times 0.001",
+        ),
+        (
             "output y: mm = 2.0;",
             "write `m`, and each value times 0.001",
         ),

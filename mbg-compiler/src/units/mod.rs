@@ -74,8 +74,42 @@ fn declared(
 ) -> Option<BTreeMap<Symbol, Dimension>> {
     let mut declared = BTreeMap::new();
     let mut sound = true;
+    let is_number = |symbol: Symbol| match symbol {
+        Symbol::Unknown(index) => claims.hidden[index].number,
+        _ => false,
+    };
+    // A factor helps numbers alone: what is read of the model is in SI.
+    let dimension = |entries: &[Expression], unit: &Unit| {
+        let mut read = substitute::symbols(pool, entries).into_iter();
+        match read.all(is_number) {
+            true => names::dimension(unit),
+            false => names::dimension_of_read(unit),
+        }
+    };
+    // Of each unit the first mistake is told, and what a name stands for tells more than the name.
+    for claim in &claims.list {
+        let Subject::Declared(_, unit) = &claim.subject else {
+            continue;
+        };
+        if let Err(report) = dimension(&claim.entries, unit) {
+            reporter.tell(&claim.place, *report);
+            sound = false;
+        }
+    }
+    let rate = |state: &usize| {
+        let of_state =
+            |it: &&Claim| matches!(&it.subject, Subject::Rate(states) if states.contains(state));
+        claims.list.iter().find(of_state)
+    };
     for (symbol, unit, place) in &claims.units {
-        match names::dimension(unit) {
+        let found = match symbol {
+            Symbol::State(state) => {
+                let rate = rate(state).map(|claim| &claim.entries[..]);
+                dimension(rate.unwrap_or_default(), unit)
+            }
+            _ => names::dimension(unit),
+        };
+        match found {
             Ok(dimension) => {
                 declared.insert(*symbol, dimension);
             }
@@ -83,24 +117,6 @@ fn declared(
                 reporter.tell(place, *report);
                 sound = false;
             }
-        }
-    }
-    for claim in &claims.list {
-        let Subject::Declared(_, unit) = &claim.subject else {
-            continue;
-        };
-        let read = substitute::symbols(pool, &claim.entries);
-        let is_number = |symbol: Symbol| match symbol {
-            Symbol::Unknown(index) => claims.hidden[index].number,
-            _ => false,
-        };
-        let found = match read.into_iter().all(is_number) {
-            true => names::dimension(unit),
-            false => names::dimension_of_read(unit),
-        };
-        if let Err(report) = found {
-            reporter.tell(&claim.place, *report);
-            sound = false;
         }
     }
     sound.then_some(declared)

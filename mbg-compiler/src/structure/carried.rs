@@ -413,10 +413,23 @@ fn convection(pool: &mut Pool, arm: Option<Arm>) -> [Expression; 3] {
     };
     [0, 1, 2].map(|k| {
         let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-        let first = pool.multiply(omega[next], velocity[last]);
-        let second = pool.multiply(omega[last], velocity[next]);
-        pool.subtract(first, second)
+        let (scale, [forward, backward]) = common_scale(pool, [velocity[last], velocity[next]]);
+        let first = pool.multiply(omega[next], forward);
+        let second = pool.multiply(omega[last], backward);
+        let difference = pool.subtract(first, second);
+        pool.multiply(scale, difference)
     })
+}
+
+/// Taken out of both, so that an arm along an axis is multiplied once, and the squares of the rates beside it, which other
+/// arms along that axis need, too, stand alone.
+fn common_scale(pool: &Pool, parts: [Expression; 2]) -> (Expression, [Expression; 2]) {
+    let [(one, first), (other, second)] = parts.map(|part| pool.scaled(part.magnitude()));
+    if one != other {
+        return (Expression::ONE, parts);
+    }
+    let signed = |scaled: Expression, part: Expression| scaled.flipped(part.is_negative());
+    (one, [signed(first, parts[0]), signed(second, parts[1])])
 }
 
 /// The one item.

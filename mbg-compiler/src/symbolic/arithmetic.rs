@@ -213,8 +213,9 @@ impl Pool {
         self.intern(Operation::Multiply(slow, fast), image)
     }
 
-    /// A product as the factors that change seldom, and those that change often.
-    fn scaled(&self, product: Expression) -> (Expression, Expression) {
+    /// A product as the factors that change seldom, and those that change often, without its sign.
+    #[must_use]
+    pub fn scaled(&self, product: Expression) -> (Expression, Expression) {
         if self.rate(product) != Rate::Varying {
             return (product, Expression::ONE);
         }

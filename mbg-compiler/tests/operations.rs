@@ -64,6 +64,9 @@ fn operations_grow_linearly() {
         exponents.iter().all(|exponent| *exponent < 1.1),
         "{counts:?}"
     );
+    // Like links are worked out alike, wherever they hang.
+    let [_, short, middle, long] = counts;
+    assert_eq!(long - middle, 2 * (middle - short), "{counts:?}");
 }
 
 /// A Jacobian has as many entries as there are pairs of links, and costs as much for each pair however many there are:

@@ -421,8 +421,9 @@ fn convection(pool: &mut Pool, arm: Option<Arm>) -> [Expression; 3] {
     })
 }
 
-/// A scale that both parts have, and the parts without it. It is taken out so that an arm along an axis is multiplied once, and the squares of the rates beside it, which other
-/// arms along that axis need, too, stand alone.
+/// A scale that both parts have, and the parts without it.
+///
+/// So an arm along an axis is multiplied once, and the squares of rates beside it stand alone, as other arms need them.
 fn common_scale(pool: &Pool, parts: [Expression; 2]) -> (Expression, [Expression; 2]) {
     let [(one, first), (other, second)] = parts.map(|part| pool.scaled(part.magnitude()));
     if one != other {

@@ -29,6 +29,7 @@ pub fn antiderivative(
         symbol,
         left: MOST,
         inner_left: MOST_INNER,
+        sides: Vec::new(),
     };
     integration.of(expression)
 }
@@ -40,6 +41,15 @@ pub(super) struct Integration<'a> {
     pub(super) left: usize,
     /// How many more inner functions are tried.
     pub(super) inner_left: usize,
+    /// Where what is integrated counts: beside these places.
+    sides: Vec<Side>,
+}
+
+/// All values of the symbol on one side of a place.
+#[derive(Clone, Copy)]
+struct Side {
+    place: Expression,
+    is_above: bool,
 }
 
 impl Integration<'_> {
@@ -322,26 +332,77 @@ impl Integration<'_> {
         c: Expression,
         d: Expression,
     ) -> Option<Expression> {
-        let mut parts = [self.of(c)?, self.of(d)?];
         let difference = self.pool.subtract(a, b);
-        if !self.is_free(difference) {
+        let [c, d] = if self.is_free(difference) {
+            [self.of(c)?, self.of(d)?]
+        } else {
             let symbol = self.symbol;
             let (slope, rest) = affine(self.pool, difference, symbol, |it| *it == symbol)?;
             let place = self.pool.divide(rest.negated(), slope)?;
-            let mut there = Substitution::new();
-            there.set(symbol, place);
-            for part in &mut parts {
-                let start = there.apply(self.pool, *part)?;
-                if self.is_infinite(start) {
-                    return None;
-                }
-                *part = self.pool.subtract(*part, start);
+            let rises = self.pool.constant_value(slope).map(|slope| slope > 0.0);
+            let side = |is_above| Some(Side { place, is_above });
+            let first = self.beside(rises.and_then(|rises| side(!rises)), c)?;
+            let second = self.beside(rises.and_then(side), d)?;
+            [
+                self.counted_from(place, first)?,
+                self.counted_from(place, second)?,
+            ]
+        };
+        Some(self.pool.call(Function::SelectLess, &[a, b, c, d]))
+    }
+
+    /// Of an expression that counts on one side alone, where that is known.
+    fn beside(&mut self, side: Option<Side>, expression: Expression) -> Option<Expression> {
+        self.sides.extend(side);
+        let found = self.of(expression);
+        self.sides
+            .truncate(self.sides.len() - usize::from(side.is_some()));
+        found
+    }
+
+    /// The antiderivative that is zero at a place; of what may have no value there, at the next place at which it counts.
+    fn counted_from(&mut self, place: Expression, found: Expression) -> Option<Expression> {
+        let mut start = self.at(place, found);
+        if start.is_none_or(|it| self.is_limited(it)) {
+            let counting = self.nearest(place);
+            if counting != place {
+                start = self.at(counting, found);
             }
         }
-        Some(
-            self.pool
-                .call(Function::SelectLess, &[a, b, parts[0], parts[1]]),
-        )
+        Some(self.pool.subtract(found, start?))
+    }
+
+    /// The place that is nearest to another on the sides where what is integrated counts.
+    fn nearest(&mut self, place: Expression) -> Expression {
+        let sides = self.sides.clone();
+        sides.into_iter().fold(place, |nearest, side| {
+            let further = if side.is_above {
+                Function::Max
+            } else {
+                Function::Min
+            };
+            self.pool.call(further, &[nearest, side.place])
+        })
+    }
+
+    /// The value at a place, if it is known to have one.
+    fn at(&mut self, place: Expression, expression: Expression) -> Option<Expression> {
+        let mut there = Substitution::new();
+        there.set(self.symbol, place);
+        let value = there.apply(self.pool, expression)?;
+        (!self.is_infinite(value)).then_some(value)
+    }
+
+    /// Whether there is a root, a power or a logarithm in it, which some parameters have no value for.
+    fn is_limited(&self, expression: Expression) -> bool {
+        let mut found = false;
+        visit(self.pool, &[expression], |_, operation| {
+            found |= matches!(
+                operation,
+                Operation::Call(Function::Pow | Function::Sqrt | Function::Ln, _)
+            );
+        });
+        found
     }
 
     /// Whether a part of it has no finite value for any parameters: calls of constants are numbers otherwise.
@@ -553,6 +614,45 @@ mod tests {
             for x in [place, -place] {
                 let energy = at(x) - at(0.0);
                 assert!((energy - expected).abs() < 1e-14, "{x}: {energy}");
+            }
+        }
+    }
+
+    /// `k |x| √(x − g)` beyond a gap `g`, whichever its sign: within the gap the root has no value.
+    #[test]
+    fn what_changes_beside_the_place_where_a_law_begins_is_integrated() {
+        let mut pool = Pool::new();
+        let [x, stiffness, gap] =
+            [X, Symbol::Parameter(0), Symbol::Parameter(1)].map(|symbol| pool.symbol(symbol));
+        let way = pool.subtract(x, gap);
+        let [size, root] = [(Function::Abs, x), (Function::Sqrt, way)]
+            .map(|(function, argument)| pool.call(function, &[argument]));
+        let factor = pool.multiply(stiffness, size);
+        let force = pool.multiply(factor, root);
+        let law = pool.call(Function::SelectLess, &[gap, x, force, Expression::ZERO]);
+        let found = antiderivative(&mut pool, law, X).expect("it has an antiderivative");
+        // ∫ x √(x − g) = 2/5 (x − g)^5/2 + 2/3 g (x − g)^3/2, with the other sign below zero.
+        let beyond = |x: f64, gap: f64| {
+            let way = (x - gap).max(0.0);
+            0.4 * way.powf(2.5) + 2.0 / 3.0 * gap * way.powf(1.5)
+        };
+        for gap in [0.25, -0.25] {
+            for x in [-1.0, -0.125, 0.0, 0.125, 0.5, 2.0] {
+                let turned = beyond(f64::min(x, 0.0), gap);
+                let expected = beyond(x.max(0.0), gap) - beyond(0.0, gap) - turned;
+                let at = |x: f64| {
+                    let symbol = |symbol| match symbol {
+                        X => x,
+                        Symbol::Parameter(0) => 10.0,
+                        _ => gap,
+                    };
+                    Evaluation::new(&symbol).value(&pool, found)
+                };
+                let energy = at(x) - at(-1.0);
+                assert!(
+                    (energy - 10.0 * expected).abs() < 1e-14,
+                    "{gap} {x}: {energy} and {expected}"
+                );
             }
         }
     }

@@ -1,6 +1,8 @@
 //! What a derivative costs: chains in space, with as many operations for each link however many there are.
 
 use mbg_compiler::compile::Routines;
+use mbg_compiler::program::{Solver, Step};
+use mbg_compiler::symbolic::Kind;
 
 mod models;
 
@@ -190,4 +192,20 @@ fn each_leg_of_what_flies_costs_the_same() {
     for (more, count) in counts.iter().enumerate() {
         assert!(*count <= 1270 + 975 * more, "{counts:?}");
     }
+}
+
+/// The six equations of the trunk are solved with numbers, and their matrix is symmetric as an inertia is, so that no pivot
+/// is looked for.
+#[test]
+fn what_flies_is_solved_by_a_symmetric_matrix() {
+    let compiled = models::compiled(&walker(1));
+    let steps = &compiled.program.routines[Routines::DERIVATIVE].steps;
+    let solvers: Vec<(Solver, usize)> = steps
+        .iter()
+        .filter_map(|step| match step {
+            Step::Solve(solve) => Some((solve.solver, solve.size)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(solvers, [(Solver::Linear(Kind::Symmetric), 6)]);
 }

@@ -149,8 +149,7 @@ mod tests {
         let (a, b) = ([0.3, -0.7, 0.0, 2.5], [1.5, -0.2, -3.0, 2.5]);
         let (first, second) = (Four(a), Four(b));
         // The sign of what is no number is nobody's.
-        let number = |it: f64| if it.is_nan() { f64::NAN } else { it };
-        let bits = |numbers: [f64; 4]| numbers.map(|it| number(it).to_bits());
+        let bits = |numbers: [f64; 4]| numbers.map(|it| (!it.is_nan()).then_some(it.to_bits()));
         macro_rules! each {
             ($($name:ident),*; $($pair:ident),*) => {
                 $( assert_eq!(bits(Real::$name(first).0), bits(a.map(Real::$name)), stringify!($name)); )*

@@ -395,6 +395,7 @@ impl<'a> Writer<'a> {
         let (factorised, matrix) = match kind {
             Kind::Semidefinite => (quote!(Semidefinite), quote!(symmetric)),
             Kind::Regular => (quote!(Regular), quote!(sparse)),
+            Kind::Symmetric => (quote!(Symmetric), quote!(symmetric)),
         };
         let (new, rank) = match self.compiled.ranks.of.get(&solve.number) {
             Some(group) => (

@@ -101,7 +101,7 @@ impl Machine<'_> {
                     };
                     let found = match kind {
                         Kind::Semidefinite => consistent(&right, &matrix),
-                        Kind::Regular => regular(&right, &matrix),
+                        Kind::Regular | Kind::Symmetric => regular(&right, &matrix),
                     };
                     self.solved.insert(solve.number, found);
                     self.matrices.insert(solve.number, (kind, matrix));

@@ -57,13 +57,13 @@ impl Solver<'_> {
         let mut divisor = Divisor::ONE;
         let (rest, values) = self.whole(&mut system, unknowns, &|_, _| true, &mut divisor)?;
         match rest.solver {
-            RestSolver::Numbers(_) => self.note_last(divisor, &[]),
+            RestSolver::Numbers { .. } => self.note_last(divisor, &[]),
             RestSolver::Dense(_) => self.note_last(divisor, norms),
         }
         let divisor = self.pool.multiply(divisor.pivots, divisor.last);
         let values = system.back_substitute(self.pool, &rest.columns, &values)?;
         // What was found by numbers has slopes by these equations alone; expressions are differentiated themselves.
-        if matches!(rest.solver, RestSolver::Numbers(_)) {
+        if matches!(rest.solver, RestSolver::Numbers { .. }) {
             self.pool.solved(Linear {
                 matrix,
                 right,
@@ -113,12 +113,17 @@ impl Solver<'_> {
                 ..Divisor::ONE
             };
             let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-            let method = Method::Linear {
-                matrix: matrix.negated(),
-                right: right.into_iter().map(Expression::negated).collect(),
-                kind: Kind::Regular,
+            let (kind, negated) = match matrix.signs_of_symmetry() {
+                Some(signs) => (Kind::Symmetric, signs.into_iter().map(|it| !it).collect()),
+                None => (Kind::Regular, vec![true; rows.len()]),
             };
-            return Ok(self.by_numbers(rows, columns, numbers, method));
+            let right = right.into_iter().zip(&negated);
+            let method = Method::Linear {
+                matrix: matrix.with_rows_negated(&negated),
+                right: right.map(|(it, negated)| it.flipped(*negated)).collect(),
+                kind,
+            };
+            return Ok(self.by_numbers(rows, columns, numbers, method, negated));
         }
         let values = if rows.is_empty() {
             Vec::new()
@@ -253,25 +258,28 @@ impl Solver<'_> {
             .collect();
         let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
         let numbers = columns.iter().map(|column| unknowns[*column]).collect();
+        let negated = vec![true; rows.len()];
         let method = Method::Linear {
             matrix,
             right,
             kind: Kind::Semidefinite,
         };
-        Ok(self.by_numbers(rows, columns, numbers, method))
+        Ok(self.by_numbers(rows, columns, numbers, method, negated))
     }
 
-    /// Leaves equations, with both sides negated, to be solved with numbers: what is left, and its values.
+    /// Leaves equations, of which some have both sides negated, to be solved with numbers: what is left, and its values.
     fn by_numbers(
         &mut self,
         rows: Vec<usize>,
         columns: Vec<usize>,
         unknowns: Vec<usize>,
         method: Method,
+        negated: Vec<bool>,
     ) -> (Rest, Vec<Expression>) {
         let implicit = Implicit { unknowns, method };
         let symbols: Vec<Symbol> = implicit.symbols().collect();
-        let solver = RestSolver::Numbers(self.pool.implicit().len());
+        let of = self.pool.implicit().len();
+        let solver = RestSolver::Numbers { of, negated };
         self.pool.define(implicit);
         let values = symbols
             .into_iter()

@@ -138,7 +138,7 @@ fn linear(pool: &Pool, operation: &Operation) -> Option<Place> {
         matches!(
             method,
             Method::Linear {
-                kind: Kind::Regular,
+                kind: Kind::Regular | Kind::Symmetric,
                 ..
             }
         )

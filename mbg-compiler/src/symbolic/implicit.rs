@@ -54,6 +54,8 @@ pub enum Kind {
     Semidefinite,
     /// Regular in general, with pivots that are chosen when the numbers are known.
     Regular,
+    /// The same, and symmetric: where all pivots are positive in order, as those of inertias are, none is chosen.
+    Symmetric,
 }
 
 /// One unknown of one [`Implicit`] of a pool.

@@ -43,8 +43,13 @@ pub struct Rest {
 pub enum RestSolver {
     /// By its dense matrix.
     Dense(Matrix),
-    /// By the definition with this number, which is [`Method::Linear`] and has both sides negated.
-    Numbers(usize),
+    /// By the definition with this number, which is [`Method::Linear`].
+    Numbers {
+        /// The number.
+        of: usize,
+        /// Which equations have both sides negated there.
+        negated: Vec<bool>,
+    },
 }
 
 /// Equations `A z = b` with their solution.
@@ -114,9 +119,10 @@ impl RestSolver {
     fn solve(&self, pool: &mut Pool, right: Vec<Expression>) -> Option<Vec<Expression>> {
         match self {
             Self::Dense(matrix) => dense(pool, matrix, &right, &mut Expression::ONE.clone()),
-            Self::Numbers(of) => {
+            Self::Numbers { of, negated } => {
                 let unknowns: Vec<usize> = right.iter().map(|_| pool.fresh_unknown()).collect();
-                let right = right.into_iter().map(Expression::negated).collect();
+                let right = right.into_iter().zip(negated);
+                let right = right.map(|(it, negated)| it.flipped(*negated)).collect();
                 let method = Method::Slope { of: *of, right };
                 let implicit = Implicit { unknowns, method };
                 let symbols: Vec<Symbol> = implicit.symbols().collect();

@@ -19,13 +19,6 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// Every entry with the other sign.
-    #[must_use]
-    pub fn negated(&self) -> Self {
-        let entries = self.entries.iter().copied().map(Expression::negated);
-        Self::new(self.rows, self.columns, entries.collect())
-    }
-
     /// From entries by rows.
     #[must_use]
     pub fn new(rows: usize, columns: usize, entries: Vec<Expression>) -> Self {
@@ -106,6 +99,43 @@ impl Matrix {
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         *self == self.transpose()
+    }
+
+    /// Which rows to negate to make it symmetric, the first of those that belong together not being one; none if that
+    /// does not make it so.
+    #[must_use]
+    pub fn signs_of_symmetry(&self) -> Option<Vec<bool>> {
+        let mut signs = vec![None; self.rows];
+        for first in 0..self.rows {
+            if signs[first].is_some() {
+                continue;
+            }
+            signs[first] = Some(false);
+            let mut pending = vec![first];
+            while let Some(row) = pending.pop() {
+                for other in (0..self.rows).filter(|other| self.at(row, *other) != Expression::ZERO)
+                {
+                    let differs = self.at(row, other) != self.at(other, row);
+                    let needed = signs[row].map(|sign| sign != differs);
+                    if signs[other].is_none() {
+                        signs[other] = needed;
+                        pending.push(other);
+                    }
+                }
+            }
+        }
+        let signs: Vec<bool> = signs.into_iter().flatten().collect();
+        self.with_rows_negated(&signs)
+            .is_symmetric()
+            .then_some(signs)
+    }
+
+    /// The same with some rows negated.
+    #[must_use]
+    pub fn with_rows_negated(&self, negated: &[bool]) -> Self {
+        let entries = self.entries.iter().enumerate();
+        let entries = entries.map(|(place, it)| it.flipped(negated[place / self.columns]));
+        Self::new(self.rows, self.columns, entries.collect())
     }
 
     /// Determinant by minors along the rows, each minor once; meant for the small blocks that models have.
@@ -469,6 +499,26 @@ mod tests {
             turn.to_matrix(&mut pool).determinant(&mut pool),
             Expression::ONE
         );
+    }
+
+    #[test]
+    fn rows_are_negated_where_that_makes_a_matrix_symmetric() {
+        let mut pool = Pool::new();
+        let [a, b, c] = angles(&mut pool);
+        let (zero, minus) = (Expression::ZERO, b.negated());
+        // The last row stands beside the others alone.
+        let coupled = [a, b, zero, minus, c, zero, zero, zero, a.negated()];
+        let matrix = Matrix::new(3, 3, coupled.to_vec());
+        let signs = matrix.signs_of_symmetry().expect("it can be symmetric");
+        assert_eq!(signs, [false, true, false]);
+        assert!(matrix.with_rows_negated(&signs).is_symmetric());
+        // Around the triangle one sign is left over, and two entries differ in more than their signs.
+        let around = [a, b, c, b, a, b, minus, b, a];
+        let apart = [a, b, c, a];
+        for (size, entries) in [(3, &around[..]), (2, &apart)] {
+            let matrix = Matrix::new(size, size, entries.to_vec());
+            assert_eq!(matrix.signs_of_symmetry(), None, "{entries:?}");
+        }
     }
 
     /// Three rotations, no two neighbours of which have one axis.

@@ -100,7 +100,7 @@ impl Machine<'_> {
                     let results = self.results(&solve.results);
                     let (right, matrix) = results.split_at(solve.size);
                     let matrix = match solve.solver {
-                        Solver::Linear(Kind::Regular) => matrix.to_vec(),
+                        Solver::Linear(Kind::Regular | Kind::Symmetric) => matrix.to_vec(),
                         Solver::Slope(of) => Vec::clone(&self.matrices[&of]),
                         _ => panic!("a loop is iterated"),
                     };
@@ -174,7 +174,7 @@ pub(crate) fn iterates(program: &Program) -> bool {
     steps.any(|step| match step {
         Step::Solve(solve) => !matches!(
             solve.solver,
-            Solver::Linear(Kind::Regular) | Solver::Slope(_)
+            Solver::Linear(Kind::Regular | Kind::Symmetric) | Solver::Slope(_)
         ),
         _ => false,
     })

@@ -2,11 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::largest;
 use crate::Real;
-
-/// In units of the largest diagonal element: a matrix whose pivots are all above it needs no exchanges.
-const REGULAR: f64 = 1e-4;
 
 /// `L D Lᵀ` of a symmetric matrix.
 #[derive(Clone, Debug)]
@@ -18,14 +14,14 @@ pub(super) struct Definite<T, const K: usize> {
 }
 
 impl<T: Real, const K: usize> Definite<T, K> {
+    /// Regular are lanes in which each pivot is above a bound for its diagonal element.
     #[inline]
-    pub(super) fn new(matrix: &SMatrix<T, K, K>) -> Self {
+    pub(super) fn new(matrix: &SMatrix<T, K, K>, bound: impl Fn(T) -> T) -> Self {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let mut lower = matrix.transpose().data.0;
-        let threshold = T::from_f64(REGULAR) * largest((0..K).map(|i| lower[i][i]));
         let mut regular = one;
         for k in 0..K {
-            regular = threshold.select_less(lower[k][k], regular, zero);
+            regular = bound(matrix[(k, k)]).select_less(lower[k][k], regular, zero);
             lower[k][k] = one / lower[k][k];
             for i in k + 1..K {
                 let factor = lower[i][k] * lower[k][k];
@@ -60,5 +56,13 @@ impl<T: Real, const K: usize> Definite<T, K> {
             }
         }
         SVector::from(x)
+    }
+
+    /// The solution in regular lanes, in the others another one.
+    pub(super) fn chosen(&self, right: &SVector<T, K>, other: &SVector<T, K>) -> SVector<T, K> {
+        let half = T::from_f64(0.5);
+        other.zip_map(&self.solve(right), |other, own| {
+            self.regular.select_less(half, other, own)
+        })
     }
 }

@@ -10,6 +10,8 @@ use crate::Real;
 const RANK: f64 = 8.0;
 /// In units of the largest diagonal element: rows below it are brought to its size.
 const SMALL: f64 = 1e-4;
+/// In units of the largest diagonal element: a matrix whose pivots are all above it needs no exchanges.
+const REGULAR: f64 = 1e-4;
 /// Up to this size a regular matrix is factorised without exchanges. Larger ones take their time anyway, and are refined.
 const SHORT: usize = 8;
 
@@ -110,7 +112,10 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
             let factors = Factors::Long(Pivoted::new(matrix, rank));
             return Self { matrix, factors };
         }
-        let short = (K <= SHORT).then(|| Definite::new(&matrix));
+        let short = (K <= SHORT).then(|| {
+            let bound = T::from_f64(REGULAR) * largest((0..K).map(|i| matrix[(i, i)]));
+            Definite::new(&matrix, |_| bound)
+        });
         let regular_is = |short: &Definite<T, K>, flag| everywhere(short.regular, |it| it == flag);
         let factors = match short {
             Some(short) if regular_is(&short, 1.0) => Factors::Short(short),
@@ -148,13 +153,7 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         match &self.factors {
             Factors::Short(short) => short.solve(right),
             Factors::Long(long) => long.refined(&self.matrix, right),
-            Factors::Both(short, long) => {
-                let careful = long.refined(&self.matrix, right);
-                let half = T::from_f64(0.5);
-                careful.zip_map(&short.solve(right), |careful, plain| {
-                    short.regular.select_less(half, careful, plain)
-                })
-            }
+            Factors::Both(short, long) => short.chosen(right, &long.refined(&self.matrix, right)),
         }
     }
 }

@@ -13,6 +13,7 @@ mod least_norm;
 mod memory;
 mod newton;
 mod project;
+mod symmetric;
 
 pub use dense::Regular;
 pub use least_norm::{LeastNorm, Semidefinite, least_norm};
@@ -20,6 +21,7 @@ pub use memory::{LoopMemory, Memory, Outcome};
 pub use newton::{ITERATIONS, Solved, newton};
 pub use project::{Projected, project, project_velocity};
 pub(crate) use project::{project_of_rank, ranks};
+pub use symmetric::Symmetric;
 
 use crate::Real;
 

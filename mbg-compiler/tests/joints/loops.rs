@@ -207,6 +207,38 @@ fn a_planar_cut_moves_a_body_as_the_joint_does() {
     alike(&change(&flat("fixed"), &[]), &[0.0; 3]);
 }
 
+/// A plate that is turned by 0.5 against the ground slides along the same line with that angle.
+#[test]
+fn a_planar_cut_keeps_the_angle_that_it_is_told() {
+    let slide =
+        joined_flat("slide: PlanarPrismatic { direction: -0.1, angle_a: 0.5 } (ground, b);");
+    let (speed, travel) = (0.7, 0.2);
+    let (sine, cosine) = 0.4_f64.sin_cos();
+    let expected = change(&slide, &[("slide.rate.f", speed)]);
+    let state = [
+        ("hinge.angle", 0.5),
+        ("first.travel", travel * cosine),
+        ("second.travel", travel * sine),
+        ("body.body.p.x", 2.0 * speed * cosine),
+        ("body.body.p.y", 2.0 * speed * sine),
+    ];
+    let told = flat("prismatic, zero: 0.5");
+    alike(&change(&told, &state), &expected);
+
+    // What is left open of the angle and of the place beside the line.
+    let open = |scene: &Scene, named: &[(&str, f64)]| {
+        let mut state = vec![0.0; scene.model.states.len()];
+        for (name, value) in named {
+            state[scene.place(name)] = *value;
+        }
+        scene.run(Routines::CLOSED_POSITIONS, &state)
+    };
+    alike(&open(&told, &state), &[0.0, 0.0]);
+    alike(&open(&flat("prismatic"), &state), &[-0.5, 0.0]);
+    let told = flat("fixed, zero: 0.5");
+    alike(&open(&told, &[("hinge.angle", 0.5)]), &[0.0, 0.0, 0.0]);
+}
+
 /// Both ends may move: that displacements change as the flows do is proven for every state when they are compiled.
 #[test]
 fn both_ends_of_a_cut_may_move() {

@@ -12,6 +12,9 @@
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
+//!
+//! What the macro writes calls this crate `mbg_runtime`. Where `Cargo.toml` gives it another name,
+//! `bonds = { package = "mbg-runtime", … }`, put `extern crate bonds as mbg_runtime;` at the root of your crate.
 #![no_std]
 #[cfg(any(test, feature = "std"))]
 extern crate std;

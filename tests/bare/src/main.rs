@@ -3,6 +3,8 @@
 #![no_std]
 #![no_main]
 
+extern crate bonds as mbg_runtime;
+
 use mbg_runtime::{Rk4, System};
 use nalgebra::SVector;
 

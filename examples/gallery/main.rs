@@ -10,6 +10,7 @@ mod curve;
 mod double_pendulum;
 mod draw;
 mod four_bars;
+mod gait;
 mod gimbal_lock;
 mod governor;
 mod heat;
@@ -31,6 +32,7 @@ mod stiff_pin;
 mod through_lock;
 mod top;
 mod tumbling;
+mod walker;
 
 use std::error::Error;
 use std::path::Path;
@@ -38,7 +40,7 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 20] = [
+const SCENES: [(&str, Draw); 21] = [
     ("gimbal_lock", gimbal_lock::draw),
     ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
@@ -52,6 +54,7 @@ const SCENES: [(&str, Draw); 20] = [
     ("bricard", bricard::draw),
     ("governor", governor::draw),
     ("arm", arm::draw),
+    ("walker", walker::draw),
     ("quarter_car", quarter_car::draw),
     ("ride", ride::draw),
     ("motor", motor::draw),

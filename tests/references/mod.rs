@@ -23,3 +23,4 @@ pub(crate) mod robots;
 pub(crate) mod slider_crank;
 pub(crate) mod transistor_amplifier;
 pub(crate) mod tree;
+pub(crate) mod walker;

@@ -126,7 +126,8 @@ pub fn close<T: Real, const M: usize, const N: usize>(
         Level::Positions => DISPLACEMENT,
         Level::Flows => 0.0,
     };
-    let tolerance = CLOSED * T::EPSILON * size(&x, &evaluate(&x).1, least);
+    let rounding = T::EPSILON * size(&x, &evaluate(&x).1, least);
+    let tolerance = CLOSED * rounding;
     let found = project_of_rank(x, tolerance, rank, |x| {
         let (residuals, mut jacobian) = evaluate(x);
         for state in held.iter().filter(|state| **state < N) {
@@ -142,10 +143,46 @@ pub fn close<T: Real, const M: usize, const N: usize>(
         return Ok(found.point);
     }
     let closure = closures.get(found.worst).copied().unwrap_or(0);
+    let residual = found.residual.magnitude();
+    let positions = level == Level::Positions;
+    let jacobians = [x, found.point].map(|x| evaluate(&x).1);
+    let (constraints, coordinates) = together(&jacobians, found.worst);
     Err(Trouble::Open {
         name: meta.closures.get(closure).copied().unwrap_or(""),
-        residual: found.residual.magnitude(),
+        residual,
+        // From so near, corrections end in rounding but where the Jacobian has lost its rank.
+        singular: positions && residual < rounding / T::EPSILON * T::SINGULAR,
+        locked: (positions && constraints >= coordinates).then_some((constraints, coordinates)),
     })
+}
+
+/// How many constraints there are with the coordinates that this one holds, with those that these hold, and so on, and how
+/// many coordinates that are. An entry of either Jacobian tells.
+#[cold]
+fn together<T: Real, const M: usize, const N: usize>(
+    jacobians: &[SMatrix<T, M, N>; 2],
+    first: usize,
+) -> (usize, usize) {
+    let mut constraints = [false; M];
+    let mut coordinates = [false; N];
+    if let Some(first) = constraints.get_mut(first) {
+        *first = true;
+    }
+    let holds = |row, column| {
+        let is_not_zero = |jacobian: &SMatrix<T, M, N>| jacobian[(row, column)].magnitude() > 0.0;
+        jacobians.iter().any(is_not_zero)
+    };
+    for _ in 0..M {
+        for (row, constraint) in constraints.iter_mut().enumerate() {
+            let mut held = coordinates.iter().enumerate();
+            *constraint |= held.any(|(column, is_held)| *is_held && holds(row, column));
+            for (column, is_held) in coordinates.iter_mut().enumerate() {
+                *is_held |= *constraint && holds(row, column);
+            }
+        }
+    }
+    let count = |found: &[bool]| found.iter().filter(|it| **it).count();
+    (count(&constraints), count(&coordinates))
 }
 
 /// How `R` rates change with `K` variables, for several columns of a Jacobian at once.
@@ -268,6 +305,20 @@ mod tests {
             let error = check("1/arm", value, Condition::NonZero, "it must not be zero");
             assert_eq!(error.unwrap_err().reason, FINITE);
         }
+    }
+
+    #[test]
+    fn constraints_are_counted_that_share_coordinates_with_others() {
+        // A chain of three constraints on two coordinates, and one beside it on two of its own.
+        let rows = SMatrix::<f64, 4, 4>::from_row_slice(&[
+            2.0, 0.0, 0.0, 0.0, //
+            0.0, 0.0, 1.0, 1.0, //
+            0.0, 3.0, 0.0, 0.0, //
+            1.0, 1.0, 0.0, 0.0,
+        ]);
+        let none = SMatrix::zeros();
+        let counts = [0, 1, 2, 3].map(|first| together(&[none, rows], first));
+        assert_eq!(counts, [(3, 2), (1, 2), (3, 2), (3, 2)]);
     }
 
     #[test]

@@ -280,12 +280,18 @@ pub enum Trouble {
         /// Its normalised determinant.
         value: f64,
     },
-    /// A loop that multipliers close could not be closed.
+    /// Loops that multipliers close could not be closed.
     Open {
-        /// The closure, as [`Meta::closures`] names it.
+        /// The closure that is open widest, as [`Meta::closures`] names it; a mistake may be in another one.
         name: &'static str,
         /// What is left between its ends.
         residual: f64,
+        /// Whether so little is left that corrections would have ended in rounding, had constraints not become dependent on
+        /// each other there.
+        singular: bool,
+        /// How many constraints there are on how many coordinates, where the constraints are not fewer: these loops move
+        /// only if some constraints are redundant.
+        locked: Option<(usize, usize)>,
     },
     /// A nonlinear algebraic loop was not solved.
     Unsolved {
@@ -302,11 +308,29 @@ impl core::fmt::Display for Trouble {
             Self::Singular { name, value } => {
                 write!(formatter, "{name} is {value:e}, too near its singular set")
             }
-            Self::Open { name, residual } => {
+            Self::Open {
+                name,
+                residual,
+                singular,
+                locked,
+            } => {
                 write!(
                     formatter,
                     "the loop `{name}` cannot be closed, {residual:e} is left"
-                )
+                )?;
+                if *singular {
+                    formatter.write_str(
+                        " next to a position in which constraints depend on each other",
+                    )?;
+                }
+                if let Some((constraints, coordinates)) = locked {
+                    write!(
+                        formatter,
+                        ": {constraints} constraints hold {coordinates} coordinates, so that nothing moves unless some are \
+                         redundant; see whether a cut holds more than it should"
+                    )?;
+                }
+                Ok(())
             }
             Self::Unsolved { through, residual } => {
                 formatter.write_str("the algebraic loop through ")?;

@@ -72,6 +72,39 @@ mbg! {
         joint: Cut { joint: spherical } (tip, other);
     }
 
+    /// Two crossed bars twice on each other, and a platform that slides on the upper ones. The cut holds its angle, too.
+    #[derivative]
+    pub(crate) model Locked {
+        causality componentwise;
+        let start = 0.6;
+        1 ground[3]; 1 foot[3]; 1 first[3]; 1 first_pin[3]; 1 first_end[3]; 1 second[3]; 1 second_pin[3]; 1 second_end[3];
+        1 third[3]; 1 third_pin[3]; 1 third_end[3]; 1 fourth[3]; 1 fourth_pin[3]; 1 fourth_end[3]; 1 platform[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        hinge: PlanarRevolute { initial: start } (ground, first);
+        half: PlanarOffset { x: 0.5 } (first, first_pin);
+        whole: PlanarOffset { x: 1.0 } (first, first_end);
+        slide: PlanarPrismatic { initial: 1.0 * cos(start) } (ground, foot);
+        other_hinge: PlanarRevolute { initial: -start } (foot, second);
+        other_half: PlanarOffset { x: -0.5 } (second, second_pin);
+        other_whole: PlanarOffset { x: -1.0 } (second, second_end);
+        upper: PlanarRevolute { initial: 2.0 * start } (second_end, third);
+        upper_half: PlanarOffset { x: 0.5 } (third, third_pin);
+        upper_whole: PlanarOffset { x: 1.0 } (third, third_end);
+        other_upper: PlanarRevolute { initial: -2.0 * start } (first_end, fourth);
+        other_upper_half: PlanarOffset { x: -0.5 } (fourth, fourth_pin);
+        other_upper_whole: PlanarOffset { x: -1.0 } (fourth, fourth_end);
+        top: PlanarRevolute { initial: start } (fourth_end, platform);
+        one: PlanarBody { mass: 3.0, inertia: 0.25 } (first_pin);
+        two: PlanarBody { mass: 3.0, inertia: 0.25 } (second_pin);
+        three: PlanarBody { mass: 3.0, inertia: 0.25 } (third_pin);
+        four: PlanarBody { mass: 3.0, inertia: 0.25 } (fourth_pin);
+        roller: PlanarPointMass { mass: 1.0 } (foot);
+        load: PlanarBody { mass: 22.0, inertia: 0.3 } (platform);
+        lower_pin: PlanarCut (first_pin, second_pin);
+        upper_pin: PlanarCut (third_pin, fourth_pin);
+        rail: PlanarCut { joint: prismatic } (platform, third_end);
+    }
+
     /// A slider-crank whose guide holds an angle beside a length.
     #[derivative]
     pub(crate) model Slider {
@@ -185,6 +218,22 @@ fn a_loop_that_cannot_close_is_named() {
         trouble
             .to_string()
             .starts_with("the loop `coupler_tip[1..3] -> rocker_tip[1..3]` cannot be closed")
+    );
+}
+
+/// A scissor lift whose platform is not let turn against the bar that it slides on: it would fit flat or upright alone.
+#[test]
+fn a_mechanism_that_is_locked_is_told_by_its_constraints() {
+    let model = Locked::new(LockedParameters::default()).unwrap();
+    let start = model.initial_state();
+    let trouble = model.close(0.0, start, &SVector::from([]), &[]);
+    let told = trouble.unwrap_err().to_string();
+    assert!(
+        told.ends_with(
+            " is left next to a position in which constraints depend on each other: 6 constraints hold 6 \
+             coordinates, so that nothing moves unless some are redundant; see whether a cut holds more than it should"
+        ),
+        "{told}"
     );
 }
 

@@ -67,7 +67,7 @@ fn change(scene: &Scene, moving: &[(&str, f64)]) -> Vec<f64> {
 #[test]
 fn cuts_take_the_degrees_of_freedom_of_the_table() {
     let table = rows(3);
-    assert_eq!(table.len(), 7);
+    assert_eq!(table.len(), 8);
     for row in table {
         let planar = row[0] == "PlanarCut";
         let scene = if planar { flat(row[1]) } else { closed(row[1]) };
@@ -204,6 +204,26 @@ fn a_planar_cut_moves_a_body_as_the_joint_does() {
     ];
     alike(&change(&flat("prismatic"), &state), &expected);
 
+    // It turns about a pin that slides along that line.
+    let pinned = joined_flat(
+        "1 pin[3]; slide: PlanarPrismatic { direction: 0.4 } (ground, pin); hinge: PlanarRevolute (pin, b);",
+    );
+    let own = [
+        ("slide.rate.f", speed),
+        ("hinge.angle", angle),
+        ("hinge.rate.f", rate),
+    ];
+    let expected = change(&pinned, &own);
+    let state = [
+        ("first.travel", travel * cosine),
+        ("second.travel", travel * sine),
+        ("hinge.angle", angle),
+        ("body.spin.p", 0.5 * rate),
+        ("body.body.p.x", 2.0 * (speed * cosine - rate * arm[1])),
+        ("body.body.p.y", 2.0 * (speed * sine + rate * arm[0])),
+    ];
+    alike(&change(&flat("slot"), &state), &expected);
+
     alike(&change(&flat("fixed"), &[]), &[0.0; 3]);
 }
 
@@ -257,7 +277,7 @@ fn both_ends_of_a_cut_may_move() {
         ));
         assert_eq!(scene.velocities(), 4);
     }
-    for word in ["revolute", "prismatic", "fixed"] {
+    for word in ["slot", "revolute", "prismatic", "fixed"] {
         let scene = Scene::of(&format!(
             "#[derivative] model Both {{
                 causality componentwise;

@@ -416,8 +416,7 @@ fn mistakes_in_loops_are_told() {
     ");
     insta::assert_snapshot!(mistake("for k in 0..2.0 { 1 b; }"), @"
     2:13 expected a whole number that is known while the model is compiled, found `2.0` [MBG0217]
-      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
-      help: a `param` of a model is no such number, because it can change after the model is compiled
+      help: a whole number has no decimal point: write `2`
     ");
     insta::assert_snapshot!(mistake("for k in 0..5 / 2 { 1 b; }"), @"
     2:13 expected a whole number, found `5 / 2`, which is 2.5 [MBG0217]

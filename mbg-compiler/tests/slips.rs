@@ -717,8 +717,11 @@ fn a_product_without_its_sign_is_told_with_it() {
     for law in ["inertia: m initial: 2.0", "inertia: m gyroscopic"] {
         assert_eq!(typed(&mass(law)), [""; 0]);
     }
-    // Another language's `if` has no product in it.
-    assert_eq!(typed(&text("(if w > r then w else r)")), [""; 0]);
+    // Another language's `if` has no product in it, but braces here.
+    assert_eq!(
+        typed(&text("(if w > r then w else r)")),
+        ["if w > r { w } else { r }"]
+    );
 }
 
 #[test]

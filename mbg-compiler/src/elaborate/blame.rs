@@ -9,6 +9,7 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, UnOp};
 
 use super::Builder;
+use super::constants::without_point;
 use super::definitions::{Definition, Progress};
 use super::elsewhere;
 use super::expressions::{Value, component_index};
@@ -170,6 +171,9 @@ impl Builder<'_> {
             let help = direction(definition.value)
                 .and_then(|direction| along(&name.to_string(), &value, direction, tilts));
             report.helps.splice(0..0, help);
+            if let Some(help) = without_point(definition.value) {
+                report.helps = vec![help];
+            }
         }
         let turns = turns.map(|turns| format!("for roll, pitch and yaw write `{name}: {turns}`"));
         report.helps.splice(0..0, turns);

@@ -277,12 +277,23 @@ pub(super) fn plain_name(expression: &Expr) -> Option<String> {
     }
 }
 
+/// What to type for a whole number with a decimal point.
+pub(super) fn without_point(expression: &Expr) -> Option<String> {
+    let number = elsewhere::number(expression).filter(|it| it.fract() == 0.0)?;
+    Some(format!(
+        "a whole number has no decimal point: write `{number}`"
+    ))
+}
+
 fn unknown(expression: &Expr) -> Box<Diagnostic> {
     let message = format!(
         "expected a whole number that is known while the model is compiled, found `{}`",
         dump::expression(expression)
     );
     let report = error(codes::WHOLE_NUMBER, expression.span(), message);
+    if let Some(help) = without_point(expression) {
+        return Box::new(report.help(help));
+    }
     Box::new(
         report
             .help("it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers")

@@ -2,9 +2,10 @@
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use quote::ToTokens;
-use syn::{BinOp, Expr, ExprBinary, Lit, UnOp};
+use syn::{BinOp, Expr, ExprBinary, Lit, Member, UnOp};
 
 use super::constants::plain_name;
+use super::expressions::component_index;
 use crate::graph::ElementKind;
 use crate::syntax::dump;
 use crate::syntax::words::JUMPING_INPUT;
@@ -103,6 +104,32 @@ const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
     ),
 ];
 
+/// What the states of storages at the start are called, and the words for them.
+const STARTS: &[(ElementKind, &[&str], &str)] = &[
+    (
+        ElementKind::I,
+        &[
+            "initial_velocity",
+            "initial_speed",
+            "initial_rate",
+            "initial_current",
+        ],
+        "initial_flow",
+    ),
+    (ElementKind::I, &["initial_momentum", "p0"], "initial"),
+    (
+        ElementKind::C,
+        &[
+            "initial_displacement",
+            "initial_position",
+            "initial_angle",
+            "initial_charge",
+            "q0",
+        ],
+        "initial",
+    ),
+];
+
 /// What the number of a transformer or gyrator is called.
 const RATIOS: &[&str] = &["ratio", "modulus", "gain", "n", "m", "r"];
 
@@ -111,13 +138,28 @@ pub(super) fn law(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Opti
     if let Some(law) = converter_law(kind) {
         return by_converter(law, &word.to_string(), value);
     }
-    let mut own = COEFFICIENTS.iter().filter(|(owner, ..)| *owner == kind);
-    let (.., law) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
-    Some(format!("write `{law}: {}`", value_text(value)))
+    here(COEFFICIENTS, kind, word, value)
+}
+
+/// What to type for the start of a storage that stands behind a word of another name.
+pub(super) fn start(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
+    here(STARTS, kind, word, value)
+}
+
+/// What to type for a word of an element that has another name in a table.
+fn here(
+    table: &[(ElementKind, &[&str], &str)],
+    kind: ElementKind,
+    word: &Ident,
+    value: Option<&Expr>,
+) -> Option<String> {
+    let mut own = table.iter().filter(|(owner, ..)| *owner == kind);
+    let (.., here) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
+    Some(format!("write `{here}: {}`", value_text(value)))
 }
 
 /// What stands behind a word, or a place for it.
-fn value_text(value: Option<&Expr>) -> String {
+pub(super) fn value_text(value: Option<&Expr>) -> String {
     value.map_or_else(|| "…".to_owned(), dump::expression)
 }
 
@@ -151,26 +193,6 @@ fn by_converter(law: &str, word: &str, value: Option<&Expr>) -> Option<String> {
     }
 }
 
-/// What joints and bodies are called elsewhere, without regard to capitals, and in the library.
-const COMPONENTS: &[(&[&str], &str)] = &[
-    (&["floating", "freeflyer", "free_flyer", "sixdof"], "Free"),
-    (&["hinge", "pin", "continuous", "rotary"], "Revolute"),
-    (&["slider", "sliding", "translational"], "Prismatic"),
-    (&["ball", "balljoint", "ballandsocket"], "Spherical"),
-    (&["weld", "welded", "rigid"], "Fixed"),
-    (&["cardan", "hooke"], "Universal"),
-    (&["rigidbody", "link"], "Body"),
-    (&["particle"], "PointMass"),
-];
-
-/// The component of the library that has this name elsewhere.
-pub(super) fn component(name: &str) -> Option<&'static str> {
-    let name = name.to_lowercase();
-    let mut components = COMPONENTS.iter();
-    let (_, here) = components.find(|(names, _)| names.contains(&name.as_str()))?;
-    Some(here)
-}
-
 /// What the words of a choice are called elsewhere, and here.
 const CHOICES: &[(&[&str], &str)] = &[
     (&["euler", "euler_angles", "rpy", "cardan"], "angles"),
@@ -202,6 +224,7 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     match (word, arguments) {
         ("powf", [base, exponent]) => return Some(power(base, exponent)),
         ("der" | "ddt" | "derivative", [of]) => return Some(rate(of)),
+        ("integral" | "integrate" | "int", [of]) => return Some(integral(of)),
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
         ("delay", [value, by]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
@@ -232,6 +255,13 @@ fn rate(of: &Expr) -> String {
         return help;
     }
     let rule = "laws take no derivatives";
+    if is_flow_or_effort(of) {
+        let lag = filled("(x - late) / 1e-3", &[("x", of)]);
+        return format!(
+            "{rule}: the flow of an element `I` has the rate `….e / inertia`, and `System::derivative` gives the rates of \
+             all states; for that of `{text}` behind a lag of a millisecond write `integral late = {lag};`, and read `{lag}`"
+        );
+    }
     match plain_name(of) {
         Some(name) => format!(
             "{rule}: where `{name}` is an input, give its rate in its place, `input {name}_rate; integral {name} = \
@@ -239,6 +269,27 @@ fn rate(of: &Expr) -> String {
         ),
         None => format!("{rule}: read the flow `….f` or the effort `….e` that is this rate"),
     }
+}
+
+/// Whether this reads a flow, an effort or a component of one.
+fn is_flow_or_effort(read: &Expr) -> bool {
+    match read {
+        Expr::Index(indexed) => is_flow_or_effort(&indexed.expr),
+        Expr::Field(field) => match &field.member {
+            Member::Named(name) if component_index(name).is_some() => {
+                is_flow_or_effort(&field.base)
+            }
+            Member::Named(name) => name == "f" || name == "e",
+            Member::Unnamed(_) => false,
+        },
+        _ => false,
+    }
+}
+
+/// What to declare where an integral is meant.
+fn integral(of: &Expr) -> String {
+    let rate = dump::expression(of);
+    format!("an integral is declared: write `integral name = {rate};`, and read `name`")
 }
 
 /// Where the energy of a whole model and its rate are found.
@@ -408,8 +459,18 @@ fn put(tokens: TokenStream, places: &[(&str, &Expr)]) -> TokenStream {
                 return token.to_token_stream();
             };
             let alone = is_end(at.checked_sub(1)) && is_end(Some(at + 1));
-            let value = bare(value).to_token_stream();
-            if alone || value.clone().into_iter().count() == 1 {
+            let value = bare(value);
+            let is_closed = matches!(
+                value,
+                Expr::Path(_)
+                    | Expr::Lit(_)
+                    | Expr::Field(_)
+                    | Expr::Index(_)
+                    | Expr::Call(_)
+                    | Expr::Array(_)
+            );
+            let value = value.to_token_stream();
+            if alone || is_closed {
                 return value;
             }
             TokenTree::from(Group::new(Delimiter::Parenthesis, value)).into()

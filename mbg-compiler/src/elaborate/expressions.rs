@@ -1,8 +1,9 @@
 //! Laws: from Rust expressions to the pool.
 
 use proc_macro2::{Ident, Span};
+use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
-use syn::{BinOp, Expr, Lit, Member, UnOp};
+use syn::{BinOp, Expr, Lit, Member, Token, UnOp, parse_quote};
 
 use super::elsewhere;
 use super::model::Assumption;
@@ -207,11 +208,16 @@ impl<N: Names> Evaluator<'_, N> {
                 Ok(self.scale(Expression::ONE.negated(), value))
             }
             Expr::Binary(binary) => self.binary(binary),
-            Expr::Call(call) => self.call(call),
+            Expr::Call(call) => self
+                .call(call)
+                .map_err(|report| self.called(report, &call.func, &call.args)),
             Expr::MethodCall(call) => {
                 let mut arguments = vec![(*call.receiver).clone()];
                 arguments.extend(call.args.iter().cloned());
-                self.function(&call.method, &arguments)
+                let (receiver, method) = (&call.receiver, &call.method);
+                self.function(method, &arguments).map_err(|report| {
+                    self.called(report, &parse_quote!(#receiver.#method), &call.args)
+                })
             }
             Expr::Array(array) => self.array(array),
             Expr::If(choice) => self.choice(choice),
@@ -221,6 +227,35 @@ impl<N: Names> Evaluator<'_, N> {
                 "expected a law: numbers, names, + - * /, functions, vectors or `if`",
             ),
         }
+    }
+
+    /// A mistake in what looks like the call of a function; what is called may be a value.
+    fn called(
+        &mut self,
+        report: Box<Diagnostic>,
+        called: &Expr,
+        arguments: &Punctuated<Expr, Token![,]>,
+    ) -> Box<Diagnostic> {
+        let (true, Some(first), 1) = (
+            report.code == codes::UNKNOWN_NAME,
+            arguments.first(),
+            arguments.len(),
+        ) else {
+            return report;
+        };
+        let Ok(Some(steps)) = self.steps(called) else {
+            return report;
+        };
+        let Some(Ok(value)) = self.names.value(self.pool, &steps) else {
+            return report;
+        };
+        let [text, first] = [called, first].map(dump::expression);
+        let help = match value {
+            Value::Scalar(_) => format!("for a product write `{text} * ({first})`"),
+            Value::Matrix(_) => format!("a component stands in brackets: write `{text}[{first}]`"),
+        };
+        let message = format!("`{text}` is a value, and it is called as a function");
+        Box::new(error(report.code, report.span, message).help(help))
     }
 
     /// The value, which must be a number.

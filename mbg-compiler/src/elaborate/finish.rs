@@ -289,7 +289,9 @@ impl<'a> Builder<'a> {
             let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
             let known = words.iter().map(|word| (*word).to_owned());
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
-            let report = match elsewhere::law(element.kind, &field.name, field.value.as_ref()) {
+            let (kind, word, value) = (element.kind, &field.name, field.value.as_ref());
+            let here = elsewhere::law(kind, word, value);
+            let report = match here.or_else(|| elsewhere::start(kind, word, value)) {
                 Some(help) => report.help(help),
                 None => report.did_you_mean(&field.name.to_string(), &words),
             };

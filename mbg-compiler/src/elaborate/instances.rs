@@ -8,6 +8,7 @@ use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
 use super::scope::{Entity, Scope};
+use super::tools;
 use super::unused::without_effect;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
@@ -20,7 +21,7 @@ impl<'a> Builder<'a> {
     pub(super) fn instance(&mut self, scope: usize, instance: &'a ast::Instance) {
         let components = self.components;
         let Some(component) = components.get(&instance.component.to_string()) else {
-            self.unknown_component(scope, &instance.component);
+            self.unknown_component(scope, instance);
             self.is_misled = true;
             self.name(scope, &instance.name, Entity::Opaque);
             return;
@@ -154,6 +155,11 @@ impl<'a> Builder<'a> {
             if !names.iter().any(|known| argument.name == known) {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
                 let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+                if let Some(here) = tools::parameter(&argument.name, &names) {
+                    let value = elsewhere::value_text(argument.value.as_ref());
+                    self.tell(scope, report.help(format!("write `{here}: {value}`")));
+                    continue;
+                }
                 let longer = ending_in(&argument.name.to_string(), &names);
                 let report = match longer.is_empty() {
                     true => report.did_you_mean(&argument.name.to_string(), &names),
@@ -210,7 +216,11 @@ impl<'a> Builder<'a> {
             let found = found.to_string();
             !known.contains(&found.as_str()) && !ending_in(&found, &[&name_text]).is_empty()
         };
-        if is_misspelt(&name_text, arguments.clone(), &known) || arguments.any(is_shortened) {
+        let is_meant = |found: &Ident| tools::parameter(found, &known) == Some(&name_text);
+        if is_misspelt(&name_text, arguments.clone(), &known)
+            || arguments.clone().any(is_meant)
+            || arguments.any(is_shortened)
+        {
             return;
         }
         let message = format!("`{}` needs a value for `{name}`", instance.component);
@@ -242,21 +252,33 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn unknown_component(&mut self, scope: usize, name: &Ident) {
+    fn unknown_component(&mut self, scope: usize, instance: &ast::Instance) {
+        let name = &instance.component;
         let message = format!("component `{name}` is not declared");
         let components = self.components;
         let mut known: Vec<&str> = library::names().collect();
         known.extend(components.keys().map(String::as_str));
         let report = error(codes::UNKNOWN_NAME, name.span(), message);
-        let mut report = match elsewhere::component(&name.to_string()) {
-            Some(here) => report.help(format!("write `{here}`, as it is called here")),
-            None => report.did_you_mean(&name.to_string(), &known),
+        let elements = tools::elements(instance, self.first_end(scope, instance));
+        let mut report = match (tools::component(&name.to_string()), elements) {
+            (Some(here), _) => report.help(format!("write `{here}`, as it is called here")),
+            (None, Some(help)) => report.help(help),
+            (None, None) => report.did_you_mean(&name.to_string(), &known),
         };
         if report.helps.is_empty() {
             let names = listing(library::names().map(str::to_owned));
             report = report.help(format!("the library has {names}"));
         }
         self.tell(scope, report);
+    }
+
+    /// Kind and dimension of the first junction that an instance is given.
+    fn first_end(&self, scope: usize, instance: &ast::Instance) -> Option<(JunctionKind, usize)> {
+        let first = instance.connections.first()?;
+        match self.end_of(scope, first) {
+            Ok(Some((End::Junction(id, _), size))) => Some((self.graph.junctions[id.0].kind, size)),
+            _ => None,
+        }
     }
 }
 

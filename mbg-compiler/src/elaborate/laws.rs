@@ -668,7 +668,15 @@ impl Reader<'_, '_, '_> {
                              and columns is {value}"
                         )
                     };
-                    return Err(Box::new(error(codes::NOT_FINITE, span, message)));
+                    let mut report = error(codes::NOT_FINITE, span, message);
+                    if is_diagonal && value == 0.0 {
+                        report = report.help(format!(
+                            "write a number far below the others in the place of the 0, such as `{}`: nothing that is \
+                             visible changes",
+                            self.negligible(matrix)
+                        ));
+                    }
+                    return Err(Box::new(report));
                 }
                 None if assumptions
                     .iter()
@@ -681,6 +689,17 @@ impl Reader<'_, '_, '_> {
             }
         }
         Ok(assumptions)
+    }
+
+    /// The power of ten that is about a millionth of the largest entry whose value is known, or of one.
+    fn negligible(&self, matrix: &Matrix) -> String {
+        let known = matrix
+            .entries
+            .iter()
+            .filter_map(|it| self.pool.constant_value(*it));
+        let largest = known.fold(0.0, f64::max);
+        let largest: f64 = if largest > 0.0 { largest } else { 1.0 };
+        format!("1e{}", largest.log10().floor() - 6.0)
     }
 
     fn initial(&mut self, coenergy: &[Expression]) -> Result<Option<Vec<Expression>>> {

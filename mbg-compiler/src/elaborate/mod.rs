@@ -35,6 +35,7 @@ mod rings;
 mod scope;
 mod size;
 mod spread;
+mod tools;
 mod unused;
 
 use std::collections::BTreeMap;

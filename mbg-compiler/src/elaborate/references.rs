@@ -25,7 +25,12 @@ impl Builder<'_> {
         })
     }
 
-    fn end_of(&self, scope: usize, reference: &Reference) -> Result<Option<(End, usize)>> {
+    /// The same without telling what is broken.
+    pub(super) fn end_of(
+        &self,
+        scope: usize,
+        reference: &Reference,
+    ) -> Result<Option<(End, usize)>> {
         let steps: Result<Vec<Step>> = reference
             .path
             .iter()

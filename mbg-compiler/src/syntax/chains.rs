@@ -1,6 +1,6 @@
 //! Chains of bonds, references to junctions, and instances of components.
 
-use proc_macro2::{Delimiter, Group, Span};
+use proc_macro2::{Delimiter, Group, Span, TokenTree};
 use syn::Expr;
 
 use super::ast::{Chain, ChainNode, Instance, Reference, Segment, Selection};
@@ -9,7 +9,7 @@ use super::cursor::{Cursor, Parsed};
 use super::elements::{element, fields, kind, no_element};
 use super::expressions::{bounds, expression};
 use super::recovery::{Sink, finish};
-use super::{dump, slips, words};
+use super::{dump, elsewhere, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
@@ -165,9 +165,9 @@ pub(super) fn reference(cursor: &mut Cursor, what: &str) -> Parsed<Reference> {
             Ok(next) => path.push(next),
             Err(error)
                 if cursor.ident(0).is_none()
-                    && cursor.peek(0).is_some_and(|token| {
-                        matches!(token, proc_macro2::TokenTree::Literal(_))
-                    }) =>
+                    && cursor
+                        .peek(0)
+                        .is_some_and(|token| matches!(token, TokenTree::Literal(_))) =>
             {
                 return Err(Box::new(
                     (*error).help("a component by number stands in brackets: `name[0]`"),
@@ -198,7 +198,12 @@ fn selection(group: &Group) -> Parsed<Selection> {
         "a component such as `0` or a range such as `1..3`",
     )?;
     if !cursor.ended() {
-        return Err(cursor.expected(&format!("`]` after {}", cursor.previous())));
+        let report = *cursor.expected(&format!("`]` after {}", cursor.previous()));
+        let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+        return Err(Box::new(match slips::with_dots(&inside) {
+            Some(help) => report.help(help),
+            None => report,
+        }));
     }
     let (start, end) = match value {
         Expr::Range(range) => {
@@ -223,6 +228,11 @@ pub(super) fn instance(
         Some(group) => fields(&group, &format!("{name}: {component}"), sink)?,
         None => Vec::new(),
     };
+    if let Some(help) = elsewhere::parameters(&name, &component, cursor) {
+        return Err(Box::new(
+            (*cursor.expected(&format!("`{{` after `{component}`"))).help(help),
+        ));
+    }
     let Some(group) = cursor.take_group(Delimiter::Parenthesis) else {
         let wanted = if arguments.is_empty() {
             "`{` or `(`"

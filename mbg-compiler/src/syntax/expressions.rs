@@ -8,6 +8,7 @@ use syn::{Expr, ExprRange, RangeLimits};
 use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
 use super::recovery::opens;
+use super::ternaries::ternary;
 use super::{dump, slips};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -81,7 +82,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         ));
     }
     let whole = || cursor.length_until(|it, at| it.punct(at, ',') || it.punct(at, ';'));
-    if let Some(report) = question(cursor.ahead(length), &|| cursor.ahead(whole())) {
+    if let Some(report) = ternary(cursor.ahead(length), &|| cursor.ahead(whole())) {
         cursor.advance(whole());
         return Err(report);
     }
@@ -104,47 +105,6 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         let slip = slips::remainder(&law).or_else(|| slips::side_by_side(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })
-}
-
-/// What to write for `a ? b : c` among these tokens or in a group of theirs. What stands behind the first `:` may look
-/// like the next field, so that the `whole` is looked at for it.
-fn question<'t>(
-    tokens: &[TokenTree],
-    whole: &dyn Fn() -> &'t [TokenTree],
-) -> Option<Box<Diagnostic>> {
-    let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(it) if it.as_char() == mark);
-    let Some(asked) = tokens.iter().position(|token| is(token, '?')) else {
-        return tokens.iter().find_map(|token| match token {
-            TokenTree::Group(group) => {
-                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
-                question(&inside, &|| &inside)
-            }
-            _ => None,
-        });
-    };
-    let whole = whole();
-    let (condition, rest) = (&whole[..asked], &whole[asked + 1..]);
-    // A path has two colons.
-    let alone = |at: &usize| {
-        let neighbours = [at.wrapping_sub(1), at + 1];
-        let neighbours = neighbours.map(|at| rest.get(at));
-        is(&rest[*at], ':') && !neighbours.into_iter().flatten().any(|token| is(token, ':'))
-    };
-    let colon = (0..rest.len()).find(alone)?;
-    let (first, second) = (&rest[..colon], &rest[colon + 1..]);
-    let text = |part: &[TokenTree]| {
-        let part: TokenStream = part.iter().cloned().collect();
-        syn::parse2(part).map_or("…".to_owned(), |part: Expr| dump::expression(&part))
-    };
-    let choice = format!(
-        "write `if {} {{ {} }} else {{ {} }}`",
-        text(condition),
-        text(first),
-        text(second)
-    );
-    let message = "`?` is no operator: a choice is written with `if`";
-    let report = error(codes::SYNTAX, tokens[asked].span(), message);
-    Some(Box::new(report.help(choice)))
 }
 
 /// Whether an expression cannot go past this offset.

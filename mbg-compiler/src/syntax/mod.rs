@@ -16,6 +16,7 @@ mod cursor;
 mod depth;
 pub mod dump;
 mod elements;
+mod elsewhere;
 mod expressions;
 mod items;
 pub mod library;
@@ -24,6 +25,7 @@ mod reads;
 mod recovery;
 mod slips;
 mod statements;
+mod ternaries;
 mod units;
 pub(crate) mod words;
 

@@ -73,8 +73,9 @@ pub(super) fn opens(cursor: &Cursor, offset: usize) -> bool {
     if cursor.ident(offset).is_some() {
         return begins(cursor, offset);
     }
-    // In `1 param x` the digit ends a statement, and the word begins the next.
+    // In `1 param x` the digit ends a statement, and the word begins the next; in `1 then x` it ends a condition.
     cursor.junction_digit(offset)
+        && next != words::THEN
         && !words::is_reserved(&next.to_string())
         && !begins(cursor, offset + 1)
 }

@@ -1,6 +1,7 @@
 //! Instances and entries of matrices in the order and spelling of other languages, and what to type instead.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenTree};
+use syn::ExprArray;
 
 use super::ast::{Reference, Segment};
 use super::cursor::Cursor;
@@ -130,10 +131,8 @@ fn is_operand(token: &TokenTree) -> bool {
 
 /// What to type for two values without an operator between them, among these tokens or in a group of theirs.
 pub(super) fn side_by_side(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
-    let is_dot =
-        |at: usize| matches!(tokens.get(at), Some(TokenTree::Punct(mark)) if mark.as_char() == '.');
+    let is_dot = |at: usize| tokens.get(at).is_some_and(|token| is_mark(token, '.'));
     let is_name = |at: usize| matches!(tokens.get(at), Some(TokenTree::Ident(_)));
-    let text = |part: &[TokenTree]| dump::tokens(part.iter().cloned().collect());
     let joint = (1..tokens.len()).find(|at| {
         let begins = !matches!(tokens[*at], TokenTree::Group(_));
         begins && is_operand(&tokens[at - 1]) && is_operand(&tokens[*at])
@@ -219,7 +218,8 @@ fn listed(count: usize, text: impl Fn(usize) -> String, between: &str) -> String
     texts.join(between)
 }
 
-/// What to type for an entry `m[0, 1]` among these tokens or in a group of theirs.
+/// What to type for an entry `m[0, 1]`, for a range `v[1:3]` or for rows between semicolons, among these tokens or in a
+/// group of theirs.
 pub(super) fn entry(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
     tokens.iter().enumerate().find_map(|(at, token)| {
         let TokenTree::Group(group) = token else {
@@ -228,27 +228,66 @@ pub(super) fn entry(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
         let inside: Vec<TokenTree> = group.stream().into_iter().collect();
         let before = at.checked_sub(1).map(|before| &tokens[before]);
         let indexes = matches!(before, Some(TokenTree::Ident(_) | TokenTree::Group(_)));
-        let is_comma =
-            |token: &TokenTree| matches!(token, TokenTree::Punct(mark) if mark.as_char() == ',');
-        let comma = inside.iter().position(is_comma);
-        match comma.filter(|_| indexes && group.delimiter() == Delimiter::Bracket) {
-            Some(comma) => {
-                let places: Vec<String> = inside
-                    .split(is_comma)
-                    .map(|place| format!("[{}]", dump::tokens(place.iter().cloned().collect())))
-                    .collect();
-                let report = error(
-                    codes::SYNTAX,
-                    inside[comma].span(),
-                    "expected `]`, found `,`",
-                );
-                let help = format!(
-                    "an entry of a matrix is taken from a row: `{}`",
-                    places.concat()
-                );
-                Some(Box::new(report.help(help)))
-            }
-            None => entry(&inside),
-        }
+        let told = match (group.delimiter(), indexes) {
+            (Delimiter::Bracket, true) => by_rows_first(&inside).or_else(|| range(&inside)),
+            (Delimiter::Bracket, false) => rows(&inside),
+            _ => None,
+        };
+        told.or_else(|| entry(&inside))
     })
+}
+
+/// `[0, 1]` behind a matrix.
+fn by_rows_first(inside: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    let comma = inside.iter().find(|token| is_mark(token, ','))?;
+    let places = inside.split(|token| is_mark(token, ','));
+    let places: Vec<String> = places.map(|place| format!("[{}]", text(place))).collect();
+    let report = error(codes::SYNTAX, comma.span(), "expected `]`, found `,`");
+    let help = format!(
+        "an entry of a matrix is taken from a row: `{}`",
+        places.concat()
+    );
+    Some(Box::new(report.help(help)))
+}
+
+/// `[1:3]` behind a vector.
+fn range(inside: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    let help = with_dots(inside)?;
+    let colon = inside.iter().find(|token| is_mark(token, ':'))?;
+    let report = error(codes::SYNTAX, colon.span(), "expected `]`, found `:`");
+    Some(Box::new(report.help(help)))
+}
+
+/// What to type for a range of components with a colon between its bounds.
+pub(super) fn with_dots(inside: &[TokenTree]) -> Option<String> {
+    let parts: Vec<&[TokenTree]> = inside.split(|token| is_mark(token, ':')).collect();
+    let [start, end] = parts[..] else { return None };
+    let is_plain = !start.is_empty() && !end.is_empty();
+    let (start, end) = (text(start), text(end));
+    is_plain.then(|| format!("a range is written `[{start}..{end}]`"))
+}
+
+/// Rows of a matrix, or entries of a vector, between semicolons.
+fn rows(inside: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    let mark = inside.iter().find(|token| is_mark(token, ';'))?;
+    let rows: Vec<&[TokenTree]> = inside.split(|token| is_mark(token, ';')).collect();
+    let is_matrix = inside.iter().any(|token| is_mark(token, ','));
+    let rows = rows.into_iter().map(|row| match is_matrix {
+        true => format!("[{}]", text(row)),
+        false => text(row),
+    });
+    let written = format!("[{}]", rows.collect::<Vec<_>>().join(", "));
+    // What stands between the marks may be no value.
+    syn::parse_str::<ExprArray>(&written).ok()?;
+    let report = error(codes::SYNTAX, mark.span(), "expected `,` or `]`, found `;`");
+    let help = format!("commas stand between entries and between rows: write `{written}`");
+    Some(Box::new(report.help(help)))
+}
+
+fn is_mark(token: &TokenTree, mark: char) -> bool {
+    matches!(token, TokenTree::Punct(it) if it.as_char() == mark)
+}
+
+fn text(part: &[TokenTree]) -> String {
+    dump::tokens(part.iter().cloned().collect())
 }

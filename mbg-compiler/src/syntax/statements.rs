@@ -17,7 +17,7 @@ use super::expressions::{condition, expression};
 use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
-use super::{slips, words};
+use super::{elsewhere, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 use crate::inclusion;
@@ -97,7 +97,8 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
     }
     let misspelt = cursor.ident(1).is_some() && words::element(&word).is_none();
     let is_event = word == words::EVENT && cursor.group(1, Delimiter::Parenthesis).is_some();
-    if misspelt || is_event || words::is_reserved(&word) {
+    let is_foreign = || elsewhere::statement(cursor).is_some();
+    if misspelt || is_event || words::is_reserved(&word) || is_foreign() {
         return Err(no_statement(cursor));
     }
     if cursor.punct(1, ':') && cursor.ident(2).is_some_and(|word| word == "for") {
@@ -139,6 +140,9 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
         return Box::new(
             error.note("models and components stand side by side, not inside each other"),
         );
+    }
+    if let Some(help) = elsewhere::statement(cursor) {
+        return Box::new(error.help(help));
     }
     if word == words::EVENT {
         return Box::new(error.help(
@@ -344,7 +348,10 @@ fn named_value(
     let name = cursor.name(&format!("the name of the {owner} after `{word}`"))?;
     let dimension = vector_size(cursor, word, &name)?;
     let unit = unit(cursor, sink);
-    equals(cursor, dimension.is_some(), unit.is_some())?;
+    equals(cursor, dimension.is_some(), unit.is_some()).map_err(|mut report| {
+        report.helps.extend(nameless(cursor, word, &name));
+        report
+    })?;
     let value = expression(cursor, &format!("the value of `{name}` after `=`"))?;
     finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
     Ok(Let {
@@ -356,9 +363,24 @@ fn named_value(
     })
 }
 
+/// What to type for `output mass.p;`, which lacks a name; what stands before the dot was read as one.
+fn nameless(cursor: &Cursor, word: &str, first: &Ident) -> Option<String> {
+    let length = cursor.length_until(|it, at| it.punct(at, ';'));
+    let rest = dump::tokens(cursor.ahead(length).iter().cloned().collect());
+    let is_read = cursor.punct(0, '.');
+    is_read.then(|| format!("a value has a name: `{word} name = {first}{rest};`"))
+}
+
 /// Reads the value of gravity and its `;`.
 fn gravity(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Gravity> {
-    let value = expression(cursor, "the acceleration of free fall after `gravity`")?;
+    let what = "the acceleration of free fall after `gravity`";
+    if cursor.punct(0, ':') || cursor.punct(0, '=') {
+        let report = *cursor.expected(what);
+        cursor.advance(1);
+        let value = dump::expression(&expression(cursor, what)?);
+        return Err(Box::new(report.help(format!("write `gravity {value};`"))));
+    }
+    let value = expression(cursor, what)?;
     finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
     Ok(Gravity { name, value })
 }
@@ -419,7 +441,17 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
 
 /// Reads the dimension of what a word declares, which is a vector at most.
 fn vector_size(cursor: &mut Cursor, word: &str, name: &Ident) -> Parsed<Option<usize>> {
-    let rows = cursor.dimension()?;
+    let mut help = elsewhere::unit_in_brackets(cursor, word, name);
+    if cursor.group(0, Delimiter::Parenthesis).is_some()
+        && let Some(help) = help.take()
+    {
+        let report = *cursor.expected(&format!("`:` after `{name}`"));
+        return Err(Box::new(report.help(help)));
+    }
+    let rows = cursor.dimension().map_err(|mut report| {
+        report.helps.splice(0..0, help);
+        report
+    })?;
     let (Some(count), Some(_)) = (rows, cursor.group(0, Delimiter::Bracket)) else {
         return Ok(rows);
     };
@@ -576,6 +608,17 @@ fn undelimited(cursor: &mut Cursor, words: &[(&str, bool)], sink: &mut Sink<'_>)
         cursor.previous()
     );
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if word.starts_with("initial") && cursor.punct(1, ':') {
+        let report = *cursor.expected(&wanted);
+        cursor.advance(2);
+        let value = condition(cursor, &format!("the value of `{word}`"))?;
+        let help = format!(
+            "a flow at the start is given with the inertia, `I … {{ inertia: …, initial_flow: {0} }}`, or with a coordinate, \
+             `1 … coordinate, initial_flow: {0} {{ … }}`",
+            dump::expression(&value)
+        );
+        return Err(Box::new(report.help(help)));
+    }
     if let Some(near) = words::nearest(&word, &missing) {
         return Err(Box::new(
             (*cursor.expected(&wanted)).help(format!("did you mean `{near}`?")),

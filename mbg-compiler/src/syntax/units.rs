@@ -29,7 +29,8 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
             || opens(cursor, offset)
             || cursor.punct(offset, '#')
     });
-    let end = cursor.position() + length;
+    let start = cursor.position();
+    let end = start + length;
     let mut unit = Unit {
         text: String::new(),
         factors: Vec::new(),
@@ -42,12 +43,50 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
     });
     match parsed {
         Ok(()) => Some(unit),
-        Err(error) => {
-            sink.report(error);
+        Err(mut error) => {
             cursor.advance(end.saturating_sub(cursor.position()));
+            if error.helps.is_empty() {
+                error.helps.extend(mended(cursor.since(start)));
+            }
+            sink.report(error);
             None
         }
     }
+}
+
+/// What to type for a unit with dots or nothing between its factors, or with `**` before its exponents.
+fn mended(tokens: &[TokenTree]) -> Option<String> {
+    let text = multiplied(tokens, DEPTH)?
+        .replace("**", "^")
+        .replace('.', "*");
+    let mut cursor = Cursor::new(text.parse().ok()?);
+    let mut unit = Unit {
+        text: String::new(),
+        factors: Vec::new(),
+    };
+    product(&mut cursor, &mut unit, 1, DEPTH).ok()?;
+    cursor.ended().then(|| format!("write `{text}`"))
+}
+
+/// The text of these tokens, with `*` where factors stand side by side.
+fn multiplied(tokens: &[TokenTree], depth: usize) -> Option<String> {
+    let mut text = String::new();
+    for token in tokens {
+        let next = match token {
+            TokenTree::Group(group) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                format!("({})", multiplied(&inside, depth.checked_sub(1)?)?)
+            }
+            other => other.to_string(),
+        };
+        let ends = |letter: char| letter.is_alphanumeric() || letter == ')';
+        let begins = |letter: char| letter.is_alphanumeric() || letter == '(';
+        if text.ends_with(ends) && next.starts_with(begins) {
+            text.push('*');
+        }
+        text.push_str(&next);
+    }
+    Some(text)
 }
 
 /// Reads factors between `*` and `/`; `sign` is -1 in a denominator.

@@ -24,6 +24,9 @@ pub(super) const INCLUDE: &str = "include";
 /// The word that begins an event in other languages.
 pub(super) const EVENT: &str = "when";
 
+/// The word before a chosen value in other languages.
+pub(super) const THEN: &str = "then";
+
 /// Words that begin an item.
 pub(super) const ITEMS: &[&str] = &["model", "component"];
 

@@ -31,6 +31,11 @@ use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId};
 use crate::symbolic::{Expression, Pool, Symbol, substitute};
 use crate::syntax::ast::{self, Unit};
 
+/// Whether a unit has this name.
+pub(crate) fn is_name_of_unit(name: &str) -> bool {
+    names::lookup(name).is_some()
+}
+
 /// Whether a unit is that of a pure number, such as an angle.
 pub(crate) fn is_pure(unit: &Unit) -> bool {
     names::dimension(unit).is_ok_and(|dimension| dimension.is_pure())

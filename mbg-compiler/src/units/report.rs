@@ -181,9 +181,26 @@ impl<'a> Reporter<'a> {
         if let Some(advice) = self.no_power(claim, units) {
             report = report.help(advice);
         } else if found.is_pure() {
-            report = report.help("an angle is declared in `rad`").help(FACTOR);
+            let angle = self
+                .may_be_angle(claim)
+                .then_some("an angle is declared in `rad`");
+            report.helps.extend(angle.map(str::to_owned));
+            report = report.help(FACTOR);
         }
         self.tell(&claim.place, report);
+    }
+
+    /// Whether a value is made of what an angle is made of: a sine or a cosine is none.
+    fn may_be_angle(&self, claim: &Claim) -> bool {
+        let mut open = claim.entries.clone();
+        while let Some(current) = open.pop() {
+            match self.pool.operation(current) {
+                Operation::Symbol(_) => return true,
+                Operation::Sine(_) | Operation::Cosine(_) => {}
+                other => open.extend_from_slice(&other.operands()),
+            }
+        }
+        false
     }
 
     /// A value that its place wants in another unit.

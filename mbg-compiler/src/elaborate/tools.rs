@@ -1,0 +1,390 @@
+//! Components of other tools and their parameters, and what is written here instead.
+
+use proc_macro2::Ident;
+
+use super::frames::IN_PLANE;
+use crate::graph::JunctionKind;
+use crate::syntax::{ast, dump, library};
+
+/// What components are called elsewhere, without regard to capitals, underscores and the word joint, and in the library.
+const COMPONENTS: &[(&[&str], &str)] = &[
+    (&["floating", "freeflyer", "sixdof", "freemotion"], "Free"),
+    (&["hinge", "pin", "continuous", "rotary"], "Revolute"),
+    (&["slider", "sliding", "translational"], "Prismatic"),
+    (&["ball", "ballandsocket"], "Spherical"),
+    (&["weld", "welded", "rigid"], "Fixed"),
+    (&["cardan", "hooke"], "Universal"),
+    (
+        &[
+            "rigidbody",
+            "link",
+            "bodyshape",
+            "bodybox",
+            "bodycylinder",
+            "solid",
+        ],
+        "Body",
+    ),
+    (&["particle"], "PointMass"),
+    (&["fixedtranslation", "translation"], "Offset"),
+    (&["rigidtransform", "fixedframe"], "Mount"),
+    (&["fixedrotation"], "Turn"),
+    (
+        &[
+            "worldforce",
+            "worldtorque",
+            "bodyforce",
+            "forceandtorque",
+            "externalforce",
+        ],
+        "Load",
+    ),
+    (&["motor", "dcmachine"], "DcMotor"),
+    (&["idealtransformer"], "Transformer"),
+    (&["idealdiode"], "Diode"),
+    (&["rackandpinion"], "Rack"),
+    (&["hydrauliccylinder"], "Cylinder"),
+    (&["valve"], "Orifice"),
+    (&["heatcapacitor", "thermalmass"], "HeatCapacity"),
+    (&["thermalconductor", "thermalresistor"], "Conduction"),
+    (
+        &["heatflow", "fixedheatflow", "prescribedheatflow"],
+        "HeatSource",
+    ),
+];
+
+/// Where the elements of a component of another tool stand.
+#[derive(Clone, Copy, PartialEq)]
+enum Stand {
+    /// At one junction.
+    At,
+    /// Between two junctions, on what they differ by.
+    Between,
+}
+
+/// Components of other tools that are elements here: what stands still has none of its own.
+const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
+    (
+        &[
+            "voltagesource",
+            "constantvoltage",
+            "signalvoltage",
+            "battery",
+        ],
+        Stand::Between,
+        &[("Se", "source", "effort: …")],
+    ),
+    (
+        &[
+            "force",
+            "torque",
+            "forcesource",
+            "torquesource",
+            "idealforcesource",
+            "idealtorquesource",
+        ],
+        Stand::Between,
+        &[("Se", "source", "effort: …")],
+    ),
+    (
+        &["pressuresource", "fixedpressure", "effortsource"],
+        Stand::At,
+        &[("Se", "source", "effort: …")],
+    ),
+    (
+        &[
+            "currentsource",
+            "constantcurrent",
+            "signalcurrent",
+            "flowsource",
+        ],
+        Stand::Between,
+        &[("Sf", "source", "flow: …")],
+    ),
+    (
+        &[
+            "speed",
+            "speedsource",
+            "velocitysource",
+            "angularvelocitysource",
+        ],
+        Stand::At,
+        &[("Sf", "source", "flow: …")],
+    ),
+    (
+        &["mass", "inertia", "rotationalinertia"],
+        Stand::At,
+        &[("I", "mass", "inertia: …")],
+    ),
+    (
+        &[
+            "spring",
+            "translationalspring",
+            "rotationalspring",
+            "torsionspring",
+        ],
+        Stand::Between,
+        &[("C", "spring", "stiffness: …")],
+    ),
+    (
+        &[
+            "damper",
+            "dashpot",
+            "translationaldamper",
+            "rotationaldamper",
+        ],
+        Stand::Between,
+        &[("R", "damper", "resistance: …")],
+    ),
+    (
+        &["springdamper", "springanddamper"],
+        Stand::Between,
+        &[
+            ("C", "spring", "stiffness: …"),
+            ("R", "damper", "resistance: …"),
+        ],
+    ),
+    (
+        &[
+            "ground",
+            "world",
+            "electricalreference",
+            "mechanicalreference",
+        ],
+        Stand::At,
+        &[],
+    ),
+];
+
+/// Kind, name and law of an element, which bears the name of the instance where it is alone.
+type Part = (&'static str, &'static str, &'static str);
+
+/// What the parameters of components are called elsewhere, without regard to capitals, and here: the first that the
+/// component has.
+const PARAMETERS: &[(&[&str], &[&str])] = &[
+    (&["m"], &["mass"]),
+    (
+        &["i", "j", "moment_of_inertia", "inertia_tensor", "tensor"],
+        &["inertia"],
+    ),
+    (
+        &[
+            "com",
+            "cog",
+            "cm",
+            "center",
+            "center_of_mass",
+            "centre_of_mass",
+            "center_of_gravity",
+            "centre_of_gravity",
+            "r_cm",
+        ],
+        &["centre"],
+    ),
+    (&["r"], &["resistance", "radius", "by", "offset"]),
+    (&["c"], &["capacitance", "capacity", "stiffness"]),
+    (&["l"], &["inductance"]),
+    (&["g"], &["conductance"]),
+    (
+        &[
+            "k",
+            "spring",
+            "spring_constant",
+            "spring_stiffness",
+            "spring_rate",
+        ],
+        &["stiffness", "constant"],
+    ),
+    (
+        &[
+            "d",
+            "b",
+            "damper",
+            "damping_coefficient",
+            "damping_constant",
+            "viscous_friction",
+        ],
+        &["damping", "friction"],
+    ),
+    (&["n"], &["axis", "ratio", "exponent"]),
+    (
+        &[
+            "initial_velocity",
+            "initial_speed",
+            "initial_angular_velocity",
+            "initial_rates",
+            "w_start",
+            "v_start",
+            "rate",
+            "velocity",
+        ],
+        &[
+            "initial_rate",
+            "initial_rates",
+            "initial_turning",
+            "initial_sliding",
+        ],
+    ),
+    (
+        &[
+            "initial_angle",
+            "initial_position",
+            "initial_travel",
+            "initial_displacement",
+            "initial_angles",
+            "initial_voltage",
+            "initial_current",
+            "initial_temperature",
+            "initial_volume",
+            "start",
+            "phi_start",
+            "q_start",
+            "s_start",
+            "v_start",
+            "i_start",
+            "t_start",
+            "angle",
+            "position",
+            "q0",
+            "x0",
+        ],
+        &[
+            "initial",
+            "initial_angle",
+            "initial_travel",
+            "initial_position",
+        ],
+    ),
+    (
+        &[
+            "rest_angle",
+            "rest_position",
+            "rest_length",
+            "equilibrium",
+            "phi_rel0",
+            "s_rel0",
+        ],
+        &["rest"],
+    ),
+    (&["tau", "motor", "effort"], &["torque", "force"]),
+    (
+        &["offset", "translation", "vector", "displacement"],
+        &["by", "offset"],
+    ),
+    (&["blades", "number_of_blades"], &["count"]),
+    (&["gear_ratio"], &["ratio"]),
+    (&["q_flow", "heat_flow"], &["power"]),
+];
+
+/// The component of the library that has this name elsewhere.
+pub(super) fn component(name: &str) -> Option<&'static str> {
+    let name = plain(name);
+    let mut components = COMPONENTS.iter();
+    let listed = components.find(|(names, _)| names.contains(&name.as_str()));
+    let of_library = || library::names().find(|known| known.to_lowercase() == name);
+    listed.map(|(_, here)| *here).or_else(of_library)
+}
+
+/// A name without what tools write differently.
+fn plain(name: &str) -> String {
+    let name = name.to_lowercase().replace('_', "");
+    let bare = name.strip_suffix("joint");
+    bare.unwrap_or(&name).to_owned()
+}
+
+/// The parameter of a component that has this name elsewhere; `names` are those that it has.
+pub(super) fn parameter<'a>(word: &Ident, names: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_string();
+    if names.contains(&word.as_str()) {
+        return None;
+    }
+    let word = word.to_lowercase();
+    let mut meant = PARAMETERS.iter();
+    meant.find_map(|(words, here)| {
+        let mut here = here.iter().filter(|_| words.contains(&word.as_str()));
+        here.find_map(|here| names.iter().find(|name| *name == here).copied())
+    })
+}
+
+/// What to type for an instance of a component of another tool that is made of elements here; `end` is the first junction
+/// that it was given, by its kind and dimension.
+pub(super) fn elements(
+    instance: &ast::Instance,
+    end: Option<(JunctionKind, usize)>,
+) -> Option<String> {
+    let component = plain(&instance.component.to_string());
+    let mut known = ELEMENTS.iter();
+    let (_, stand, parts) = known.find(|(names, ..)| names.contains(&component.as_str()))?;
+    let (kind, dimension) = end.unwrap_or((JunctionKind::One, 1));
+    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
+    let name = instance.name.to_string();
+    let at = ends.first().map_or("…", String::as_str);
+    let text = match (stand, &ends[..], parts) {
+        (_, _, []) => at_junction(&[still(kind)], &name, at, dimension),
+        (Stand::At, _, [("I", ..)]) if dimension > 1 => of_frame(&name, at, dimension),
+        (Stand::Between, [_, _], _) if dimension > 1 => return None,
+        (Stand::Between, [a, b], _) => between(parts, &name, (kind, [a, b])),
+        _ => at_junction(parts, &name, at, dimension),
+    };
+    Some(format!("here it is written `{text}`"))
+}
+
+/// What holds a flow or an effort at zero.
+fn still(kind: JunctionKind) -> Part {
+    match kind {
+        JunctionKind::One => ("Sf", "still", "flow: 0.0"),
+        JunctionKind::Zero => ("Se", "zero", "effort: 0.0"),
+    }
+}
+
+fn at_junction(parts: &[Part], name: &str, at: &str, dimension: usize) -> String {
+    let size = match dimension {
+        1 => String::new(),
+        size => format!("[{size}]"),
+    };
+    let bonds = parts.iter().map(|part| {
+        format!(
+            "{} -> {at};",
+            element(*part, &named(parts, name, *part), &size)
+        )
+    });
+    bonds.collect::<Vec<_>>().join(" ")
+}
+
+fn of_frame(name: &str, at: &str, dimension: usize) -> String {
+    let component = match dimension {
+        IN_PLANE => "PlanarBody",
+        _ => "Body",
+    };
+    format!("{name}: {component} {{ mass: …, inertia: … }} ({at});")
+}
+
+/// Elements on what two junctions differ by: on the flow between those with common flows, all elements of one flow, and
+/// on the effort between those with common efforts.
+fn between(parts: &[Part], name: &str, (kind, [a, b]): (JunctionKind, [&str; 2])) -> String {
+    let elements = parts
+        .iter()
+        .map(|part| element(*part, &named(parts, name, *part), ""));
+    let elements = elements.collect::<Vec<_>>().join(" ");
+    let middle = format!("{name}_between");
+    // A source of effort raises it from the second of its nodes to the first.
+    let is_raised = kind == JunctionKind::Zero && parts[0].0 == "Se";
+    let (a, b) = if is_raised { (b, a) } else { (a, b) };
+    let bonds = format!("{a} -> {middle}; {middle} -> {b};");
+    match (kind, parts.len()) {
+        (JunctionKind::Zero, _) => format!("1 {middle} {{ {elements} }} {bonds}"),
+        (JunctionKind::One, 1) => format!("0 {middle} {{ {elements} }} {bonds}"),
+        (JunctionKind::One, _) => {
+            format!("0 {middle}; 1 {name} {{ {elements} }} {bonds} {middle} -> {name};")
+        }
+    }
+}
+
+fn named(parts: &[Part], name: &str, (_, own, _): Part) -> String {
+    let is_alone = parts.len() == 1;
+    if is_alone { name } else { own }.to_owned()
+}
+
+fn element((kind, _, law): Part, name: &str, size: &str) -> String {
+    format!("{kind} {name}{size} {{ {law} }}")
+}

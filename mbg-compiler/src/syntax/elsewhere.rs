@@ -1,0 +1,138 @@
+//! Statements of other languages, and what is written here instead.
+
+use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
+
+use super::cursor::Cursor;
+use super::dump;
+use crate::units::is_name_of_unit;
+
+/// Words that declare a value in other languages, and the words that do so here.
+const DECLARING: &[(&str, &str)] = &[
+    ("parameter", "param"),
+    ("constant", "let"),
+    ("const", "let"),
+    ("var", "let"),
+    ("Real", "let"),
+];
+
+/// What to type for the statement that begins here, if another language has it.
+pub(super) fn statement(cursor: &Cursor) -> Option<String> {
+    let word = cursor.ident(0)?.to_string();
+    let arguments = || cursor.group(1, Delimiter::Parenthesis);
+    match word.as_str() {
+        "connect" => {
+            let ends = divided(arguments()?.stream(), ',');
+            let [from, to] = &ends[..] else { return None };
+            Some(format!(
+                "a bond is written with an arrow: `{from} -> {to};`"
+            ))
+        }
+        "der" if cursor.punct(2, '=') => {
+            let of = dump::tokens(arguments()?.stream());
+            let name = match syn::parse_str::<Ident>(&of) {
+                Ok(_) => of,
+                Err(_) => "name".to_owned(),
+            };
+            let rate = dump::tokens(until_end(cursor, 3));
+            Some(format!(
+                "what has a rate is declared with it: `integral {name} = {rate};`"
+            ))
+        }
+        _ => {
+            let (_, here) = DECLARING.iter().find(|(other, _)| *other == word)?;
+            declaration(cursor, here)
+        }
+    }
+}
+
+/// `parameter Real mass(min = 0) = 1.0;` as it is declared here: types and what stands in parentheses are left out.
+fn declaration(cursor: &Cursor, word: &str) -> Option<String> {
+    let mut places = (1..).take_while(|at| cursor.peek(*at).is_some());
+    let at = places.find(|at| cursor.ident(*at).is_some() && ends_name(cursor, at + 1))?;
+    let mut behind = at + 1;
+    if cursor.group(behind, Delimiter::Parenthesis).is_some() {
+        behind += 1;
+    }
+    let rest = dump::tokens(until_end(cursor, behind));
+    let name = cursor.ident(at)?;
+    let rest = match rest.as_str() {
+        "" if word == "let" => "= …",
+        rest => rest,
+    };
+    let space = if rest.starts_with('=') { " " } else { "" };
+    Some(format!("write `{word} {name}{space}{rest};`"))
+}
+
+/// Whether what stands here can follow the name in a declaration.
+fn ends_name(cursor: &Cursor, at: usize) -> bool {
+    let ends = [':', '=', ';'].iter().any(|end| cursor.punct(at, *end));
+    ends || matches!(cursor.peek(at), None | Some(TokenTree::Group(_)))
+}
+
+/// The tokens from an offset up to the end of the statement.
+fn until_end(cursor: &Cursor, offset: usize) -> TokenStream {
+    let length = cursor.length_until(|it, at| it.punct(at, ';'));
+    let ahead = cursor.ahead(length);
+    ahead
+        .get(offset..)
+        .unwrap_or_default()
+        .iter()
+        .cloned()
+        .collect()
+}
+
+/// The texts between marks of this kind.
+fn divided(tokens: TokenStream, mark: char) -> Vec<String> {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let is_mark = |token: &TokenTree| matches!(token, TokenTree::Punct(it) if it.as_char() == mark);
+    let parts = tokens.split(is_mark);
+    parts
+        .map(|part| dump::tokens(part.iter().cloned().collect()))
+        .collect()
+}
+
+/// What to type for `force[N]` or `force(N)`, with the unit in brackets behind the name.
+pub(super) fn unit_in_brackets(cursor: &Cursor, word: &str, name: &Ident) -> Option<String> {
+    let mut brackets = [Delimiter::Bracket, Delimiter::Parenthesis].into_iter();
+    let group = brackets.find_map(|delimiter| cursor.group(0, delimiter))?;
+    let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
+    let is_of_unit = |token: &TokenTree| match token {
+        TokenTree::Ident(name) => is_name_of_unit(&name.to_string()),
+        TokenTree::Group(_) => false,
+        TokenTree::Punct(_) | TokenTree::Literal(_) => true,
+    };
+    let begins = matches!(tokens.first(), Some(TokenTree::Ident(_)));
+    if !begins || !tokens.iter().all(is_of_unit) {
+        return None;
+    }
+    let unit: String = tokens.iter().map(ToString::to_string).collect();
+    let rest = dump::tokens(until_end(cursor, 1));
+    let space = if rest.is_empty() { "" } else { " " };
+    Some(format!(
+        "a unit stands behind a colon: `{word} {name}: {unit}{space}{rest};`"
+    ))
+}
+
+/// What to type for parameters in parentheses, as in `joint: Revolute(axis: 2) (a, b);`.
+pub(super) fn parameters(name: &Ident, component: &Ident, cursor: &Cursor) -> Option<String> {
+    let group = cursor.group(0, Delimiter::Parenthesis)?;
+    let inside = Cursor::inside(group);
+    let is_given = |mark| inside.ident(0).is_some() && inside.punct(1, mark);
+    let parameters = match (is_given(':'), is_given('=')) {
+        (true, _) => dump::tokens(group.stream()),
+        (_, true) => with_colons(group),
+        _ => return None,
+    };
+    let ports = cursor.group(1, Delimiter::Parenthesis);
+    let ports = ports.map_or_else(|| "…".to_owned(), |ports| dump::tokens(ports.stream()));
+    Some(format!(
+        "parameters stand in braces: `{name}: {component} {{ {parameters} }} ({ports});`"
+    ))
+}
+
+/// Each `word = value` as `word: value`.
+fn with_colons(group: &Group) -> String {
+    let given = divided(group.stream(), ',');
+    let given = given.iter().map(|given| given.replacen(" =", ":", 1));
+    given.collect::<Vec<_>>().join(", ")
+}

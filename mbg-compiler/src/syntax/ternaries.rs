@@ -1,0 +1,116 @@
+//! Choices between two values as other languages write them, and what to type instead.
+
+use proc_macro2::TokenTree;
+use syn::Expr;
+
+use super::dump;
+use super::words::THEN;
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
+
+/// What begins another choice where the one before it was not made.
+const ELSE_IF: &[&str] = &["elseif", "elsif", "elif"];
+
+/// What to write for `a ? b : c`, `if a then b else c` or `b if a else c` among these tokens or in a group of theirs. What
+/// stands behind the `:` may look like the next field, so that the `whole` is looked at for it.
+pub(super) fn ternary<'t>(
+    tokens: &[TokenTree],
+    whole: &dyn Fn() -> &'t [TokenTree],
+) -> Option<Box<Diagnostic>> {
+    let is_word = |word| move |token: &TokenTree| is_word(token, word);
+    if let Some(asked) = tokens.iter().position(|token| is_mark(token, '?')) {
+        let choice = by_marks(whole(), asked)?;
+        let message = "`?` is no operator: a choice is written with `if`";
+        return Some(told(&tokens[asked], message, &choice));
+    }
+    if let Some(begin) = tokens.iter().position(is_word("if")) {
+        if let Some(then) = tokens.iter().position(is_word(THEN)) {
+            let message = "`then` is no word here: the values of a choice stand in braces";
+            let choice = by_words(&whole()[begin..])?;
+            return Some(told(&tokens[then], message, &choice));
+        }
+        if let Some(choice) = behind_its_value(whole(), begin) {
+            let message = "a choice begins with its `if`";
+            return Some(told(&tokens[begin], message, &choice));
+        }
+    }
+    tokens.iter().find_map(|token| match token {
+        TokenTree::Group(group) => {
+            let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+            ternary(&inside, &|| &inside)
+        }
+        _ => None,
+    })
+}
+
+fn told(at: &TokenTree, message: &str, choice: &str) -> Box<Diagnostic> {
+    let report = error(codes::SYNTAX, at.span(), message);
+    Box::new(report.help(format!("write `{choice}`")))
+}
+
+/// `a ? b : c`, whose `?` stands at this place.
+fn by_marks(whole: &[TokenTree], asked: usize) -> Option<String> {
+    let (condition, rest) = (&whole[..asked], &whole[asked + 1..]);
+    // A path has two colons.
+    let alone = |at: &usize| {
+        let neighbours = [at.wrapping_sub(1), at + 1];
+        let neighbours = neighbours.map(|at| rest.get(at));
+        let mut neighbours = neighbours.into_iter().flatten();
+        is_mark(&rest[*at], ':') && !neighbours.any(|token| is_mark(token, ':'))
+    };
+    let colon = (0..rest.len()).find(alone)?;
+    let [first, second] = [&rest[..colon], &rest[colon + 1..]].map(value);
+    Some(written(condition, &first, &format!("{{ {second} }}")))
+}
+
+/// `if a then b else c`, or the same with more choices behind it.
+fn by_words(choice: &[TokenTree]) -> Option<String> {
+    let then = choice.iter().position(|token| is_word(token, THEN))?;
+    let (condition, rest) = (&choice[1..then], &choice[then + 1..]);
+    let begins_other = |token: &TokenTree| {
+        is_word(token, "else") || ELSE_IF.iter().any(|word| is_word(token, word))
+    };
+    let Some(other) = rest.iter().position(begins_other) else {
+        return Some(written(condition, &value(rest), "{ … }"));
+    };
+    let behind = &rest[other + 1..];
+    let second = if !is_word(&rest[other], "else") {
+        by_words(&rest[other..])?
+    } else if behind.first().is_some_and(|token| is_word(token, "if")) {
+        by_words(behind)?
+    } else {
+        format!("{{ {} }}", value(behind))
+    };
+    Some(written(condition, &value(&rest[..other]), &second))
+}
+
+/// `b if a else c`, whose `if` stands at this place.
+fn behind_its_value(whole: &[TokenTree], begin: usize) -> Option<String> {
+    let (first, rest) = (&whole[..begin], &whole[begin + 1..]);
+    let other = rest.iter().position(|token| is_word(token, "else"))?;
+    let [first, condition, second] = [first, &rest[..other], &rest[other + 1..]].map(read);
+    let [first, condition, second] = [first?, condition?, second?].map(|it| dump::expression(&it));
+    Some(format!("if {condition} {{ {first} }} else {{ {second} }}"))
+}
+
+/// The choice as it is written here; `second` has its own braces.
+fn written(condition: &[TokenTree], first: &str, second: &str) -> String {
+    format!("if {} {{ {first} }} else {second}", value(condition))
+}
+
+/// What these tokens say, or a place for it.
+fn value(part: &[TokenTree]) -> String {
+    read(part).map_or_else(|| "…".to_owned(), |part| dump::expression(&part))
+}
+
+fn read(part: &[TokenTree]) -> Option<Expr> {
+    syn::parse2(part.iter().cloned().collect()).ok()
+}
+
+fn is_mark(token: &TokenTree, mark: char) -> bool {
+    matches!(token, TokenTree::Punct(it) if it.as_char() == mark)
+}
+
+fn is_word(token: &TokenTree, word: &str) -> bool {
+    matches!(token, TokenTree::Ident(it) if it == word)
+}

@@ -1,0 +1,276 @@
+//! Statements and laws of other languages, and what is to be typed instead.
+#![allow(clippy::unwrap_used)]
+
+mod told;
+
+use told::{diagnose, told};
+
+/// The texts in backticks of the helps of the only mistake.
+fn typed(text: &str) -> Vec<String> {
+    let diagnostics = diagnose(text);
+    let [report] = diagnostics.list() else {
+        panic!("one mistake in {text}, found:\n{}", told(text))
+    };
+    let helps = report.helps.iter();
+    let typed = helps.flat_map(|help| help.split('`').skip(1).step_by(2));
+    typed.map(str::to_owned).collect()
+}
+
+/// Two masses and a statement.
+fn masses(statement: &str) -> String {
+    format!(
+        "model M {{ 1 v {{ I m {{ inertia: 1.0 }} }} 1 w[3] {{ I n {{ inertia: 2.0 }} }} 0 k {{ C c {{ stiffness: 1.0 }} }}\n{statement} }}"
+    )
+}
+
+/// A mass and what drives it.
+fn driven(law: &str) -> String {
+    format!(
+        "model M {{ 1 v {{ I m {{ inertia: 1.0 }} R r {{ effort: 0.1 * f }}\nSe s {{ effort: {law} }} }} }}"
+    )
+}
+
+/// An arm on a joint, with the law of its inertia and the joint as they are written.
+fn arm(body: &str, joint: &str) -> String {
+    format!(
+        "#[derivative] model M {{ causality componentwise; param i: kg*m^2 = 0.5; param s: rad = 0.3; 1 ground[6]; 1 arm[6];
+         Sf still[6] {{ flow: 0.0 }} -> ground; body: Body {{ {body} }} (arm);\n{joint} }}"
+    )
+}
+
+const BODY: &str = "mass: 1.0, inertia: 1.0";
+
+#[test]
+fn choices_are_told_with_braces() {
+    let chosen = "if t > 1 { 2.0 } else { 0.0 }";
+    let second = "if t > 1 { 2.0 } else if t > 0.5 { 1.0 } else { 0.0 }";
+    for (slip, choice) in [
+        ("if t > 1 then 2.0 else 0.0", chosen),
+        (
+            "if (t > 1.0) then 2.0 else 0.0",
+            "if (t > 1.0) { 2.0 } else { 0.0 }",
+        ),
+        ("t > 1 ? 2.0 : 0.0", chosen),
+        ("2.0 if t > 1 else 0.0", chosen),
+        ("3.0 * (2.0 if t > 1 else 0.0)", chosen),
+        ("3.0 * (if t > 1 then 2.0 else 0.0)", chosen),
+        ("if t > 1 then 2.0 elseif t > 0.5 then 1.0 else 0.0", second),
+        (
+            "if t > 1 then 2.0 else if t > 0.5 then 1.0 else 0.0",
+            second,
+        ),
+    ] {
+        let help = typed(&driven(slip)).remove(0);
+        assert_eq!(help, choice);
+        assert_eq!(told(&driven(&help)), "");
+    }
+    insta::assert_snapshot!(told(&driven("if t > 1 then 2.0")), @"
+    2:25 `then` is no word here: the values of a choice stand in braces [MBG0101]
+      help: write `if t > 1 { 2.0 } else { … }`
+    ");
+    insta::assert_snapshot!(told(&driven("2.0 if t > 1 else 0.0")), @"
+    2:20 a choice begins with its `if` [MBG0101]
+      help: write `if t > 1 { 2.0 } else { 0.0 }`
+    ");
+    // A junction may bear the word, and a choice as it is written here is no slip.
+    assert_eq!(
+        told(&masses(
+            "1 then; v -> then; then -> R r { resistance: 1.0 };"
+        )),
+        ""
+    );
+    assert_eq!(
+        told(&driven(
+            "if t > 1 { 2.0 } else { if t > 0.5 { 1.0 } else { 0.0 } }"
+        )),
+        ""
+    );
+}
+
+#[test]
+fn connections_and_rates_are_told_as_statements() {
+    for (slip, here) in [
+        ("connect(v, k);", "v -> k;"),
+        ("connect(v, w[0]);", "v -> w[0];"),
+        ("der(x) = 2.0 * v.f;", "integral x = 2.0 * v.f;"),
+        ("parameter Real mass = 1.0;", "param mass = 1.0;"),
+        ("parameter Real mass(min = 0.0) = 1.0;", "param mass = 1.0;"),
+        ("parameter SI.Mass mass = 1.0;", "param mass = 1.0;"),
+        ("constant Real g = 9.81;", "let g = 9.81;"),
+        ("param mass(kg) = 1.0;", "param mass: kg = 1.0;"),
+        ("input force[N];", "input force: N;"),
+        ("input torque[N*m];", "input torque: N*m;"),
+    ] {
+        let help = typed(&masses(slip));
+        assert!(help.iter().any(|text| text == here), "{help:?}");
+        let answer = told(&masses(here));
+        assert!(!answer.contains("MBG0101"), "{answer}");
+    }
+    let help = typed(&masses("output m.p;")).pop().unwrap();
+    assert_eq!(help, "output name = m.p;");
+    assert_eq!(told(&masses(&help)), "");
+    // A junction may bear one of these names.
+    assert_eq!(told(&masses("1 connect; v -> connect; connect -> k;")), "");
+    insta::assert_snapshot!(told(&masses("connect(v, k);")), @"
+    2:1 expected a statement, found `connect` [MBG0101]
+      help: a bond is written with an arrow: `v -> k;`
+    ");
+    insta::assert_snapshot!(told(&masses("input force[N];")), @"
+    2:13 expected a dimension, which is an integer from 1 up, found `N` [MBG0103]
+      help: a unit stands behind a colon: `input force: N;`
+      help: a dimension is a number as it stands, such as `[3]`; `for k in 0..n { … }` repeats a computed number of times
+    ");
+}
+
+#[test]
+fn rates_and_integrals_in_laws_are_told_as_statements() {
+    let [_, _, _, _, declared, read] = &typed(&masses("output a = der(w.f[1]);"))[..] else {
+        panic!("six texts")
+    };
+    assert_eq!(told(&masses(&format!("{declared} output a = {read};"))), "");
+    let [declared, read] = &typed(&masses("output a = 2.0 * integral(v.f);"))[..] else {
+        panic!("two texts")
+    };
+    assert_eq!(
+        told(&masses(&format!("{declared} output a = 2.0 * {read};"))),
+        ""
+    );
+    let joint = "hinge: Revolute { axis: 1 } (ground, arm);\noutput a = der(hinge.rate.f);";
+    insta::assert_snapshot!(told(&arm(BODY, joint)), @"
+    4:12 `der` is not a function of the language [MBG0203]
+      help: laws take no derivatives: the flow of an element `I` has the rate `….e / inertia`, and `System::derivative` gives the rates of all states; for that of `hinge.rate.f` behind a lag of a millisecond write `integral late = (hinge.rate.f - late) / 1e-3;`, and read `(hinge.rate.f - late) / 1e-3`
+    ");
+}
+
+#[test]
+fn gravity_is_told_without_a_mark() {
+    for mark in [":", "="] {
+        let help = typed(&masses(&format!("gravity{mark} [0, 0, -9.81];"))).remove(0);
+        assert_eq!(help, "gravity [0, 0, -9.81];");
+    }
+}
+
+#[test]
+fn parameters_in_parentheses_are_told_in_braces() {
+    let written = "hinge: Revolute { axis: 2, initial: 0.1 } (ground, arm);";
+    for slip in [
+        "hinge: Revolute(axis: 2, initial: 0.1) (ground, arm);",
+        "hinge: Revolute(axis = 2, initial = 0.1) (ground, arm);",
+    ] {
+        assert_eq!(typed(&arm(BODY, slip)), [written]);
+    }
+    assert_eq!(told(&arm(BODY, written)), "");
+}
+
+#[test]
+fn units_are_told_with_their_signs() {
+    let text = |unit: &str| masses(&format!("param factor: {unit} = 1.0;"));
+    for (slip, unit) in [
+        ("N.m", "N*m"),
+        ("kg m^2", "kg*m^2"),
+        ("kg*m**2", "kg*m^2"),
+        ("kg.m**2/s", "kg*m^2/s"),
+        ("N m/(rad s)", "N*m/(rad*s)"),
+    ] {
+        assert_eq!(typed(&text(slip)), [unit]);
+        assert_eq!(told(&text(unit)), "");
+    }
+}
+
+#[test]
+fn components_and_ranges_are_told_in_brackets() {
+    for (slip, value) in [("w.f(1)", "w.f[1]"), ("[v.f; m.p]", "[v.f, m.p]")] {
+        let output = |value: &str| {
+            let size = if value.starts_with('[') { "[2]" } else { "" };
+            masses(&format!("output y{size} = {value};"))
+        };
+        let help = typed(&output(slip)).pop().unwrap();
+        assert_eq!(help, value);
+        assert_eq!(told(&output(&help)), "");
+    }
+    let matrix = typed(&masses("let a = [1.0, 0.0; 0.0, 2.0];")).remove(0);
+    assert_eq!(matrix, "[[1.0, 0.0], [0.0, 2.0]]");
+    let called = typed(&driven("2.0 * t(3.0 + t)"));
+    assert_eq!(called, ["t * (3.0 + t)"]);
+    let range = |text: &str| {
+        masses(&format!(
+            "1 x[2] {{ R r {{ resistance: 1.0 }} }} {text} -> x;"
+        ))
+    };
+    assert_eq!(typed(&range("w[1:3]")), ["[1..3]"]);
+    assert_eq!(told(&range("w[1..3]")), "");
+    assert_eq!(typed(&masses("output y[2] = w.f[1:3];")), ["[1..3]"]);
+    assert_eq!(told(&masses("output y[2] = w.f[1..3];")), "");
+    insta::assert_snapshot!(told(&masses("output y[2] = w.f[1:3];")), @"
+    2:20 expected `]`, found `:` [MBG0101]
+      help: a range is written `[1..3]`
+    ");
+    insta::assert_snapshot!(told(&masses("output y = w.f(1);")), @"
+    2:14 `w.f` is a value, and it is called as a function [MBG0203]
+      help: a component stands in brackets: write `w.f[1]`
+    ");
+}
+
+#[test]
+fn whole_numbers_are_told_without_their_point() {
+    let hinge = |axis: &str| {
+        arm(
+            BODY,
+            &format!("hinge: Revolute {{ axis: {axis} }} (ground, arm);"),
+        )
+    };
+    assert_eq!(typed(&hinge("2.0")), ["2"]);
+    assert_eq!(told(&hinge("2")), "");
+    assert_eq!(
+        typed(&masses("for k in 0..2.0 { v -> R r { resistance: 1.0 }; }")),
+        ["2"]
+    );
+}
+
+#[test]
+fn what_a_junction_starts_with_is_told_at_its_inertia() {
+    insta::assert_snapshot!(told("model M {\n1 v initial: 2.0 { I m { inertia: 1.0 } } output f = v.f; }"), @"
+    2:5 expected `[`, `coordinate`, `pseudo`, `{` or `;` after `v`, found `initial` [MBG0101]
+      help: a flow at the start is given with the inertia, `I … { inertia: …, initial_flow: 2.0 }`, or with a coordinate, `1 … coordinate, initial_flow: 2.0 { … }`
+    ");
+    let [law, junction] = &typed("model M { 1 v initial: 2.0; I m { inertia: 1.0 } -> v; }")[..]
+    else {
+        panic!("two texts")
+    };
+    assert_eq!(law, "I … { inertia: …, initial_flow: 2.0 }");
+    assert_eq!(junction, "1 … coordinate, initial_flow: 2.0 { … }");
+}
+
+#[test]
+fn a_cosine_is_no_angle() {
+    let slide = |initial: &str| {
+        arm(
+            BODY,
+            &format!("slide: Prismatic {{ axis: 1, initial: {initial} }} (ground, arm);"),
+        )
+    };
+    insta::assert_snapshot!(told(&slide("cos(s)")), @"
+    3:38 `initial` is declared in `m`, and this is a pure number [MBG0501]
+      help: a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts
+    ");
+    assert_eq!(told(&slide("1.0 * cos(s)")), "");
+}
+
+#[test]
+fn a_thin_rod_is_told_a_small_inertia() {
+    let hinge = "hinge: Revolute { axis: 1 } (ground, arm);";
+    for (body, number) in [
+        ("mass: 1.0, inertia: diag(0.0, 0.5, 0.5)", "1e-7"),
+        ("mass: 1.0, inertia: diag(0.0, i, i)", "1e-6"),
+        ("mass: 0.0, inertia: 1.0", "1e-6"),
+    ] {
+        let slip = arm(body, hinge);
+        assert_eq!(typed(&slip), [number]);
+        assert_eq!(told(&arm(&body.replace("0.0", number), hinge)), "");
+    }
+    insta::assert_snapshot!(told(&arm("mass: 1.0, inertia: diag(0.0, i, i)", hinge)), @"
+    2:80 `inertia` does not fit in `Body`: the inertia of `spin` is 0, not positive [MBG0216]
+      `inertia`: About the centre of mass: a 3×3 matrix, or a number for a ball
+      help: write a number far below the others in the place of the 0, such as `1e-6`: nothing that is visible changes
+    ");
+}

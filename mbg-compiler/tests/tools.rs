@@ -1,0 +1,181 @@
+//! Components of other tools and their parameters, and what is to be typed instead.
+#![allow(clippy::unwrap_used)]
+
+mod told;
+
+use told::{diagnose, told};
+
+/// The texts in backticks of the first help of each mistake.
+fn typed(text: &str) -> Vec<String> {
+    let diagnostics = diagnose(text);
+    let helps = diagnostics.list().iter().map(|it| {
+        let help = it.helps.first().map_or("", String::as_str);
+        help.split('`').nth(1).unwrap_or_default().to_owned()
+    });
+    helps.collect()
+}
+
+/// A body on a joint, both as they are written.
+fn scene(body: &str, joint: &str) -> String {
+    format!(
+        "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 arm[6]; Sf still[6] {{ flow: 0.0 }} -> ground;
+         body: {body} (arm);\njoint: {joint} (ground, arm); }}"
+    )
+}
+
+/// What is typed for parameters, after which nothing is told.
+fn follow(scene: &dyn Fn(&str) -> String, slip: &str, expected: &str) {
+    let help = typed(&scene(slip)).join(", ");
+    assert_eq!(help, expected);
+    assert_eq!(told(&scene(&help)), "");
+}
+
+#[test]
+fn parameters_of_bodies_and_joints_are_told_by_their_names_here() {
+    let body = |given: &str| scene(&format!("Body {{ {given} }}"), "Fixed");
+    follow(&body, "m: 1.0, I: 2.0", "mass: 1.0, inertia: 2.0");
+    follow(
+        &body,
+        "m: 2.0, moment_of_inertia: 1.0, com: [0.0, 0.0, 0.5]",
+        "mass: 2.0, inertia: 1.0, centre: [0.0, 0.0, 0.5]",
+    );
+    let joint = |given: &str| {
+        scene(
+            "Body { mass: 1.0, inertia: 1.0 }",
+            &format!("Revolute {{ {given} }}"),
+        )
+    };
+    let given = "n: 1, initial_angle: 0.2, initial_velocity: 1.0, spring: 2.0, damper: 0.1";
+    let here = "axis: 1, initial: 0.2, initial_rate: 1.0, stiffness: 2.0, damping: 0.1";
+    follow(&joint, given, here);
+    follow(
+        &joint,
+        "n: 1, phi_start: 0.2, w_start: 1.0, k: 2.0, d: 0.1",
+        here,
+    );
+    insta::assert_snapshot!(told(&joint("axis: 1, phi_start: 0.1")), @"
+    3:28 `Revolute` has no parameter `phi_start` [MBG0207]
+      help: write `initial: 0.1`
+    ");
+}
+
+#[test]
+fn parameters_of_circuits_are_told_by_their_names_here() {
+    let circuit = |given: &str| {
+        let [r, c, l] = given.split(", ").collect::<Vec<_>>()[..] else {
+            panic!("three parameters")
+        };
+        format!(
+            "model M {{ 0 n; 0 p; 0 q; 0 zero; Se g {{ effort: 0.0 }} -> zero; Se u {{ effort: 1.0 }} -> n;
+             one: Resistor {{ {r} }} (n, p); two: Inductor {{ {l} }} (p, q); three: Capacitor {{ {c} }} (q, zero); }}"
+        )
+    };
+    let given = "R: 5.0, C: 1e-6, L: 2.0 * 1e-3";
+    let help = typed(&circuit(given));
+    assert_eq!(
+        help,
+        [
+            "resistance: 5.0",
+            "inductance: 2.0 * 1e-3",
+            "capacitance: 1e-6"
+        ]
+    );
+    let [r, l, c] = &help[..] else {
+        panic!("three")
+    };
+    assert_eq!(told(&circuit(&[r.as_str(), c, l].join(", "))), "");
+    // A name that a component has is its own, whatever it stands for elsewhere.
+    let own = "component Own(port 1 at) { param r; param resistance; R d { resistance: r * resistance } -> at; }
+        model M { 1 v { I m { inertia: 1.0 } } own: Own { r: 1.0 } (v); }";
+    assert!(told(own).contains("`Own` needs a value for `resistance`"));
+}
+
+#[test]
+fn states_at_the_start_are_told_by_their_words() {
+    let text = |inertia: &str, spring: &str| {
+        format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0, {inertia} }} C c {{ stiffness: 1.0, {spring} }} }} }}"
+        )
+    };
+    let help = typed(&text("initial_velocity: 2.0", "initial_displacement: 0.1"));
+    assert_eq!(help, ["initial_flow: 2.0", "initial: 0.1"]);
+    assert_eq!(told(&text(&help[0], &help[1])), "");
+}
+
+#[test]
+fn components_are_told_by_their_names_in_the_library() {
+    for (name, here) in [
+        ("RevoluteJoint", "Revolute"),
+        ("revolute_joint", "Revolute"),
+        ("PrismaticJoint", "Prismatic"),
+        ("WeldJoint", "Fixed"),
+        ("Weld", "Fixed"),
+        ("FixedTranslation", "Offset"),
+        ("RigidTransform", "Mount"),
+        ("BodyShape", "Body"),
+        ("HeatCapacitor", "HeatCapacity"),
+    ] {
+        let told = typed(&scene("Body { mass: 1.0, inertia: 1.0 }", name));
+        assert_eq!(told, [here]);
+    }
+}
+
+#[test]
+fn what_is_made_of_elements_is_told_with_them() {
+    let circuit = |given: &str| {
+        format!(
+            "model M {{ 0 n; 0 p; 0 q; a: Resistor {{ resistance: 1.0 }} (n, q); c: Capacitor {{ capacitance: 1.0 }} (q, p);\n{given} }}"
+        )
+    };
+    let shafts = |given: &str| {
+        format!(
+            "model M {{ 1 v {{ I j {{ inertia: 1.0 }} R b {{ resistance: 1.0 }} }} 1 w {{ I k {{ inertia: 1.0 }} }}\n{given} }}"
+        )
+    };
+    let scenes: [&dyn Fn(&str) -> String; 2] = [&circuit, &shafts];
+    for (scene, slip, here) in [
+        (
+            0,
+            "u: VoltageSource { V: 5.0 } (p, n); zero: Ground (n);",
+            "1 u_between { Se u { effort: … } } n -> u_between; u_between -> p; Se zero { effort: 0.0 } -> n;",
+        ),
+        (
+            0,
+            "i: CurrentSource (p, n); zero: Ground (n);",
+            "1 i_between { Sf i { flow: … } } p -> i_between; i_between -> n; Se zero { effort: 0.0 } -> n;",
+        ),
+        (
+            1,
+            "m: Mass { m: 1.0 } (v);",
+            "#[derivative] I m { inertia: … } -> v;",
+        ),
+        (1, "f: Force (v);", "Se f { effort: … } -> v;"),
+        (
+            1,
+            "s: Spring { c: 1.0 } (v, w);",
+            "0 s_between { C s { stiffness: … } } v -> s_between; s_between -> w;",
+        ),
+        (
+            1,
+            "s: SpringDamper (v, w);",
+            "0 s_between; 1 s { C spring { stiffness: … } R damper { resistance: … } } v -> s_between; s_between -> w; \
+             s_between -> s;",
+        ),
+    ] {
+        let help = typed(&scenes[scene](slip)).join(" ");
+        assert_eq!(help, here.trim_start_matches("#[derivative] "));
+        assert_eq!(told(&scenes[scene](&here.replace('…', "1.0"))), "");
+    }
+    let mass = typed(&scene("Mass { m: 1.0 }", "Fixed"));
+    assert_eq!(mass, ["body: Body { mass: …, inertia: … } (arm);"]);
+    let world = scene("Body { mass: 1.0, inertia: 1.0 }", "Fixed");
+    let world = world.replace(
+        "Sf still[6] { flow: 0.0 } -> ground;",
+        "still: World (ground);",
+    );
+    assert_eq!(typed(&world), ["Sf still[6] { flow: 0.0 } -> ground;"]);
+    insta::assert_snapshot!(told(&shafts("m: Mass { m: 1.0 } (v);")), @"
+    2:4 component `Mass` is not declared [MBG0203]
+      help: here it is written `I m { inertia: … } -> v;`
+    ");
+}

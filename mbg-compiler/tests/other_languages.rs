@@ -64,6 +64,9 @@ fn choices_are_told_with_braces() {
         assert_eq!(help, choice);
         assert_eq!(told(&driven(&help)), "");
     }
+    let help = typed(&driven("3.0 * ifelse(t > 1, 2.0, 0.0)")).remove(0);
+    assert_eq!(help, "(if (t > 1) { 2.0 } else { 0.0 })");
+    assert_eq!(told(&driven(&help)), "");
     insta::assert_snapshot!(told(&driven("if t > 1 then 2.0")), @"
     2:25 `then` is no word here: the values of a choice stand in braces [MBG0101]
       help: write `if t > 1 { 2.0 } else { … }`
@@ -96,7 +99,13 @@ fn connections_and_rates_are_told_as_statements() {
         ("parameter Real mass = 1.0;", "param mass = 1.0;"),
         ("parameter Real mass(min = 0.0) = 1.0;", "param mass = 1.0;"),
         ("parameter SI.Mass mass = 1.0;", "param mass = 1.0;"),
+        (
+            "parameter Real mass(unit = \"kg\") = 1.0 \"of a body\";",
+            "param mass = 1.0;",
+        ),
         ("constant Real g = 9.81;", "let g = 9.81;"),
+        ("output Real speed = v.f;", "output speed = v.f;"),
+        ("param Real mass = 1.0;", "param mass = 1.0;"),
         ("param mass(kg) = 1.0;", "param mass: kg = 1.0;"),
         ("input force[N];", "input force: N;"),
         ("input torque[N*m];", "input torque: N*m;"),
@@ -111,6 +120,10 @@ fn connections_and_rates_are_told_as_statements() {
     assert_eq!(told(&masses(&help)), "");
     // A junction may bear one of these names.
     assert_eq!(told(&masses("1 connect; v -> connect; connect -> k;")), "");
+    insta::assert_snapshot!(told(&masses("output Real speed = v.f;")), @"
+    2:8 expected the name of what is declared, found the type `Real` [MBG0101]
+      help: write `output speed = v.f;`
+    ");
     insta::assert_snapshot!(told(&masses("connect(v, k);")), @"
     2:1 expected a statement, found `connect` [MBG0101]
       help: a bond is written with an arrow: `v -> k;`
@@ -156,6 +169,7 @@ fn parameters_in_parentheses_are_told_in_braces() {
     for slip in [
         "hinge: Revolute(axis: 2, initial: 0.1) (ground, arm);",
         "hinge: Revolute(axis = 2, initial = 0.1) (ground, arm);",
+        "Revolute hinge(axis = 2, initial = 0.1) (ground, arm);",
     ] {
         assert_eq!(typed(&arm(BODY, slip)), [written]);
     }

@@ -13,6 +13,9 @@ use crate::syntax::words::JUMPING_INPUT;
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
 
+/// One of two values.
+const CHOICE: &str = "(if a { b } else { c })";
+
 /// What is zero up to a width on both sides.
 const DEAD_ZONE: &str = "(sign(x) * max(abs(x) - width, 0.0))";
 
@@ -43,6 +46,8 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("saturation", &["x", "a", "b"], "min(max(x, a), b)"),
     ("sat", &["x", "a", "b"], "min(max(x, a), b)"),
     ("limit", &["x", "a", "b"], "min(max(x, a), b)"),
+    ("ifelse", &["a", "b", "c"], CHOICE),
+    ("if_else", &["a", "b", "c"], CHOICE),
     ("deadzone", &["x", "width"], DEAD_ZONE),
     ("dead_zone", &["x", "width"], DEAD_ZONE),
     ("deadband", &["x", "width"], DEAD_ZONE),

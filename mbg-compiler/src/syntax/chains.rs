@@ -228,7 +228,7 @@ pub(super) fn instance(
         Some(group) => fields(&group, &format!("{name}: {component}"), sink)?,
         None => Vec::new(),
     };
-    if let Some(help) = elsewhere::parameters(&name, &component, cursor) {
+    if let Some(help) = elsewhere::parameters(cursor, 0, &name, &component) {
         return Err(Box::new(
             (*cursor.expected(&format!("`{{` after `{component}`"))).help(help),
         ));

@@ -15,6 +15,9 @@ const DECLARING: &[(&str, &str)] = &[
     ("Real", "let"),
 ];
 
+/// Words for types, which declarations do not name here.
+const TYPES: &[&str] = &["Real", "Integer", "float", "double", "f64"];
+
 /// What to type for the statement that begins here, if another language has it.
 pub(super) fn statement(cursor: &Cursor) -> Option<String> {
     let word = cursor.ident(0)?.to_string();
@@ -45,7 +48,7 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
     }
 }
 
-/// `parameter Real mass(min = 0) = 1.0;` as it is declared here: types and what stands in parentheses are left out.
+/// `parameter Real mass(min = 0) = 1.0 "of it";` as it is declared here, without its type, its attributes and its comment.
 fn declaration(cursor: &Cursor, word: &str) -> Option<String> {
     let mut places = (1..).take_while(|at| cursor.peek(*at).is_some());
     let at = places.find(|at| cursor.ident(*at).is_some() && ends_name(cursor, at + 1))?;
@@ -53,7 +56,9 @@ fn declaration(cursor: &Cursor, word: &str) -> Option<String> {
     if cursor.group(behind, Delimiter::Parenthesis).is_some() {
         behind += 1;
     }
-    let rest = dump::tokens(until_end(cursor, behind));
+    let is_comment = |token: &TokenTree| token.to_string().starts_with('"');
+    let rest = until_end(cursor, behind).into_iter();
+    let rest = dump::tokens(rest.filter(|token| !is_comment(token)).collect());
     let name = cursor.ident(at)?;
     let rest = match rest.as_str() {
         "" if word == "let" => "= …",
@@ -113,9 +118,21 @@ pub(super) fn unit_in_brackets(cursor: &Cursor, word: &str, name: &Ident) -> Opt
     ))
 }
 
+/// What to type for a declaration with a type, which was read as its name.
+pub(super) fn without_type(cursor: &Cursor, word: &str, name: &Ident) -> Option<String> {
+    let is_type = TYPES.iter().any(|known| name == known) && cursor.ident(0).is_some();
+    let declared = || dump::tokens(until_end(cursor, 0));
+    is_type.then(|| format!("write `{word} {};`", declared()))
+}
+
 /// What to type for parameters in parentheses, as in `joint: Revolute(axis: 2) (a, b);`.
-pub(super) fn parameters(name: &Ident, component: &Ident, cursor: &Cursor) -> Option<String> {
-    let group = cursor.group(0, Delimiter::Parenthesis)?;
+pub(super) fn parameters(
+    cursor: &Cursor,
+    offset: usize,
+    name: &Ident,
+    component: &Ident,
+) -> Option<String> {
+    let group = cursor.group(offset, Delimiter::Parenthesis)?;
     let inside = Cursor::inside(group);
     let is_given = |mark| inside.ident(0).is_some() && inside.punct(1, mark);
     let parameters = match (is_given(':'), is_given('=')) {
@@ -123,7 +140,7 @@ pub(super) fn parameters(name: &Ident, component: &Ident, cursor: &Cursor) -> Op
         (_, true) => with_colons(group),
         _ => return None,
     };
-    let ports = cursor.group(1, Delimiter::Parenthesis);
+    let ports = cursor.group(offset + 1, Delimiter::Parenthesis);
     let ports = ports.map_or_else(|| "…".to_owned(), |ports| dump::tokens(ports.stream()));
     Some(format!(
         "parameters stand in braces: `{name}: {component} {{ {parameters} }} ({ports});`"

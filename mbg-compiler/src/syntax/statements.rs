@@ -19,7 +19,7 @@ use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
 use super::{elsewhere, slips, words};
 use crate::codes;
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::{Diagnostic, error};
 use crate::inclusion;
 
 /// Reads the statements between braces.
@@ -156,10 +156,12 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
     ) {
         return Box::new(error.help(format!("did you mean `{near}`?")));
     }
-    if let (Some(component), Some(name)) = (cursor.ident(0), cursor.ident(1))
-        && let Some(help) = slips::ahead(cursor, 2, &name.to_string(), &component.to_string())
-    {
-        return Box::new(error.help(help));
+    if let (Some(component), Some(name)) = (cursor.ident(0), cursor.ident(1)) {
+        let given = elsewhere::parameters(cursor, 2, name, component);
+        let ahead = || slips::ahead(cursor, 2, &name.to_string(), &component.to_string());
+        if let Some(help) = given.or_else(ahead) {
+            return Box::new(error.help(help));
+        }
     }
     if let Some(digit) = glued(cursor) {
         return Box::new(error.help(format!(
@@ -441,6 +443,11 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
 
 /// Reads the dimension of what a word declares, which is a vector at most.
 fn vector_size(cursor: &mut Cursor, word: &str, name: &Ident) -> Parsed<Option<usize>> {
+    if let Some(help) = elsewhere::without_type(cursor, word, name) {
+        let message = format!("expected the name of what is declared, found the type `{name}`");
+        let report = error(codes::SYNTAX, name.span(), message);
+        return Err(Box::new(report.help(help)));
+    }
     let mut help = elsewhere::unit_in_brackets(cursor, word, name);
     if cursor.group(0, Delimiter::Parenthesis).is_some()
         && let Some(help) = help.take()

@@ -11,6 +11,8 @@ mod problems;
 mod events;
 #[path = "methods/hard.rs"]
 mod hard;
+#[path = "methods/kinks.rs"]
+mod kinks;
 #[path = "methods/orders.rs"]
 mod orders;
 #[path = "methods/parallel.rs"]

@@ -12,7 +12,7 @@ use super::method::{
 };
 use super::problem::Problem;
 use super::seen;
-use super::tolerance::Tolerance;
+use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 
 /// Gauss's method with three stages.
@@ -41,7 +41,8 @@ pub struct Gauss6 {
 /// | 2 | 2 | none | a Jacobian, a factorisation, one evaluation and one solve a sweep | A, symplectic, symmetric |
 ///
 /// For stiff mechanics at a fixed step on a microcontroller, where energy must neither grow nor vanish. The number of
-/// sweeps is fixed: 2 or 3 suffice, where the Jacobian changes little over a step.
+/// sweeps is fixed: 2 or 3 suffice, where the Jacobian changes little over a step. Where it changes so much that the last
+/// sweep comes no nearer, the stage is not found; of a single sweep nothing is known.
 ///
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.5 and IV.8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +106,10 @@ enum Solve {
 
 /// Most sweeps to rounding.
 const MOST: u32 = 50;
+/// In units of what states have been and become: Newton's sweeps have found a stage when the last one changes it by less.
+const NEAR: f64 = 1e-3;
+/// In the same units: or when it leaves less to be changed.
+const LEFT: f64 = 1e-2;
 
 /// A method of this family.
 pub trait Collocation<const S: usize>: Copy {
@@ -124,6 +129,7 @@ pub struct Stages<A, T, const N: usize, const S: usize> {
     slopes: [SVector<T, N>; S],
     /// Length of the last step; none at the start and behind a jump.
     length: Option<T>,
+    sizes: Sizes<N>,
     method: PhantomData<A>,
 }
 
@@ -138,6 +144,7 @@ where
             solve: method.solve(),
             slopes: [SVector::from_element(T::from_f64(0.0)); S],
             length: None,
+            sizes: Sizes::new(),
             method: PhantomData,
         }
     }
@@ -156,11 +163,17 @@ where
         self.predict(start);
         let found = match self.solve {
             Solve::Newton(sweeps) => {
+                self.sizes.note(&start.x);
                 let factors = Self::factors(problem, start);
+                let (mut before, mut last) = (f64::INFINITY, f64::INFINITY);
                 for _ in 0..sweeps {
+                    before = last;
+                    let known = self.slopes[0];
                     self.sweep(problem, start, Some(&factors));
+                    last = self.size(start, &known);
                 }
-                true
+                let rate = last / before;
+                last <= NEAR || rate < 1.0 && last * rate / (1.0 - rate) <= LEFT
             }
             Solve::Sweeps(Some(sweeps)) => {
                 for _ in 0..if first { sweeps + 2 } else { sweeps } {
@@ -247,6 +260,13 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
         problem.statistics.factorisations += 1;
         let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
         Shifted::new::<Y, M, P>(T::from_f64(1.0), scale, &jacobian)
+    }
+
+    /// How much a sweep of Newton's has changed a stage, whose slope was known as this.
+    fn size(&self, start: &Start<T, N>, known: &SVector<T, N>) -> f64 {
+        let along = |slope: SVector<T, N>| slope.map(|slope| start.span.length * slope);
+        let [change, ahead] = [self.slopes[0] - known, self.slopes[0]].map(along);
+        self.sizes.between(&start.x, &ahead).norm(&change)
     }
 
     /// One sweep over all stages; gives the largest change of a stage relative to the state.

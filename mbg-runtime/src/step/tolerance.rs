@@ -47,6 +47,45 @@ impl<const N: usize> Tolerance<N> {
     }
 }
 
+/// In units of the precision: a state that has been no larger may be rounding.
+const ROUNDING: f64 = 4096.0;
+
+/// The largest values that states had: what errors are large beside where there is no tolerance.
+pub(super) struct Sizes<const N: usize>([f64; N]);
+
+impl<const N: usize> Sizes<N> {
+    pub(super) fn new() -> Self {
+        Self([0.0; N])
+    }
+
+    /// Notes where a step begins.
+    pub(super) fn note<T: Real>(&mut self, x: &SVector<T, N>) {
+        for (size, x) in self.0.iter_mut().zip(x.iter()) {
+            *size = size.max(x.magnitude());
+        }
+    }
+
+    /// Errors in units of what states have been; those of states that may have been rounding alone do not count.
+    pub(super) fn before<T: Real>(&self) -> Measure<N> {
+        let factor = |size: f64| {
+            if size > ROUNDING * T::EPSILON {
+                1.0 / size
+            } else {
+                0.0
+            }
+        };
+        Measure {
+            factors: self.0.map(factor),
+        }
+    }
+
+    /// Errors of a step in units of what states have been and become.
+    pub(super) fn between<T: Real>(&self, x: &SVector<T, N>, change: &SVector<T, N>) -> Measure<N> {
+        let sizes = self.0.map(|size| size.max(ROUNDING * T::EPSILON));
+        Tolerance::new(1.0, 1.0, &sizes).between(x, change)
+    }
+}
+
 /// What makes errors of each state comparable: the reciprocals of their tolerances.
 pub(super) struct Measure<const N: usize> {
     factors: [f64; N],

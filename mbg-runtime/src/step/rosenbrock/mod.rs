@@ -14,7 +14,8 @@ use super::method::{
     Estimating, Family, Method, Start, Stepper, Trial, combination, continued, of_stage, row,
 };
 use super::problem::Problem;
-use super::tolerance::Tolerance;
+use super::seen;
+use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 use rodas4::RODAS4;
 use rodas5p::RODAS5P;
@@ -25,7 +26,8 @@ use rodas5p::RODAS5P;
 /// |---|---|---|---|---|
 /// | 2 | 2 | 1 | 2 evaluations, a Jacobian, a factorisation, 2 solves | A and L |
 ///
-/// For stiff problems at a fixed step on a microcontroller: the work per step is known in advance.
+/// For stiff problems at a fixed step on a microcontroller: the work per step is known in advance where laws have no kinks, see
+/// [`Fixed`](crate::Fixed).
 ///
 /// Source: J. G. Verwer, E. J. Spee, J. G. Blom and W. Hundsdorfer, *SIAM Journal on Scientific Computing* 20 (1999),
 /// 1456–1480, with γ = 1 − 1/√2.
@@ -98,15 +100,38 @@ pub trait Tabulated<const S: usize>: Copy {
     const TABLEAU: Tableau<S>;
 }
 
+/// A step without a tolerance is lost when its error is larger than this part of what states have been.
+const LOST: f64 = 0.25;
+/// The same for the parts of a step that was lost, which are to lead across the kink that is there.
+const NEAR: f64 = 0.03;
+
 /// What is known where the step starts, and the stages of the last step.
 pub struct Stages<A, T, const N: usize, const S: usize> {
     jacobian: SMatrix<T, N, N>,
     by_time: SVector<T, N>,
     stages: [SVector<T, N>; S],
+    /// Of steps without a tolerance.
+    sizes: Sizes<N>,
+    /// The length of the one that was lost, of which there are parts now.
+    lost: f64,
     method: PhantomData<A>,
 }
 
 impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S> {
+    /// Whether a step is lost, as where it crosses a kink of a stiff law and its stages are those of the law before the kink.
+    fn is_lost(&mut self, start: &Start<T, N>) -> bool {
+        self.sizes.note(&start.x);
+        let error = combination(const { &A::TABLEAU.error }, &self.stages);
+        let error = self.sizes.before::<T>().norm(&error);
+        let length = seen(start.span.length);
+        let is_part = length < self.lost;
+        let is_lost = error.is_nan() || error > if is_part { NEAR } else { LOST };
+        if !is_part {
+            self.lost = if is_lost { length } else { 0.0 };
+        }
+        is_lost
+    }
+
     /// What earlier stages add to the state and to the slope of a stage.
     #[inline(always)]
     fn ahead<const STAGE: usize>(&self, last: &SVector<T, N>) -> [SVector<T, N>; 2] {
@@ -131,6 +156,8 @@ where
             jacobian: SMatrix::from_element(zero),
             by_time: SVector::from_element(zero),
             stages: [SVector::from_element(zero); S],
+            sizes: Sizes::new(),
+            lost: 0.0,
             method: PhantomData,
         }
     }
@@ -174,10 +201,14 @@ where
             self.stages[stage] = last;
         }
         let change = combination(const { &A::TABLEAU.result }, &self.stages);
-        let error = tolerance.map_or(0.0, |tolerance| {
-            let error = combination(const { &A::TABLEAU.error }, &self.stages);
-            tolerance.between(x, &change).norm(&error)
-        });
+        let error = match tolerance {
+            Some(tolerance) => {
+                let error = combination(const { &A::TABLEAU.error }, &self.stages);
+                tolerance.between(x, &change).norm(&error)
+            }
+            None if self.is_lost(start) => f64::INFINITY,
+            None => 0.0,
+        };
         Trial {
             change,
             slope: None,

@@ -525,3 +525,33 @@ output x: {unit} = {value}; }}"
     assert!(diagnose(&text("rad", "s.q")).is_empty());
     assert!(diagnose(&text("m", "1.0 * s.q")).is_empty());
 }
+
+/// What an argument reads gives a flow no unit: the frame's own is found by its body, and the argument is told.
+#[test]
+fn an_argument_that_reads_a_frame_is_told_and_not_the_frame() {
+    let text = |force: &str| {
+        format!(
+            "#[derivative]
+            model M {{
+                causality componentwise;
+                1 ground[6]; 1 rod[6]; 1 tip[6];
+                Sf fixed[6] {{ flow: 0.0 }} -> ground;
+                hinge: Revolute {{ axis: 1 }} (ground, rod);
+                body: Body {{ mass: 1.0, inertia: 1.0 }} (rod);
+                end: Offset {{ by: [1.0, 0.0, 0.0] }} (rod, tip);
+                drag: Load {{ force: [0.0, 0.0, {force}] }} (tip);
+                output angle = hinge.angle;
+            }}"
+        )
+    };
+    for (force, unit) in [
+        ("-tip.f[5]", "m/s"),
+        ("-tip.f[5] * abs(tip.f[5])", "m^2/s^2"),
+    ] {
+        let (place, told_of) = told(&text(force));
+        assert!(place.starts_with("[0.0, 0.0, -tip"), "{place}");
+        let expected = format!("`force` is declared in `N`, and this is `{unit}`");
+        assert!(told_of.starts_with(&expected), "{told_of}");
+        assert!(diagnose(&text(&format!("1.0 * {force}"))).is_empty());
+    }
+}

@@ -179,6 +179,8 @@ enum Phase {
     OnePorts,
     TwoPorts,
     Bonds,
+    /// Values of what has a unit of its own: where they read a flow, its unit is found without them.
+    Declared,
     Answers,
     /// Laws of numbers alone: a factor of one is not written, so that their units are no more than a guess.
     Numeric,
@@ -197,6 +199,7 @@ impl Checker<'_> {
             Phase::OnePorts,
             Phase::TwoPorts,
             Phase::Bonds,
+            Phase::Declared,
             Phase::Answers,
             Phase::Numeric,
         ] {
@@ -240,7 +243,8 @@ impl Checker<'_> {
         match &claim.subject {
             Subject::Word(id, _) if is_two_port(&self.model.graph, *id) => Phase::TwoPorts,
             Subject::Word(..) if self.reporter.is_numeric(claim) => Phase::Numeric,
-            Subject::Word(..) | Subject::Declared(..) => Phase::OnePorts,
+            Subject::Word(..) => Phase::OnePorts,
+            Subject::Declared(..) => Phase::Declared,
             _ => Phase::Answers,
         }
     }

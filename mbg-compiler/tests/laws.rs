@@ -13,6 +13,31 @@ use mbg_compiler::symbolic::print::Printer;
 use models::{attempted, compiled, elaborated, flat, mistake};
 
 #[test]
+fn a_start_that_is_no_number_is_told_at_its_value() {
+    let told = |statements: &str| mistake(&format!("input u; 1 v {{ {statements} }}"));
+    let varies = "expected an initial value of numbers and parameters alone [MBG0213]";
+    let coil = "C s { stiffness: 1.0, initial: 2.0 * u }";
+    assert_eq!(told(coil), format!("2:47 {varies}"));
+    let started = "I b { inertia: 1.0, initial_flow: u }";
+    assert_eq!(told(started), format!("2:50 {varies}"));
+    let way = "I b { inertia: 1.0 } } integral way = v.f, initial: t; 0 other {";
+    assert_eq!(told(way), format!("2:68 {varies}"));
+    insta::assert_snapshot!(told("I b { flow: p + powi(p, 3), initial_flow: 2.0 }"), @"
+    2:58 the momentum of `b` does not follow from a flow: its law is not linear [MBG0213]
+      help: give the momentum itself: `initial: …`
+    ");
+}
+
+/// The momentum follows from the flow also where the law has a flow at rest.
+#[test]
+fn an_affine_law_starts_at_the_flow_that_is_given() {
+    let model = "model M { 1 v { I m { flow: 2.0 * p + 1.0, initial_flow: 4.0 } R r { resistance: 1.0 } } output y = v.f; }";
+    let (elaborated, pool) = elaborated(model).unwrap();
+    let start = elaborated.states[0].initial;
+    assert_eq!(pool.constant_value(start), Some(1.5));
+}
+
+#[test]
 fn mistakes_in_laws_are_told() {
     insta::assert_snapshot!(mistake("1 v[2] { EJS wheel { momentum: [0.0, 1.0] } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 2 [MBG0204]");
     insta::assert_snapshot!(mistake("1 v[4] { EJS wheel { momentum: 1.0 } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 4 [MBG0204]");

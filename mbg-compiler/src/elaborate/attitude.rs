@@ -64,9 +64,11 @@ impl Builder<'_> {
                 self.initial_matrix(scope, attitude)?,
             ),
         };
+        let place = attitude.initial.as_ref();
+        let place = place.map_or(attitude.name.span(), |value| value.span());
         for ((state, rate), initial) in states.zip(rates).zip(initial) {
             self.states[state].rate = StateRate::Expression(rate);
-            self.initial_value(state, initial)?;
+            self.initial_value(state, initial, place)?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
@@ -330,8 +330,12 @@ impl<'a> Builder<'a> {
             own,
         }
         .read(field)?;
+        let starts = |field: &&ast::Field| field.name == "initial" || field.name == "initial_flow";
+        let start = element.fields.iter().find(starts);
+        let place = start.and_then(|field| field.value.as_ref());
+        let place = place.map_or(element.name.span(), |value| value.span());
         for (state, initial) in states.zip(reading.initial.into_iter().flatten()) {
-            self.initial_value(state, initial)?;
+            self.initial_value(state, initial, place)?;
         }
         self.graph.elements[id.0].law = reading.law;
         self.graph.elements[id.0].rule = reading.rule;
@@ -357,14 +361,15 @@ impl<'a> Builder<'a> {
         Ok(initial)
     }
 
-    pub(super) fn initial_value(&mut self, state: usize, initial: Expression) -> Result<()> {
+    pub(super) fn initial_value(
+        &mut self,
+        state: usize,
+        initial: Expression,
+        place: Span,
+    ) -> Result<()> {
         if self.claims.is_none() && self.pool.rate(initial) == Rate::Varying {
             let message = "expected an initial value of numbers and parameters alone";
-            return Err(Box::new(error(
-                codes::EXPRESSION,
-                self.states[state].span,
-                message,
-            )));
+            return Err(Box::new(error(codes::EXPRESSION, place, message)));
         }
         self.states[state].initial = initial;
         self.states[state].is_given = true;
@@ -396,9 +401,11 @@ impl<'a> Builder<'a> {
                 value.span(),
             );
         }
+        let place = integral.initial.as_ref();
+        let place = place.map_or(integral.name.span(), |value| value.span());
         for ((state, rate), initial) in states.zip(rates).zip(initial) {
             self.states[state].rate = StateRate::Expression(rate);
-            self.initial_value(state, initial)?;
+            self.initial_value(state, initial, place)?;
         }
         Ok(())
     }

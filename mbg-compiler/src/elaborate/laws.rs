@@ -722,23 +722,39 @@ impl Reader<'_, '_, '_> {
         self.momentum(coenergy, &flow, value.span()).map(Some)
     }
 
-    /// The momentum whose flow is given: `p = I f`, from `f = I⁻¹ p`.
+    /// The momentum whose flow is given: `p = I (f − f₀)`, from `f = I⁻¹ p + f₀`.
     fn momentum(
         &mut self,
         coenergy: &[Expression],
         flow: &[Expression],
         span: Span,
     ) -> Result<Vec<Expression>> {
-        let mut entries = Vec::new();
-        for row in coenergy {
+        let mut at_rest = Substitution::new();
+        for state in self.own.states.clone() {
+            at_rest.set(Symbol::State(state), Expression::ZERO);
+        }
+        let (mut entries, mut added) = (Vec::new(), Vec::new());
+        for (row, flow) in coenergy.iter().zip(flow) {
             for state in self.own.states.clone() {
                 entries.push(Differentiator::new(Symbol::State(state)).derivative(self.pool, *row));
             }
+            let rest = at_rest.apply(self.pool, *row).unwrap_or(Expression::ZERO);
+            added.push(self.pool.subtract(*flow, rest));
+        }
+        let own =
+            |it: &Symbol| matches!(it, Symbol::State(state) if self.own.states.contains(state));
+        if symbols(self.pool, &entries).iter().any(own) {
+            let name = &self.element.name;
+            let message = format!(
+                "the momentum of `{name}` does not follow from a flow: its law is not linear"
+            );
+            let report = error(codes::EXPRESSION, span, message);
+            return Err(Box::new(
+                report.help("give the momentum itself: `initial: …`"),
+            ));
         }
         let size = self.own.dimension;
         let inertia = self.inverse("slope", &Matrix::new(size, size, entries), span)?;
-        Ok(inertia
-            .times(self.pool, &Matrix::column(flow.to_vec()))
-            .entries)
+        Ok(inertia.times(self.pool, &Matrix::column(added)).entries)
     }
 }

@@ -555,3 +555,24 @@ fn an_argument_that_reads_a_frame_is_told_and_not_the_frame() {
         assert!(diagnose(&text(&format!("1.0 * {force}"))).is_empty());
     }
 }
+
+/// As circuits are written elsewhere: the factor is part of the number.
+#[test]
+fn a_prefix_behind_a_number_is_told_as_its_power_of_ten() {
+    for (number, help) in [
+        ("4.7k", "write `4.7e3`"),
+        ("100n", "write `100e-9`"),
+        ("1u", "write `1e-6`"),
+        ("2M", "write `2e6`"),
+        ("4.7kohm", "write `4.7 * 1000`"),
+        // A metre, and a thousandth.
+        ("1m", "such as `param x: m = …;`: write `1.0`"),
+    ] {
+        let text = format!(
+            "model M {{ 0 n {{ C c {{ compliance: 1.0 }} R r {{ resistance: {number} }} }} output y = n.e; }}"
+        );
+        let (place, told_of) = told(&text);
+        assert!(place.starts_with(number), "{place}");
+        assert!(told_of.ends_with(help), "{told_of}");
+    }
+}

@@ -282,6 +282,9 @@ impl Known {
 
 /// What to type for a number with a unit behind it.
 pub(crate) fn without_unit(number_text: &str, unit: &str) -> Option<String> {
+    if let Some(value) = with_prefix(number_text, unit) {
+        return Some(format!("numbers carry no prefix: write `{value}`"));
+    }
     let known = lookup(unit).or_else(|| spellings::meant(unit, 1))?;
     let is_integer = number_text.chars().all(|digit| digit.is_ascii_digit());
     let mut value = number_text.to_owned() + if is_integer { ".0" } else { "" };
@@ -292,6 +295,16 @@ pub(crate) fn without_unit(number_text: &str, unit: &str) -> Option<String> {
     Some(format!(
         "numbers carry no unit, declarations do, such as `param x: {unit} = …;`: write `{value}`"
     ))
+}
+
+/// A number with a prefix alone behind it, as circuits are written: `4.7k`. Letters that are units, too, are not taken for one.
+fn with_prefix(number_text: &str, prefix: &str) -> Option<String> {
+    let is_exponent = |digit| matches!(digit, 'e' | 'E');
+    if coherent(prefix).is_some() || number_text.contains(is_exponent) {
+        return None;
+    }
+    let (_, tens) = PREFIXES.iter().find(|(known, _)| *known == prefix)?;
+    Some(format!("{number_text}e{tens}"))
 }
 
 /// What a name stands for.

@@ -741,8 +741,14 @@ fn conditions_of_laws_are_joined() {
     state c.q = 0
     output y = select_less(0, Signal(0), select_less(Signal(0), 1, 1, 0), 0)
     ");
-    insta::assert_snapshot!(mistake("output y = if a.f.x > 0.0 && a.f.y == 1.0 { 1.0 } else { 0.0 };"), @"2:36 expected a comparison with < <= > or >= [MBG0213]");
-    insta::assert_snapshot!(mistake("output y = if a.f.x { 1.0 } else { 0.0 };"), @"2:15 expected a comparison with < <= > or >= [MBG0213]");
+    insta::assert_snapshot!(mistake("output y = if a.f.x > 0.0 && a.f.y == 1.0 { 1.0 } else { 0.0 };"), @"
+    2:36 expected a comparison with < <= > or >= [MBG0213]
+      help: of a value that is 0 or 1 write `a.f.y > 0.5`
+    ");
+    insta::assert_snapshot!(mistake("output y = if a.f.x { 1.0 } else { 0.0 };"), @"
+    2:15 expected a comparison with < <= > or >= [MBG0213]
+      help: of a value that is 0 or 1 write `a.f.x > 0.5`
+    ");
 }
 
 /// A formula that nobody would read as a name gives way to what it is for.

@@ -288,3 +288,28 @@ fn a_thin_rod_is_told_a_small_inertia() {
       help: write a number far below the others in the place of the 0, such as `1e-6`: nothing that is visible changes
     ");
 }
+
+/// A condition that is a value alone is 0 or 1 in other languages.
+#[test]
+fn values_as_conditions_are_compared() {
+    let law = |law: &str| {
+        format!(
+            "model M {{ param on = 1.0; 1 v {{ I m {{ inertia: 1.0 }} R r {{ resistance: {law} }} }} output y = v.f; }}"
+        )
+    };
+    let written = "if on > 0.5 { 1e-3 } else { 1e6 }";
+    assert_eq!(typed(&law("on ? 1e-3 : 1e6")), [written]);
+    assert!(diagnose(&law(written)).list().is_empty());
+    for (condition, help) in [
+        ("on", "on > 0.5"),
+        ("on == 1", "on > 0.5"),
+        ("on != 0.0", "on > 0.5"),
+        ("on == 0", "on < 0.5"),
+    ] {
+        let choice = law(&format!("if {condition} {{ 1e-3 }} else {{ 1e6 }}"));
+        assert_eq!(typed(&choice), [help], "{condition}");
+    }
+    // Of other numbers nothing is known.
+    let other = law("if on == 2.0 { 1e-3 } else { 1e6 }");
+    assert!(typed(&other).is_empty());
+}

@@ -7,6 +7,7 @@ use super::expressions::{Evaluator, Names, Result, Value, fail, number};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::symbolic::{Expression, Function};
+use crate::syntax::dump;
 
 /// What a choice between values depends on.
 enum Test {
@@ -60,7 +61,10 @@ impl<N: Names> Evaluator<'_, N> {
                 Ok(Test::Not(Box::new(self.test(&unary.expr)?)))
             }
             Expr::Binary(binary) => self.comparison(binary),
-            _ => fail(condition.span(), NO_TEST),
+            _ => {
+                let report = error(codes::EXPRESSION, condition.span(), NO_TEST);
+                Err(Box::new(report.help(of_zero_or_one(condition, true))))
+            }
         }
     }
 
@@ -76,6 +80,16 @@ impl<N: Names> Evaluator<'_, N> {
                     BinOp::Le(_) => Test::Not(Box::new(Test::Less(b, a))),
                     _ => Test::Not(Box::new(Test::Less(a, b))),
                 });
+            }
+            BinOp::Eq(_) | BinOp::Ne(_) => {
+                let report = error(codes::EXPRESSION, binary.op.span(), NO_TEST);
+                let is_one = match dump::expression(&binary.right).as_str() {
+                    "1" | "1.0" => true,
+                    "0" | "0.0" => false,
+                    _ => return Err(Box::new(report)),
+                };
+                let is_set = is_one == matches!(binary.op, BinOp::Eq(_));
+                return Err(Box::new(report.help(of_zero_or_one(&binary.left, is_set))));
             }
             _ => return fail(binary.op.span(), NO_TEST),
         };
@@ -108,4 +122,11 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(block.span(), "expected one expression"),
         }
     }
+}
+
+/// How to ask whether a value that is 0 or 1 is 1.
+fn of_zero_or_one(value: &Expr, is_one: bool) -> String {
+    let sign = if is_one { '>' } else { '<' };
+    let value = dump::expression(value);
+    format!("of a value that is 0 or 1 write `{value} {sign} 0.5`")
 }

@@ -88,14 +88,23 @@ fn by_words(choice: &[TokenTree]) -> Option<String> {
 fn behind_its_value(whole: &[TokenTree], begin: usize) -> Option<String> {
     let (first, rest) = (&whole[..begin], &whole[begin + 1..]);
     let other = rest.iter().position(|token| is_word(token, "else"))?;
-    let [first, condition, second] = [first, &rest[..other], &rest[other + 1..]].map(read);
-    let [first, condition, second] = [first?, condition?, second?].map(|it| dump::expression(&it));
-    Some(format!("if {condition} {{ {first} }} else {{ {second} }}"))
+    let [first, second] = [first, &rest[other + 1..]].map(read);
+    let [first, second] = [first?, second?].map(|it| dump::expression(&it));
+    Some(written(&rest[..other], &first, &format!("{{ {second} }}")))
 }
 
 /// The choice as it is written here; `second` has its own braces.
 fn written(condition: &[TokenTree], first: &str, second: &str) -> String {
-    format!("if {} {{ {first} }} else {second}", value(condition))
+    format!("if {} {{ {first} }} else {second}", compared(condition))
+}
+
+/// A condition, which is a comparison here: a value alone is 0 or 1 elsewhere.
+fn compared(condition: &[TokenTree]) -> String {
+    let is_value = matches!(
+        read(condition),
+        Some(Expr::Path(_) | Expr::Field(_) | Expr::Index(_))
+    );
+    value(condition) + if is_value { " > 0.5" } else { "" }
 }
 
 /// What these tokens say, or a place for it.

@@ -547,6 +547,28 @@ fn an_angular_velocity_has_three_components() {
     assert_eq!(told("attitude q = quaternion(f.f[0..3]);"), "");
 }
 
+/// `x` of a quaternion would be its first component, which is that of no axis.
+#[test]
+fn components_of_a_quaternion_have_no_letters() {
+    let read = |value: &str| {
+        told(&format!(
+            "model M {{ 1 w[3] {{ I b {{ inertia: 1.0, gyroscopic }} }} attitude turn = quaternion(w.f);
+1 four[4] {{ I n {{ inertia: 1.0 }} }} output y = {value}; }}"
+        ))
+    };
+    insta::assert_snapshot!(read("turn.x"), @"
+    2:52 `turn` is `[w, x, y, z]`, whose components have numbers and no letters [MBG0204]
+      help: write `turn[1]` for its x
+    ");
+    insta::assert_snapshot!(read("2.0 * turn.w"), @"
+    2:58 `turn` is `[w, x, y, z]`, whose components have numbers and no letters [MBG0204]
+      help: write `turn[0]` for its w
+    ");
+    for value in ["turn[1]", "four.f.x", "n.p.z", "w.f.x"] {
+        assert_eq!(read(value), "", "{value}");
+    }
+}
+
 /// A body on a hinge, with the hinge's arguments and more statements.
 fn hinged(arguments: &str, statements: &str) -> String {
     format!(

@@ -322,13 +322,22 @@ impl<N: Names> Evaluator<'_, N> {
         }
         if let Some((Step { name, index: None }, front)) = steps.split_last()
             && !front.is_empty()
-            && component_index(name).is_some()
         {
-            if let [own] = front {
-                self.check_whole(&own.name)?;
+            if let Expr::Field(whole) = expression
+                && let Some(place) = QUATERNION.iter().position(|letter| name == letter)
+                && let Some(Ok(value)) = self.names.value(self.pool, front)
+                && value.is_vector_of(4)
+                && !is_of_bond(front)
+            {
+                return Err(no_letter(whole, name, place));
             }
-            if let Some(value) = self.names.value(self.pool, front) {
-                return self.component(value?, name);
+            if component_index(name).is_some() {
+                if let [own] = front {
+                    self.check_whole(&own.name)?;
+                }
+                if let Some(value) = self.names.value(self.pool, front) {
+                    return self.component(value?, name);
+                }
             }
         }
         let name = steps
@@ -807,6 +816,24 @@ fn member(field: &syn::ExprField) -> Result<Ident> {
             "expected a name after `.`; a component is `[0]` or `.x`",
         ),
     }
+}
+
+/// The components of a quaternion in order.
+const QUATERNION: [&str; 4] = ["w", "x", "y", "z"];
+
+/// Whether they lead to efforts, flows, momenta or displacements of something: four of these are no quaternion.
+fn is_of_bond(steps: &[Step]) -> bool {
+    let is_known = |step: &Step| ["e", "f", "p", "q"].iter().any(|known| step.name == known);
+    steps.len() > 1 && steps.last().is_some_and(is_known)
+}
+
+/// Of a quaternion, whose first component is that of no axis.
+fn no_letter(whole: &syn::ExprField, name: &Ident, place: usize) -> Box<Diagnostic> {
+    let base = dump::expression(&whole.base);
+    let message =
+        format!("`{base}` is `[w, x, y, z]`, whose components have numbers and no letters");
+    let report = error(codes::WRONG_DIMENSION, name.span(), message);
+    Box::new(report.help(format!("write `{base}[{place}]` for its {name}")))
 }
 
 /// 0, 1, 2 for `x`, `y`, `z`.

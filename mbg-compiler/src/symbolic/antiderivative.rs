@@ -12,7 +12,7 @@ const MOST: usize = 4000;
 const MOST_INNER: usize = 500;
 
 /// A function of a symbol whose derivative is the expression, continuous where the expression jumps; none where none is
-/// known. Known are sums and multiples of: powers, sine, cosine, tangent, arc tangent, exponential, logarithm, root and
+/// known. Known are sums and multiples of: powers, sine, cosine, tangent and their arcs, exponential, logarithm, root and
 /// hyperbolic tangent of what is affine in the symbol; products, quotients and powers of what is affine and vanishes at one
 /// place; products of sums that are made of such when they are multiplied out; and all of these with choices, absolute
 /// values and signs of what is affine anywhere in them. Further polynomials beside such a power, an exponential, a sine or a
@@ -236,8 +236,21 @@ impl Integration<'_> {
             Function::Min => self.choice(u, arguments[1], u, arguments[1]),
             Function::Max => self.choice(u, arguments[1], arguments[1], u),
             Function::SelectLess => self.choice(u, arguments[1], arguments[2], arguments[3]),
-            Function::Asin | Function::Acos => None,
+            Function::Asin | Function::Acos => {
+                let value = self.arc(function, u);
+                self.inner(u, value)
+            }
         }
+    }
+
+    /// `u asin u + √(1 − u²)`, or `u acos u − √(1 − u²)`.
+    fn arc(&mut self, function: Function, u: Expression) -> Expression {
+        let angle = self.pool.call(function, &[u]);
+        let [product, square] = [angle, u].map(|factor| self.pool.multiply(u, factor));
+        let rest = self.pool.subtract(Expression::ONE, square);
+        let root = self.pool.call(Function::Sqrt, &[rest]);
+        let root = root.flipped(function == Function::Acos);
+        self.pool.add(product, root)
     }
 
     fn share(&mut self, value: Expression, numerator: i64, divisor: i64) -> Option<Expression> {
@@ -491,6 +504,14 @@ mod tests {
             pool.sum(&[sine, cosine.negated(), angle])
         };
         assert_integral(circular, [-1.0, 2.5]);
+        for arc in [Function::Asin, Function::Acos] {
+            let law = |pool: &mut Pool, x| {
+                let (u, four) = (affine_part(pool, x), pool.integer(4));
+                let part = pool.divide(u, four).expect("a quotient");
+                pool.call(arc, &[part])
+            };
+            assert_integral(law, [-0.25, 3.25]);
+        }
     }
 
     #[test]

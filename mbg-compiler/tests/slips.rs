@@ -3,18 +3,7 @@
 
 mod told;
 
-use told::{diagnose, told};
-
-/// The texts in backticks of the helps of the only mistake.
-fn typed(text: &str) -> Vec<String> {
-    let diagnostics = diagnose(text);
-    let [report] = diagnostics.list() else {
-        panic!("one mistake in {text}, found:\n{}", told(text))
-    };
-    let helps = report.helps.iter();
-    let typed = helps.flat_map(|help| help.split('`').skip(1).step_by(2));
-    typed.map(str::to_owned).collect()
-}
+use told::{diagnose, told, typed};
 
 /// A hinged arm and a statement.
 fn arm(statement: &str) -> String {

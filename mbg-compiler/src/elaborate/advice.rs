@@ -2,7 +2,8 @@
 
 use proc_macro2::Ident;
 
-use super::expressions::{Names, Step, component_index};
+use super::expressions::{Names, Step};
+use super::indices::component_index;
 use super::scope::{Entity, Lookup};
 use crate::diagnostics::listing;
 use crate::graph::{ElementId, ElementKind, End, JunctionId, JunctionKind};

@@ -5,7 +5,7 @@ use quote::ToTokens;
 use syn::{BinOp, Expr, ExprBinary, Lit, Member, UnOp};
 
 use super::constants::plain_name;
-use super::expressions::component_index;
+use super::indices::component_index;
 use crate::graph::ElementKind;
 use crate::syntax::dump;
 use crate::syntax::words::JUMPING_INPUT;

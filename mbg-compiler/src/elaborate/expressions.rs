@@ -1,9 +1,8 @@
 //! Laws: from Rust expressions to the pool.
 
 use proc_macro2::{Ident, Span};
-use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
-use syn::{BinOp, Expr, Lit, Member, Token, UnOp, parse_quote};
+use syn::{BinOp, Expr, Lit, Member, UnOp, parse_quote};
 
 use super::elsewhere;
 use super::model::Assumption;
@@ -115,7 +114,7 @@ pub trait Names {
 
 impl Value {
     /// Whether it is a vector of this dimension.
-    fn is_vector_of(&self, dimension: usize) -> bool {
+    pub(super) fn is_vector_of(&self, dimension: usize) -> bool {
         matches!(self, Self::Matrix(it) if (it.rows(), it.columns()) == (dimension, 1))
     }
 
@@ -229,35 +228,6 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    /// A mistake in what looks like the call of a function; what is called may be a value.
-    fn called(
-        &mut self,
-        report: Box<Diagnostic>,
-        called: &Expr,
-        arguments: &Punctuated<Expr, Token![,]>,
-    ) -> Box<Diagnostic> {
-        let (true, Some(first), 1) = (
-            report.code == codes::UNKNOWN_NAME,
-            arguments.first(),
-            arguments.len(),
-        ) else {
-            return report;
-        };
-        let Ok(Some(steps)) = self.steps(called) else {
-            return report;
-        };
-        let Some(Ok(value)) = self.names.value(self.pool, &steps) else {
-            return report;
-        };
-        let [text, first] = [called, first].map(dump::expression);
-        let help = match value {
-            Value::Scalar(_) => format!("for a product write `{text} * ({first})`"),
-            Value::Matrix(_) => format!("a component stands in brackets: write `{text}[{first}]`"),
-        };
-        let message = format!("`{text}` is a value, and it is called as a function");
-        Box::new(error(report.code, report.span, message).help(help))
-    }
-
     /// The value, which must be a number.
     pub fn scalar(&mut self, expression: &Expr) -> Result<Expression> {
         let value = self.evaluate(expression)?;
@@ -320,25 +290,8 @@ impl<N: Names> Evaluator<'_, N> {
             Some(value) => return value,
             None => {}
         }
-        if let Some((Step { name, index: None }, front)) = steps.split_last()
-            && !front.is_empty()
-        {
-            if let Expr::Field(whole) = expression
-                && let Some(place) = QUATERNION.iter().position(|letter| name == letter)
-                && let Some(Ok(value)) = self.names.value(self.pool, front)
-                && value.is_vector_of(4)
-                && !is_of_bond(front)
-            {
-                return Err(no_letter(whole, name, place));
-            }
-            if component_index(name).is_some() {
-                if let [own] = front {
-                    self.check_whole(&own.name)?;
-                }
-                if let Some(value) = self.names.value(self.pool, front) {
-                    return self.component(value?, name);
-                }
-            }
+        if let Some(component) = self.by_letter(expression, &steps) {
+            return component;
         }
         let name = steps
             .last()
@@ -370,7 +323,7 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     /// The steps of a dotted path; none if it does not begin with a name.
-    fn steps(&self, expression: &Expr) -> Result<Option<Vec<Step>>> {
+    pub(super) fn steps(&self, expression: &Expr) -> Result<Option<Vec<Step>>> {
         let mut steps = Vec::new();
         let (mut rest, mut index) = (expression, None);
         loop {
@@ -816,28 +769,4 @@ fn member(field: &syn::ExprField) -> Result<Ident> {
             "expected a name after `.`; a component is `[0]` or `.x`",
         ),
     }
-}
-
-/// The components of a quaternion in order.
-const QUATERNION: [&str; 4] = ["w", "x", "y", "z"];
-
-/// Whether they lead to efforts, flows, momenta or displacements of something: four of these are no quaternion.
-fn is_of_bond(steps: &[Step]) -> bool {
-    let is_known = |step: &Step| ["e", "f", "p", "q"].iter().any(|known| step.name == known);
-    steps.len() > 1 && steps.last().is_some_and(is_known)
-}
-
-/// Of a quaternion, whose first component is that of no axis.
-fn no_letter(whole: &syn::ExprField, name: &Ident, place: usize) -> Box<Diagnostic> {
-    let base = dump::expression(&whole.base);
-    let message =
-        format!("`{base}` is `[w, x, y, z]`, whose components have numbers and no letters");
-    let report = error(codes::WRONG_DIMENSION, name.span(), message);
-    Box::new(report.help(format!("write `{base}[{place}]` for its {name}")))
-}
-
-/// 0, 1, 2 for `x`, `y`, `z`.
-#[must_use]
-pub fn component_index(name: &Ident) -> Option<usize> {
-    ["x", "y", "z"].iter().position(|known| name == known)
 }

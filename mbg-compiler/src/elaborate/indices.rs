@@ -1,13 +1,37 @@
 //! Components of vectors, rows of matrices and parts of either in laws.
 
 use proc_macro2::{Ident, Span};
+use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
-use syn::{Expr, RangeLimits};
+use syn::{Expr, RangeLimits, Token};
 
-use super::expressions::{Evaluator, Names, Result, Value, component_index, fail, mismatch};
+use super::expressions::{Evaluator, Names, Result, Step, Value, fail, mismatch};
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Product;
+use crate::syntax::dump;
 
 impl<N: Names> Evaluator<'_, N> {
+    /// The component by the letter that comes last in a path; none where there is no such letter, or no value before it.
+    pub(super) fn by_letter(&mut self, path: &Expr, steps: &[Step]) -> Option<Result<Value>> {
+        let (Step { name, index: None }, front) = steps.split_last()? else {
+            return None;
+        };
+        let place = QUATERNION.iter().position(|letter| name == letter)?;
+        if let [own] = front
+            && let Err(report) = self.check_whole(&own.name)
+        {
+            return Some(Err(report));
+        }
+        let value = self.names.value(self.pool, front)?;
+        let is_quaternion = |value: &Value| value.is_vector_of(4) && !is_of_bond(front);
+        match value {
+            Ok(value) if is_quaternion(&value) => Some(Err(no_letter(path, name, place))),
+            _ if component_index(name).is_none() => None,
+            value => Some(value.and_then(|value| self.component(value, name))),
+        }
+    }
+
     /// The component `x`, `y` or `z`.
     pub(super) fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
         let Some(index) = component_index(name) else {
@@ -17,6 +41,35 @@ impl<N: Names> Evaluator<'_, N> {
             );
         };
         self.pick(value, index as i64, name.span())
+    }
+
+    /// A mistake in what looks like the call of a function; what is called may be a value.
+    pub(super) fn called(
+        &mut self,
+        report: Box<Diagnostic>,
+        called: &Expr,
+        arguments: &Punctuated<Expr, Token![,]>,
+    ) -> Box<Diagnostic> {
+        let (true, Some(first), 1) = (
+            report.code == codes::UNKNOWN_NAME,
+            arguments.first(),
+            arguments.len(),
+        ) else {
+            return report;
+        };
+        let Ok(Some(steps)) = self.steps(called) else {
+            return report;
+        };
+        let Some(Ok(value)) = self.names.value(self.pool, &steps) else {
+            return report;
+        };
+        let [text, first] = [called, first].map(dump::expression);
+        let help = match value {
+            Value::Scalar(_) => format!("for a product write `{text} * ({first})`"),
+            Value::Matrix(_) => format!("a component stands in brackets: write `{text}[{first}]`"),
+        };
+        let message = format!("`{text}` is a value, and it is called as a function");
+        Box::new(error(report.code, report.span, message).help(help))
     }
 
     fn pick(&mut self, value: Value, index: i64, span: Span) -> Result<Value> {
@@ -83,4 +136,28 @@ impl<N: Names> Evaluator<'_, N> {
             ),
         }
     }
+}
+
+/// The components of a quaternion in order.
+const QUATERNION: [&str; 4] = ["w", "x", "y", "z"];
+
+/// Whether they lead to efforts, flows, momenta or displacements of something: four of these are no quaternion.
+fn is_of_bond(steps: &[Step]) -> bool {
+    let is_known = |step: &Step| ["e", "f", "p", "q"].iter().any(|known| step.name == known);
+    steps.len() > 1 && steps.last().is_some_and(is_known)
+}
+
+/// Of a quaternion, whose first component is that of no axis.
+fn no_letter(path: &Expr, name: &Ident, place: usize) -> Box<Diagnostic> {
+    let path = dump::expression(path);
+    let base = path.strip_suffix(&format!(".{name}")).unwrap_or(&path);
+    let message =
+        format!("`{base}` is `[w, x, y, z]`, whose components have numbers and no letters");
+    let report = error(codes::WRONG_DIMENSION, name.span(), message);
+    Box::new(report.help(format!("write `{base}[{place}]` for its {name}")))
+}
+
+/// 0, 1, 2 for `x`, `y`, `z`.
+pub(super) fn component_index(name: &Ident) -> Option<usize> {
+    ["x", "y", "z"].iter().position(|known| name == known)
 }

@@ -5,7 +5,8 @@ use std::ops::Range;
 use syn::Expr;
 
 use super::Builder;
-use super::expressions::{Result, Step, component_index};
+use super::expressions::{Result, Step};
+use super::indices::component_index;
 use super::scope::Entity;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};

@@ -70,12 +70,6 @@ const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
             "constantvoltage",
             "signalvoltage",
             "battery",
-        ],
-        Stand::Between,
-        &[("Se", "source", "effort: …")],
-    ),
-    (
-        &[
             "force",
             "torque",
             "forcesource",

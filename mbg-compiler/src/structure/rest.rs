@@ -117,13 +117,8 @@ impl Solver<'_> {
                 Some(signs) => (Kind::Symmetric, signs.into_iter().map(|it| !it).collect()),
                 None => (Kind::Regular, vec![true; rows.len()]),
             };
-            let right = right.into_iter().zip(&negated);
-            let method = Method::Linear {
-                matrix: matrix.with_rows_negated(&negated),
-                right: right.map(|(it, negated)| it.flipped(*negated)).collect(),
-                kind,
-            };
-            return Ok(self.by_numbers(rows, columns, numbers, method, negated));
+            let equations = (matrix, right, kind);
+            return Ok(self.by_numbers((rows, columns), numbers, equations, negated));
         }
         let values = if rows.is_empty() {
             Vec::new()
@@ -248,34 +243,35 @@ impl Solver<'_> {
             entries.extend(
                 multipliers
                     .iter()
-                    .map(|(_, column)| system.entry(*row, *column).negated()),
+                    .map(|(_, column)| system.entry(*row, *column)),
             );
         }
         let matrix = Matrix::new(multipliers.len(), multipliers.len(), entries);
         let right = multipliers
             .iter()
-            .map(|(row, _)| system.right(*row).negated())
+            .map(|(row, _)| system.right(*row))
             .collect();
         let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
         let numbers = columns.iter().map(|column| unknowns[*column]).collect();
         let negated = vec![true; rows.len()];
-        let method = Method::Linear {
-            matrix,
-            right,
-            kind: Kind::Semidefinite,
-        };
-        Ok(self.by_numbers(rows, columns, numbers, method, negated))
+        let equations = (matrix, right, Kind::Semidefinite);
+        Ok(self.by_numbers((rows, columns), numbers, equations, negated))
     }
 
-    /// Leaves equations, of which some have both sides negated, to be solved with numbers: what is left, and its values.
+    /// Leaves equations, of which some get both sides negated, to be solved with numbers: what is left, and its values.
     fn by_numbers(
         &mut self,
-        rows: Vec<usize>,
-        columns: Vec<usize>,
+        (rows, columns): (Vec<usize>, Vec<usize>),
         unknowns: Vec<usize>,
-        method: Method,
+        (matrix, right, kind): (Matrix, Vec<Expression>, Kind),
         negated: Vec<bool>,
     ) -> (Rest, Vec<Expression>) {
+        let right = right.into_iter().zip(&negated);
+        let method = Method::Linear {
+            matrix: matrix.with_rows_negated(&negated),
+            right: right.map(|(it, negated)| it.flipped(*negated)).collect(),
+            kind,
+        };
         let implicit = Implicit { unknowns, method };
         let symbols: Vec<Symbol> = implicit.symbols().collect();
         let of = self.pool.implicit().len();

@@ -623,20 +623,23 @@ mod tests {
         let factor = pool.multiply(stiffness, sign);
         let law = pool.multiply(factor, power);
         let found = antiderivative(&mut pool, law, X).expect("it has an antiderivative");
-        let at = |x: f64| {
-            let symbol = |symbol| match symbol {
-                X => x,
-                Symbol::Parameter(0) => 10.0,
-                _ => 0.25,
-            };
-            Evaluation::new(&symbol).value(&pool, found)
-        };
+        let at = |x| value(&pool, found, x, 0.25);
         for (place, expected) in [(0.1, 0.0), (0.5, 0.125), (1.25, 4.0)] {
             for x in [place, -place] {
                 let energy = at(x) - at(0.0);
                 assert!((energy - expected).abs() < 1e-14, "{x}: {energy}");
             }
         }
+    }
+
+    /// The energy at `x` of a law with a stiffness of 10 and this gap.
+    fn value(pool: &Pool, energy: Expression, x: f64, gap: f64) -> f64 {
+        let symbol = |symbol| match symbol {
+            X => x,
+            Symbol::Parameter(0) => 10.0,
+            _ => gap,
+        };
+        Evaluation::new(&symbol).value(pool, energy)
     }
 
     /// `k |x| √(x − g)` beyond a gap `g`, whichever its sign: within the gap the root has no value.
@@ -661,15 +664,7 @@ mod tests {
             for x in [-1.0, -0.125, 0.0, 0.125, 0.5, 2.0] {
                 let turned = beyond(f64::min(x, 0.0), gap);
                 let expected = beyond(x.max(0.0), gap) - beyond(0.0, gap) - turned;
-                let at = |x: f64| {
-                    let symbol = |symbol| match symbol {
-                        X => x,
-                        Symbol::Parameter(0) => 10.0,
-                        _ => gap,
-                    };
-                    Evaluation::new(&symbol).value(&pool, found)
-                };
-                let energy = at(x) - at(-1.0);
+                let energy = value(&pool, found, x, gap) - value(&pool, found, -1.0, gap);
                 assert!(
                     (energy - 10.0 * expected).abs() < 1e-14,
                     "{gap} {x}: {energy} and {expected}"

@@ -4,6 +4,7 @@ use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 
 use super::cursor::Cursor;
 use super::dump;
+use super::slips::is_mark;
 use crate::units::is_name_of_unit;
 
 /// Words that declare a value in other languages, and the words that do so here.
@@ -89,8 +90,7 @@ fn until_end(cursor: &Cursor, offset: usize) -> TokenStream {
 /// The texts between marks of this kind.
 fn divided(tokens: TokenStream, mark: char) -> Vec<String> {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let is_mark = |token: &TokenTree| matches!(token, TokenTree::Punct(it) if it.as_char() == mark);
-    let parts = tokens.split(is_mark);
+    let parts = tokens.split(|token| is_mark(token, mark));
     parts
         .map(|part| dump::tokens(part.iter().cloned().collect()))
         .collect()

@@ -284,7 +284,7 @@ fn rows(inside: &[TokenTree]) -> Option<Box<Diagnostic>> {
     Some(Box::new(report.help(help)))
 }
 
-fn is_mark(token: &TokenTree, mark: char) -> bool {
+pub(super) fn is_mark(token: &TokenTree, mark: char) -> bool {
     matches!(token, TokenTree::Punct(it) if it.as_char() == mark)
 }
 

@@ -4,6 +4,7 @@ use proc_macro2::TokenTree;
 use syn::Expr;
 
 use super::dump;
+use super::slips::is_mark;
 use super::words::THEN;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -114,10 +115,6 @@ fn value(part: &[TokenTree]) -> String {
 
 fn read(part: &[TokenTree]) -> Option<Expr> {
     syn::parse2(part.iter().cloned().collect()).ok()
-}
-
-fn is_mark(token: &TokenTree, mark: char) -> bool {
-    matches!(token, TokenTree::Punct(it) if it.as_char() == mark)
 }
 
 fn is_word(token: &TokenTree, word: &str) -> bool {

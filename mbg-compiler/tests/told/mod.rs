@@ -16,6 +16,17 @@ pub(crate) fn told(text: &str) -> String {
     listed(diagnose(text).list())
 }
 
+/// The texts in backticks of the helps of the only mistake.
+pub(crate) fn typed(text: &str) -> Vec<String> {
+    let diagnostics = diagnose(text);
+    let [report] = diagnostics.list() else {
+        panic!("one mistake in {text}, found:\n{}", told(text))
+    };
+    let helps = report.helps.iter();
+    let typed = helps.flat_map(|help| help.split('`').skip(1).step_by(2));
+    typed.map(str::to_owned).collect()
+}
+
 /// Everything that is warned of in a text without mistakes, with the places.
 pub(crate) fn warned(text: &str) -> String {
     let diagnostics = diagnose(text);

@@ -1,7 +1,9 @@
-//! Symmetric positive definite systems that are far from singular: short code without exchanges.
+//! Symmetric positive definite systems that are far from singular: short code without exchanges, and other factors where they
+//! are not.
 
 use nalgebra::{SMatrix, SVector};
 
+use super::everywhere;
 use crate::Real;
 
 /// `L D Lᵀ` of a symmetric matrix.
@@ -10,7 +12,7 @@ pub(super) struct Definite<T, const K: usize> {
     /// `L` below the diagonal, the reciprocals of `D` on it.
     lower: [[T; K]; K],
     /// 1 in the lanes that are regular, else 0. In the others the factors mean nothing.
-    pub(super) regular: T,
+    regular: T,
 }
 
 impl<T: Real, const K: usize> Definite<T, K> {
@@ -38,7 +40,7 @@ impl<T: Real, const K: usize> Definite<T, K> {
     }
 
     #[inline]
-    pub(super) fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
+    fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
         let mut x = right.data.0[0];
         for i in 0..K {
             for k in 0..i {
@@ -57,12 +59,46 @@ impl<T: Real, const K: usize> Definite<T, K> {
         }
         SVector::from(x)
     }
+}
 
-    /// The solution in regular lanes, in the others another one.
-    pub(super) fn chosen(&self, right: &SVector<T, K>, other: &SVector<T, K>) -> SVector<T, K> {
-        let half = T::from_f64(0.5);
-        other.zip_map(&self.solve(right), |other, own| {
-            self.regular.select_less(half, other, own)
-        })
+/// Of a matrix of which every lane, no lane or some lanes are regular as [`Definite`] tells.
+#[derive(Clone, Debug)]
+pub(super) enum Factors<T, Other, const K: usize> {
+    Definite(Definite<T, K>),
+    Other(Other),
+    Both(Definite<T, K>, Other),
+}
+
+impl<T: Real, Other, const K: usize> Factors<T, Other, K> {
+    /// With others for what is not regular.
+    #[inline]
+    pub(super) fn of(definite: Definite<T, K>, other: impl FnOnce() -> Other) -> Self {
+        let all_are = |flag| everywhere(definite.regular, |it| it == flag);
+        if all_are(1.0) {
+            Self::Definite(definite)
+        } else if all_are(0.0) {
+            Self::Other(other())
+        } else {
+            Self::Both(definite, other())
+        }
+    }
+
+    /// The solution, in each lane by its factors.
+    #[inline]
+    pub(super) fn solution(
+        &self,
+        right: &SVector<T, K>,
+        by_other: impl FnOnce(&Other) -> SVector<T, K>,
+    ) -> SVector<T, K> {
+        match self {
+            Self::Definite(definite) => definite.solve(right),
+            Self::Other(other) => by_other(other),
+            Self::Both(definite, other) => {
+                let half = T::from_f64(0.5);
+                by_other(other).zip_map(&definite.solve(right), |other, own| {
+                    definite.regular.select_less(half, other, own)
+                })
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::definite::Definite;
+use super::definite::{Definite, Factors};
 use super::{Order, dot, everywhere, exchanged, largest};
 use crate::Real;
 
@@ -84,15 +84,7 @@ fn remainder<T: Real, const K: usize>(
 #[derive(Clone, Debug)]
 pub struct Semidefinite<T, const K: usize> {
     matrix: SMatrix<T, K, K>,
-    factors: Factors<T, K>,
-}
-
-/// Of a matrix of which every lane, no lane or some lanes are small and far from singular.
-#[derive(Clone, Debug)]
-enum Factors<T, const K: usize> {
-    Short(Definite<T, K>),
-    Long(Pivoted<T, K>),
-    Both(Definite<T, K>, Pivoted<T, K>),
+    factors: Factors<T, Pivoted<T, K>, K>,
 }
 
 impl<T: Real, const K: usize> Semidefinite<T, K> {
@@ -108,21 +100,12 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn of_rank(matrix: SMatrix<T, K, K>, rank: T) -> Self {
-        if !everywhere(rank, |rank| rank >= K as f64) {
-            let factors = Factors::Long(Pivoted::new(matrix, rank));
-            return Self { matrix, factors };
-        }
-        let short = (K <= SHORT).then(|| {
+        let pivoted = || Pivoted::new(matrix, rank);
+        let factors = if K <= SHORT && everywhere(rank, |rank| rank >= K as f64) {
             let bound = T::from_f64(REGULAR) * largest((0..K).map(|i| matrix[(i, i)]));
-            Definite::new(&matrix, |_| bound)
-        });
-        let regular_is = |short: &Definite<T, K>, flag| everywhere(short.regular, |it| it == flag);
-        let factors = match short {
-            Some(short) if regular_is(&short, 1.0) => Factors::Short(short),
-            Some(short) if !regular_is(&short, 0.0) => {
-                Factors::Both(short, Pivoted::new(matrix, rank))
-            }
-            _ => Factors::Long(Pivoted::new(matrix, rank)),
+            Factors::of(Definite::new(&matrix, |_| bound), pivoted)
+        } else {
+            Factors::Other(pivoted())
         };
         Self { matrix, factors }
     }
@@ -133,8 +116,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
         let solution = self.solution(right);
         let rank = match &self.factors {
-            Factors::Long(long) => long.rank,
-            Factors::Short(_) | Factors::Both(..) => K,
+            Factors::Other(pivoted) => pivoted.rank,
+            Factors::Definite(_) | Factors::Both(..) => K,
         };
         let zero = T::from_f64(0.0);
         let size = largest(right.iter().copied());
@@ -150,11 +133,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        match &self.factors {
-            Factors::Short(short) => short.solve(right),
-            Factors::Long(long) => long.refined(&self.matrix, right),
-            Factors::Both(short, long) => short.chosen(right, &long.refined(&self.matrix, right)),
-        }
+        let careful = |pivoted: &Pivoted<T, K>| pivoted.refined(&self.matrix, right);
+        self.factors.solution(right, careful)
     }
 }
 

@@ -2,28 +2,19 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::definite::Definite;
+use super::definite::{Definite, Factors};
 use super::dense::Regular;
-use super::everywhere;
 use crate::Real;
 
 /// A regular symmetric matrix as `L D Lᵀ` where its pivots in order are positive, which they are where it is positive definite;
 /// otherwise as [`Regular`].
 ///
 /// Of a positive definite matrix the factors are as exact as those with exchanges, whatever the units of its rows (Higham,
-/// *Accuracy and Stability of Numerical Algorithms*, 2nd ed., 10.1), and take a sixth of the time. A pivot counts as positive
-/// when it is larger than its diagonal element by the square root of the precision, so that nothing needs to be known
-/// of the matrix beforehand. Each lane has the factors that it would have alone.
+/// *Accuracy and Stability of Numerical Algorithms*, 2nd ed., 10.1), and no pivot is looked for. A pivot counts as positive
+/// when it is larger than the square root of the precision times its diagonal element, so that nothing needs to be known of the
+/// matrix beforehand. Each lane has the factors that it would have alone.
 #[derive(Clone, Debug)]
-pub struct Symmetric<T, const K: usize>(Factors<T, K>);
-
-/// Of a matrix of which every lane, no lane or some lanes are positive definite.
-#[derive(Clone, Debug)]
-enum Factors<T, const K: usize> {
-    Definite(Definite<T, K>),
-    General(Regular<T, K>),
-    Both(Definite<T, K>, Regular<T, K>),
-}
+pub struct Symmetric<T, const K: usize>(Factors<T, Regular<T, K>, K>);
 
 impl<T: Real, const K: usize> Symmetric<T, K> {
     /// Factorises a matrix, of which only the elements below and on the diagonal count where it is positive definite.
@@ -32,25 +23,14 @@ impl<T: Real, const K: usize> Symmetric<T, K> {
     pub fn new(matrix: SMatrix<T, K, K>) -> Self {
         let singular = T::from_f64(T::SINGULAR);
         let definite = Definite::new(&matrix, |element| singular * element);
-        let all_are = |flag| everywhere(definite.regular, |it| it == flag);
-        Self(if all_are(1.0) {
-            Factors::Definite(definite)
-        } else if all_are(0.0) {
-            Factors::General(general(matrix))
-        } else {
-            Factors::Both(definite, general(matrix))
-        })
+        Self(Factors::of(definite, || general(matrix)))
     }
 
     /// The `x` of `A x = right`.
     #[must_use]
     #[inline]
     pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        match &self.0 {
-            Factors::Definite(definite) => definite.solve(right),
-            Factors::General(general) => general.solution(right),
-            Factors::Both(definite, general) => definite.chosen(right, &general.solution(right)),
-        }
+        self.0.solution(right, |general| general.solution(right))
     }
 }
 

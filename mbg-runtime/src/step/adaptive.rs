@@ -154,10 +154,8 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 continue;
             }
             let from = Start {
-                span,
-                x,
-                slope,
                 again,
+                ..Start::of(span, x, slope)
             };
             let memory = problem.memory;
             let trial = work.attempt(problem, &from, Some(&tolerance));

@@ -114,10 +114,9 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                 let slope = problem.slope(t, &x);
                 problem.check(t, &x, &slope)?;
                 let from = Start {
-                    span,
-                    x,
-                    slope,
                     again: parts.again,
+                    is_part: parts.size < FINEST,
+                    ..Start::of(span, x, slope)
                 };
                 let trial = work.attempt(problem, &from, None);
                 if !trial.error.is_finite() {
@@ -182,9 +181,6 @@ impl<T: Real> Parts<T> {
 
     /// The next part.
     fn next(&self) -> Option<Span<T>> {
-        if self.size == FINEST && self.done == 0 {
-            return Some(self.whole);
-        }
         let fraction = |parts| T::from_f64(f64::from(parts) / f64::from(FINEST));
         (self.done < FINEST).then(|| Span {
             start: self.whole.at(fraction(self.done)),

@@ -360,12 +360,7 @@ mod tests {
             length: 1.0,
         };
         let zero = SVector::zeros();
-        let start = Start {
-            span,
-            x: zero,
-            slope: zero,
-            again: false,
-        };
+        let start = Start::of(span, zero, zero);
         let between = between(tableau, &slopes, &start, &SVector::from(tableau.weights));
         for s in [0.1, 0.35, 0.8] {
             let weights = between.at(s);

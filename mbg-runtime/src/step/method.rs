@@ -56,6 +56,21 @@ pub struct Start<T, const N: usize> {
     pub(super) slope: SVector<T, N>,
     /// Whether a step from the same point has been tried before.
     pub(super) again: bool,
+    /// Whether it is a part of a step of constant length that was lost.
+    pub(super) is_part: bool,
+}
+
+impl<T, const N: usize> Start<T, N> {
+    /// Of a whole step that has not been tried.
+    pub(super) fn of(span: Span<T>, x: SVector<T, N>, slope: SVector<T, N>) -> Self {
+        Self {
+            span,
+            x,
+            slope,
+            again: false,
+            is_part: false,
+        }
+    }
 }
 
 /// A step that has been tried.

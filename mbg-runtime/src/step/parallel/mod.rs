@@ -370,12 +370,7 @@ mod tests {
                 <f64 as Real>::Stages::from_columns(|place| at(state, 4 * group + place + 1))
             })
         });
-        let start = Start {
-            span,
-            x: SVector::zeros(),
-            slope: first,
-            again: false,
-        };
+        let start = Start::of(span, SVector::zeros(), first);
         let slopes = Slopes {
             length: span.length,
             first,

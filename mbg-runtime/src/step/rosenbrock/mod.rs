@@ -14,7 +14,6 @@ use super::method::{
     Estimating, Family, Method, Start, Stepper, Trial, combination, continued, of_stage, row,
 };
 use super::problem::Problem;
-use super::seen;
 use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 use rodas4::RODAS4;
@@ -112,8 +111,6 @@ pub struct Stages<A, T, const N: usize, const S: usize> {
     stages: [SVector<T, N>; S],
     /// Of steps without a tolerance.
     sizes: Sizes<N>,
-    /// The length of the one that was lost, of which there are parts now.
-    lost: f64,
     method: PhantomData<A>,
 }
 
@@ -123,13 +120,7 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
         self.sizes.note(&start.x);
         let error = combination(const { &A::TABLEAU.error }, &self.stages);
         let error = self.sizes.before::<T>().norm(&error);
-        let length = seen(start.span.length);
-        let is_part = length < self.lost;
-        let is_lost = error.is_nan() || error > if is_part { NEAR } else { LOST };
-        if !is_part {
-            self.lost = if is_lost { length } else { 0.0 };
-        }
-        is_lost
+        error.is_nan() || error > if start.is_part { NEAR } else { LOST }
     }
 
     /// What earlier stages add to the state and to the slope of a stage.
@@ -157,7 +148,6 @@ where
             by_time: SVector::from_element(zero),
             stages: [SVector::from_element(zero); S],
             sizes: Sizes::new(),
-            lost: 0.0,
             method: PhantomData,
         }
     }

@@ -182,6 +182,7 @@ fn finish(
     let named = divisors::names(&model, scalars, solution, &pool);
     let divisors: Vec<_> = conditioning.iter().copied().zip(&named).collect();
     start::check(&model, &divisors, &pool, diagnostics);
+    start::check_laws(&model, &answers.rates, &pool, diagnostics);
     if diagnostics.any() {
         return None;
     }

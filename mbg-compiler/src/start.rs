@@ -1,4 +1,4 @@
-//! Stage 5d, start: a model must not start where something that it divides by is zero.
+//! Stage 5d, start: a model must not start where something that it divides by is zero, nor where a law is infinite.
 //!
 //! A proper Euler sequence, such as z-x-z, is singular where its middle angle is zero, which is where angles start
 //! unless they are told otherwise. Errors: `MBG0404`.
@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::Elaborated;
+use crate::graph::Law;
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Evaluation, Expression, Pool, Symbol};
 
@@ -31,6 +32,58 @@ pub fn check(
         // One without a value depends on what only an iteration finds.
         if evaluation.value(pool, *divisor).abs() < SINGULAR {
             report(&start, *divisor, name, pool, diagnostics);
+        }
+    }
+}
+
+/// Reports a storage that starts at a pole of its law, where a rate is not finite for that.
+///
+/// A law alone may be: the logarithm of no amount of substance, of which only the exponential is read.
+pub fn check_laws(
+    model: &Elaborated,
+    rates: &[Expression],
+    pool: &Pool,
+    diagnostics: &mut Diagnostics,
+) {
+    let start = Start::of(model, pool);
+    let is_iterated = |rate: &Expression| {
+        let read = symbols(pool, &[*rate]);
+        read.iter().any(|it| {
+            matches!(
+                it,
+                Symbol::Signal(_) | Symbol::Unknown(_) | Symbol::Slope(_)
+            )
+        })
+    };
+    let is_infinite = |rate: &&Expression| {
+        let with_inputs = |input| {
+            let symbol = |symbol| match symbol {
+                Symbol::Input(_) => input,
+                _ => start.symbol(symbol, &BTreeMap::new()),
+            };
+            Evaluation::new(&symbol).value(pool, **rate)
+        };
+        !is_iterated(rate) && !with_inputs(0.0).is_finite() && !with_inputs(PROPOSED).is_finite()
+    };
+    let Some(rate) = rates.iter().find(is_infinite) else {
+        return;
+    };
+    let read = symbols(pool, &[*rate]);
+    for element in &model.graph.elements {
+        let Law::Storage(storage) = &element.law else {
+            continue;
+        };
+        for (state, law) in storage.states.clone().zip(&storage.coenergy) {
+            let changed = BTreeMap::from([(state, start.states[state] + PROPOSED)]);
+            let symbol = |symbol| start.symbol(symbol, &changed);
+            let leads_away = Evaluation::new(&symbol).value(pool, *law).is_finite();
+            let is_read = read.contains(&Symbol::State(state));
+            if is_read && leads_away && !start.value(pool, *law).is_finite() {
+                let message = format!("the law of `{}` is not finite at the start", element.name);
+                let report = error(codes::SINGULAR_START, model.states[state].span, message);
+                diagnostics.report(report.help(proposal(model, &start, state)));
+                return;
+            }
         }
     }
 }

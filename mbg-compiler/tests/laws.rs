@@ -249,8 +249,11 @@ fn coefficients_may_change_with_the_state_they_multiply() {
             "C c { effort: 2.0 * exp(1.4 * ln(1.0 / (1.0 - q))) }",
             5.0 * (0.7_f64.powf(-0.4) - 1.0),
         ),
-        ("C c { effort: 2.0 * ln(q) }", 0.6 * (0.3_f64.ln() - 1.0)),
-        ("C c { effort: 3.0 / q }", 3.0 * 0.3_f64.ln()),
+        (
+            "C c { effort: 2.0 * ln(q), initial: 0.5 }",
+            0.6 * (0.3_f64.ln() - 1.0),
+        ),
+        ("C c { effort: 3.0 / q, initial: 0.5 }", 3.0 * 0.3_f64.ln()),
         (
             "C c { effort: if q > 0.1 { 100.0 * (q - 0.1) } else { 0.0 } }",
             2.0,
@@ -357,10 +360,53 @@ fn energies_of_polynomials_beside_other_functions_are_exact() {
     }
 }
 
+/// A quadrature across the kink would be a thousandth off.
+#[test]
+fn summands_with_a_closed_form_keep_it_beside_others() {
+    for law in [
+        "a * max(q - a, 0.0) + exp(sin(q))",
+        "2.0 * (a * max(q - a, 0.0) + exp(sin(q))) / 2.0",
+        "exp(sin(q)) - a * min(a - q, 0.0)",
+    ] {
+        let text = format!(
+            "model M {{ param a = 0.34; 1 v {{ C c {{ effort: {law} }} I m {{ inertia: a }} }} }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes[0].contains("quadrature"), "{:?}", model.notes);
+        for state in [-1.0_f64, 0.2, 0.35, 1.0] {
+            let arguments = Arguments {
+                parameters: &[0.34],
+                time: 0.0,
+                state: &[state, 0.0],
+                input: &[],
+            };
+            let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+            let kinked = 0.17 * (state - 0.34).max(0.0).powi(2);
+            let expected = kinked + simpson(|q| q.sin().exp(), state);
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{law} at {state}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+/// The integral from zero.
+fn simpson(function: fn(f64) -> f64, end: f64) -> f64 {
+    let part = end / 2000.0;
+    let weight = |k: usize| match k {
+        0 | 2000 => 1.0,
+        k if k % 2 == 1 => 4.0,
+        _ => 2.0,
+    };
+    let terms = (0..=2000).map(|k| weight(k) * function(part * k as f64));
+    terms.sum::<f64>() * part / 3.0
+}
+
 /// It is that of the law at a displacement, and no quadrature.
 fn assert_energy(law: &str, state: f64, expected: f64) {
     let text = format!(
-        "model M {{ param a = 0.34; 1 v {{ C c {{ effort: {law} }} I m {{ inertia: a }} }} }}"
+        "model M {{ param a = 0.34; 1 v {{ C c {{ effort: {law}, initial: 0.5 }} I m {{ inertia: a }} }} }}"
     );
     let model = compiled(&text);
     assert!(model.notes.is_empty(), "{law}: {:?}", model.notes);
@@ -481,8 +527,8 @@ fn energies_with_an_integral_from_zero_are_counted_from_there() {
     for (law, initial) in [
         ("exp(-powi(q, 3))", "0.3"),
         ("1.0 / tanh(q) - 1.0 / q", "0.3"),
-        ("1.0 / tanh(q) - 1.0 / q", "0.0"),
-        ("exp(-q) * ln(abs(q))", "0.0"),
+        ("1.0 / tanh(q) - 1.0 / q", "-0.3"),
+        ("exp(-q) * ln(abs(q))", "0.3"),
         ("sqrt(q) * cos(q)", "0.0"),
         ("exp(-q) / powi(q - 1, 2)", "0.0"),
         ("exp(-q) / powi(q - 1, 2)", "0.5"),
@@ -781,4 +827,10 @@ fn what_is_divided_by_has_a_short_name() {
     a formula in a, spring.q.x, spring.q.y, b and 1 more
     the determinant for gimbals.f.x, gimbals.f.y, gimbals.f.z
     ");
+}
+
+/// No amount of a substance has an infinite potential, and what decays by it is zero.
+#[test]
+fn an_infinite_law_without_an_infinite_rate_is_told_by_nothing() {
+    compiled("model M { 0 node { C amount { effort: ln(q) } R decay { flow: exp(e) } } }");
 }

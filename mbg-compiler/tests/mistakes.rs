@@ -459,6 +459,23 @@ fn names_are_taken_once_and_leave_no_types_that_rust_refuses() {
 }
 
 #[test]
+fn starts_at_the_pole_of_a_law_are_told() {
+    let told = |law: &str| {
+        told(&format!(
+            "model M {{ 1 v {{ C c {{ {law} }} I m {{ inertia: 1.0 }} }} }}"
+        ))
+    };
+    insta::assert_snapshot!(told("effort: 1.0 / q"), @"
+    1:19 the law of `c` is not finite at the start [MBG0404]
+      help: give `c.q` another start, such as `initial: 0.5`
+    ");
+    insta::assert_snapshot!(told("effort: powi(2.0 / (q - 1.0), 2), initial: 1.0"), @"
+    1:19 the law of `c` is not finite at the start [MBG0404]
+      help: give `c.q` another start, such as `initial: 1.5`
+    ");
+}
+
+#[test]
 fn mistakes_in_parameters_and_inputs_are_told() {
     let told = |body: &str| told(&beside_a_mass(body));
     insta::assert_snapshot!(told("param k: N/m;"), @"

@@ -9,23 +9,17 @@ use syn::spanned::Spanned;
 use super::bonds::is_two_port;
 use super::expressions::{Evaluator, Result, Value};
 use super::model::{Assumption, Condition, Place, Quantity};
-use super::quadrature;
-use super::rays::is_integrable;
 use super::scope::{Lookup, Own};
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{ElementKind, Integral, Law, Rule, Storage, component_name};
+use crate::graph::{ElementKind, Integral, Law, Rule, Storage};
 use crate::symbolic::print::number;
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
-    Differentiator, Evaluation, Expression, Factor, Matrix, Pool, Product, Rate, Substitution,
-    Symbol, antiderivative, linear_part,
+    Differentiator, Expression, Factor, Matrix, Pool, Product, Substitution, Symbol, linear_part,
 };
 use crate::syntax::ast::{Element, Field};
 use crate::syntax::words::law_words;
-
-/// How near to zero a law is looked at that starts there: nearer than the sizes of what is built.
-const NEAR: f64 = 1e-12;
 
 /// What reading the fields of an element gives.
 pub(super) struct Reading {
@@ -379,133 +373,6 @@ impl Reader<'_, '_, '_> {
         states.any(|state| read.contains(&state))
     }
 
-    /// The energy of a law that is no multiple of the state, and how it is found.
-    fn potential(&mut self, law: &[Expression], span: Span) -> Result<(Expression, Integral)> {
-        self.check_potential(law, span)?;
-        let is_polynomial = quadrature::is_exact(self.pool, &self.own.states, law);
-        if !is_polynomial && let Some(energy) = self.integral(law) {
-            return Ok((energy, Integral::Exact));
-        }
-        let zero = vec![Expression::ZERO; law.len()];
-        if is_polynomial || self.has_integral_from_zero(law)? {
-            let energy = self.quadrature(law, &zero, span)?;
-            let integral = if is_polynomial {
-                Integral::Exact
-            } else {
-                Integral::FromZero
-            };
-            return Ok((energy, integral));
-        }
-        match self.regular_start(law)? {
-            Some(start) => Ok((self.quadrature(law, &start, span)?, Integral::FromStart)),
-            None => self.has_no_integral(span),
-        }
-    }
-
-    fn quadrature(
-        &mut self,
-        law: &[Expression],
-        start: &[Expression],
-        span: Span,
-    ) -> Result<Expression> {
-        quadrature::energy(self.pool, &self.own.states, law, start).ok_or_else(|| {
-            let message = format!("the law of `{}` divides by zero", self.element.name);
-            Box::new(error(codes::NOT_FINITE, span, message))
-        })
-    }
-
-    fn has_no_integral<T>(&self, span: Span) -> Result<T> {
-        let message = format!(
-            "the energy of `{}` is not known: its law has no integral from zero, and no finite value at the start",
-            self.element.name
-        );
-        let report = error(codes::NOT_FINITE, span, message);
-        Err(Box::new(report.help(
-            "give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums \
-             of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere",
-        )))
-    }
-
-    /// Whether the law has an integral from zero to the start, for default values of parameters. From a start at zero that
-    /// is asked near it, on both sides.
-    fn has_integral_from_zero(&mut self, law: &[Expression]) -> Result<bool> {
-        let start = self.start(law)?.unwrap_or_default();
-        let ends: Vec<f64> = start.iter().map(|it| self.usual(*it, &[])).collect();
-        if ends.iter().any(|end| *end != 0.0) {
-            return Ok(is_integrable(|part| self.power_along(law, &ends, part)));
-        }
-        let is_regular = |side: f64| {
-            let ends = vec![side * NEAR; law.len()];
-            let value = |part| self.power_along(law, &ends, part);
-            // Many laws are defined on one side alone.
-            value(0.5).is_nan() || is_integrable(value)
-        };
-        Ok(is_regular(1.0) && is_regular(-1.0))
-    }
-
-    /// The sum of the sizes of what is integrated, at a part of the way from zero to the end.
-    fn power_along(&self, law: &[Expression], ends: &[f64], part: f64) -> f64 {
-        let states: Vec<f64> = ends.iter().map(|end| part * end).collect();
-        let rows = law.iter().zip(ends);
-        rows.map(|(row, end)| (self.usual(*row, &states) * end).abs())
-            .sum()
-    }
-
-    /// A value at states of the storage, for default values of parameters, and somewhere else.
-    fn usual(&self, expression: Expression, states: &[f64]) -> f64 {
-        let value = |symbol| match symbol {
-            Symbol::Parameter(index) => self.lookup.parameters.get(index).map(|it| it.default),
-            Symbol::State(state) => {
-                let own = state.checked_sub(self.own.states.start);
-                own.and_then(|own| states.get(own)).copied()
-            }
-            _ => None,
-        };
-        Evaluation::new(&|symbol| value(symbol).unwrap_or(0.5)).value(self.pool, expression)
-    }
-
-    /// The state at the start, if it is given in numbers and parameters.
-    fn start(&mut self, law: &[Expression]) -> Result<Option<Vec<Expression>>> {
-        let start = self.initial(law)?;
-        let is_fixed = |it: &Expression| self.pool.rate(*it) != Rate::Varying;
-        Ok(start.filter(|start| start.iter().all(is_fixed)))
-    }
-
-    /// The state at the start, if the law is finite there.
-    fn regular_start(&mut self, law: &[Expression]) -> Result<Option<Vec<Expression>>> {
-        let start = self.start(law)?;
-        Ok(start.filter(|start| {
-            let states: Vec<f64> = start.iter().map(|it| self.usual(*it, &[])).collect();
-            law.iter().all(|row| self.usual(*row, &states).is_finite())
-        }))
-    }
-
-    /// The energy of a law in closed form, of which each component reads its own state alone. It is counted from the state
-    /// zero, if it has a value there.
-    fn integral(&mut self, law: &[Expression]) -> Option<Expression> {
-        let mut total = Expression::ZERO;
-        for (row, state) in law.iter().zip(self.own.states.clone()) {
-            let others = |it: &Symbol| matches!(it, Symbol::State(other) if self.own.states.contains(other) && *other != state);
-            if symbols(self.pool, &[*row]).iter().any(others) {
-                return None;
-            }
-            let energy = antiderivative(self.pool, *row, Symbol::State(state))?;
-            let mut at_rest = Substitution::new();
-            at_rest.set(Symbol::State(state), Expression::ZERO);
-            let start = at_rest.apply(self.pool, energy);
-            let somewhere = |_| 0.5;
-            let is_finite = |it: &Expression| {
-                Evaluation::new(&somewhere)
-                    .value(self.pool, *it)
-                    .is_finite()
-            };
-            let start = start.filter(is_finite).unwrap_or(Expression::ZERO);
-            let counted = self.pool.subtract(energy, start);
-            total = self.pool.add(total, counted);
-        }
-        Some(total)
-    }
-
     fn by_energy(&mut self, value: &Expr) -> Result<(Vec<Expression>, Expression)> {
         let terms = self.energy_terms(value)?;
         let energy = self.pool.sum(&terms);
@@ -586,49 +453,6 @@ impl Reader<'_, '_, '_> {
         }))
     }
 
-    /// A storage has an energy only if a law's derivatives across its components are equal.
-    fn check_potential(&mut self, law: &[Expression], span: Span) -> Result<()> {
-        let states = self.own.states.clone();
-        // Only what a component reads of others, since most laws of large vectors read nothing.
-        let crossed = |row: usize| {
-            let read = symbols(self.pool, &[law[row]]).into_iter();
-            let columns = read.filter_map(|symbol| match symbol {
-                Symbol::State(state) if states.contains(&state) => Some(state - states.start),
-                _ => None,
-            });
-            let pairs: Vec<_> = columns
-                .filter(|it| *it != row)
-                .map(|it| (row, it))
-                .collect();
-            pairs
-        };
-        let crossed: Vec<_> = (0..law.len()).flat_map(crossed).collect();
-        let mut slope = |row: usize, column: usize| {
-            let state = Symbol::State(states.start + column);
-            Differentiator::new(state).derivative(self.pool, law[row])
-        };
-        for (row, column) in crossed {
-            if slope(row, column) != slope(column, row) {
-                return self.creates_energy([column, row], span);
-            }
-        }
-        Ok(())
-    }
-
-    fn creates_energy<T>(&self, components: [usize; 2], span: Span) -> Result<T> {
-        let size = self.own.dimension;
-        let [first, second] = components.map(|component| component_name(component, size));
-        let message = format!(
-            "the law of `{}` would create energy: its component {second} changes with {first} otherwise than its \
-             component {first} with {second}",
-            self.element.name
-        );
-        let report = error(codes::EXPRESSION, span, message);
-        Err(Box::new(report.help(
-            "write `energy: …`, from which the law follows by differentiation",
-        )))
-    }
-
     /// The inverse of what stands behind a word.
     fn inverse(&mut self, word: &str, matrix: &Matrix, span: Span) -> Result<Matrix> {
         matrix.inverse(self.pool).ok_or_else(|| {
@@ -702,7 +526,7 @@ impl Reader<'_, '_, '_> {
         format!("1e{}", largest.log10().floor() - 6.0)
     }
 
-    fn initial(&mut self, coenergy: &[Expression]) -> Result<Option<Vec<Expression>>> {
+    pub(super) fn initial(&mut self, coenergy: &[Expression]) -> Result<Option<Vec<Expression>>> {
         let find = |word: &str| self.element.fields.iter().find(|field| field.name == word);
         if let (Some(_), Some(second)) = (find("initial"), find("initial_flow")) {
             let name = &self.element.name;

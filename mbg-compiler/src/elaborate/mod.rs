@@ -17,6 +17,7 @@ mod curves;
 mod declare;
 mod definitions;
 mod elsewhere;
+mod energies;
 pub mod expressions;
 mod finish;
 mod frames;

@@ -198,3 +198,24 @@ fn the_longest_step_of_an_automatic_choice_sees_a_short_pulse() {
     let error = last[0] - f64::sin(5.0 - 0.5 * length);
     assert!(error.abs() < 1e-3, "{error}");
 }
+
+/// A run over many jumps of an input may need more steps than a million; how many is a setting.
+#[test]
+fn the_steps_of_an_automatic_choice_are_limited() {
+    let input = Smooth(|_: f64| SVector::from([0.0]));
+    let run = |most| {
+        let solver = Auto {
+            most,
+            ..Auto::new(1e-6, 1e-6)
+        };
+        let start = SVector::from([1.0, 0.0]);
+        solver.integrate(&Written(Oscillator), &input, 0.0, 10.0, start, |_| ())
+    };
+    let steps = run(1_000_000).unwrap().steps;
+    let stopped = run(5).unwrap_err();
+    assert!(
+        steps > 5 && matches!(stopped.cause, Cause::TooManySteps { .. }),
+        "{stopped}"
+    );
+    assert!(stopped.to_string().contains("`most`"), "{stopped}");
+}

@@ -73,7 +73,7 @@ pub struct Adaptive<'a, Method> {
     pub first: Option<f64>,
     /// No step is longer, but for the rounding of time.
     pub longest: f64,
-    /// No more steps than these, rejected ones included.
+    /// No more steps than these in the whole run, rejected ones included.
     pub most: u64,
 }
 

@@ -40,6 +40,8 @@ pub struct Auto<'a> {
     pub nominal: &'a [f64],
     /// No step is longer, as of [`Adaptive::longest`].
     pub longest: f64,
+    /// No more steps than these, as of [`Adaptive::most`].
+    pub most: u64,
 }
 
 /// A method and why it was picked.
@@ -114,7 +116,7 @@ impl fmt::Display for Choice {
 }
 
 impl Auto<'_> {
-    /// Picks methods for these relative and absolute tolerances, with no limit to the step.
+    /// Picks methods for these relative and absolute tolerances, with no limit to the step and at most a million steps.
     #[must_use]
     pub const fn new(relative: f64, absolute: f64) -> Self {
         Self {
@@ -122,6 +124,7 @@ impl Auto<'_> {
             absolute,
             nominal: &[],
             longest: f64::INFINITY,
+            most: 1_000_000,
         }
     }
 
@@ -197,6 +200,7 @@ impl Auto<'_> {
         Adaptive {
             nominal: self.nominal,
             longest: self.longest,
+            most: self.most,
             ..Adaptive::new(method, self.relative, self.absolute)
         }
     }

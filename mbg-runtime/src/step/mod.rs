@@ -92,9 +92,9 @@ pub enum Cause {
     },
     /// The step is so small that time does not advance by it; the problem is stiff or has a singularity there.
     StepTooSmall,
-    /// More steps than allowed, see [`Adaptive::most`].
+    /// More steps than [`Adaptive::most`] or [`Auto::most`] allows, which a run over many jumps of an input may well need.
     ///
-    /// Where the next step is short, an explicit method meets a stiff model, or a law holds its state where it jumps: a sliding
+    /// Where the next step is short for another reason, an explicit method meets a stiff model, or a law holds its state where it jumps: a sliding
     /// mode, dry friction without a width, a coil whose current diodes block. Let such a law rise over a small width, as
     /// `tanh(v / width)` does, or a resistor beside the diodes.
     TooManySteps {
@@ -129,8 +129,8 @@ impl fmt::Display for Cause {
             Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
             Self::TooManySteps { next } => write!(
                 formatter,
-                "more steps than allowed; the next is {next:.1e} s long, which a stiff model asks of an explicit method, a \
-                 tight tolerance of a method of low order, and a law that jumps where it holds its state of any"
+                "more steps than `most` allows; the next is {next:.1e} s long, which a stiff model asks of an explicit method, \
+                 a tight tolerance of a method of low order, and a law that jumps where it holds its state of any"
             ),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),

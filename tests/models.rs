@@ -21,6 +21,10 @@ mod run;
 #[allow(clippy::unwrap_used)]
 mod models {
     mod amplifier;
+    #[expect(
+        deprecated,
+        reason = "a warning of the macro: links of the winder are no whole bodies"
+    )]
     mod arm;
     mod audit;
     mod batches;

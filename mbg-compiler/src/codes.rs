@@ -55,6 +55,8 @@ codes! {
     SINGULAR_START = "MBG0404", "a model that starts where something it divides by is zero";
     UNUSED_START = "MBG0405", "a value for the start that is not kept";
     OPEN_RING = "MBG0406", "joints of a ring that do not meet at the start";
+    MISSING_PORT = "MBG0407", "a storage that a motion changes, and which does no work on it";
+    NO_BODY = "MBG0408", "an inertia that no body has";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

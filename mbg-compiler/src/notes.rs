@@ -9,7 +9,7 @@ use crate::answers::Answers;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Ring, State};
-use crate::graph::{Element, Integral, Law, Storage};
+use crate::graph::{Element, ElementId, ElementKind, Integral, Law, Storage};
 use crate::start::Start;
 use crate::structure::Solved;
 use crate::symbolic::substitute::symbols;
@@ -19,6 +19,8 @@ use crate::symbolic::{Expression, Pool, Symbol};
 const MET: f64 = 1e-9;
 /// A ring is open if the gap is more than this part of its distance from the origin: initial values have a few digits.
 const CLOSED: f64 = 1e-3;
+/// A moment of inertia may be larger than the sum of the others by this part of them: that of a plate, in few digits.
+const PLATE: f64 = 1e-2;
 
 /// All of them, one a line.
 pub(crate) fn of(
@@ -37,7 +39,16 @@ pub(crate) fn of(
         diagnostics.warn(error(codes::OPEN_RING, span, note.clone()).help(help));
         notes.push(note);
     }
-    notes.extend(modulated_energies(model, pool));
+    for (span, note, help) in modulated_energies(model, pool) {
+        if let Some(help) = help {
+            diagnostics.warn(error(codes::MISSING_PORT, span, note.clone()).help(help));
+        }
+        notes.push(note);
+    }
+    for (span, note, help) in impossible_bodies(model, pool) {
+        diagnostics.warn(error(codes::NO_BODY, span, note.clone()).help(help));
+        notes.push(note);
+    }
     notes.extend(approximate_energies(model));
     notes
 }
@@ -120,25 +131,118 @@ fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
     model.rings.iter().filter_map(open).collect()
 }
 
-/// Storages whose energy changes with more than their own states.
-fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<String> {
-    let is_modulated = |storage: &Storage| {
-        let mut read = symbols(pool, &[storage.energy]).into_iter();
-        read.any(|symbol| match symbol {
-            Symbol::State(state) => !storage.states.contains(&state),
+/// Storages whose energy changes with more than their own states; where that is a state it should have a port for it, of which
+/// the way out tells.
+fn modulated_energies(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, Option<String>)> {
+    let others = |storage: &Storage| {
+        let read = symbols(pool, &[storage.energy]).into_iter();
+        let is_other = |symbol: &Symbol| match symbol {
+            Symbol::State(state) => !storage.states.contains(state),
             Symbol::Parameter(_) => false,
             _ => true,
-        })
+        };
+        read.filter(is_other).collect::<Vec<_>>()
     };
-    let elements = model.graph.elements.iter();
-    let modulated = elements.filter(|it| matches!(&it.law, Law::Storage(it) if is_modulated(it)));
-    let note = |element: &Element| {
+    let note = |(id, element): (usize, &Element)| {
+        let Law::Storage(storage) = &element.law else {
+            return None;
+        };
+        let others = others(storage);
+        if others.is_empty() {
+            return None;
+        }
         let name = &element.name;
-        format!(
-            "the energy of `{name}` changes with more than its own state: the power of that is not in the balance"
-        )
+        let state = others.iter().find_map(|it| match it {
+            Symbol::State(state) => Some(&model.states[*state].variable.name),
+            _ => None,
+        });
+        let with = state.map_or("more than its own state".to_owned(), |it| format!("`{it}`"));
+        let note = format!(
+            "the energy of `{name}` changes with {with}: the power of that is not in the balance"
+        );
+        let own = element.name.rsplit('.').next().unwrap_or(name);
+        let is_meant = own.starts_with('_') || model.graph.is_pseudo(ElementId(id));
+        let help = state.filter(|_| !is_meant).map(|state| {
+            let through = match element.kind {
+                ElementKind::I => ", one through `GY { effort: 1.0 }`",
+                _ => "",
+            };
+            format!(
+                "what moves `{state}` feels no force of it: write a `C` on `1 field[{}]` with a bond to each of its ports{through}, \
+                 and `energy: …` in its `q`, or call it `_{own}`",
+                storage.states.len() + 1
+            )
+        });
+        Some((model.graph.origins.span(element.origin), note, help))
     };
-    modulated.map(note).collect()
+    let elements = model.graph.elements.iter().enumerate();
+    elements.filter_map(note).collect()
+}
+
+/// Bodies of which a principal moment of inertia is more than the sum of the other two, with default parameters.
+fn impossible_bodies(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
+    let start = Start::of(model, pool);
+    let elements = &model.graph.elements;
+    let turning = elements.iter().filter_map(|it| match &it.law {
+        Law::EulerJunction(momentum) => Some(symbols(pool, momentum)),
+        _ => None,
+    });
+    let turning: Vec<_> = turning.collect();
+    let note = |element: &Element| {
+        let Law::Storage(storage) = &element.law else {
+            return None;
+        };
+        let own: Vec<_> = storage.states.clone().map(Symbol::State).collect();
+        if own.len() != 3 || !turning.contains(&own) {
+            return None;
+        }
+        let flows = storage.states.clone().map(|column| {
+            let momenta = storage
+                .states
+                .clone()
+                .map(|state| (state, f64::from(state == column)));
+            let momenta = momenta.collect();
+            [0, 1, 2].map(|row| start.changed(pool, storage.coenergy[row], &momenta))
+        });
+        let flows: Vec<_> = flows.collect();
+        let [a, b, c] = flows[..] else {
+            return None;
+        };
+        if is_of_a_body([a, b, c]) {
+            return None;
+        }
+        let note = format!(
+            "no body has the inertia of `{}`: one of its principal moments is more than the sum of the other two",
+            element.name
+        );
+        let help = "all moments are about the centre of mass and in one unit; those of a thin plate are that sum, those of \
+                    other bodies less";
+        Some((
+            model.graph.origins.span(element.origin),
+            note,
+            help.to_owned(),
+        ))
+    };
+    elements.iter().filter_map(note).collect()
+}
+
+/// Whether no principal moment is more than the sum of the others, by the inverse of the inertia.
+///
+/// The largest moment is at most a part of the trace where the inverse less that share of the unit matrix is positive.
+fn is_of_a_body(inverse: [[f64; 3]; 3]) -> bool {
+    let pairs = |[[a, b, c], [d, e, f], [g, h, i]]: [[f64; 3]; 3]| {
+        [a * e - b * d, a * i - c * g, e * i - f * h]
+    };
+    let determinant = |matrix: [[f64; 3]; 3]| {
+        let [[a, b, c], [d, e, f], [g, h, i]] = matrix;
+        a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+    };
+    let trace = pairs(inverse).iter().sum::<f64>() / determinant(inverse);
+    let least = (2.0 + PLATE) / ((1.0 + PLATE) * trace);
+    let mut rest = inverse;
+    (0..3).for_each(|axis| rest[axis][axis] -= least);
+    let is_negative = |minor: f64| minor < 0.0;
+    !is_negative(rest[0][0]) && !is_negative(pairs(rest)[0]) && !is_negative(determinant(rest))
 }
 
 /// Storages whose law has no integral in closed form.
@@ -161,4 +265,34 @@ fn approximate_energies(model: &Elaborated) -> Vec<String> {
         ))
     };
     model.graph.elements.iter().filter_map(note).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_of_a_body;
+
+    #[test]
+    fn moments_are_those_of_bodies_up_to_plates() {
+        let diagonal = |a: f64, b: f64, c: f64| {
+            [
+                [1.0 / a, 0.0, 0.0],
+                [0.0, 1.0 / b, 0.0],
+                [0.0, 0.0, 1.0 / c],
+            ]
+        };
+        for (a, b, c, is_body) in [
+            (1.0, 2.0, 2.5, true),
+            (1.0, 2.0, 3.0, true),
+            (1.0, 2.0, 3.02, true),
+            (1.0, 2.0, 3.05, false),
+            (1e-9, 1.0, 1.0, true),
+            (1e-3, 1e-3, 9e-3, false),
+        ] {
+            assert_eq!(is_of_a_body(diagonal(a, b, c)), is_body, "{a} {b} {c}");
+            assert_eq!(is_of_a_body(diagonal(c, a, b)), is_body, "{c} {a} {b}");
+        }
+        // Moments 1, 2 and 4, turned about z by an angle whose sine is 0.6.
+        let turned = [[0.82, 0.24, 0.0], [0.24, 0.68, 0.0], [0.0, 0.0, 0.25]];
+        assert!(!is_of_a_body(turned));
+    }
 }

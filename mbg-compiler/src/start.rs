@@ -75,8 +75,7 @@ pub fn check_laws(
         };
         for (state, law) in storage.states.clone().zip(&storage.coenergy) {
             let changed = BTreeMap::from([(state, start.states[state] + PROPOSED)]);
-            let symbol = |symbol| start.symbol(symbol, &changed);
-            let leads_away = Evaluation::new(&symbol).value(pool, *law).is_finite();
+            let leads_away = start.changed(pool, *law, &changed).is_finite();
             let is_read = read.contains(&Symbol::State(state));
             if is_read && leads_away && !start.value(pool, *law).is_finite() {
                 let message = format!("the law of `{}` is not finite at the start", element.name);
@@ -122,7 +121,17 @@ impl<'a> Start<'a> {
 
     /// The value of an expression at the start, without inputs; NaN if it depends on what only an iteration finds.
     pub(crate) fn value(&self, pool: &Pool, expression: Expression) -> f64 {
-        let symbol = |symbol| self.symbol(symbol, &BTreeMap::new());
+        self.changed(pool, expression, &BTreeMap::new())
+    }
+
+    /// The same with some states changed.
+    pub(crate) fn changed(
+        &self,
+        pool: &Pool,
+        expression: Expression,
+        changed: &BTreeMap<usize, f64>,
+    ) -> f64 {
+        let symbol = |symbol| self.symbol(symbol, changed);
         Evaluation::new(&symbol).value(pool, expression)
     }
 
@@ -155,8 +164,7 @@ fn report(
     // The one that leads away, or else the first.
     let leads_away = |state: &&usize| {
         let changed = BTreeMap::from([(**state, start.states[**state] + PROPOSED)]);
-        let symbol = |symbol| start.symbol(symbol, &changed);
-        Evaluation::new(&symbol).value(pool, divisor).abs() > SINGULAR
+        start.changed(pool, divisor, &changed).abs() > SINGULAR
     };
     let Some(state) = read.iter().find(leads_away).or(read.first()) else {
         return;

@@ -193,6 +193,16 @@ const FIXTURES: &[(Code, &str)] = &[
              slide: PlanarPrismatic {} (ground, block); wrist: PlanarRevolute {} (block, end); }",
     ),
     (
+        codes::MISSING_PORT,
+        beside_a_mass!(
+            "1 wire { I coil { inertia: 2.0 + gap.q } } 1 way { C gap { stiffness: 1.0 } I plunger { inertia: 1.0 } }"
+        ),
+    ),
+    (
+        codes::NO_BODY,
+        beside_a_mass!("1 b[3] { I hull { inertia: diag(0.1, 0.1, 0.9), gyroscopic } }"),
+    ),
+    (
         codes::UNIT_MISMATCH,
         beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
     ),

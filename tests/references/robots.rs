@@ -264,7 +264,7 @@ pub(crate) fn gripper() -> Vec<Link> {
         friction: 0.3,
         mass: 0.25,
         centre: [0.01, 0.02, 0.03],
-        inertia: [0.0003, 0.00005, 0.0, 0.0002, 0.0, 0.0001],
+        inertia: [0.0003, 0.00005, 0.0, 0.0002, 0.0, 0.00015],
         ..Link::PLAIN
     };
     let thumb = Link {

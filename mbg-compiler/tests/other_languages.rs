@@ -302,3 +302,69 @@ fn values_as_conditions_are_compared() {
     let other = law("if on == 2.0 { 1e-3 } else { 1e6 }");
     assert!(typed(&other).is_empty());
 }
+
+#[test]
+fn elements_and_junctions_are_told_as_they_are_spelled() {
+    let mass = "I m { inertia: 1.0 }";
+    let numbers = "numbers carry no unit, declarations do, such as `param x: ohm = …;`: write";
+    for (body, help) in [
+        (
+            "1 v { I: m { inertia: 1.0 } }".to_owned(),
+            "write `I m`, without the colon".to_owned(),
+        ),
+        (
+            "1 v { m: I { inertia: 1.0 } }".to_owned(),
+            "the kind of an element stands before its name: `I m { … }`".to_owned(),
+        ),
+        (
+            "1 v { I m { inertia: 1.0; initial: 2.0 } }".to_owned(),
+            "commas stand between the words of an element".to_owned(),
+        ),
+        (
+            "1 v { I m { 0.1 } }".to_owned(),
+            "a value has a word before it: write `inertia: 0.1`".to_owned(),
+        ),
+        (
+            format!("1 v {{ {mass} R r {{ resistance: .5 }} }}"),
+            "write `0.5`".to_owned(),
+        ),
+        (
+            format!("1 v {{ {mass} R r {{ resistance: 0.5 [ohm] }} }}"),
+            format!("{numbers} `0.5`"),
+        ),
+        (
+            format!("1 v {{ {mass} Se s {{ effort: f64::sin(2.0 * t) }} }}"),
+            "write `sin(2.0 * t)`".to_owned(),
+        ),
+        (
+            format!("1 v {{ {mass} Se s {{ effort: 2 sin(t) }} }}"),
+            "for a product write `2 * sin(t)`".to_owned(),
+        ),
+        (
+            format!("param m = 1.0; 1 v {{ {mass} }}"),
+            "an element and a value have different names: call the element something else, such as `m_`".to_owned(),
+        ),
+        (
+            format!("J1 v {{ {mass} }}"),
+            "a junction begins with its digit: `1 v`".to_owned(),
+        ),
+        (
+            format!("1-junction v {{ {mass} }}"),
+            "write `1 v`".to_owned(),
+        ),
+        (
+            format!("1 v {{ {mass} }} 1 w {{ R r {{ resistance: 1.0 }} }} bond v -> w;"),
+            "a bond is written without a word before it: `v -> w;`".to_owned(),
+        ),
+        (
+            format!("1 v {{ {mass} if 1 == 1 {{ R r {{ resistance: 1.0 }} }} }}"),
+            "the elements in a junction's braces are always there; others hang by a bond in a statement of their own: `if … { \
+             junction -> R name { … }; }`"
+                .to_owned(),
+        ),
+    ] {
+        let told = told(&format!("model M {{ {body} }}"));
+        let helps: Vec<&str> = told.lines().filter_map(|line| line.trim().strip_prefix("help: ")).collect();
+        assert_eq!(helps, [help], "{body}: {told}");
+    }
+}

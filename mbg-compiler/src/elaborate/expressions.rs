@@ -544,7 +544,15 @@ impl<N: Names> Evaluator<'_, N> {
         };
         let arguments: Vec<Expr> = call.args.iter().cloned().collect();
         let Some(name) = path.path.get_ident() else {
-            return Err(no_plain_name(&path.path, &arguments));
+            let mut report = no_plain_name(&path.path, &arguments);
+            let last = path.path.segments.last().map(|last| &last.ident);
+            // `f64::sin(t)`
+            if let Some(last) = last.filter(|last| self.function(last, &arguments).is_ok()) {
+                let arguments = arguments.iter().map(dump::expression);
+                let arguments = arguments.collect::<Vec<_>>().join(", ");
+                report.helps.push(format!("write `{last}({arguments})`"));
+            }
+            return Err(report);
         };
         self.function(name, &arguments)
     }

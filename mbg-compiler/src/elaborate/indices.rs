@@ -10,6 +10,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Product;
 use crate::syntax::dump;
+use crate::units::without_unit;
 
 impl<N: Names> Evaluator<'_, N> {
     /// The component by the letter that comes last in a path; none where there is no such letter, or no value before it.
@@ -105,6 +106,16 @@ impl<N: Names> Evaluator<'_, N> {
             && let Some(name) = base.path.get_ident()
         {
             self.check_whole(name)?;
+        }
+        if matches!(*index.expr, Expr::Lit(_)) {
+            let [number, unit] = [&*index.expr, &*index.index].map(dump::expression);
+            let report = error(
+                codes::EXPRESSION,
+                index.index.span(),
+                format!("`{number}` has no components"),
+            );
+            let help = without_unit(&number, &unit);
+            return Err(Box::new(help.into_iter().fold(report, Diagnostic::help)));
         }
         let value = self.evaluate(&index.expr)?;
         let span = index.index.span();

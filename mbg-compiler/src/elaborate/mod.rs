@@ -350,12 +350,17 @@ impl<'a> Builder<'a> {
         }
         let is_element = matches!(entity, Entity::Element(_));
         let names = &mut self.scopes[scope].names;
-        if names.insert(name.to_string(), entity).is_some() {
+        if let Some(known) = names.insert(name.to_string(), entity) {
+            let is_value = known.is_value();
             // Which of them is meant elsewhere is not known.
             names.insert(name.to_string(), Entity::Opaque);
             let message = format!("`{name}` is declared twice");
             let mut report = error(codes::DUPLICATE_NAME, name.span(), message);
-            if is_element {
+            if is_element && is_value {
+                report = report.help(format!(
+                    "an element and a value have different names: call the element something else, such as `{name}_`"
+                ));
+            } else if is_element {
                 report = report.note("elements of different junctions have different names, too");
             }
             self.tell(scope, report);

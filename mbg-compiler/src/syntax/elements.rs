@@ -26,7 +26,8 @@ pub(super) fn element(
     let spelling = words::element_name(kind);
     let span = cursor.span();
     cursor.advance(1);
-    let name = cursor.name(&format!("the name of the element after `{spelling}`"))?;
+    let name = cursor.name(&format!("the name of the element after `{spelling}`"));
+    let name = name.map_err(|report| with_help(report, slips::without_colon(cursor, spelling)))?;
     let dimension = cursor.dimension()?;
     let Some(group) = cursor.take_group(Delimiter::Brace) else {
         let brackets = if dimension.is_none() { "`[` or " } else { "" };
@@ -37,7 +38,11 @@ pub(super) fn element(
             "the law of an element stands in braces: `{spelling} {name}{size} {{ {law}: … }}`"
         ))));
     };
-    let fields = fields(&group, &format!("{spelling} {name}"), sink)?;
+    let fields = fields(&group, &format!("{spelling} {name}"), sink);
+    let fields = fields.map_err(|report| {
+        let help = slips::without_word(&group, words::law_words(kind)[0]);
+        with_help(report, help)
+    })?;
     Ok(Element {
         derivative,
         kind,
@@ -77,13 +82,17 @@ pub(super) fn fields(group: &Group, owner: &str, sink: &mut Sink<'_>) -> Parsed<
         }
         if !cursor.ended() && !cursor.take_punct(',') {
             let error = unseparated(&cursor, bare);
+            if cursor.take_punct(';') {
+                sink.report(error);
+                continue;
+            }
             if bare || cursor.ident(0).is_none() {
                 return Err(error);
             }
             sink.report(error);
             // What belongs to the value is no word.
             if !slips::behind_value(&cursor).is_empty() {
-                cursor.advance(1);
+                cursor.advance(cursor.length_until(|it, at| it.punct(at, ',')));
                 cursor.take_punct(',');
             }
         }
@@ -100,6 +109,9 @@ fn unseparated(cursor: &Cursor, bare: bool) -> Box<Diagnostic> {
     let mut error = *cursor.expected(&format!("{wanted} after {}", cursor.previous()));
     if bare && cursor.punct(0, '=') {
         error = error.help("a value follows a colon: `word: value`");
+    }
+    if cursor.punct(0, ';') {
+        error = error.help("commas stand between the words of an element");
     }
     if !bare {
         error.helps.extend(slips::behind_value(cursor));
@@ -136,6 +148,9 @@ fn one_port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Element> {
     if let Some(kind) = kind(cursor, 0) {
         return element(cursor, kind, attributes.derivative, sink);
     }
+    if let Some(help) = slips::no_element(cursor) {
+        return Err(Box::new((*cursor.expected("an element")).help(help)));
+    }
     let mut error = no_element(cursor, "an element");
     if cursor.arrow(1) {
         error = error.help(
@@ -143,6 +158,11 @@ fn one_port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Element> {
         );
     }
     Err(Box::new(error))
+}
+
+fn with_help(mut report: Box<Diagnostic>, help: Option<String>) -> Box<Diagnostic> {
+    report.helps.extend(help);
+    report
 }
 
 /// What stands here is the name of no element.

@@ -31,6 +31,10 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
                 "a bond is written with an arrow: `{from} -> {to};`"
             ))
         }
+        "bond" if cursor.arrow(2) => Some(format!(
+            "a bond is written without a word before it: `{};`",
+            dump::tokens(until_end(cursor, 1))
+        )),
         "der" if cursor.punct(2, '=') => {
             let of = dump::tokens(arguments()?.stream());
             let name = match syn::parse_str::<Ident>(&of) {

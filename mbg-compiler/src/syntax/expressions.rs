@@ -102,6 +102,9 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
     let parsed = parser.parse2(tokens);
     cursor.advance(length - unread.min(length));
     parsed.map_err(|failure| {
+        if let Some(report) = slips::without_zero(&law) {
+            return report;
+        }
         let slip = slips::remainder(&law).or_else(|| slips::side_by_side(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })

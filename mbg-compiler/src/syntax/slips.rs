@@ -50,6 +50,55 @@ pub(super) fn apart(cursor: &Cursor, junction: &Reference, braces: &Group) -> Op
     }
 }
 
+/// What to type for `I: m { … }`, with a colon behind the kind.
+pub(super) fn without_colon(cursor: &Cursor, kind: &str) -> Option<String> {
+    let name = cursor.ident(1).filter(|_| cursor.punct(0, ':'))?;
+    Some(format!("write `{kind} {name}`, without the colon"))
+}
+
+/// What to type for a value in the braces of an element that has no word before it.
+pub(super) fn without_word(fields: &Group, law: &str) -> Option<String> {
+    let inside = Cursor::inside(fields);
+    let is_value = matches!(
+        inside.peek(0)?,
+        TokenTree::Literal(_) | TokenTree::Group(_) | TokenTree::Punct(_)
+    );
+    is_value.then(|| {
+        format!(
+            "a value has a word before it: write `{law}: {}`",
+            dump::tokens(fields.stream())
+        )
+    })
+}
+
+/// What to type in a junction for `mass: I { … }`, and for choices and loops of elements.
+pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
+    let word = cursor.ident(0)?;
+    if word == "if" || word == "for" {
+        return Some(format!(
+            "the elements in a junction's braces are always there; others hang by a bond in a statement of their own: `{word} … \
+             {{ junction -> R name {{ … }}; }}`"
+        ));
+    }
+    let kind = cursor.punct(1, ':') && elements::kind(cursor, 2).is_some();
+    kind.then(|| {
+        format!(
+            "the kind of an element stands before its name: `{} {word} {{ … }}`",
+            dump::tokens(cursor.peek(2).cloned().into_iter().collect())
+        )
+    })
+}
+
+/// The digit of a junction by its name in words, as in `One v { … }` or `J1 v { … }`.
+pub(super) fn digit_in_words(word: &str) -> Option<char> {
+    let word = word.to_lowercase().replace('_', "");
+    match word.as_str() {
+        "one" | "onejunction" | "junction1" | "j1" => Some('1'),
+        "zero" | "zerojunction" | "junction0" | "j0" => Some('0'),
+        _ => None,
+    }
+}
+
 /// The kind of element whose law the first word here tells.
 fn kind_with(fields: &Cursor) -> &'static str {
     let first = fields.ident(0).map(ToString::to_string).unwrap_or_default();
@@ -84,12 +133,17 @@ pub(super) fn behind_value(cursor: &Cursor) -> Vec<String> {
         return Vec::new();
     };
     // A word of the element, or a name before a value, lacks its comma.
-    let is_field = is_field(word) || cursor.punct(1, ':') || cursor.peek(1).is_some_and(is_operand);
+    let call = cursor.group(1, Delimiter::Parenthesis);
+    let is_followed = call.is_none() && cursor.peek(1).is_some_and(is_operand);
+    let is_field = is_field(word) || cursor.punct(1, ':') || is_followed;
     if is_field || is_between(word) || !is_operand(before) {
         return Vec::new();
     }
-    let (before, word) = (before.to_string(), word.to_string());
-    multiplied(&before, &word)
+    let before = before.to_string();
+    match call {
+        Some(call) => vec![format!("for a product write `{before} * {word}{call}`")],
+        None => multiplied(&before, &word.to_string()),
+    }
 }
 
 /// What to type for two values side by side.
@@ -165,6 +219,30 @@ pub(super) fn side_by_side(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
     let mut report = error(codes::SYNTAX, tokens[at].span(), message);
     report.helps = multiplied(&first, &second);
     Some(Box::new(report))
+}
+
+/// `.5`, which begins with its point, among these tokens or in a group of theirs.
+pub(super) fn without_zero(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    tokens.iter().enumerate().find_map(|(at, token)| {
+        let before = at.checked_sub(1).map(|before| &tokens[before]);
+        match (token, tokens.get(at + 1)) {
+            (TokenTree::Group(group), _) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                without_zero(&inside)
+            }
+            (_, Some(TokenTree::Literal(digits)))
+                if is_mark(token, '.') && !before.is_some_and(is_operand) =>
+            {
+                let report = error(
+                    codes::SYNTAX,
+                    token.span(),
+                    "expected a digit before the point",
+                );
+                Some(Box::new(report.help(format!("write `0.{digits}`"))))
+            }
+            _ => None,
+        }
+    })
 }
 
 /// A remainder by its name in other languages, which is a keyword of Rust.

@@ -163,6 +163,11 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
             return Box::new(error.help(help));
         }
     }
+    if let (Some(digit), Some(name)) = (slips::digit_in_words(&word), cursor.ident(1)) {
+        return Box::new(error.help(format!(
+            "a junction begins with its digit: `{digit} {name}`"
+        )));
+    }
     if let Some(digit) = glued(cursor) {
         return Box::new(error.help(format!(
             "a junction is written `{digit} name`, with a space after the `{digit}`"
@@ -550,7 +555,15 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
     let name = cursor.name(&format!(
         "the name of the junction after `{}`",
         kind.digit()
-    ))?;
+    ));
+    let name = name.map_err(|mut report| {
+        // `1-junction v`
+        let hyphened = cursor.ident(2).filter(|_| cursor.punct(0, '-'));
+        report
+            .helps
+            .extend(hyphened.map(|name| format!("write `{} {name}`", kind.digit())));
+        report
+    })?;
     let (mut dimension, mut coordinate, mut pseudo) = (None, false, false);
     loop {
         if dimension.is_none() && cursor.group(0, Delimiter::Bracket).is_some() {

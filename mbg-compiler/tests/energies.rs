@@ -1,0 +1,368 @@
+//! Energies of storages whose law is given as effort or flow.
+#![allow(clippy::unwrap_used)]
+
+mod models;
+
+use mbg_compiler::compile::Routines;
+use mbg_compiler::explain::explain;
+use mbg_compiler::inclusion::no_file;
+use mbg_compiler::program::{self, Arguments};
+use models::{compiled, mistake};
+
+/// A stiffness that changes with the displacement it multiplies is a law `k(q) q`, whose energy is its integral.
+#[test]
+fn coefficients_may_change_with_the_state_they_multiply() {
+    let energy = |storage: &str, state: f64| {
+        let text = format!("model M {{ 1 v {{ {storage} R r {{ resistance: 1.0 }} }} }}");
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[state],
+            input: &[],
+        };
+        program::evaluate(&compiled(&text).program, Routines::ENERGY, &arguments)[0]
+    };
+    let cases = [
+        // ½ · 50 q² + ¼ · 400 q⁴
+        ("C c { stiffness: 50.0 + 400.0 * q * q }", 3.06),
+        // ∫ p / (2 + p) dp = p − 2 ln(1 + p / 2)
+        ("I m { inertia: 2.0 + p }", 0.3 - 2.0 * 1.15_f64.ln()),
+        // ∫ q √(1 + q) dq, with s = √(1 + q): 2 (s⁵ / 5 − s³ / 3)
+        (
+            "C c { compliance: 1.0 / sqrt(1.0 + q) }",
+            2.0 * (1.3_f64.powf(2.5) / 5.0 - 1.3_f64.powf(1.5) / 3.0 + 2.0 / 15.0),
+        ),
+        // A contact of Hertz: ⅖ · 3 q^(5/2)
+        (
+            "C c { effort: 3.0 * pow(max(q, 0.0), 1.5) }",
+            1.2 * 0.3_f64.powf(2.5),
+        ),
+        (
+            "C c { effort: pow(1.0 - q, -1.4) }",
+            2.5 * (0.7_f64.powf(-0.4) - 1.0),
+        ),
+        // Gas, a chemical potential, play
+        (
+            "C c { effort: 2.0 * exp(1.4 * ln(1.0 / (1.0 - q))) }",
+            5.0 * (0.7_f64.powf(-0.4) - 1.0),
+        ),
+        (
+            "C c { effort: 2.0 * ln(q), initial: 0.5 }",
+            0.6 * (0.3_f64.ln() - 1.0),
+        ),
+        ("C c { effort: 3.0 / q, initial: 0.5 }", 3.0 * 0.3_f64.ln()),
+        (
+            "C c { effort: if q > 0.1 { 100.0 * (q - 0.1) } else { 0.0 } }",
+            2.0,
+        ),
+        (
+            "C c { effort: tanh(50.0 * q) }",
+            15.0_f64.cosh().ln() / 50.0,
+        ),
+    ];
+    for (storage, expected) in cases {
+        let found = energy(storage, 0.3);
+        assert!(
+            (found - expected).abs() < 1e-13,
+            "{storage}: {found}, not {expected}"
+        );
+    }
+}
+
+/// Slow and fast changes of the gas, of which slow ones have a logarithm for their energy.
+#[test]
+fn an_accumulator_stores_the_work_of_its_gas() {
+    for (exponent, work) in [
+        ("1.0", -0.7_f64.ln()),
+        ("1.4", 2.5 * (0.7_f64.powf(-0.4) - 1.0)),
+    ] {
+        let text = format!(
+            "model M {{ 0 line {{ R leak {{ resistance: 1.0 }} }}
+             gas: Accumulator {{ volume: 2.0, precharge: 3.0, exponent: {exponent}, initial: 0.6 }} (line); }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes.is_empty());
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[0.6],
+            input: &[],
+        };
+        let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+        assert!((found - 6.0 * work).abs() < 1e-14, "{exponent}: {found}");
+    }
+}
+
+/// From zero, where most are infinite, no quadrature gives them.
+#[test]
+fn energies_of_powers_of_quotients_are_exact() {
+    let wells = |q: f64| (0.34 / q).powi(12) - (0.34 / q).powi(6);
+    type Law = (&'static str, fn(f64) -> f64);
+    let laws: [Law; 8] = [
+        ("-3.0 * powi(1 / q, 2)", |q| 3.0 / q),
+        ("-3.0 * powi(a / q, 2)", |q| 3.0 * 0.34 * 0.34 / q),
+        ("powi(a / q, 13)", |q| -0.34 / 12.0 * (0.34 / q).powi(12)),
+        ("pow(a / abs(q), 2.5)", |q| {
+            -q / 1.5 * (0.34 / q.abs()).powf(2.5)
+        }),
+        ("powi(a / (2 * q - a), 3)", |q| {
+            0.34 / 4.0 * (1.0 - (0.34 / (2.0 * q - 0.34)).powi(2))
+        }),
+        ("-3.0 / (q * sqrt(abs(q)))", |q| 6.0 / q.abs().sqrt()),
+        ("1.0 / powi(2 * q, 3)", |q| -1.0 / (16.0 * q * q)),
+        ("powi(1 - a / q, 2)", |q| {
+            q - 0.68 * q.abs().ln() - 0.1156 / q
+        }),
+    ];
+    for (law, expected) in laws {
+        for q in [-2.0, -0.3, 0.39, 2.0] {
+            assert_energy(law, q, expected(q));
+        }
+    }
+    for law in [
+        "-(24.0 / 0.34) * (2 * powi(0.34 / q, 13) - powi(0.34 / q, 7))",
+        "-(24.0 / a) * (2 * powi(a / q, 13) - powi(a / q, 7))",
+        "-(24.0 / a) * (2 * pow(a / q, 13.0) - pow(a / q, 7.0))",
+        "-24.0 * (2 * powi(0.34, 12) / powi(q, 13) - powi(0.34, 6) / powi(q, 7))",
+    ] {
+        for q in [-2.0, -0.3, 0.39, 2.0] {
+            assert_energy(law, q, 4.0 * wells(q));
+        }
+    }
+}
+
+/// Of gases, plates, fibres and the like, counted from zero.
+#[test]
+fn energies_of_polynomials_beside_other_functions_are_exact() {
+    type Law = (&'static str, fn(f64) -> f64);
+    let laws: [Law; 7] = [
+        ("pow(2.0 / (2.0 - q), 1.4)", |q| {
+            5.0 * ((1.0 - q / 2.0).powf(-0.4) - 1.0)
+        }),
+        ("q / (1 + abs(q))", |q| q.abs() - q.abs().ln_1p()),
+        ("powi(sin(q), 2)", |q| (q - q.sin() * q.cos()) / 2.0),
+        ("q * exp(-q)", |q| 1.0 - (1.0 + q) * (-q).exp()),
+        ("0.5 * ln((1 + q) / (1 - q))", |q| {
+            ((1.0 + q) * q.ln_1p() + (1.0 - q) * (-q).ln_1p()) / 2.0
+        }),
+        ("q / powi(1 + q, 2)", |q| q.ln_1p() + 1.0 / (1.0 + q) - 1.0),
+        ("q * sin(q / a)", |q| {
+            0.34 * (0.34 * (q / 0.34).sin() - q * (q / 0.34).cos())
+        }),
+    ];
+    for (law, expected) in laws {
+        for q in [-0.8, 0.0, 0.3, 0.9] {
+            assert_energy(law, q, expected(q));
+        }
+    }
+}
+
+/// A quadrature across the kink would be a thousandth off.
+#[test]
+fn summands_with_a_closed_form_keep_it_beside_others() {
+    for law in [
+        "a * max(q - a, 0.0) + exp(sin(q))",
+        "2.0 * (a * max(q - a, 0.0) + exp(sin(q))) / 2.0",
+        "exp(sin(q)) - a * min(a - q, 0.0)",
+    ] {
+        let text = format!(
+            "model M {{ param a = 0.34; 1 v {{ C c {{ effort: {law} }} I m {{ inertia: a }} }} }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes[0].contains("quadrature"), "{:?}", model.notes);
+        for state in [-1.0_f64, 0.2, 0.35, 1.0] {
+            let arguments = Arguments {
+                parameters: &[0.34],
+                time: 0.0,
+                state: &[state, 0.0],
+                input: &[],
+            };
+            let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+            let kinked = 0.17 * (state - 0.34).max(0.0).powi(2);
+            let expected = kinked + integral(|q| q.sin().exp(), 0.0, state);
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{law} at {state}: {found}, not {expected}"
+            );
+        }
+    }
+}
+/// It is that of the law at a displacement, and no quadrature.
+fn assert_energy(law: &str, state: f64, expected: f64) {
+    let text = format!(
+        "model M {{ param a = 0.34; 1 v {{ C c {{ effort: {law}, initial: 0.5 }} I m {{ inertia: a }} }} }}"
+    );
+    let model = compiled(&text);
+    assert!(model.notes.is_empty(), "{law}: {:?}", model.notes);
+    let arguments = Arguments {
+        parameters: &[0.34],
+        time: 0.0,
+        state: &[state, 0.0],
+        input: &[],
+    };
+    let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+    assert!(
+        (found - expected).abs() < 1e-13 * (1.0 + expected.abs()),
+        "{law} at {state}: {found}, not {expected}"
+    );
+}
+
+/// Where a quadrature between zero and the state would not see what happens near zero.
+#[test]
+fn energies_of_laws_of_inner_functions_are_exact() {
+    let cases = [
+        ("q * exp(-q * q)", 40.0, 0.5),
+        ("q / (1 + powi(q, 2))", 1000.0, 0.5 * 1_000_001_f64.ln()),
+        (
+            "1e5 * q / sqrt(1 + powi(q / 0.001, 2))",
+            0.1,
+            0.1 * (10_001_f64.sqrt() - 1.0),
+        ),
+        (
+            "k * q / sqrt(1 + powi(q / a, 2))",
+            0.1,
+            0.1 * (10_001_f64.sqrt() - 1.0),
+        ),
+        (
+            "q * exp(-q * q) + tanh(q) - 2.0 * q / (1 + powi(q, 2))",
+            40.0,
+            0.5 + (40.0 - 2.0_f64.ln()) - 1601_f64.ln(),
+        ),
+    ];
+    for (law, place, expected) in cases {
+        let text = format!(
+            "model M {{ param k = 1e5; param a = 0.001; 1 v {{ C c {{ effort: {law} }} I m {{ inertia: k * a }} }} }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes.is_empty(), "{law}: {:?}", model.notes);
+        for (state, expected) in [(place, expected), (-place, expected), (0.0, 0.0)] {
+            let arguments = Arguments {
+                parameters: &[1e5, 0.001],
+                time: 0.0,
+                state: &[state, 0.0],
+                input: &[],
+            };
+            let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+            assert!(
+                (found - expected).abs() < 1e-13 * (1.0 + expected),
+                "{law} at {state}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+/// Where an integral from zero would cross a pole, or places where the law has no value.
+#[test]
+fn energies_without_an_integral_from_zero_are_counted_from_the_start() {
+    type Law = (&'static str, [f64; 2], fn(f64) -> f64);
+    let laws: [Law; 5] = [
+        ("exp(-q) / (q * q)", [0.5, 0.8], |q| (-q).exp() / (q * q)),
+        ("exp(-q) / (q * q)", [-0.5, -0.8], |q| (-q).exp() / (q * q)),
+        ("cos(q) / q", [0.5, 0.4], |q| q.cos() / q),
+        ("exp(-q) / powi(q - 1, 2)", [2.0, 1.8], |q| {
+            (-q).exp() / (q - 1.0).powi(2)
+        }),
+        ("ln(q - 1) / q", [2.0, 2.2], |q| (q - 1.0).ln() / q),
+    ];
+    for (law, [start, end], value) in laws {
+        let text = format!(
+            "model M {{ param start = {start:?};
+             1 v {{ I m {{ inertia: 1.0 }} C c {{ effort: {law}, initial: start }} }} }}"
+        );
+        let model = compiled(&text);
+        assert!(model.notes[0].contains("from its state at the start"));
+        let energy = |start: f64, state: f64| {
+            let arguments = Arguments {
+                parameters: &[start],
+                time: 0.0,
+                state: &[0.0, state],
+                input: &[],
+            };
+            program::evaluate(&model.program, Routines::ENERGY, &arguments)[0]
+        };
+        assert_eq!(energy(start, start), 0.0, "{law}");
+        // Another value of the parameter is another start.
+        let near = 0.9 * start + 0.1 * end;
+        for start in [start, near] {
+            let expected = integral(value, start, end);
+            let found = energy(start, end);
+            assert!(
+                (found - expected).abs() < 1e-10,
+                "{law}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn energies_with_an_integral_from_zero_are_counted_from_there() {
+    // Such as Langevin's, whose terms are infinite at zero and their difference is not.
+    for (law, initial) in [
+        ("exp(-powi(q, 3))", "0.3"),
+        ("1.0 / tanh(q) - 1.0 / q", "0.3"),
+        ("1.0 / tanh(q) - 1.0 / q", "-0.3"),
+        ("exp(-q) * ln(abs(q))", "0.3"),
+        ("sqrt(q) * cos(q)", "0.0"),
+        ("exp(-q) / powi(q - 1, 2)", "0.0"),
+        ("exp(-q) / powi(q - 1, 2)", "0.5"),
+    ] {
+        let text = format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0 }} C c {{ effort: {law}, initial: {initial} }} }} }}"
+        );
+        let [note] = &compiled(&text).notes[..] else {
+            panic!("{law} has one note")
+        };
+        assert!(!note.contains("from its state at the start"), "{note}");
+    }
+}
+
+#[test]
+fn energies_that_have_no_start_are_told() {
+    let told = |law: &str| mistake(&format!("1 b {{ C c {{ {law} }} }}"));
+    insta::assert_snapshot!(told("effort: exp(-q) / (q * q)"), @r"
+    2:21 the energy of `c` is not known: its law has no integral from zero, and no finite value at the start [MBG0216]
+      help: give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere
+    
+");
+    insta::assert_snapshot!(told("effort: cos(q) / q, initial: 0.0"), @r"
+    2:21 the energy of `c` is not known: its law has no integral from zero, and no finite value at the start [MBG0216]
+      help: give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere
+    
+");
+    insta::assert_snapshot!(told("effort: exp(-q) / (q - 1.0), initial: 1.0"), @r"
+    2:21 the energy of `c` is not known: its law has no integral from zero, and no finite value at the start [MBG0216]
+      help: give an `initial: …` where the law is finite, from which its energy is counted then, or write `energy: …`; sums of powers of a distance, such as `powi(a / q, 2)` or `pow(q - a, -1.5)`, are integrated from anywhere
+    
+");
+}
+
+/// What its energy is changed by besides its own state is no port, so that the balance lacks that power.
+#[test]
+fn energies_that_are_modulated_are_noted() {
+    let notes = |stiffness: &str| {
+        let model = format!(
+            "model M {{ param k = 5.0; 1 v {{ I m {{ inertia: 1.0 }} C c {{ stiffness: {stiffness} }} }} output y = c.q; }}"
+        );
+        compiled(&model).notes.join("\n")
+    };
+    assert_eq!(notes("k"), "");
+    insta::assert_snapshot!(notes("k * (2.0 + cos(t))"), @"the energy of `c` changes with more than its own state: the power of that is not in the balance");
+    insta::assert_snapshot!(notes("exp(-powi(q, 3))"), @"the energy of `c` is a quadrature of its law at sixteen points, good to rounding only where the law is that smooth");
+    let text = "model M { 1 v { C c { effort: exp(-powi(q, 3)) } I m { inertia: 1.0 } } }";
+    let explained = explain(text.parse().unwrap(), &no_file, &|_| String::new()).unwrap();
+    assert!(
+        explained.contains("==== notes\nthe energy of `c` is a quadrature"),
+        "{explained}"
+    );
+}
+
+/// By Simpson's rule.
+fn integral(value: fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let count = 4096;
+    let step = (to - from) / f64::from(count);
+    let parts = (0..count).map(|k| {
+        let left = from + step * f64::from(k);
+        value(left) + 4.0 * value(left + step / 2.0) + value(left + step)
+    });
+    step / 6.0 * parts.sum::<f64>()
+}

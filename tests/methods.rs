@@ -19,6 +19,8 @@ mod orders;
 mod parallel;
 #[path = "methods/sampled.rs"]
 mod sampled;
+#[path = "methods/singular.rs"]
+mod singular;
 #[path = "methods/stability.rs"]
 mod stability;
 #[path = "methods/stops.rs"]

@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 use nalgebra::SVector;
 
 use super::control::Control;
+use super::crossing::Crossing;
 use super::dense::Step;
 use super::integrator::Integrator;
 use super::method::{Estimating, Span, Start, Stepper, along};
@@ -131,6 +132,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
     {
         let tolerance = Tolerance::new(self.relative, self.absolute, self.nominal);
         let mut work = Scheme::Work::<T, N>::new(&self.method);
+        let mut crossing = Crossing::new(self.relative, self.absolute, self.nominal);
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
@@ -140,33 +142,51 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
-        let mut again = false;
+        let mut refused = 0;
         loop {
+            problem.closes_stages = false;
             let taken = problem.statistics.steps;
             if taken.saturating_add(problem.statistics.rejected) >= self.most {
                 let next = control.length.min(self.longest);
                 return Err(Stopped::new(t, Cause::TooManySteps { next }));
             }
-            let (span, last) = next_span(t, end, control.length.min(self.longest))?;
+            let across = if S::META.closures.is_empty() {
+                None
+            } else {
+                crossing.length(control.length, refused)
+            };
+            let length = across.unwrap_or(control.length).min(self.longest);
+            let (span, last) = next_span(t, end, length)?;
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
                 control.shorten(0.5 * seen(span.length));
                 continue;
             }
             let from = Start {
-                again,
+                again: refused > 0,
                 ..Start::of(span, x, slope)
             };
             let memory = problem.memory;
-            let trial = work.attempt(problem, &from, Some(&tolerance));
+            problem.closes_stages = across.is_some();
+            let wide = across.map(|_| crossing.tolerance());
+            let (trial, tolerance) = match &wide {
+                Some(wide) => (crossing.attempt(problem, &from, wide), wide),
+                None => (work.attempt(problem, &from, Some(&tolerance)), &tolerance),
+            };
+            let mut polynomial = |problem: &mut _, end: (&_, Option<_>)| {
+                if across.is_some() {
+                    crossing.explicit.polynomial(problem, &from, end)
+                } else {
+                    work.polynomial(problem, &from, end)
+                }
+            };
             let taken = if trial.error <= 1.0 {
                 let known = x + trial.change;
                 let ahead = trial
                     .slope
                     .unwrap_or_else(|| problem.slope(span.end, &known));
-                let dense =
-                    |problem: &mut _| work.polynomial(problem, &from, (&known, Some(ahead)));
-                match problem.clear_length::<Scheme>(&from, &trial, &tolerance, dense) {
+                let dense = |problem: &mut _| polynomial(problem, (&known, Some(ahead)));
+                match problem.clear_length::<Scheme>(&from, &trial, tolerance, dense) {
                     None => Some((known, ahead)),
                     Some(clear) => {
                         control.shorten(clear);
@@ -174,13 +194,16 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                     }
                 }
             } else {
-                control.reject(seen(span.length), trial.error);
+                // What a step across is off by says nothing of the method's own.
+                if across.is_none() {
+                    control.reject(seen(span.length), trial.error);
+                }
                 None
             };
             let Some((known, ahead)) = taken else {
                 problem.statistics.rejected += 1;
                 let tried = core::mem::replace(&mut problem.memory, memory);
-                again = true;
+                refused += 1;
                 // Written so that a step of NaN is refused as well.
                 if control.length.is_nan() || control.length <= smallest(t) {
                     check_result(problem.system, t, &trial.change, &tried).map_err(|stopped| {
@@ -193,7 +216,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             problem.statistics.steps += 1;
             problem.check(span.end, &known, &ahead)?;
             let next = problem.close(span.end, known)?;
-            let mut dense = || work.polynomial(problem, &from, (&next, Some(ahead)));
+            let mut dense = || polynomial(problem, (&next, Some(ahead)));
             let mut step = Step::new(span, (x, next), &mut dense);
             if observer(&mut step).is_break() {
                 return Ok(ControlFlow::Break(()));
@@ -204,9 +227,15 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             problem
                 .probes
                 .heed(seen(t), seen(span.length), trial.coarse);
-            control.growth = work.growth();
-            control.accept(seen(span.length), trial.error, Scheme::RULE);
-            (t, x, slope, again) = (span.end, next, ahead, false);
+            crossing.accept(seen(span.length));
+            if across.is_some() {
+                work = Scheme::Work::new(&self.method);
+                control.shorten(seen(span.length));
+            } else {
+                control.growth = work.growth();
+                control.accept(seen(span.length), trial.error, Scheme::RULE);
+            }
+            (t, x, slope, refused) = (span.end, next, ahead, 0);
         }
     }
 }

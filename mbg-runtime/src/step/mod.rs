@@ -3,6 +3,7 @@
 mod adaptive;
 mod auto;
 mod control;
+mod crossing;
 mod dense;
 mod elimination;
 mod explicit;

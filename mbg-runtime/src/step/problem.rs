@@ -19,6 +19,8 @@ where
     /// Where the present piece of the input begins.
     pub(super) since: T,
     pub(super) probes: Probes,
+    /// Whether slopes are those on the closed loops next to a state.
+    pub(super) closes_stages: bool,
 }
 
 impl<'a, T, S, I, const N: usize, const M: usize, const P: usize> Problem<'a, T, S, I, N, M, P>
@@ -35,6 +37,7 @@ where
             memory: S::Memory::default(),
             since: start,
             probes: Probes::new(seen(start)),
+            closes_stages: false,
         }
     }
 
@@ -42,6 +45,11 @@ where
     pub(super) fn slope(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
         self.statistics.evaluations += 1;
         let u = self.input.value(t, self.since);
+        if self.closes_stages
+            && let Ok(closed) = self.close(t, *x)
+        {
+            return self.system.derivative(t, &closed, &u, &mut self.memory);
+        }
         self.system.derivative(t, x, &u, &mut self.memory)
     }
 

@@ -280,6 +280,13 @@ pub enum Trouble {
         /// Its normalised determinant.
         value: f64,
     },
+    /// A step went over a singular set: a determinant has the other sign behind it.
+    SteppedOver {
+        /// The block, as [`Meta::conditioning`] names it.
+        name: &'static str,
+        /// Its normalised determinants before and behind the step.
+        values: [f64; 2],
+    },
     /// Loops that multipliers close could not be closed.
     Open {
         /// The closure that is open widest, as [`Meta::closures`] names it; a mistake may be in another one.
@@ -308,6 +315,13 @@ impl core::fmt::Display for Trouble {
             Self::Singular { name, value } => {
                 write!(formatter, "{name} is {value:e}, too near its singular set")
             }
+            Self::SteppedOver {
+                name,
+                values: [before, behind],
+            } => write!(
+                formatter,
+                "{name} went from {before:e} to {behind:e} in one step, over its singular set"
+            ),
             Self::Open {
                 name,
                 residual,

@@ -71,6 +71,7 @@ pub trait Integrator<const N: usize> {
         while less(since, t1) {
             let end = piece_end(problem.input, since, t1)?;
             problem.since = since;
+            problem.conditioning = None;
             match self.piece(problem, (since, end), x, observer)? {
                 ControlFlow::Continue(next) => x = next,
                 ControlFlow::Break(()) => return Ok(()),

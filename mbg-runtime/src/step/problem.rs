@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::probes::Probes;
 use super::{Cause, Statistics, Stopped, check_result, first_entry_not_finite, seen};
-use crate::{Columns, Input, Real, System};
+use crate::{Columns, Input, Real, System, Trouble};
 
 /// What a run carries from step to step besides the state.
 pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
@@ -19,6 +19,8 @@ where
     /// Where the present piece of the input begins.
     pub(super) since: T,
     pub(super) probes: Probes,
+    /// The determinants where the last step began, on this piece of the input.
+    pub(super) conditioning: Option<S::Conditioning>,
     /// Whether slopes are those on the closed loops next to a state.
     pub(super) closes_stages: bool,
 }
@@ -37,6 +39,7 @@ where
             memory: S::Memory::default(),
             since: start,
             probes: Probes::new(seen(start)),
+            conditioning: None,
             closes_stages: false,
         }
     }
@@ -98,10 +101,10 @@ where
         change
     }
 
-    /// Refuses a point where the state, the derivative or the model is in trouble.
+    /// Refuses a point where the state, the derivative or the model is in trouble, or which lies behind a singular set.
     #[inline(always)]
     pub(super) fn check(
-        &self,
+        &mut self,
         t: T,
         x: &SVector<T, N>,
         slope: &SVector<T, N>,
@@ -109,6 +112,13 @@ where
         let u = self.input.value(t, self.since);
         if let Some(trouble) = self.system.trouble(t, x, &u, &self.memory) {
             return Err(Stopped::new(t, Cause::Trouble(trouble)));
+        }
+        if !S::META.conditioning.is_empty() {
+            let conditioning = self.system.conditioning(t, x, &u);
+            if let Some(before) = self.conditioning.replace(conditioning) {
+                stepped_over::<T, S, N, M, P>(&before, &conditioning)
+                    .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))?;
+            }
         }
         check_result(self.system, t, x, &self.memory)?;
         check_result(self.system, t, slope, &self.memory)
@@ -149,6 +159,25 @@ where
             .close(t, x, &u, &[])
             .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))
     }
+}
+
+/// Whether no determinant has changed its sign.
+fn stepped_over<T, S, const N: usize, const M: usize, const P: usize>(
+    before: &S::Conditioning,
+    behind: &S::Conditioning,
+) -> Result<(), Trouble>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    let pairs = before.as_ref().iter().zip(behind.as_ref());
+    for (name, (before, behind)) in S::META.conditioning.iter().zip(pairs) {
+        if (*before * *behind).find(|product| product < 0.0).is_some() {
+            let values = [before, behind].map(|it| it.find(|_| true).unwrap_or(f64::NAN));
+            return Err(Trouble::SteppedOver { name, values });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@ mod errors;
 #[path = "../examples/methods/problems.rs"]
 mod problems;
 
+#[path = "methods/changes.rs"]
+mod changes;
 #[path = "methods/events.rs"]
 mod events;
 #[path = "methods/hard.rs"]

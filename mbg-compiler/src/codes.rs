@@ -57,6 +57,7 @@ codes! {
     OPEN_RING = "MBG0406", "joints of a ring that do not meet at the start";
     MISSING_PORT = "MBG0407", "a storage that a motion changes, and which does no work on it";
     NO_BODY = "MBG0408", "an inertia that no body has";
+    LOST_IMPULSE = "MBG0409", "a law of time that jumps, and which storages follow";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

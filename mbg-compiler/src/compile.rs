@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::answers::Answers;
 use crate::causality::outlook::Outlook;
 use crate::causality::report::COMPONENTWISE;
+use crate::changes;
 use crate::checks::{self, Check};
 use crate::closures;
 use crate::codes;
@@ -109,6 +110,7 @@ impl Routines {
     pub const CLOSED_POSITIONS: usize = 9;
     pub const CLOSED_FLOWS: usize = 10;
     pub const DERIVATIVE_TIME: usize = 11;
+    pub const CHANGES: usize = 12;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -195,7 +197,8 @@ fn finish(
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
-    let requests: [Request; 12] = [
+    let changes = changes::of(&mut pool, rates);
+    let requests: [Request; 13] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -208,6 +211,7 @@ fn finish(
         positions.evaluated().into(),
         flows.evaluated().into(),
         jacobian(&mut pool, rates, &[Symbol::Time]).entries.into(),
+        changes.into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);

@@ -21,6 +21,7 @@
 pub mod answers;
 mod bits;
 pub mod causality;
+pub mod changes;
 pub mod checks;
 pub mod closures;
 pub mod codes;

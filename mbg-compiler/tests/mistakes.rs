@@ -203,6 +203,11 @@ const FIXTURES: &[(Code, &str)] = &[
         beside_a_mass!("1 b[3] { I hull { inertia: diag(0.1, 0.1, 0.9), gyroscopic } }"),
     ),
     (
+        codes::LOST_IMPULSE,
+        "#[derivative] model M { 1 a { I m { inertia: 1.0 } } 1 b { I n { inertia: 2.0 } C c { stiffness: 1.0 } }
+             Sf drive { flow: if t < 1.0 { 0.0 } else { 2.0 } } -> a; a -> TF lever { flow: 2.0 } -> b; }",
+    ),
+    (
         codes::UNIT_MISMATCH,
         beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
     ),

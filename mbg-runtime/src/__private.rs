@@ -1,5 +1,7 @@
 //! What generated code refers to by absolute path. No part of the public interface.
 
+use ::core::cell::Cell;
+
 pub use core;
 pub use nalgebra::{SMatrix, SVector};
 
@@ -44,6 +46,24 @@ pub fn check<T: Real>(
         }),
         None => Ok(()),
     }
+}
+
+/// The first of these times, of all lanes, that is later than `t`, which is the same in all.
+#[cold]
+pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
+    let now = crate::step::seen(t);
+    let next = Cell::new(f64::INFINITY);
+    for time in times {
+        // None passes, so that each lane is looked at.
+        let _ = time.find(|lane| {
+            if lane > now && lane < next.get() {
+                next.set(lane);
+            }
+            false
+        });
+    }
+    let next = next.get();
+    next.is_finite().then(|| T::from_f64(next))
 }
 
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.

@@ -178,6 +178,13 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> Power<T>;
 
+    /// The first time later than `t` at which a choice of the laws changes by time alone, such as that of `if t < 1.0 { … }`, or
+    /// a curve over time has a point. Integrators end a step there, as at a jump of the input.
+    #[must_use]
+    fn next_change(&self, _t: T) -> Option<T> {
+        None
+    }
+
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero. One whose size is that of inertias is divided by the largest
     /// that it has at some other orientations of joints, all else at its start. One that is solved with numbers has the

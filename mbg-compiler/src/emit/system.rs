@@ -131,6 +131,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
     let [cold_energy, cold_conditioning] = [Routines::ENERGY, Routines::CONDITIONING]
         .map(|routine| cold_memory(compiled, routine, &quote!(Self::Memory)));
+    let next_change = next_change(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
@@ -176,10 +177,28 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn power(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::Power<T> { #power }
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
+            #next_change
             #close
             #sparsity
         }
     }
+}
+
+/// Where choices by time alone change; none where there are none.
+fn next_change(compiled: &Compiled) -> Option<TokenStream> {
+    let is_empty = compiled.program.routines[Routines::CHANGES]
+        .results
+        .is_empty();
+    let body = body(
+        compiled,
+        Routines::CHANGES,
+        &|times| quote!(::mbg_runtime::__private::next_of(t, &[#(#times),*])),
+    );
+    (!is_empty).then(|| {
+        quote! {
+            fn next_change(&self, t: T) -> ::core::option::Option<T> { #body }
+        }
+    })
 }
 
 /// The derivative at four stages at once, by the model with its numbers four times side by side; none where it remembers.

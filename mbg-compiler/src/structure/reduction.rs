@@ -10,7 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::levels;
 use super::matching;
-use super::refused::{apart, report_input, report_second_derivative, report_unmoved};
+use super::refused::{
+    apart, report_input, report_second_derivative, report_unmoved, warn_of_jumps,
+};
 use super::selection::{Lost, Selection};
 use crate::causality::report::alternatives;
 use crate::codes;
@@ -472,6 +474,7 @@ impl Reducer<'_> {
             let product = self.pool.multiply(*coefficient, own);
             left = self.pool.add(left, product);
         }
+        warn_of_jumps(model, equation.owner, left, self.pool, diagnostics);
         let sum = self.total(model, left);
         if let Some(input) = sum.input {
             report_input(model, equation.owner, input, diagnostics);

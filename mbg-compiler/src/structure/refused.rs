@@ -2,11 +2,13 @@
 
 use crate::causality::outlook::IN_PLACE;
 use crate::causality::ways::{Between, through};
+use crate::changes;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Variable};
 use crate::equations::Owner;
 use crate::graph::{Element, ElementId, ElementKind};
+use crate::symbolic::{Evaluation, Expression, Pool, Symbol};
 
 /// What keeps storages of a kind from depending on each other.
 pub(super) fn apart(kind: ElementKind) -> &'static str {
@@ -81,6 +83,47 @@ pub(super) fn report_input(
             .help(by_rate(model, input))
             .help(format!("or {IN_PLACE} the input write a law of `t`")),
     );
+}
+
+/// Where a law of time jumps that storages follow, the impulse that moves them acts on nothing else.
+pub(super) fn warn_of_jumps(
+    model: &Elaborated,
+    owner: Owner,
+    law: Expression,
+    pool: &mut Pool,
+    diagnostics: &mut Diagnostics,
+) {
+    let Owner::Element(id, _) = owner else {
+        return;
+    };
+    let value = |pool: &Pool, expression, time: f64| {
+        let symbol = |symbol| match symbol {
+            Symbol::Parameter(index) => model.parameters[index].default,
+            Symbol::Time => time,
+            _ => 0.5,
+        };
+        Evaluation::new(&symbol).value(pool, expression)
+    };
+    for time in changes::of(pool, &[law]) {
+        let time = value(pool, time, 0.0);
+        let difference = |aside: f64| {
+            let aside = aside * (1.0 + time.abs());
+            (value(pool, law, time + aside) - value(pool, law, time - aside)).abs()
+        };
+        // What does not jump differs in proportion.
+        if difference(1e-9) <= 0.1 * difference(1e-6) {
+            continue;
+        }
+        let element = &model.graph.elements[id.0];
+        let message = format!(
+            "`{}` jumps at {time:?} s, and what it moves follows without the impulse that this takes",
+            element.name
+        );
+        let span = model.graph.origins.span(element.origin);
+        diagnostics.warn(error(codes::LOST_IMPULSE, span, message).help(format!(
+            "let it rise within a short time: `min(max((t - {time:?}) / 0.001, 0.0), 1.0)` goes from 0 to 1 within a millisecond"
+        )));
+    }
 }
 
 /// A storage whose energy follows from an input: energies are asked for without any.

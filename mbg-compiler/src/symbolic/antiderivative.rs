@@ -432,7 +432,7 @@ impl Integration<'_> {
 }
 
 /// `[a, b, c, d]` of what is `c` where `a < b`, else `d`.
-fn choice_of(operation: &Operation) -> Option<[Expression; 4]> {
+pub fn choice_of(operation: &Operation) -> Option<[Expression; 4]> {
     let Operation::Call(function, arguments) = operation else {
         return None;
     };

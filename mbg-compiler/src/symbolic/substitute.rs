@@ -45,7 +45,7 @@ impl Substitution {
 
 /// An expression with parts replaced by others; none if that divides by zero.
 #[must_use]
-pub(super) fn replace(
+pub fn replace(
     pool: &mut Pool,
     whole: Expression,
     parts: &[(Expression, Expression)],
@@ -109,7 +109,7 @@ pub fn operations(pool: &Pool, expressions: &[Expression]) -> usize {
 }
 
 /// Each node that the expressions depend on, once.
-pub(super) fn visit<'a>(
+pub fn visit<'a>(
     pool: &'a Pool,
     expressions: &[Expression],
     mut each: impl FnMut(Expression, &'a Operation),

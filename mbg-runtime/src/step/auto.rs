@@ -147,7 +147,7 @@ impl Auto<'_> {
         I: Input<T, M>,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
-        let end = piece_end(input, t0, t1)?;
+        let end = piece_end(system, input, t0, t1)?;
         Ok(self.pick(&mut problem, (t0, end), &x))
     }
 

@@ -69,9 +69,8 @@ pub trait Integrator<const N: usize> {
     {
         let mut since = t0;
         while less(since, t1) {
-            let end = piece_end(problem.input, since, t1)?;
-            problem.since = since;
-            problem.conditioning = None;
+            let end = piece_end(problem.system, problem.input, since, t1)?;
+            problem.enter((since, end));
             match self.piece(problem, (since, end), x, observer)? {
                 ControlFlow::Continue(next) => x = next,
                 ControlFlow::Break(()) => return Ok(()),

@@ -162,12 +162,20 @@ pub(crate) fn less<T: Real>(a: T, b: T) -> bool {
     (a - b).find(|difference| difference < 0.0).is_some()
 }
 
-/// Where the piece of the input that begins at `from` ends, at most `end`.
-fn piece_end<T: Real, const M: usize>(
+/// Where the piece that begins at `from` ends, at most `end`: at a jump of the input or a change of the laws.
+fn piece_end<T: Real, S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
     input: &impl Input<T, M>,
     from: T,
     end: T,
-) -> Result<T, Stopped> {
+) -> Result<T, Stopped>
+where
+    S: System<T, N, M, P>,
+{
+    let end = match system.next_change(from) {
+        Some(change) if less(change, end) && !is_met(change, (from, end)) => change,
+        _ => end,
+    };
     match input.next_jump(from) {
         Some(jump) if !less(from, jump) => Err(Stopped::new(
             from,

@@ -16,8 +16,10 @@ where
     pub(super) input: &'a I,
     pub(super) statistics: Statistics,
     pub(super) memory: S::Memory,
-    /// Where the present piece of the input begins.
+    /// Where the present piece begins.
     pub(super) since: T,
+    /// The first and the last time at which laws of time are those of the present piece.
+    inside: (T, T),
     pub(super) probes: Probes,
     /// The determinants where the last step began, on this piece of the input.
     pub(super) conditioning: Option<S::Conditioning>,
@@ -38,15 +40,43 @@ where
             statistics: Statistics::default(),
             memory: S::Memory::default(),
             since: start,
+            inside: (start, T::from_f64(f64::INFINITY)),
             probes: Probes::new(seen(start)),
             conditioning: None,
             closes_stages: false,
         }
     }
 
+    /// Goes on to the next piece, between two jumps of the input or changes of the laws.
+    pub(super) fn enter(&mut self, (since, end): (T, T)) {
+        self.since = since;
+        self.conditioning = None;
+        self.inside = (since, T::from_f64(f64::INFINITY));
+        let changes = !S::AUTONOMOUS
+            && self
+                .system
+                .next_change(T::from_f64(f64::NEG_INFINITY))
+                .is_some();
+        if changes {
+            // A law says for one side alone what it is where it changes.
+            let aside = |t: T| T::from_f64(T::EPSILON * (4.0 * t.magnitude()).max(T::EPSILON));
+            self.inside = (since + aside(since), end - aside(end));
+        }
+    }
+
+    /// The nearest time on the present piece.
+    fn on_piece(&self, t: T) -> T {
+        if S::AUTONOMOUS {
+            return t;
+        }
+        let (first, last) = self.inside;
+        t.max(first).min(last)
+    }
+
     /// The derivative.
     pub(super) fn slope(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
         self.statistics.evaluations += 1;
+        let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
         if self.closes_stages
             && let Ok(closed) = self.close(t, *x)
@@ -75,18 +105,26 @@ where
         slopes: &mut SVector<T::Stages, N>,
     ) {
         self.statistics.evaluations += 4;
+        let times = if S::AUTONOMOUS {
+            times
+        } else {
+            let columns = times.as_columns();
+            T::Stages::from_columns(|stage| self.on_piece(columns[stage]))
+        };
         *slopes = self.system.derivatives(times, x, u, &mut self.memory);
     }
 
     /// `∂f/∂x`.
     pub(super) fn jacobian(&mut self, t: T, x: &SVector<T, N>) -> SMatrix<T, N, N> {
         self.statistics.jacobians += 1;
+        let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
         self.system.jacobian_state(t, x, &u, &mut self.memory)
     }
 
     /// The derivative of `f(t, x, u(t))` by time at a fixed state, for a step of this length.
     pub(super) fn slope_by_time(&mut self, t: T, x: &SVector<T, N>, length: T) -> SVector<T, N> {
+        let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
         let mut change = self
             .system
@@ -109,12 +147,13 @@ where
         x: &SVector<T, N>,
         slope: &SVector<T, N>,
     ) -> Result<(), Stopped> {
-        let u = self.input.value(t, self.since);
-        if let Some(trouble) = self.system.trouble(t, x, &u, &self.memory) {
+        let here = self.on_piece(t);
+        let u = self.input.value(here, self.since);
+        if let Some(trouble) = self.system.trouble(here, x, &u, &self.memory) {
             return Err(Stopped::new(t, Cause::Trouble(trouble)));
         }
         if !S::META.conditioning.is_empty() {
-            let conditioning = self.system.conditioning(t, x, &u);
+            let conditioning = self.system.conditioning(here, x, &u);
             if let Some(before) = self.conditioning.replace(conditioning) {
                 stepped_over::<T, S, N, M, P>(&before, &conditioning)
                     .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))?;

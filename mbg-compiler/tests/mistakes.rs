@@ -208,6 +208,11 @@ const FIXTURES: &[(Code, &str)] = &[
              Sf drive { flow: if t < 1.0 { 0.0 } else { 2.0 } } -> a; a -> TF lever { flow: 2.0 } -> b; }",
     ),
     (
+        codes::UNKNOWN_MOTION,
+        "#[derivative] model M { causality componentwise; 1 g[3]; 1 b[3]; 1 c[3]; Sf still[3] { flow: 0.0 } -> g;
+             hinge: PlanarRevolute {} (g, b); arm: PlanarOffset { y: 0.1 * t } (b, c); bob: PlanarPointMass { mass: 1.0 } (c); }",
+    ),
+    (
         codes::UNIT_MISMATCH,
         beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
     ),

@@ -150,6 +150,7 @@ impl<'a> Builder<'a> {
             });
         }
         self.warn_of_idle();
+        self.warn_of_moving();
         self.define_unread();
     }
 

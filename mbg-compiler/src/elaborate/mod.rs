@@ -28,6 +28,7 @@ mod laws;
 mod loops;
 mod mentions;
 mod model;
+mod moving;
 mod orientation;
 mod quadrature;
 mod rays;

@@ -23,7 +23,8 @@ use crate::{Input, Real, System};
 /// alone. An error that has grown goes on growing, for explicit methods only where nothing but its state drives the model,
 /// so that no pulse is stepped over (all in Gustafsson, *ACM Transactions on Mathematical Software* 20
 /// (1994), 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
-/// exactly on the jumps of the input, and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
+/// exactly on the jumps of the input and where laws change by time alone
+/// ([`System::next_change`]), and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
 /// numbers the values alone control the step.
 ///
 /// Jumps that the input does not declare cost rejected steps, and in single precision the digits of time may be too few for

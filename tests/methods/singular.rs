@@ -67,8 +67,8 @@ fn a_parallelogram_stays_on_its_branch() {
             at_end(Dop853, tolerance),
             at_end(Rodas4, tolerance),
             at_end(Rodas5P, tolerance),
-            at_end(Radau5::default(), tolerance),
-            at_end(Radau9::default(), tolerance),
+            at_end(Radau5, tolerance),
+            at_end(Radau9, tolerance),
         ] {
             let error = first - expected;
             assert!(error.abs() < allowed, "{tolerance:e} {error:e}");

@@ -8,7 +8,7 @@ use super::control::Control;
 use super::crossing::Crossing;
 use super::dense::Step;
 use super::integrator::Integrator;
-use super::method::{Estimating, Span, Start, Stepper, along};
+use super::method::{Estimating, Span, Start, along};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
@@ -132,8 +132,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         I: Input<T, M>,
     {
         let tolerance = Tolerance::new(self.relative, self.absolute, self.nominal);
-        let mut work = Scheme::Work::<T, N>::new(&self.method);
-        let mut crossing = Crossing::new(self.relative, self.absolute, self.nominal);
+        let mut steps = Crossing::new(self.method, self.relative, self.absolute, self.nominal);
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
@@ -145,19 +144,13 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let mut watch = Watch::new(seen(end - start));
         let mut refused = 0;
         loop {
-            problem.closes_stages = false;
             let taken = problem.statistics.steps;
             if taken.saturating_add(problem.statistics.rejected) >= self.most {
                 let next = control.length.min(self.longest);
                 return Err(Stopped::new(t, Cause::TooManySteps { next }));
             }
-            let across = if S::META.closures.is_empty() {
-                None
-            } else {
-                crossing.length(control.length, refused)
-            };
-            let length = across.unwrap_or(control.length).min(self.longest);
-            let (span, last) = next_span(t, end, length)?;
+            let length = steps.length::<S, M, P>(control.length, refused);
+            let (span, last) = next_span(t, end, length.min(self.longest))?;
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
                 control.shorten(0.5 * seen(span.length));
@@ -168,25 +161,16 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 ..Start::of(span, x, slope)
             };
             let memory = problem.memory;
-            problem.closes_stages = across.is_some();
-            let wide = across.map(|_| crossing.tolerance());
-            let (trial, tolerance) = match &wide {
-                Some(wide) => (crossing.attempt(problem, &from, wide), wide),
-                None => (work.attempt(problem, &from, Some(&tolerance)), &tolerance),
-            };
-            let mut polynomial = |problem: &mut _, end: (&_, Option<_>)| {
-                if across.is_some() {
-                    crossing.explicit.polynomial(problem, &from, end)
-                } else {
-                    work.polynomial(problem, &from, end)
-                }
-            };
+            let wide = steps.tolerance();
+            let tolerance = wide.as_ref().unwrap_or(&tolerance);
+            let trial = steps.attempt(problem, &from, tolerance);
             let taken = if trial.error <= 1.0 {
                 let known = x + trial.change;
                 let ahead = trial
                     .slope
                     .unwrap_or_else(|| problem.slope(span.end, &known));
-                let dense = |problem: &mut _| polynomial(problem, (&known, Some(ahead)));
+                let dense =
+                    |problem: &mut _| steps.polynomial(problem, &from, (&known, Some(ahead)));
                 match problem.clear_length::<Scheme>(&from, &trial, tolerance, dense) {
                     None => Some((known, ahead)),
                     Some(clear) => {
@@ -195,10 +179,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                     }
                 }
             } else {
-                // What a step across is off by says nothing of the method's own.
-                if across.is_none() {
-                    control.reject(seen(span.length), trial.error);
-                }
+                steps.reject(&mut control, seen(span.length), trial.error);
                 None
             };
             let Some((known, ahead)) = taken else {
@@ -208,7 +189,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 // Written so that a step of NaN is refused as well.
                 if control.length.is_nan() || control.length <= smallest(t) {
                     check_result(problem.system, t, &trial.change, &tried).map_err(|stopped| {
-                        problem.traced(stopped, t, work.place_of_jacobian(&from))
+                        problem.traced(stopped, t, steps.place_of_jacobian(&from))
                     })?;
                     return Err(Stopped::new(t, Cause::StepTooSmall));
                 }
@@ -217,7 +198,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             problem.statistics.steps += 1;
             problem.check(span.end, &known, &ahead)?;
             let next = problem.close(span.end, known)?;
-            let mut dense = || polynomial(problem, (&next, Some(ahead)));
+            let mut dense = || steps.polynomial(problem, &from, (&next, Some(ahead)));
             let mut step = Step::new(span, (x, next), &mut dense);
             if observer(&mut step).is_break() {
                 return Ok(ControlFlow::Break(()));
@@ -228,14 +209,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             problem
                 .probes
                 .heed(seen(t), seen(span.length), trial.coarse);
-            crossing.accept(seen(span.length));
-            if across.is_some() {
-                work = Scheme::Work::new(&self.method);
-                control.shorten(seen(span.length));
-            } else {
-                control.growth = work.growth();
-                control.accept(seen(span.length), trial.error, Scheme::RULE);
-            }
+            steps.accept(&mut control, seen(span.length), trial.error);
             (t, x, slope, refused) = (span.end, next, ahead, 0);
         }
     }

@@ -1,5 +1,9 @@
 //! Steps across singular positions of closed loops.
 
+use nalgebra::SVector;
+
+use super::control::Control;
+use super::dense::Polynomial;
 use super::explicit::Dop853;
 use super::method::{Family, Start, Stepper, Trial};
 use super::problem::Problem;
@@ -17,7 +21,8 @@ const LENGTHS: [f64; 8] = [1.0, 1.5, 0.7, 2.2, 0.5, 3.0, 0.35, 4.0];
 /// The least tolerances for which these are tried one after the other, in units of the root of the precision.
 const DIGITS: [f64; 3] = [0.1, 1.0, 10.0];
 
-/// Takes a step across a singular position of a closed loop, such as that of a parallelogram whose bars are in line.
+/// Steps of a method, and those that it takes across a singular position of a closed loop, such as that of a parallelogram whose
+/// bars are in line.
 ///
 /// Two branches of the motion meet there. Forces in the loop are those of an error of the state divided by the distance from
 /// the position, so that stages of a step near it, which are off the loop by their own error, have large ones. The control of
@@ -27,50 +32,66 @@ const DIGITS: [f64; 3] = [0.1, 1.0, 10.0];
 /// it is not asked for many more digits than half of those of the scalar.
 ///
 /// Steps that are short for another reason are short in this way, too, and the method goes on by itself.
-pub(super) struct Crossing<T: Real, const N: usize> {
-    pub(super) explicit: <Dop853 as Family>::Work<T, N>,
+pub(super) struct Crossing<Scheme: Family, T: Real, const N: usize> {
+    method: Scheme,
+    work: Scheme::Work<T, N>,
+    explicit: <Dop853 as Family>::Work<T, N>,
     tolerances: [Tolerance<N>; DIGITS.len()],
     /// The length of the longest of the last steps.
     usual: f64,
     /// How many steps across have been tried; none while the method itself steps.
-    tried: Option<usize>,
+    tried: usize,
+    /// Whether the step at hand is one across.
+    is_across: bool,
 }
 
-impl<T: Real, const N: usize> Crossing<T, N> {
-    pub(super) fn new(relative: f64, absolute: f64, nominal: &[f64]) -> Self {
+impl<Scheme: Family, T: Real, const N: usize> Crossing<Scheme, T, N> {
+    /// Of a method with these relative and absolute tolerances and nominal sizes.
+    pub(super) fn new(method: Scheme, relative: f64, absolute: f64, nominal: &[f64]) -> Self {
         let tolerance = |part: f64| {
             let least = part * Real::sqrt(T::EPSILON);
             Tolerance::new(relative.max(least), absolute.max(least), nominal)
         };
         Self {
+            work: Stepper::new(&method),
+            method,
             explicit: Stepper::new(&Dop853),
             tolerances: DIGITS.map(tolerance),
             usual: 0.0,
-            tried: None,
+            tried: 0,
+            is_across: false,
         }
     }
 
-    /// The length of the step across to try where one of this length, which was refused so often, may meet a singular
-    /// position.
-    pub(super) fn length(&mut self, length: f64, refused: u32) -> Option<f64> {
+    /// The length to try where the control has come to this one, after so many refusals.
+    pub(super) fn length<S, const M: usize, const P: usize>(
+        &mut self,
+        length: f64,
+        refused: u32,
+    ) -> f64
+    where
+        S: System<T, N, M, P>,
+    {
         let is_short = refused >= REFUSED || length < SHORT * self.usual;
-        let place = match self.tried {
-            None if is_short && self.usual > 0.0 => 0,
-            None => return None,
-            Some(tried) => tried,
-        };
-        self.tried = Some(place + 1);
-        let is_known = place < LENGTHS.len() * DIGITS.len();
-        is_known.then(|| LENGTHS[place % LENGTHS.len()] * self.usual)
+        let begins = is_short && self.usual > 0.0;
+        let is_left = self.tried < LENGTHS.len() * DIGITS.len();
+        self.is_across = !S::META.closures.is_empty() && (begins || self.tried > 0) && is_left;
+        if !self.is_across {
+            return length;
+        }
+        self.tried += 1;
+        LENGTHS[(self.tried - 1) % LENGTHS.len()] * self.usual
     }
 
-    /// The tolerance of the step across that is tried.
-    pub(super) fn tolerance(&self) -> Tolerance<N> {
-        let place = self.tried.map_or(0, |tried| tried - 1) / LENGTHS.len();
-        self.tolerances[place.min(DIGITS.len() - 1)]
+    /// The tolerance of the step at hand, where it is one across.
+    pub(super) fn tolerance(&self) -> Option<Tolerance<N>> {
+        let place = self.tried.saturating_sub(1) / LENGTHS.len();
+        self.tolerances
+            .get(place)
+            .filter(|_| self.is_across)
+            .copied()
     }
 
-    /// Tries a step; `problem` closes its stages.
     pub(super) fn attempt<S, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
@@ -81,20 +102,59 @@ impl<T: Real, const N: usize> Crossing<T, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        self.explicit.attempt(problem, start, Some(tolerance))
+        problem.closes_stages = self.is_across;
+        if self.is_across {
+            self.explicit.attempt(problem, start, Some(tolerance))
+        } else {
+            self.work.attempt(problem, start, Some(tolerance))
+        }
     }
 
-    /// Goes on behind a step of this length, across or not.
-    pub(super) fn accept(&mut self, length: f64) {
+    pub(super) fn polynomial<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        end: (&SVector<T, N>, Option<SVector<T, N>>),
+    ) -> Polynomial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        if self.is_across {
+            self.explicit.polynomial(problem, start, end)
+        } else {
+            self.work.polynomial(problem, start, end)
+        }
+    }
+
+    /// Where the step at hand takes its Jacobian.
+    pub(super) fn place_of_jacobian(&self, start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
+        self.work.place_of_jacobian(start)
+    }
+
+    /// Hands a refusal on to the control; what a step across is off by says nothing of the method's own.
+    pub(super) fn reject(&self, control: &mut Control, length: f64, error: f64) {
+        if !self.is_across {
+            control.reject(length, error);
+        }
+    }
+
+    /// Goes on behind a step.
+    pub(super) fn accept(&mut self, control: &mut Control, length: f64, error: f64) {
         // Where no step across was found the method's own is what is usual.
-        let fails = self
-            .tried
-            .is_some_and(|tried| tried > LENGTHS.len() * DIGITS.len());
+        let fails = self.tried > 0 && !self.is_across;
         self.usual = if fails {
             length
         } else {
             length.max(REMEMBERED * self.usual)
         };
-        self.tried = None;
+        self.tried = 0;
+        if self.is_across {
+            self.work = Stepper::new(&self.method);
+            control.shorten(length);
+        } else {
+            control.growth = self.work.growth();
+            control.accept(length, error, Scheme::RULE);
+        }
     }
 }

@@ -51,6 +51,7 @@ where
     pub(super) fn enter(&mut self, (since, end): (T, T)) {
         self.since = since;
         self.conditioning = None;
+        self.closes_stages = false;
         self.inside = (since, T::from_f64(f64::INFINITY));
         let changes = !S::AUTONOMOUS
             && self

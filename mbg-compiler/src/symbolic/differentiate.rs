@@ -255,24 +255,54 @@ fn call_rule(
         _ if inner == Expression::ZERO => Expression::ZERO,
         _ => {
             let outer = outer(pool, whole, function, arguments[0]);
-            chain(pool, outer, inner)
+            let is_steep = matches!(
+                function,
+                Function::Asin | Function::Acos | Function::Ln | Function::Sqrt
+            );
+            chain(pool, is_steep, outer, inner)
         }
     }
 }
 
-/// `outer inner`, zero wherever a choice makes the inner derivative zero: there the outer one may be infinite, as that of the
-/// root of `max(x, 0)` is.
-fn chain(pool: &mut Pool, outer: Expression, inner: Expression) -> Expression {
+/// `outer inner` of a function, zero wherever choices make the inner derivative zero: there the outer one may be infinite, as
+/// that of the root of `max(x, 0)` is. `is_steep` says whether it may be where the function itself is finite.
+///
+/// A choice that is a factor chooses between the product and zero, and so do those inside of what it chooses. Where choices
+/// are added, the product counts where their sum is not zero; what is no number stays so.
+fn chain(pool: &mut Pool, is_steep: bool, outer: Expression, inner: Expression) -> Expression {
     let Some((choice, [a, b, yes, no])) = vanishing(pool, inner) else {
-        return pool.multiply(outer, inner);
+        let product = pool.multiply(outer, inner);
+        if !is_steep || !may_vanish(pool, inner) {
+            return product;
+        }
+        let size = pool.call(Function::Abs, &[inner]);
+        return select(pool, Expression::ZERO, size, product, inner);
     };
     let chosen = if yes == Expression::ZERO { no } else { yes };
     let inner = replace(pool, inner, &[(choice, chosen)]).unwrap_or(inner);
-    let product = pool.multiply(outer, inner);
+    let product = chain(pool, is_steep, outer, inner);
     if yes == Expression::ZERO {
         select(pool, a, b, yes, product)
     } else {
         select(pool, a, b, product, no)
+    }
+}
+
+/// Whether choices may make a derivative zero everywhere around a place. A sum that changes with anything else crosses zero
+/// at most.
+fn may_vanish(pool: &Pool, derivative: Expression) -> bool {
+    match pool.operation(derivative) {
+        Operation::Multiply(a, b) => may_vanish(pool, *a) || may_vanish(pool, *b),
+        Operation::Divide(a, _) => may_vanish(pool, *a),
+        Operation::Add(a, b) => {
+            let [first, second] = [a, b].map(|term| may_vanish(pool, *term));
+            let is_fixed = |term: &Expression| pool.rate(*term) != Rate::Varying;
+            first && (second || is_fixed(b)) || second && is_fixed(a)
+        }
+        Operation::Call(Function::SelectLess, arguments) => arguments[2..]
+            .iter()
+            .any(|chosen| *chosen == Expression::ZERO || may_vanish(pool, *chosen)),
+        _ => false,
     }
 }
 
@@ -326,7 +356,8 @@ fn power_rule(
     let before = pool.subtract(exponent, Expression::ONE);
     let slope = pool.real_power(base, before).unwrap_or(Expression::ZERO);
     let outer = pool.multiply(exponent, slope);
-    let by_base = chain(pool, outer, known.of(base));
+    let is_steep = pool.constant_value(exponent).is_none_or(|it| it < 1.0);
+    let by_base = chain(pool, is_steep, outer, known.of(base));
     if known.of(exponent) == Expression::ZERO {
         return by_base;
     }

@@ -89,3 +89,85 @@ fn laws_are_flat_where_choices_make_them_so() {
         ),
     ]);
 }
+
+/// A law whose slope at rest is zero has it there, although a power in it is infinitely steep.
+#[test]
+fn laws_are_flat_at_rest() {
+    let blasius = 1.75 * 0.25_f64.powf(0.75);
+    assert_slopes(&[
+        (
+            "f * sqrt(abs(f))",
+            &[(0.0, 0.0), (-0.25, 0.75), (0.25, 0.75)],
+        ),
+        ("f * pow(abs(f), 0.5)", &[(0.0, 0.0), (0.25, 0.75)]),
+        (
+            "2.0 * f * pow(abs(f), 0.75)",
+            &[(0.0, 0.0), (-0.25, 2.0 * blasius), (0.25, 2.0 * blasius)],
+        ),
+        (
+            "f * pow(abs(3.0 * f), n)",
+            &[(0.0, 0.0), (0.25, 3.0_f64.powf(0.75) * blasius)],
+        ),
+        (
+            "pow(f * f, 0.75)",
+            &[(0.0, 0.0), (-0.25, -0.75), (0.25, 0.75)],
+        ),
+        ("abs(f) * sqrt(abs(f)) + f", &[(0.0, 1.0), (-0.25, 0.25)]),
+        (
+            "(f - 1.0) * sqrt(abs(1.0 - f))",
+            &[(1.0, 0.0), (1.25, 0.75)],
+        ),
+        ("sqrt(abs(f)) * pow(abs(f), 0.75)", &[(0.0, 0.0)]),
+        // What is steep nowhere is left as it is.
+        ("f * sqrt(f * f + 1.0)", &[(0.0, 1.0)]),
+    ]);
+}
+
+/// Kinks and infinite slopes at rest are not made zero.
+#[test]
+fn slopes_that_laws_do_not_have_at_rest_stay_told() {
+    for law in [
+        "sqrt(abs(f))",
+        "pow(f * f, 0.25)",
+        "sqrt(f * f)",
+        "sign(f) * sqrt(abs(f))",
+    ] {
+        let model = resisted(law);
+        let found = entries(&model, &[0.75], &[0.0])[1];
+        assert!(!found.is_finite(), "{law}: {found}");
+    }
+}
+
+/// Drag along a vector, `√(fᵀ f) f`, has the slopes `(fᵀ f δ + f fᵀ) / √(fᵀ f)`, which vanish at rest.
+#[test]
+fn drag_of_a_vector_is_flat_at_rest() {
+    for (law, power) in [
+        ("sqrt(transpose(f) * f) * f", 0.5),
+        ("pow(transpose(f) * f, 0.25) * f", 0.25),
+    ] {
+        let model = compiled(&format!(
+            "model M {{ 1 v[3] {{ I m {{ inertia: 0.1 }} R r {{ effort: {law} }} }} }}"
+        ));
+        for momentum in [[0.0; 3], [0.03, 0.0, 0.0], [0.03, -0.04, 0.12]] {
+            let found = entries(&model, &[], &momentum);
+            let flow = momentum.map(|it| 10.0 * it);
+            let square: f64 = flow.iter().map(|it| it * it).sum();
+            for (row, column) in (0..9).map(|entry| (entry / 3, entry % 3)) {
+                let own = if row == column {
+                    square.powf(power)
+                } else {
+                    0.0
+                };
+                let least = f64::MIN_POSITIVE;
+                let turned =
+                    2.0 * power * flow[row] * flow[column] * square.powf(power) / square.max(least);
+                let found = found[3 + 3 * row + column];
+                let expected = -10.0 * (own + turned);
+                assert!(
+                    (found - expected).abs() < 1e-13,
+                    "{law} at {flow:?}, {row} {column}: {found}, not {expected}"
+                );
+            }
+        }
+    }
+}

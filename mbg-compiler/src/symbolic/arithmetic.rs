@@ -142,7 +142,7 @@ impl Pool {
     }
 
     /// Factors of a product, without their signs.
-    fn factors(&self, product: Expression) -> Vec<Expression> {
+    pub(super) fn factors(&self, product: Expression) -> Vec<Expression> {
         let mut factors = Vec::new();
         let mut pending = vec![product.magnitude()];
         while let Some(current) = pending.pop() {

@@ -7,6 +7,7 @@ use super::implicit::Method;
 use super::linear::Linear;
 use super::matrix::Matrix;
 use super::pool::{Definition, Pool};
+use super::rest::at_rest;
 use super::substitute::{replace, symbols};
 use super::walk::Rewritten;
 
@@ -151,11 +152,11 @@ fn rule(
         Operation::Add(a, b) => {
             turned(pool, known, *a, *b).unwrap_or_else(|| pool.add(known.of(*a), known.of(*b)))
         }
-        Operation::Multiply(a, b) => {
+        Operation::Multiply(a, b) => at_rest(pool, known, whole).unwrap_or_else(|| {
             let first = pool.multiply(known.of(*a), *b);
             let second = pool.multiply(*a, known.of(*b));
             pool.add(first, second)
-        }
+        }),
         Operation::Divide(a, b) => {
             // (a/b)' = (a' − (a/b) b') / b shares the quotient itself.
             let shrink = pool.multiply(whole, known.of(*b));
@@ -170,7 +171,8 @@ fn rule(
             let sine = pool.sine(*a);
             pool.multiply(sine, known.of(*a)).negated()
         }
-        Operation::Call(function, arguments) => call_rule(pool, known, whole, *function, arguments),
+        Operation::Call(function, arguments) => at_rest(pool, known, whole)
+            .unwrap_or_else(|| call_rule(pool, known, whole, *function, arguments)),
     }
 }
 

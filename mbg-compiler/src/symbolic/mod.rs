@@ -22,6 +22,7 @@ pub mod orientation;
 pub mod pool;
 pub mod print;
 mod products;
+mod rest;
 mod share;
 pub mod substitute;
 mod uses;

@@ -15,6 +15,12 @@ impl Rewritten {
         self.0[&expression.node()].flipped(expression.is_negative())
     }
 
+    /// The same, if it was.
+    pub(super) fn get(&self, expression: Expression) -> Option<Expression> {
+        let rewritten = self.0.get(&expression.node())?;
+        Some(rewritten.flipped(expression.is_negative()))
+    }
+
     /// Says what an expression is rewritten to, unless that is known.
     pub(super) fn set(&mut self, expression: Expression, rewritten: Expression) {
         let rewritten = rewritten.flipped(expression.is_negative());

@@ -69,6 +69,27 @@ fn coefficients_may_change_with_the_state_they_multiply() {
     }
 }
 
+/// `∫ ln q` is `q ln q − q`, which is zero where nothing is left, and no number below.
+#[test]
+fn energies_of_logarithms_end_at_zero() {
+    for law in ["ln(q)", "2.0 * ln(q / 3.0)", "ln(q / (1.0 - q))"] {
+        let text = format!(
+            "model M {{ 1 v {{ C c {{ effort: {law}, initial: 0.5 }} R r {{ resistance: 1.0 }} }} }}"
+        );
+        let model = compiled(&text);
+        let energy = |amount: f64| {
+            let arguments = Arguments {
+                parameters: &[],
+                time: 0.0,
+                state: &[amount],
+                input: &[],
+            };
+            program::evaluate(&model.program, Routines::ENERGY, &arguments)[0]
+        };
+        assert!((energy(0.0) - energy(1e-18)).abs() < 1e-15, "{law}");
+    }
+}
+
 /// Slow and fast changes of the gas, of which slow ones have a logarithm for their energy.
 #[test]
 fn an_accumulator_stores_the_work_of_its_gas() {

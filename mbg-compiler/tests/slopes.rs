@@ -171,3 +171,31 @@ fn drag_of_a_vector_is_flat_at_rest() {
         }
     }
 }
+
+/// Rates by mass action, written with chemical potentials, are products of amounts, also where nothing is left of one.
+#[test]
+fn mass_action_by_potentials_has_slopes_where_nothing_is_left() {
+    let model = compiled(
+        "model M { param heat = 2.5; param standard = 1.25;
+            0 a { C ca { effort: heat * ln(q), initial: 1.0 } }
+            0 b { C cb { effort: standard + heat * ln(q / 4.0), initial: 0.0 } }
+            1 re[2] { R r { flow: [
+                0.5 * (exp(2 * e[0] / heat) - exp(-e[1] / heat)),
+                0.5 * (exp(2 * e[0] / heat) - exp(-e[1] / heat))
+            ] } }
+            a -> re[0]; re[1] -> b;
+        }",
+    );
+    let back = 0.125 * 0.5_f64.exp();
+    for [a, b] in [[0.75, 0.0], [0.0, 0.5], [0.25, -1e-9]] {
+        let found = entries(&model, &[2.5, 1.25], &[a, b]);
+        let rate = 0.5 * a * a - back * b;
+        let expected = [-rate, rate, -a, back, a, -back];
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 1e-15,
+                "{a} {b}: {found}, not {expected}"
+            );
+        }
+    }
+}

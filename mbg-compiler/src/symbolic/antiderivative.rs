@@ -191,9 +191,7 @@ impl Integration<'_> {
                 self.inner(u, value)
             }
             Function::Ln => {
-                let logarithm = self.pool.call(Function::Ln, &[u]);
-                let product = self.pool.multiply(u, logarithm);
-                let value = self.pool.subtract(product, u);
+                let value = self.logarithm(u, u);
                 self.inner(u, value)
                     .or_else(|| self.logarithm_of_product(u))
             }
@@ -241,6 +239,16 @@ impl Integration<'_> {
                 self.inner(u, value)
             }
         }
+    }
+
+    /// `u ln u − u`, or `u ln |u| − u` with that size. At zero it is zero, the limit, where the product has no value.
+    pub(super) fn logarithm(&mut self, u: Expression, size: Expression) -> Expression {
+        let logarithm = self.pool.call(Function::Ln, &[size]);
+        let product = self.pool.multiply(u, logarithm);
+        let value = self.pool.subtract(product, u);
+        let size = self.pool.call(Function::Abs, &[u]);
+        let choice = [Expression::ZERO, size, value, u];
+        self.pool.call(Function::SelectLess, &choice)
     }
 
     /// `u asin u + √(1 − u²)`, or `u acos u − √(1 − u²)`.

@@ -10,6 +10,9 @@ use super::pool::Pool;
 /// Whole exponents up to this are products.
 pub const LARGEST_POWER: f64 = 64.0;
 
+/// Most terms of an exponent that are looked at for logarithms.
+const MOST_TERMS: usize = 16;
+
 impl Pool {
     /// Sum.
     pub fn add(&mut self, a: Expression, b: Expression) -> Expression {
@@ -267,6 +270,86 @@ impl Pool {
         } else {
             Some(result)
         }
+    }
+
+    /// The exponential of a sum without the logarithms in it that whole numbers multiply: of `ln u + 2 ln v + w` it is
+    /// `u v² e^w`. None if there are no such.
+    ///
+    /// Both are the same where the logarithms have values. The product goes on from there to zero, and below, where rounding
+    /// takes an amount that is used up: rates that are proportional to it bring it back.
+    pub(super) fn without_logarithms(&mut self, exponent: Expression) -> Option<Expression> {
+        if !self.holds_logarithm(exponent) {
+            return None;
+        }
+        let mut powers = Vec::new();
+        let mut rest = Expression::ZERO;
+        let mut pending = vec![(exponent, Expression::ONE)];
+        while let Some((term, multiple)) = pending.pop() {
+            let whole = |multiple| {
+                let value = self.constant_value(multiple)?;
+                (value.fract() == 0.0 && value.abs() <= LARGEST_POWER).then_some(value as i32)
+            };
+            let multiple = multiple.flipped(term.is_negative());
+            match *self.operation(term) {
+                Operation::Add(a, b) if powers.len() + pending.len() < MOST_TERMS => {
+                    pending.extend([(b, multiple), (a, multiple)]);
+                    continue;
+                }
+                Operation::Multiply(a, b) if self.holds_logarithm(b) => {
+                    pending.push((b, self.multiply(multiple, a)));
+                    continue;
+                }
+                Operation::Multiply(a, b) if self.holds_logarithm(a) => {
+                    pending.push((a, self.multiply(multiple, b)));
+                    continue;
+                }
+                Operation::Divide(a, b) if self.holds_logarithm(a) => {
+                    pending.push((a, self.divide(multiple, b)?));
+                    continue;
+                }
+                Operation::Call(Function::Ln, ref arguments) => {
+                    if let Some(whole) = whole(multiple) {
+                        powers.push((arguments[0], whole));
+                        continue;
+                    }
+                }
+                _ => {}
+            }
+            let term = self.multiply(term.magnitude(), multiple);
+            rest = self.add(rest, term);
+        }
+        if powers.is_empty() {
+            return None;
+        }
+        let mut product = match rest {
+            Expression::ZERO => Expression::ONE,
+            _ => self.call(Function::Exp, &[rest]),
+        };
+        for (base, whole) in powers {
+            let power = self.power(base, whole.abs())?;
+            product = if whole < 0 {
+                self.divide(product, power)?
+            } else {
+                self.multiply(product, power)
+            };
+        }
+        Some(product)
+    }
+
+    /// Whether a logarithm is among the terms of a sum, or the factors of a product.
+    fn holds_logarithm(&self, sum: Expression) -> bool {
+        let mut pending = vec![sum];
+        while let Some(term) = pending.pop() {
+            match *self.operation(term) {
+                Operation::Add(a, b) | Operation::Multiply(a, b) if pending.len() < MOST_TERMS => {
+                    pending.extend([a, b]);
+                }
+                Operation::Divide(a, _) => pending.push(a),
+                Operation::Call(Function::Ln, _) => return true,
+                _ => {}
+            }
+        }
+        false
     }
 
     /// Power with any exponent, of a base that is not negative unless the exponent is whole; none for a negative power of

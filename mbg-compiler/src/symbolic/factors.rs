@@ -136,12 +136,11 @@ impl Integration<'_> {
         let mut total = Expression::ZERO;
         for (factor, is_divisor) in self.apart(product)? {
             let size = self.pool.call(Function::Abs, &[factor]);
-            let logarithm = self.pool.call(Function::Ln, &[size]);
             let integral = if self.is_free(factor) {
+                let logarithm = self.pool.call(Function::Ln, &[size]);
                 self.of(logarithm)?
             } else {
-                let product = self.pool.multiply(factor, logarithm);
-                let value = self.pool.subtract(product, factor);
+                let value = self.logarithm(factor, size);
                 self.inner(factor, value)?
             };
             total = self.pool.add(total, integral.flipped(is_divisor));

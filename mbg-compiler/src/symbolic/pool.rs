@@ -393,6 +393,11 @@ impl Pool {
 
     /// Any other function.
     pub fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
+        if function == Function::Exp
+            && let Some(product) = self.without_logarithms(arguments[0])
+        {
+            return product;
+        }
         let values: Option<Vec<f64>> = arguments
             .iter()
             .map(|argument| self.constant_value(*argument))

@@ -13,7 +13,8 @@ use crate::Real;
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope
 /// zero, and at a kink ([`Real::abs`] at zero, equal arguments of [`Real::min`]) the slope is that of one side.
-/// Where a function has no finite derivative (square root at zero, arc sine at ±1) the slope is infinite or NaN.
+/// Where a function has no finite derivative (square root at zero, arc sine at ±1) the slope is infinite or NaN, but zero of
+/// what does not change, such as `max(x, 0)` below zero.
 ///
 /// # Example
 ///
@@ -59,6 +60,18 @@ impl<T: Real> Dual<T> {
             value,
             slope: derivative * self.slope,
         }
+    }
+
+    /// The same of a function that is infinitely steep somewhere: where this number does not change the function does not
+    /// either. Without a branch, and with the slopes of slopes, which may change where they are zero.
+    fn steep_chain(self, value: T, derivative: T) -> Self {
+        let zero = T::from_f64(0.0);
+        let infinite = T::from_f64(f64::INFINITY);
+        let finite = derivative.abs().select_less(infinite, derivative, zero);
+        self.chain(
+            value,
+            zero.select_less(self.slope.abs(), derivative, finite),
+        )
     }
 }
 
@@ -161,7 +174,7 @@ impl<T: Real> Real for Dual<T> {
 
     fn asin(self) -> Self {
         let one = T::from_f64(1.0);
-        self.chain(
+        self.steep_chain(
             self.value.asin(),
             one / ((one - self.value) * (one + self.value)).sqrt(),
         )
@@ -169,7 +182,7 @@ impl<T: Real> Real for Dual<T> {
 
     fn acos(self) -> Self {
         let one = T::from_f64(1.0);
-        self.chain(
+        self.steep_chain(
             self.value.acos(),
             -one / ((one - self.value) * (one + self.value)).sqrt(),
         )
@@ -186,7 +199,7 @@ impl<T: Real> Real for Dual<T> {
 
     fn pow(self, exponent: Self) -> Self {
         let before = self.value.pow(exponent.value - T::from_f64(1.0));
-        let power = self.chain(self.value.pow(exponent.value), exponent.value * before);
+        let power = self.steep_chain(self.value.pow(exponent.value), exponent.value * before);
         if exponent.slope == T::from_f64(0.0) {
             return power;
         }
@@ -203,12 +216,12 @@ impl<T: Real> Real for Dual<T> {
     }
 
     fn ln(self) -> Self {
-        self.chain(self.value.ln(), T::from_f64(1.0) / self.value)
+        self.steep_chain(self.value.ln(), T::from_f64(1.0) / self.value)
     }
 
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.chain(root, T::from_f64(0.5) / root)
+        self.steep_chain(root, T::from_f64(0.5) / root)
     }
 
     fn tanh(self) -> Self {
@@ -217,8 +230,14 @@ impl<T: Real> Real for Dual<T> {
         self.chain(tangent, (one - tangent) * (one + tangent))
     }
 
+    /// At zero with the slope above it: its mean with that below is zero, as of what does not change, and would hide that
+    /// the root of it is infinitely steep.
     fn abs(self) -> Self {
-        self.chain(self.value.abs(), self.value.sign())
+        let zero = T::from_f64(0.0);
+        Self {
+            value: self.value.abs(),
+            slope: self.value.select_less(zero, -self.slope, self.slope),
+        }
     }
 
     fn sign(self) -> Self {
@@ -353,6 +372,48 @@ mod tests {
         sum += x;
         sum -= y;
         assert!(close(sum.value, x.value) && close(sum.slope, x.slope));
+    }
+
+    #[test]
+    fn functions_of_what_does_not_change_do_not_change() {
+        let [zero, one] = [0.0, 1.0].map(Dual::<f64>::constant);
+        let quarter = Dual::constant(0.25);
+        let flat = Dual::variable(-2.0).max(zero).min(one);
+        for found in [flat.sqrt(), flat.pow(quarter), one.acos()] {
+            assert_eq!((found.value, found.slope), (0.0, 0.0));
+        }
+        let arc = Dual::variable(2.0).max(-one).min(one).asin();
+        assert_eq!(arc, Dual::constant(1.0_f64.asin()));
+        // As a sum of two that do not change.
+        let sum = flat + (Dual::variable(-2.0) - one).max(zero);
+        assert_eq!(sum.sqrt(), zero);
+    }
+
+    /// Also of `|x|`, whose kink is no level place.
+    #[test]
+    fn infinite_slopes_of_what_changes_stay_told() {
+        let rest = Dual::variable(0.0_f64);
+        let quarter = Dual::constant(0.25);
+        for found in [rest, rest.abs(), -rest.abs()].map(|it| [it.sqrt(), it.pow(quarter)]) {
+            assert!(found.iter().all(|it| it.slope.is_infinite()), "{found:?}");
+        }
+        assert_eq!(Dual::variable(1.0_f64).asin().slope, f64::INFINITY);
+        let unknown = Dual {
+            value: 0.0_f64,
+            slope: f64::NAN,
+        };
+        assert!(unknown.sqrt().slope.is_nan());
+    }
+
+    #[test]
+    fn slopes_of_slopes_are_kept_where_those_are_zero() {
+        // √(1 + x²) has the slopes x / √(1 + x²), and 1 at zero of that.
+        let x = Dual {
+            value: Dual::variable(0.0_f64),
+            slope: Dual::constant(1.0),
+        };
+        let root = (x * x + Dual::from_f64(1.0)).sqrt();
+        assert_eq!((root.slope.value, root.slope.slope), (0.0, 1.0));
     }
 
     #[test]

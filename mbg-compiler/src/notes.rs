@@ -1,14 +1,14 @@
 //! What a user should know of a model that compiles: values at the start that are not used, which are warned of too, and
 //! energies that are not what they seem.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
 use crate::answers::Answers;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
-use crate::elaborate::{Elaborated, Ring, State};
+use crate::elaborate::{Elaborated, Ring, State, StateRate};
 use crate::graph::{Element, ElementId, ElementKind, Integral, Law, Storage};
 use crate::start::Start;
 use crate::structure::Solved;
@@ -31,8 +31,10 @@ pub(crate) fn of(
     diagnostics: &mut Diagnostics,
 ) -> Vec<String> {
     let mut notes = Vec::new();
-    for (span, note) in unused_starts(model, solved, answers, pool) {
-        diagnostics.warn(error(codes::UNUSED_START, span, note.clone()));
+    for (span, note, help) in unused_starts(model, solved, answers, pool) {
+        let mut report = error(codes::UNUSED_START, span, note.clone());
+        report.helps.extend(help);
+        diagnostics.warn(report);
         notes.push(note);
     }
     for (span, note, help) in open_rings(model, pool) {
@@ -60,7 +62,7 @@ fn unused_starts(
     solved: &Solved,
     answers: &Answers,
     pool: &Pool,
-) -> Vec<(Span, String)> {
+) -> Vec<(Span, String, Option<String>)> {
     let start = Start::of(model, pool);
     let momenta = answers.eliminated.iter().map(|(state, value)| {
         let State {
@@ -80,8 +82,8 @@ fn unused_starts(
             (span, name, *given, solved.solution.values[*flow])
         })
     });
-    let note = |(span, name, given, value): (Span, String, Expression, Expression)| {
-        let [given, value] = [given, value].map(|it| start.value(pool, it));
+    let note = |(span, name, given, met): (Span, String, Expression, Expression)| {
+        let [given, value] = [given, met].map(|it| start.value(pool, it));
         let is_met = given == 0.0 || (given - value).abs() <= MET * given.abs();
         let place = if value.is_finite() {
             format!(" but {value:?}")
@@ -90,11 +92,46 @@ fn unused_starts(
         };
         let note =
             format!("`{name}` is not {given:?} at the start{place}: it follows from other states");
-        (!is_met).then_some((span, note))
+        (!is_met).then(|| (span, note, leading(model, &start, pool, (met, given))))
     };
     let all = momenta.chain(flows);
     let given = all.filter(|(_, _, given, _)| *given != Expression::ZERO);
     given.filter_map(note).collect()
+}
+
+/// What to type at the only state from which a value follows, so that it starts as it is `given`.
+fn leading(
+    model: &Elaborated,
+    start: &Start,
+    pool: &Pool,
+    (value, given): (Expression, f64),
+) -> Option<String> {
+    let read = symbols(pool, &[value]).into_iter();
+    let states: Vec<usize> = read
+        .filter_map(|it| match it {
+            Symbol::State(state) => Some(state),
+            _ => None,
+        })
+        .collect();
+    let [state] = states[..] else { return None };
+    let State {
+        rate: StateRate::Storage(id, _),
+        is_given: false,
+        ..
+    } = model.states[state]
+    else {
+        return None;
+    };
+    let element = &model.graph.elements[id.0];
+    let is_alone = matches!(&element.law, Law::Storage(storage) if storage.states.len() == 1);
+    let at = |own: f64| start.changed(pool, value, &BTreeMap::from([(state, own)]));
+    let own = (given - at(0.0)) / (at(1.0) - at(0.0));
+    // In the digits that a value at the start is compared by.
+    let own: f64 = format!("{own:.11e}").parse().ok()?;
+    let is_met = (at(own) - given).abs() <= MET * given.abs();
+    let name = &element.name;
+    (is_alone && element.instance().is_none() && is_met)
+        .then(|| format!("give it to `{name}`, from which it follows: `initial: {own:?}`"))
 }
 
 /// Rings of joints that are open at the start, with default parameters and without inputs: where, and the way out.

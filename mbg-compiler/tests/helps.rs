@@ -579,3 +579,32 @@ fn components_are_told_by_their_names_in_the_other_space() {
     compiles(&model(6, space, "Body"));
     compiles(&model(3, plane, "PlanarBody"));
 }
+
+/// A storage whose variable a source gives is left out or the source is let act through something.
+#[test]
+fn a_storage_across_a_source_is_told_first() {
+    let driven = |coil: &str| {
+        format!(
+            "model M {{ input amp: A; 1 v {{ Sf s {{ flow: amp }} {coil} R r {{ resistance: 1.0 }} }} output y = s.e; }}"
+        )
+    };
+    let told = helps(
+        &driven("I coil { inertia: 1.0 }"),
+        codes::STORAGE_DERIVATIVE,
+    );
+    assert_eq!(told[0], "remove `coil`, whose effort only `s` would feel");
+    assert!(told[1].starts_with("remove `s`"), "{told:?}");
+    compiles(&driven(""));
+}
+
+#[test]
+fn a_nonlinear_storage_across_a_source_is_told_no_other() {
+    let across = |beside: &str| {
+        format!(
+            "#[derivative] model M {{ 0 n {{ Se s {{ effort: 2.0 + sin(t) }} C c {{ effort: q + powi(q, 3) }} {beside} }}
+             1 w {{ I l {{ inertia: 1.0 }} R r {{ resistance: 10.0 }} }} n -> w; }}"
+        )
+    };
+    let told = helps(&across(""), codes::ORDER_LOST_UNSUPPORTED);
+    assert_eq!(told, ["put a resistor between `c` and `s`"]);
+}

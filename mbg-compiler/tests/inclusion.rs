@@ -8,8 +8,9 @@ use mbg_compiler::explain::explain;
 use mbg_compiler::inclusion::{Inclusion, no_file};
 use mbg_compiler::syntax::library;
 use mbg_compiler::{expand, expansion};
-use proc_macro2::Span;
+use proc_macro2::{Delimiter, Group, Literal, Span, TokenStream, TokenTree};
 use proptest::prelude::*;
+use quote::quote;
 
 /// A damper of its own.
 const BRAKE: &str = "/// A damper.\ncomponent Brake(port a) {\n    param strength;\n    a -> R shoe { resistance: strength };\n}\n";
@@ -57,6 +58,20 @@ fn an_included_component_is_as_one_that_is_written_out() {
     let written = expand(written.parse().unwrap(), &no_file).to_string();
     let dependency = "const _ : & [u8] = :: core :: include_bytes ! (:: core :: concat ! (:: core :: env ! (\"CARGO_MANIFEST_DIR\") , \"/brake.mbg\")) ;";
     assert_eq!(found, format!("{written} {dependency}"));
+}
+
+/// The path is an argument of a `macro_rules!`.
+#[test]
+fn a_path_in_a_group_that_nobody_wrote_is_taken() {
+    let path = TokenTree::from(Literal::string("brake.mbg"));
+    let path = Group::new(Delimiter::None, TokenStream::from(path));
+    let path = TokenStream::from(TokenTree::from(path));
+    let read = |_: &str| Ok(BRAKE.to_owned());
+    let mut diagnostics = Diagnostics::new();
+    let inclusion = Inclusion::of(quote!(include #path;), &read, &mut diagnostics);
+    assert!(!diagnostics.any());
+    let written: TokenStream = BRAKE.parse().unwrap();
+    assert_eq!(inclusion.tokens().to_string(), written.to_string());
 }
 
 #[test]

@@ -264,18 +264,54 @@ fn a_thin_rod_is_told_a_small_inertia() {
     let hinge = "hinge: Revolute { axis: 1 } (ground, arm);";
     for (body, number) in [
         ("mass: 1.0, inertia: diag(0.0, 0.5, 0.5)", "1e-7"),
-        ("mass: 1.0, inertia: diag(0.0, i, i)", "1e-6"),
-        ("mass: 0.0, inertia: 1.0", "1e-6"),
+        ("mass: 1.0, inertia: diag(0.0, i, i)", "1e-6 * …"),
     ] {
         let slip = arm(body, hinge);
         assert_eq!(typed(&slip), [number]);
-        assert_eq!(told(&arm(&body.replace("0.0", number), hinge)), "");
+        let number = number.replace('…', "i");
+        assert_eq!(told(&arm(&body.replace("0.0", &number), hinge)), "");
     }
     insta::assert_snapshot!(told(&arm("mass: 1.0, inertia: diag(0.0, i, i)", hinge)), @"
     2:80 `inertia` does not fit in `Body`: the inertia of `spin` is 0, not positive [MBG0216]
       `inertia`: About the centre of mass: a 3×3 matrix, or a number for a ball
-      help: write a number far below the others in the place of the 0, such as `1e-6`: nothing that is visible changes
+      help: write a number far below the others in the place of the 0, such as a millionth of one of them: `1e-6 * …`
     ");
+}
+
+/// Where a whole inertia is zero, no number is known to be small beside it.
+#[test]
+fn what_has_no_inertia_is_told_to_be_left_out() {
+    let plate = |tip: &str| {
+        format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1e-10 }}\n{tip} R r {{ resistance: 1e-5 }} }} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&plate("I tip { inertia: 0.0 }")), @"
+    2:18 the inertia of `tip` is 0, not positive [MBG0216]
+      help: remove `tip`: without an inertia it changes nothing
+    ");
+    assert_eq!(told(&plate("")), "");
+    for (body, joint, written) in [
+        (
+            "body: Body { mass: 1.0, inertia: 0.0 } (arm);",
+            "Prismatic",
+            "body: PointMass { mass: 1.0 } (arm);",
+        ),
+        (
+            "body: Body { mass: 0.0, inertia: 1.0 } (arm);",
+            "Revolute",
+            "I body[3] { inertia: 1.0, gyroscopic } -> arm[0..3];",
+        ),
+    ] {
+        let text = |body: &str| {
+            format!(
+                "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 arm[6];
+                 Sf still[6] {{ flow: 0.0 }} -> ground; {body} joint: {joint} {{ axis: 1 }} (ground, arm); }}"
+            )
+        };
+        assert_eq!(typed(&text(body)), [written]);
+        assert_eq!(told(&text(written)), "");
+    }
 }
 
 /// A condition that is a value alone is 0 or 1 in other languages.
@@ -367,4 +403,77 @@ fn elements_and_junctions_are_told_as_they_are_spelled() {
         let helps: Vec<&str> = told.lines().filter_map(|line| line.trim().strip_prefix("help: ")).collect();
         assert_eq!(helps, [help], "{body}: {told}");
     }
+}
+
+#[test]
+fn an_entry_of_a_matrix_is_told_with_two_numbers() {
+    let read = |entry: &str| masses(&format!("let a = rot_x(0.3); output y = {entry} * v.f;"));
+    assert_eq!(typed(&read("a[1].y")), ["a[1][1]"]);
+    assert_eq!(told(&read("a[1][1]")), "");
+    let hinge = |entry: &str| {
+        arm(
+            BODY,
+            &format!("hinge: Revolute {{ axis: 0 }} (ground, arm); output x = {entry} + s + i;"),
+        )
+    };
+    assert_eq!(
+        typed(&hinge("hinge.orientation_b[0].x")),
+        ["hinge.orientation_b[0][0]"]
+    );
+    assert!(!told(&hinge("hinge.orientation_b[0][0]")).contains("declared"));
+}
+
+#[test]
+fn functions_and_assertions_are_told_as_what_stands_for_them() {
+    insta::assert_snapshot!(told(&masses("fn square(x) = x * x;")), @"
+    2:1 expected a statement, found `fn` [MBG0101]
+      help: functions are not declared: write `let square = x * x;` with what is read in the place of `x`, or give elements with one law to a `component`
+    ");
+    insta::assert_snapshot!(told(&masses("assert(v.f < 2.0);")), @"
+    2:1 expected a statement, found `assert` [MBG0101]
+      help: a model asserts nothing: what runs it checks an output that is positive while all is well, `output margin = 2.0 - v.f;`
+    ");
+    assert_eq!(told(&masses("output margin = 2.0 - v.f;")), "");
+    for (slip, here) in [
+        ("assert(v.f >= m.p);", "output margin = v.f - m.p;"),
+        (
+            "assert(v.f < m.p - 1.0);",
+            "output margin = m.p - 1.0 - v.f;",
+        ),
+        (
+            "assert(m.p - 1.0 < v.f - 2.0);",
+            "output margin = v.f - 2.0 - (m.p - 1.0);",
+        ),
+    ] {
+        assert_eq!(typed(&masses(slip)), [here]);
+        assert_eq!(told(&masses(here)), "");
+    }
+}
+
+#[test]
+fn an_element_without_a_name_is_told_with_one() {
+    let chain = |gyrator: &str| {
+        masses(&format!(
+            "1 u {{ I o {{ inertia: 1.0 }} }} v -> {gyrator} -> u;"
+        ))
+    };
+    insta::assert_snapshot!(told(&chain("GY(0.1)")), @"
+    2:37 expected `->` after `GY`, found `(` [MBG0101]
+      help: an element has a name, and its law stands in braces behind a word: `GY name { effort: 0.1 }`
+    ");
+    assert_eq!(told(&chain("GY name { effort: 0.1 }")), "");
+    assert_eq!(
+        typed(&masses("R(2.0) -> v;")),
+        ["R name { resistance: 2.0 }"]
+    );
+}
+
+#[test]
+fn functions_without_parentheses_and_products_are_told_before_prefixes() {
+    assert_eq!(typed(&driven("sin t")), ["sin(t)"]);
+    assert_eq!(told(&driven("sin(t)")), "");
+    let resistor = |law: &str| masses(&format!("R r {{ {law} }} -> v;"));
+    assert_eq!(typed(&resistor("effort: 2 f")), ["2 * f", "2e-15"]);
+    assert_eq!(told(&resistor("effort: 2 * f")), "");
+    assert_eq!(typed(&resistor("resistance: 2 k")), ["2e3", "2 * k"]);
 }

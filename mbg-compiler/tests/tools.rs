@@ -59,6 +59,41 @@ fn parameters_of_bodies_and_joints_are_told_by_their_names_here() {
     ");
 }
 
+/// Joints with an angle and a travel take positions and velocities for the travel.
+#[test]
+fn starts_of_joints_are_told_by_what_they_are_starts_of() {
+    for (joint, slip, here) in [
+        ("Free", "position: [0.0, 0.0, 1.0]", "initial_position"),
+        ("Free", "initial_pos: [0.0, 0.0, 1.0]", "initial_position"),
+        ("Free", "velocity: [0.0, 0.0, 1.0]", "initial_velocity"),
+        ("Free", "initial_angles: [0.0, 0.0, 1.0]", "initial"),
+        ("Free", "w_start: [0.0, 0.0, 1.0]", "initial_rate"),
+        ("Planar", "axis: 2, position: [1.0, 0.0]", "initial_travel"),
+        ("Planar", "axis: 2, velocity: [1.0, 0.0]", "initial_sliding"),
+        ("Planar", "axis: 2, angle: 1.0", "initial_angle"),
+        ("Planar", "axis: 2, rate: 1.0", "initial_turning"),
+        ("Cylindrical", "axis: 2, position: 1.0", "initial_travel"),
+        ("Cylindrical", "axis: 2, angle: 1.0", "initial_angle"),
+        ("Revolute", "axis: 2, speed: 1.0", "initial_rate"),
+        ("Prismatic", "axis: 2, speed: 1.0", "initial_rate"),
+        ("Prismatic", "axis: 2, position: 1.0", "initial"),
+    ] {
+        let text = |given: &str| {
+            scene(
+                "Body { mass: 1.0, inertia: 1.0 }",
+                &format!("{joint} {{ {given} }}"),
+            )
+        };
+        let (words, value) = slip.rsplit_once(": ").unwrap();
+        let (front, _) = words
+            .rsplit_once(' ')
+            .map_or(("", words), |(front, _)| (front, ""));
+        let help = typed(&text(slip)).remove(0);
+        assert_eq!(help, format!("{here}: {value}"));
+        assert_eq!(told(&text(&format!("{front} {help}"))), "");
+    }
+}
+
 #[test]
 fn parameters_of_circuits_are_told_by_their_names_here() {
     let circuit = |given: &str| {

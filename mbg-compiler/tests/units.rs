@@ -576,3 +576,20 @@ fn a_prefix_behind_a_number_is_told_as_its_power_of_ten() {
         assert!(told_of.ends_with(help), "{told_of}");
     }
 }
+
+/// A law of which effort and flow would be roots of units is told with the name that it reads.
+#[test]
+fn a_unit_that_makes_roots_is_told_at_its_law() {
+    let text = |unit: &str| {
+        format!(
+            "model M {{ param k{unit} = 1.0; 1 v {{ I m {{ inertia: 2.0 }} C s {{ stiffness: 3.0 }}\nR r {{ effort: k * f }} }} }}"
+        )
+    };
+    insta::assert_snapshot!(reports::told(&text(": 1/s")), @"
+    2:15 the effort of `v` could only be in `kg^(1/2)*m/s^2`, if effort times flow is power [MBG0501]
+      help: declare `k`, which is in `1/s`, in another unit or in none
+      help: or write `1 v pseudo` where effort times flow is no power, as temperature times heat flow
+    ");
+    assert_eq!(reports::told(&text("")), "");
+    assert_eq!(reports::told(&text(": N*s/m")), "");
+}

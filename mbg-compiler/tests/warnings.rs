@@ -106,7 +106,10 @@ fn what_is_handed_on_is_not_told() {
 #[test]
 fn values_at_the_start_that_are_not_used_are_told() {
     let gear = "1 slow { #[derivative] I drum { inertia: 2.0, initial: 1.0 } } wheel -> TF gear { flow: 4.0 } -> slow;";
-    insta::assert_snapshot!(around_a_wheel("", gear), @"3:26 `drum.p` is not 1.0 at the start but 0.0: it follows from other states [MBG0405]");
+    insta::assert_snapshot!(around_a_wheel("", gear), @"
+    3:26 `drum.p` is not 1.0 at the start but 0.0: it follows from other states [MBG0405]
+      help: give it to `rotor`, from which it follows: `initial: 0.125`
+    ");
     // What the state has there anyway may be given.
     let moving = |rate: &str| {
         let gear = gear.replace("initial: 1.0", rate);
@@ -319,6 +322,22 @@ fn gravity_without_weight_is_told() {
     assert_eq!(warned(&read), "");
 }
 
+#[test]
+fn gravity_beside_one_that_is_given_is_told() {
+    let mass = "m: PointMass { mass: 1.0 } (bob);";
+    let text = format!(
+        "gravity [0.0, 0.0, -9.81]; 1 bob[6]; {mass}
+         slide: Prismatic {{ axis: 0, gravity_a: [0.0, 0.0, -1.6] }} (ground, bob);"
+    );
+    let text = format!(
+        "#[derivative] model M {{ causality componentwise; 1 ground[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;\n{text} }}"
+    );
+    insta::assert_snapshot!(warned(&text), @"
+    2:1 `gravity` changes nothing: what has weight is given another [MBG0224]
+      help: remove it
+    ");
+}
+
 /// What a ball joint hands on to the axes of its gimbals.
 #[test]
 fn arguments_without_effect_inside_what_is_called_are_told() {
@@ -392,4 +411,19 @@ fn ports_that_a_component_does_not_bond_are_told() {
         ),
         ""
     );
+}
+
+#[test]
+fn a_start_of_what_follows_is_told_where_it_follows_from() {
+    let gear = |first: &str, second: &str| {
+        format!(
+            "#[derivative] model M {{ 1 a {{ I j {{ inertia: 0.1{first} }} R r {{ resistance: 0.1 }} }}\n1 b {{ I k {{ inertia: 4.0{second} }} }} a -> TF g {{ flow: 0.2 }} -> b; output w = a.f; }}"
+        )
+    };
+    let second = ", initial_flow: 2.0";
+    insta::assert_snapshot!(warned(&gear("", second)), @"
+    2:9 `k.p` is not 8.0 at the start but 0.0: it follows from other states [MBG0405]
+      help: give it to `j`, from which it follows: `initial: 1.0`
+    ");
+    assert_eq!(warned(&gear(", initial: 1.0", second)), "");
 }

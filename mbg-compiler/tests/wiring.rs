@@ -3,7 +3,7 @@
 
 mod told;
 
-use told::told;
+use told::{told, typed};
 
 #[test]
 fn mistakes_at_ports_are_told() {
@@ -111,4 +111,27 @@ fn a_mesh_of_bonds_between_junctions_is_told() {
       2 of its equations say the same thing twice, about bonds between junctions
       help: take one bond of the mesh away: what it says follows from the others
     ");
+}
+
+#[test]
+fn an_element_between_two_junctions_is_told_a_junction_of_its_own() {
+    let nodes = |link: &str| {
+        format!(
+            "model M {{ 0 a {{ C c {{ compliance: 1.0 }} }} 0 b {{ C d {{ compliance: 1.0 }} }}\n{link} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&nodes("a -> R link { resistance: 1.0 } -> b;")), @"
+    2:8 `link` has a port with more than one bond [MBG0209]
+      help: what stands between two junctions has one flow, at a junction of its own: write `1 link_path { R link { resistance: 1.0 } } a -> link_path -> b;`
+    ");
+    let path = "1 link_path { R link { resistance: 1.0 } } a -> link_path -> b;";
+    assert_eq!(told(&nodes(path)), "");
+    let shafts = |link: &str| {
+        format!(
+            "model M {{ 1 a[2] {{ I i {{ inertia: 1.0 }} }} 1 b[2] {{ I j {{ inertia: 1.0 }} }}\n{link} }}"
+        )
+    };
+    let path = "0 s_path[2] { C s { stiffness: 2.0 } } a -> s_path -> b;";
+    assert_eq!(typed(&shafts("a -> C s { stiffness: 2.0 } -> b;")), [path]);
+    assert_eq!(told(&shafts(path)), "");
 }

@@ -14,7 +14,7 @@ use super::ways::{Between, through, turned};
 use super::words::{self, ChainStep};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
-use crate::graph::{Bond, BondGraph, ElementId, End, Rule};
+use crate::graph::{Bond, BondGraph, Element, ElementId, End, Rule};
 
 /// The first way out, where the drawing alone is at fault.
 pub const COMPONENTWISE: &str = "write `causality componentwise;` in the model: one stroke per component instead of one per multibond";
@@ -163,7 +163,22 @@ fn ways_out(
             }
         } else {
             let mut fixed = chain.fixed.iter();
-            helps.extend(fixed.find_map(|id| through(graph, *id, Between::Resistor)));
+            let source = fixed.find_map(|id| Some((id, through(graph, *id, Between::Resistor)?)));
+            if let Some((source, through)) = source {
+                let storages = names(graph, std::iter::once(&chain.storage).chain(others));
+                let felt = imposed(graph, chain.storage);
+                let felt = if felt == "flow" { "effort" } else { "flow" };
+                let is_storage =
+                    |it: &Element| matches!(it.rule, Rule::PreferFlowOut | Rule::PreferEffortOut);
+                let left = graph.elements.iter().filter(|it| is_storage(it)).count();
+                // A model has a state.
+                let is_own = element.instance().is_none() && left > 1 + others.len();
+                let source = name(graph, *source);
+                helps.extend(is_own.then(|| {
+                    format!("remove {storages}, whose {felt} only `{source}` would feel")
+                }));
+                helps.push(through);
+            }
         }
     }
     let resistors = chain.fixed.iter();

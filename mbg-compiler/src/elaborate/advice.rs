@@ -166,7 +166,7 @@ impl Lookup<'_, '_> {
 }
 
 /// `links[2].spring.q`.
-fn text(path: &[Step]) -> String {
+pub(super) fn text(path: &[Step]) -> String {
     let steps = path.iter().map(|step| match step.index {
         Some((index, _)) => format!("{}[{index}]", step.name),
         None => step.name.to_string(),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
+use std::ptr;
 
 use proc_macro2::Span;
 use quote::ToTokens;
@@ -176,12 +177,56 @@ impl Builder<'_> {
                 report.helps = vec![help];
             }
         }
+        let is_zero = elsewhere::number(definition.value) == Some(0.0);
+        if report.code == codes::NOT_FINITE && is_zero {
+            report.helps.extend(self.without_inertia(definition.value));
+        }
         let turns = turns.map(|turns| format!("for roll, pitch and yaw write `{name}: {turns}`"));
         report.helps.splice(0..0, turns);
         let notes = documentation.map(|text| format!("`{name}`: {text}"));
         let inside = inside.map(|message| format!("inside it, {message}"));
         report.notes.extend(notes.into_iter().chain(inside));
         report
+    }
+
+    /// What to type for a body of whose mass and inertia one is zero.
+    fn without_inertia(&self, zero: &Expr) -> Option<String> {
+        let called = self.called.values().map(|(_, instance)| *instance);
+        let (instance, argument) = called.into_iter().find_map(|instance| {
+            let mut arguments = instance.arguments.iter();
+            let argument =
+                arguments.find(|it| it.value.as_ref().is_some_and(|it| ptr::eq(it, zero)));
+            argument.map(|argument| (instance, argument))
+        })?;
+        let (name, at) = (&instance.name, dump::reference(&instance.connections[0]));
+        let (component, zero) = (instance.component.to_string(), argument.name.to_string());
+        let given = |word: &str| {
+            let given = instance.arguments.iter().find(|it| it.name == word);
+            elsewhere::value_text(given.and_then(|it| it.value.as_ref()))
+        };
+        match (component.as_str(), zero.as_str()) {
+            ("Body" | "PlanarBody", "inertia") => {
+                let point = component.replace("Body", "PointMass");
+                let mass = given("mass");
+                Some(format!(
+                    "a mass without extent is written `{name}: {point} {{ mass: {mass} }} ({at});`"
+                ))
+            }
+            ("Body" | "PlanarBody", "mass") => {
+                let inertia = given("inertia");
+                let (size, law, turning) = match component.as_str() {
+                    "Body" => ("[3]", ", gyroscopic", "[0..3]"),
+                    _ => ("", "", "[0]"),
+                };
+                Some(format!(
+                    "what turns without a mass is written `I {name}{size} {{ inertia: {inertia}{law} }} -> {at}{turning};`"
+                ))
+            }
+            ("PointMass" | "PlanarPointMass", "mass") => Some(format!(
+                "remove `{name}`: without a mass it changes nothing"
+            )),
+            _ => None,
+        }
     }
 
     /// Whether a value is a number that is known while the model is compiled.

@@ -6,7 +6,8 @@ use syn::Expr;
 use super::Builder;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::graph::{Bond, ElementId, End, Rule};
+use crate::graph::{Bond, ElementId, End, JunctionKind, Rule, declaration};
+use crate::syntax::dump;
 
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
@@ -143,6 +144,40 @@ impl Builder<'_> {
         }
     }
 
+    /// What to type for `a -> R link { … } -> b`, an element on what two junctions of one kind differ by.
+    fn in_series(&self, id: ElementId) -> Option<String> {
+        let bonds = || self.graph.bonds.iter();
+        let mut into = bonds().filter(|bond| bond.to == End::OnePort(id));
+        let mut out = bonds().filter(|bond| bond.from == End::OnePort(id));
+        let (Some(into), None, Some(out), None) =
+            (into.next(), into.next(), out.next(), out.next())
+        else {
+            return None;
+        };
+        let kind = |end: &End| match end {
+            End::Junction(junction, _) => Some(self.graph.junctions[junction.0].kind),
+            _ => None,
+        };
+        let kind = kind(&into.from).filter(|own| kind(&out.to) == Some(*own))?;
+        let (other, shared) = match kind {
+            JunctionKind::Zero => (JunctionKind::One, "flow"),
+            JunctionKind::One => (JunctionKind::Zero, "effort"),
+        };
+        let (scope, element) = self.written.get(&id)?;
+        let prefix = &self.scopes[*scope].prefix;
+        let names = [&into.from, &out.to].map(|end| self.graph.end_name(end));
+        let [a, b] = names
+            .each_ref()
+            .map(|name| name.strip_prefix(prefix.as_str()).unwrap_or(name));
+        let name = &element.name;
+        let written = dump::element_text(element);
+        let junction = declaration(other, &format!("{name}_path"), into.dimension);
+        Some(format!(
+            "what stands between two junctions has one {shared}, at a junction of its own: write \
+             `{junction} {{ {written} }} {a} -> {name}_path -> {b};`"
+        ))
+    }
+
     fn check_ports(&mut self) {
         let mut counts = vec![[0usize; 2]; self.graph.elements.len()];
         for bond in &self.graph.bonds {
@@ -154,7 +189,7 @@ impl Builder<'_> {
                 }
             }
         }
-        for (element, count) in self.graph.elements.iter().zip(counts) {
+        for (id, (element, count)) in self.graph.elements.iter().zip(counts).enumerate() {
             let two_port = matches!(
                 element.rule,
                 Rule::Transformer { .. } | Rule::Gyrator { .. }
@@ -176,8 +211,10 @@ impl Builder<'_> {
                     .report(error(codes::UNCONNECTED, span, message).help(help));
             } else if count != expected {
                 let message = format!("`{}` has a port with more than one bond", element.name);
-                let help =
-                    "bonds meet at junctions: write the arrow to the element's junction instead";
+                let help = self.in_series(ElementId(id)).unwrap_or_else(|| {
+                    "bonds meet at junctions: write the arrow to the element's junction instead"
+                        .to_owned()
+                });
                 self.diagnostics
                     .report(error(codes::TOO_MANY_BONDS, span, message).help(help));
             }

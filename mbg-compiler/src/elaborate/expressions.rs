@@ -10,7 +10,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Pool, Product, Rate};
 use crate::syntax::dump;
-use crate::syntax::words::JUMPING_INPUT;
+use crate::syntax::words::{FUNCTIONS, JUMPING_INPUT};
 use crate::units::without_unit;
 
 /// What an expression stands for.
@@ -24,40 +24,6 @@ pub enum Value {
 
 /// Variables of an element in its own law: displacement, momentum, effort and flow.
 pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
-
-/// Functions, as messages list them.
-const FUNCTIONS: [&str; 30] = [
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "atan2",
-    "exp",
-    "ln",
-    "sqrt",
-    "abs",
-    "sign",
-    "tanh",
-    "min",
-    "max",
-    "pow",
-    "powi",
-    "interpolate",
-    "diag",
-    "transpose",
-    "skew",
-    "rot_x",
-    "rot_y",
-    "rot_z",
-    "rot",
-    "jacobian_xyz",
-    "jacobian",
-    "matrix_of",
-    "quaternion_of",
-    "angles_of",
-    "rotation",
-];
 
 /// A failed evaluation.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
@@ -282,7 +248,7 @@ impl<N: Names> Evaluator<'_, N> {
         };
         match self.names.value(self.pool, &steps) {
             Some(Err(report)) if report.code == codes::UNKNOWN_NAME => {
-                return Err(match self.names.advice(self.pool, &steps) {
+                return Err(match self.advice(&steps) {
                     Some(help) => Box::new(report.help(help)),
                     None => report,
                 });
@@ -307,19 +273,17 @@ impl<N: Names> Evaluator<'_, N> {
             if !self.names.all().iter().any(|name| first == name) {
                 let message = format!("`{first}` is not declared");
                 let report = error(codes::UNKNOWN_NAME, first.span(), message);
-                return Err(Box::new(match self.names.advice(self.pool, &steps) {
+                return Err(Box::new(match self.advice(&steps) {
                     Some(help) => report.help(help),
                     None => report.did_you_mean(&first.to_string(), &self.names.all()),
                 }));
             }
         }
         let help = elsewhere::instead(&text, &[]);
-        Err(Box::new(
-            match help.or_else(|| self.names.advice(self.pool, &steps)) {
-                Some(help) => report.help(help),
-                None => report.did_you_mean(&text, &self.names.all()),
-            },
-        ))
+        Err(Box::new(match help.or_else(|| self.advice(&steps)) {
+            Some(help) => report.help(help),
+            None => report.did_you_mean(&text, &self.names.all()),
+        }))
     }
 
     /// The steps of a dotted path; none if it does not begin with a name.

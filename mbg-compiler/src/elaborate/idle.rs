@@ -63,14 +63,24 @@ impl Builder<'_> {
             return None;
         };
         let gravity = &self.definitions[*id];
-        let is_unread = matches!(gravity.progress, Progress::Unread);
-        let message = "`gravity` changes nothing: the model has no weight";
-        let report = error(codes::NO_EFFECT, gravity.name.span(), message);
-        is_unread.then(|| {
-            report.help(
+        if !matches!(gravity.progress, Progress::Unread) {
+            return None;
+        }
+        // What weighs may be given a gravity of its own.
+        let weighs = self.definitions.iter().any(|it| {
+            let of_frame = it.name.to_string().starts_with(GRAVITY) && it.parameter.is_some();
+            of_frame && !matches!(it.progress, Progress::Unread)
+        });
+        let (reason, help) = match weighs {
+            true => ("what has weight is given another", "remove it"),
+            false => (
+                "the model has no weight",
                 "remove it, or give a frame a body: `body: Body { mass: …, inertia: … } (arm);`",
-            )
-        })
+            ),
+        };
+        let message = format!("`gravity` changes nothing: {reason}");
+        let report = error(codes::NO_EFFECT, gravity.name.span(), message);
+        Some(report.help(help))
     }
 
     /// The 1-junctions that sources hold still as a whole, and at which nobody asks for an effort.

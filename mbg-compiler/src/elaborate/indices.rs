@@ -5,6 +5,7 @@ use syn::punctuated::Punctuated;
 use syn::spanned::Spanned;
 use syn::{Expr, RangeLimits, Token};
 
+use super::advice;
 use super::expressions::{Evaluator, Names, Result, Step, Value, fail, mismatch};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -31,6 +32,24 @@ impl<N: Names> Evaluator<'_, N> {
             _ if component_index(name).is_none() => None,
             value => Some(value.and_then(|value| self.component(value, name))),
         }
+    }
+
+    /// What to write for a path without a value.
+    pub(super) fn advice(&mut self, steps: &[Step]) -> Option<String> {
+        let of_row = self.entry_by_letter(steps);
+        of_row.or_else(|| self.names.advice(self.pool, steps))
+    }
+
+    /// `a[1][0]` for `a[1].x`, where `a` is a matrix: a row of it is a vector, but no name.
+    fn entry_by_letter(&mut self, steps: &[Step]) -> Option<String> {
+        let (last, front) = steps.split_last()?;
+        let column = component_index(&last.name)?;
+        let mut matrix = front.to_vec();
+        let (row, _) = matrix.last_mut()?.index.take()?;
+        let value = self.names.value(self.pool, &matrix)?.ok()?;
+        let is_matrix = matches!(&value, Value::Matrix(it) if it.columns() > column.max(1));
+        let matrix = advice::text(&matrix);
+        is_matrix.then(|| format!("write `{matrix}[{row}][{column}]`"))
     }
 
     /// The component `x`, `y` or `z`.

@@ -494,11 +494,7 @@ impl Reader<'_, '_, '_> {
                     };
                     let mut report = error(codes::NOT_FINITE, span, message);
                     if is_diagonal && value == 0.0 {
-                        report = report.help(format!(
-                            "write a number far below the others in the place of the 0, such as `{}`: nothing that is \
-                             visible changes",
-                            self.negligible(matrix)
-                        ));
+                        report.helps.extend(self.instead_of_zero(matrix));
                     }
                     return Err(Box::new(report));
                 }
@@ -515,15 +511,25 @@ impl Reader<'_, '_, '_> {
         Ok(assumptions)
     }
 
-    /// The power of ten that is about a millionth of the largest entry whose value is known, or of one.
-    fn negligible(&self, matrix: &Matrix) -> String {
-        let known = matrix
-            .entries
-            .iter()
-            .filter_map(|it| self.pool.constant_value(*it));
-        let largest = known.fold(0.0, f64::max);
-        let largest: f64 = if largest > 0.0 { largest } else { 1.0 };
-        format!("1e{}", largest.log10().floor() - 6.0)
+    /// What to write for a 0 in an inertia: a millionth of the largest other entry. Of a whole that is zero no number is
+    /// small beside it, and the rest of the model, of which one may be, is not known here.
+    fn instead_of_zero(&self, matrix: &Matrix) -> Option<String> {
+        let place = "write a number far below the others in the place of the 0, such as";
+        let values = matrix.entries.iter();
+        let values = values.map(|it| self.pool.constant_value(*it));
+        let largest = values.clone().flatten().fold(0.0, f64::max);
+        if largest > 0.0 {
+            let exponent = largest.log10().floor() - 6.0;
+            return Some(format!(
+                "{place} `1e{exponent}`: nothing that is visible changes"
+            ));
+        }
+        if values.clone().any(|it| it.is_none()) {
+            return Some(format!("{place} a millionth of one of them: `1e-6 * …`"));
+        }
+        let is_own = self.lookup.scopes[self.lookup.scope].library.is_none();
+        let name = &self.element.name;
+        is_own.then(|| format!("remove `{name}`: without an inertia it changes nothing"))
     }
 
     pub(super) fn initial(&mut self, coenergy: &[Expression]) -> Result<Option<Vec<Expression>>> {

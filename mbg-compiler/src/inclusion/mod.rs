@@ -20,6 +20,7 @@ use quote::quote;
 
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
+use crate::syntax::cursor::dissolved;
 
 /// What reads a file, given its path as it is written.
 pub type Read<'a> = dyn Fn(&str) -> io::Result<String> + 'a;
@@ -181,7 +182,8 @@ impl Inclusion {
 
 /// The statements at the top, and what is left.
 fn split(tokens: TokenStream) -> (Vec<Statement>, TokenStream) {
-    let trees: Vec<TokenTree> = tokens.into_iter().collect();
+    // What a `macro_rules!` hands on stands in groups that nobody wrote.
+    let trees = dissolved(tokens);
     let mut statements = Vec::new();
     while let Some(statement) = trees.get(LENGTH * statements.len()..).and_then(first) {
         statements.push(statement);

@@ -149,15 +149,24 @@ impl Reducer<'_> {
                 element.name
             );
             let span = model.graph.origins.span(element.origin);
-            let mut others = (0..model.graph.elements.len()).map(ElementId);
-            let linear = others.any(|other| self.inverse(model, other).is_some());
-            let linear = linear.then_some(
+            let own = lost.iter().filter(|lost| lost.element == id);
+            let causes: BTreeSet<ElementId> = own
+                .flat_map(|lost| &lost.causes)
+                .filter_map(|cause| match cause {
+                    Owner::Element(other, _) => Some(*other),
+                    _ => None,
+                })
+                .collect();
+            let mut others = causes.iter();
+            let linear = others.any(|other| self.inverse(model, *other).is_some());
+            let linear = linear.then(|| {
                 "write `#[derivative]` before another of the storages alone, whose law is linear, so that this one stays \
-                 a state",
-            );
-            let helps = linear.into_iter().chain([apart(element.kind)]);
+                 a state"
+                    .to_owned()
+            });
+            let helps = linear.into_iter().chain([apart(model, id, &causes)]);
             let mut report = error(codes::ORDER_LOST_UNSUPPORTED, span, message);
-            report.helps = alternatives(helps.map(str::to_owned).collect());
+            report.helps = alternatives(helps.collect());
             diagnostics.report(report);
         }
         inverses

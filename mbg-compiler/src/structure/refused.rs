@@ -1,21 +1,33 @@
 //! Dependences between storages that are accepted by `#[derivative]`, and not supported all the same.
 
+use std::collections::BTreeSet;
+
 use crate::causality::outlook::IN_PLACE;
 use crate::causality::ways::{Between, through};
 use crate::changes;
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
+use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::{Elaborated, Variable};
 use crate::equations::Owner;
-use crate::graph::{Element, ElementId, ElementKind};
+use crate::graph::{Element, ElementId, ElementKind, Law};
 use crate::symbolic::{Evaluation, Expression, Pool, Symbol};
 
-/// What keeps storages of a kind from depending on each other.
-pub(super) fn apart(kind: ElementKind) -> &'static str {
-    match kind {
-        ElementKind::I => "put a spring and a damper between them",
-        _ => "put a resistor between them",
-    }
+/// What keeps a storage from depending on its causes, other storages or sources alone.
+pub(super) fn apart(model: &Elaborated, id: ElementId, causes: &BTreeSet<ElementId>) -> String {
+    let elements = &model.graph.elements;
+    let what = match elements[id.0].kind {
+        ElementKind::I => "a spring and a damper",
+        _ => "a resistor",
+    };
+    let is_storage = |id: &ElementId| matches!(elements[id.0].law, Law::Storage(_));
+    let between = match causes.iter().any(is_storage) || causes.is_empty() {
+        true => "them".to_owned(),
+        false => {
+            let names = causes.iter().map(|id| elements[id.0].name.clone());
+            format!("`{}` and {}", elements[id.0].name, listing(names))
+        }
+    };
+    format!("put {what} between {between}")
 }
 
 /// A storage that depends on rates.

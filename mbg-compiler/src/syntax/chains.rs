@@ -124,6 +124,10 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
         "`{`" | "`(`" => match node {
             Some(ChainNode::Reference(reference)) => {
                 let name = &reference.path.last()?.name;
+                let law = cursor.group(0, Delimiter::Parenthesis);
+                if let Some(help) = law.and_then(|law| slips::nameless(&name.to_string(), law)) {
+                    return Some(Box::new((*cursor.expected(&wanted)).help(help)));
+                }
                 if let Some(help) = slips::ahead(cursor, 0, "name", &name.to_string()) {
                     return Some(Box::new((*cursor.expected(&wanted)).help(help)));
                 }

@@ -376,7 +376,7 @@ fn shortened(text: &str) -> String {
 }
 
 /// The tokens, without the invisible groups around single tokens that `macro_rules!` leaves.
-fn dissolved(stream: TokenStream) -> Vec<TokenTree> {
+pub(crate) fn dissolved(stream: TokenStream) -> Vec<TokenTree> {
     let mut tokens = Vec::new();
     for mut token in stream {
         while let TokenTree::Group(group) = &token {

@@ -262,7 +262,8 @@ fn write_conditional(text: &mut String, it: &Conditional) -> fmt::Result {
     Ok(())
 }
 
-fn element_text(element: &Element) -> String {
+/// An element as it is written.
+pub(crate) fn element_text(element: &Element) -> String {
     let mark = if element.derivative.is_some() {
         "#[derivative] "
     } else {

@@ -11,6 +11,9 @@ use super::{slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
+/// Words whose values read the variables of their element.
+const LAWS: [&str; 4] = ["effort", "flow", "energy", "momentum"];
+
 /// The element whose kind stands `offset` places ahead.
 pub(super) fn kind(cursor: &Cursor, offset: usize) -> Option<ElementKind> {
     words::element(&cursor.ident(offset)?.to_string())
@@ -71,6 +74,7 @@ pub(super) fn fields(group: &Group, owner: &str, sink: &mut Sink<'_>) -> Parsed<
             None
         };
         let bare = value.is_none();
+        let is_law = LAWS.iter().any(|law| name == law);
         if fields.iter().any(|field| field.name == name) {
             sink.error(
                 codes::FIELD_REPEATED,
@@ -81,7 +85,7 @@ pub(super) fn fields(group: &Group, owner: &str, sink: &mut Sink<'_>) -> Parsed<
             fields.push(Field { name, value });
         }
         if !cursor.ended() && !cursor.take_punct(',') {
-            let error = unseparated(&cursor, bare);
+            let error = unseparated(&cursor, bare, is_law);
             if cursor.take_punct(';') {
                 sink.report(error);
                 continue;
@@ -100,7 +104,7 @@ pub(super) fn fields(group: &Group, owner: &str, sink: &mut Sink<'_>) -> Parsed<
 }
 
 /// Neither the end nor a comma follows a word or its value.
-fn unseparated(cursor: &Cursor, bare: bool) -> Box<Diagnostic> {
+fn unseparated(cursor: &Cursor, bare: bool, is_law: bool) -> Box<Diagnostic> {
     let wanted = if bare {
         "`:`, `,` or `}`"
     } else {
@@ -114,7 +118,10 @@ fn unseparated(cursor: &Cursor, bare: bool) -> Box<Diagnostic> {
         error = error.help("commas stand between the words of an element");
     }
     if !bare {
-        error.helps.extend(slips::behind_value(cursor));
+        error.helps.extend(match is_law {
+            true => slips::behind_law(cursor),
+            false => slips::behind_value(cursor),
+        });
     }
     Box::new(error)
 }

@@ -1,6 +1,7 @@
 //! Statements of other languages, and what is written here instead.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
+use syn::{BinOp, Expr, ExprBinary};
 
 use super::cursor::Cursor;
 use super::dump;
@@ -31,6 +32,8 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
                 "a bond is written with an arrow: `{from} -> {to};`"
             ))
         }
+        "fn" | "function" | "def" => function(cursor),
+        "assert" => Some(assertion(arguments()?)),
         "bond" if cursor.arrow(2) => Some(format!(
             "a bond is written without a word before it: `{};`",
             dump::tokens(until_end(cursor, 1))
@@ -51,6 +54,45 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             declaration(cursor, here)
         }
     }
+}
+
+/// `fn square(x) = x * x;`
+fn function(cursor: &Cursor) -> Option<String> {
+    let name = cursor.ident(1)?;
+    let parameters = cursor.group(2, Delimiter::Parenthesis)?;
+    let value = match cursor.punct(3, '=') {
+        true => dump::tokens(until_end(cursor, 4)),
+        false => "…".to_owned(),
+    };
+    Some(format!(
+        "functions are not declared: write `let {name} = {value};` with what is read in the place of `{}`, or give elements \
+         with one law to a `component`",
+        dump::tokens(parameters.stream())
+    ))
+}
+
+/// `assert(a > b);`
+fn assertion(condition: &Group) -> String {
+    let condition = syn::parse2::<ExprBinary>(condition.stream());
+    let sides = condition.ok().and_then(|it| match it.op {
+        BinOp::Gt(_) | BinOp::Ge(_) => Some((it.left, it.right)),
+        BinOp::Lt(_) | BinOp::Le(_) => Some((it.right, it.left)),
+        _ => None,
+    });
+    let margin = match sides {
+        Some((large, small)) => {
+            let small = match *small {
+                Expr::Binary(_) | Expr::If(_) => format!("({})", dump::expression(&small)),
+                _ => dump::expression(&small),
+            };
+            format!("{} - {small}", dump::expression(&large))
+        }
+        None => "…".to_owned(),
+    };
+    format!(
+        "a model asserts nothing: what runs it checks an output that is positive while all is well, \
+         `output margin = {margin};`"
+    )
 }
 
 /// `parameter Real mass(min = 0) = 1.0 "of it";` as it is declared here, without its type, its attributes and its comment.

@@ -12,7 +12,7 @@ pub mod ast;
 mod attributes;
 mod chains;
 mod choices;
-mod cursor;
+pub(crate) mod cursor;
 mod depth;
 pub mod dump;
 mod elements;

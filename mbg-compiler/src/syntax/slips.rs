@@ -71,6 +71,18 @@ pub(super) fn without_word(fields: &Group, law: &str) -> Option<String> {
     })
 }
 
+/// What to type for `GY(0.1)`, an element without a name and without a word before its value.
+pub(super) fn nameless(kind: &str, law: &Group) -> Option<String> {
+    let [first, ..] = words::law_words(words::element(kind)?) else {
+        return None;
+    };
+    let value = dump::tokens(law.stream());
+    let value = if value.is_empty() { "…" } else { &value };
+    Some(format!(
+        "an element has a name, and its law stands in braces behind a word: `{kind} name {{ {first}: {value} }}`"
+    ))
+}
+
 /// What to type in a junction for `mass: I { … }`, and for choices and loops of elements.
 pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
     let word = cursor.ident(0)?;
@@ -129,6 +141,15 @@ const BETWEEN: &[&str] = &[
 
 /// What to type for a word that stands behind a value, or for a number with a unit.
 pub(super) fn behind_value(cursor: &Cursor) -> Vec<String> {
+    between(cursor, false)
+}
+
+/// The same in a law, whose own variables are read more often than a prefix is written.
+pub(super) fn behind_law(cursor: &Cursor) -> Vec<String> {
+    between(cursor, true)
+}
+
+fn between(cursor: &Cursor, is_law: bool) -> Vec<String> {
     let (Some(before), Some(word)) = (cursor.last(), cursor.ident(0)) else {
         return Vec::new();
     };
@@ -142,12 +163,23 @@ pub(super) fn behind_value(cursor: &Cursor) -> Vec<String> {
     let before = before.to_string();
     match call {
         Some(call) => vec![format!("for a product write `{before} * {word}{call}`")],
-        None => multiplied(&before, &word.to_string()),
+        None => {
+            let mut helps = multiplied(&before, &word.to_string());
+            if is_law && ["e", "f", "p", "q"].iter().any(|own| word == own) {
+                helps.reverse();
+            }
+            helps
+        }
     }
 }
 
 /// What to type for two values side by side.
 fn multiplied(first: &str, second: &str) -> Vec<String> {
+    if words::FUNCTIONS.contains(&first) {
+        return vec![format!(
+            "the arguments of a function stand in parentheses: `{first}({second})`"
+        )];
+    }
     let is_number = first.starts_with(|digit: char| digit.is_ascii_digit());
     // Time is told more often than a tonne.
     let unit = without_unit(first, second).filter(|_| is_number && second != "t");

@@ -44,6 +44,40 @@ pub(super) const ELEMENTS: &[(&str, ElementKind)] = &[
     ("EJS", ElementKind::EJS),
 ];
 
+/// Functions, as messages list them.
+pub(crate) const FUNCTIONS: [&str; 30] = [
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan2",
+    "exp",
+    "ln",
+    "sqrt",
+    "abs",
+    "sign",
+    "tanh",
+    "min",
+    "max",
+    "pow",
+    "powi",
+    "interpolate",
+    "diag",
+    "transpose",
+    "skew",
+    "rot_x",
+    "rot_y",
+    "rot_z",
+    "rot",
+    "jacobian_xyz",
+    "jacobian",
+    "matrix_of",
+    "quaternion_of",
+    "angles_of",
+    "rotation",
+];
+
 /// What cannot be a name, because the generated code could not spell it.
 const RESERVED: &[&str] = &[
     "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",

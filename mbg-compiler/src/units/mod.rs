@@ -414,10 +414,15 @@ pub(super) fn expression_text(
     pool: &Pool,
     expression: Expression,
 ) -> String {
-    let name = |symbol: Symbol| match symbol {
+    let name = |symbol: Symbol| symbol_text(model, claims, symbol);
+    crate::symbolic::print::Printer::new(pool, &name).text(expression)
+}
+
+/// The name of what a symbol stands for.
+fn symbol_text(model: &Elaborated, claims: &Claims, symbol: Symbol) -> String {
+    match symbol {
         Symbol::Unknown(index) => claims.hidden[index].text.clone(),
         Symbol::Signal(index) => report::signal_text(model, claims.signals.list()[index]),
         other => model.symbol_text(other),
-    };
-    crate::symbolic::print::Printer::new(pool, &name).text(expression)
+    }
 }

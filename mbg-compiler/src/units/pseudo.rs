@@ -93,7 +93,7 @@ pub(super) fn places(
 }
 
 /// The junctions to which an element is bonded.
-fn around(graph: &BondGraph, id: ElementId) -> Vec<JunctionId> {
+pub(super) fn around(graph: &BondGraph, id: ElementId) -> Vec<JunctionId> {
     let own = |end: &End| matches!(end, End::OnePort(other) | End::In(other) | End::Out(other) if *other == id);
     let bonds = graph.bonds.iter().filter_map(|bond| match bond {
         bond if own(&bond.from) => junction(&bond.to),

@@ -5,12 +5,14 @@ use std::collections::BTreeSet;
 use super::dimension::Dimension;
 use super::inference::Mismatch;
 use super::ports::Mistake;
-use super::{expression_text, names, pseudo};
+use super::{expression_text, names, pseudo, symbol_text};
+use crate::causality::report::alternatives;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::claims::{Claim, Claims, Site, Subject};
 use crate::elaborate::{Elaborated, Place, Quantity, Signal};
 use crate::graph::{ElementId, ElementKind, JunctionId, OriginId, component_name};
+use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Expression, Operation, Pool, Symbol};
 use crate::syntax::ast::Unit;
 
@@ -102,21 +104,13 @@ impl<'a> Reporter<'a> {
 
     /// Whether a law is one of numbers alone: it reads no name with a declared unit.
     pub(super) fn is_numeric(&self, claim: &Claim) -> bool {
-        if !matches!(claim.subject, Subject::Word(..)) {
-            return false;
-        }
-        let mut open = claim.entries.clone();
-        let mut seen = BTreeSet::new();
-        while let Some(current) = open.pop() {
-            let operation = self.pool.operation(current);
-            if matches!(operation, Operation::Symbol(symbol) if self.declared.contains(symbol)) {
-                return false;
-            }
-            if seen.insert(current.node()) {
-                open.extend_from_slice(&operation.operands());
-            }
-        }
-        true
+        matches!(claim.subject, Subject::Word(..)) && self.read_by(claim).is_empty()
+    }
+
+    /// The names with a declared unit that are read.
+    fn read_by(&self, claim: &Claim) -> BTreeSet<Symbol> {
+        let read = symbols(self.pool, &claim.entries).into_iter();
+        read.filter(|it| self.declared.contains(it)).collect()
     }
 
     /// Two units, or by what they differ where one of them is not known.
@@ -310,21 +304,50 @@ impl<'a> Reporter<'a> {
     pub(super) fn root(&mut self, id: JunctionId, unit: &Dimension) {
         let graph = &self.model.graph;
         let junction = &graph.junctions[id.0];
-        let span = graph.origins.span(junction.origin);
+        let place = Site {
+            span: graph.origins.span(junction.origin),
+            library: None,
+        };
         let message = format!(
             "the effort of `{}` could only be in {}, if effort times flow is power",
             junction.name,
             unit_text(unit)
         );
-        let mut report = error(codes::UNIT_MISMATCH, span, message);
-        report.helps.extend(pseudo::advice(graph, &[id]));
-        self.tell(
-            &Site {
-                span,
-                library: None,
-            },
-            report,
-        );
+        let (place, declared) = self.only_law(id).unwrap_or((place, None));
+        let mut report = error(codes::UNIT_MISMATCH, place.span, message);
+        let advice = pseudo::advice(graph, &[id]);
+        let helps = declared.into_iter().chain(advice);
+        report.helps = alternatives(helps.collect());
+        self.tell(&place, report);
+    }
+
+    /// The only law at a junction that reads names with units, and what to do where that is one name.
+    fn only_law(&self, id: JunctionId) -> Option<(Site, Option<String>)> {
+        let graph = &self.model.graph;
+        let claims = self.claims.list.iter();
+        let laws = claims.filter_map(|claim| match &claim.subject {
+            Subject::Word(element, _) if pseudo::around(graph, *element).contains(&id) => {
+                Some((claim, self.read_by(claim)))
+            }
+            _ => None,
+        });
+        let laws: Vec<_> = laws.filter(|(_, read)| !read.is_empty()).collect();
+        let [(claim, read)] = &laws[..] else {
+            return None;
+        };
+        let mut units = self.claims.units.iter();
+        let declared = match read.iter().collect::<Vec<_>>()[..] {
+            [only] => units.find(|(symbol, ..)| symbol == only),
+            _ => None,
+        };
+        let help = declared.map(|(symbol, unit, _)| {
+            let name = symbol_text(self.model, self.claims, *symbol);
+            format!(
+                "declare `{name}`, which is in `{}`, in another unit or in none",
+                unit.text
+            )
+        });
+        Some((claim.place.clone(), help))
     }
 
     /// A bond between a junction of pseudo bonds and one of true bonds.

@@ -585,7 +585,7 @@ fn components_are_told_by_their_names_in_the_other_space() {
 fn a_storage_across_a_source_is_told_first() {
     let driven = |coil: &str| {
         format!(
-            "model M {{ input amp: A; 1 v {{ Sf s {{ flow: amp }} {coil} R r {{ resistance: 1.0 }} }} output y = s.e; }}"
+            "model M {{ input amp: A; 1 v {{ Sf s {{ flow: amp }} {coil} C c {{ stiffness: 1.0 }} }} output y = s.e; }}"
         )
     };
     let told = helps(

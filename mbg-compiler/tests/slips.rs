@@ -54,6 +54,12 @@ fn a_keyword_as_a_name_is_told_as_that() {
     2:1 expected the label of a loop, found the keyword `loop` [MBG0101]
       help: write another name, such as `loop_`
     ");
+    for keyword in ["in", "as", "gen", "use"] {
+        let text = |name: &str| format!("model M {{ 1 {name} {{ I i {{ inertia: 1.0 }} }} }}");
+        let name = typed(&text(keyword)).remove(0);
+        assert_eq!(name, format!("{keyword}_"));
+        assert_eq!(told(&text(&name)), "");
+    }
     // What is read of it is not told besides.
     let read = "crate: Revolute { axis: 0 } (ground, arm); output angle = crate.angle;";
     assert_eq!(typed(&arm(read)), ["crate_"]);

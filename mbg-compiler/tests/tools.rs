@@ -214,3 +214,70 @@ fn what_is_made_of_elements_is_told_with_them() {
       help: here it is written `I m { inertia: … } -> v;`
     ");
 }
+
+#[test]
+fn an_effort_at_the_start_is_told_as_a_state() {
+    let text = |law: &str, start: &str| {
+        format!("model M {{ 0 n {{ C c {{ {law}, {start} }} R r {{ resistance: 1.0 }} }} }}")
+    };
+    for (law, slip, here) in [
+        (
+            "compliance: 2.0",
+            "initial_effort: 3.0",
+            "initial: 2.0 * 3.0",
+        ),
+        (
+            "stiffness: 2.0",
+            "initial_voltage: 3.0",
+            "initial: 3.0 / 2.0",
+        ),
+        ("effort: 2.0 * q", "initial_effort: 3.0", "initial: …"),
+    ] {
+        assert_eq!(typed(&text(law, slip)), [here]);
+        assert_eq!(told(&text(law, &here.replace('…', "1.5"))), "");
+    }
+}
+
+#[test]
+fn amplifiers_and_tanks_are_told_as_elements() {
+    let circuit = |given: &str| {
+        format!(
+            "model M {{ 0 a {{ C c {{ compliance: 1.0 }} R q {{ resistance: 1.0 }} }} 0 b {{ C d {{ compliance: 1.0 }} }}
+             0 out {{ R r {{ resistance: 1.0 }} }}\n{given} }}"
+        )
+    };
+    for (slip, here) in [
+        (
+            "amp: OpAmp { } (a, b, out);",
+            "Se amp { effort: 1e5 * (a.e - b.e) } -> out;",
+        ),
+        (
+            "t: Tank { area: 1.0 } (out);",
+            "C t { compliance: … } -> out;",
+        ),
+    ] {
+        assert_eq!(typed(&circuit(slip)), [here]);
+        assert_eq!(told(&circuit(&here.replace('…', "1.0"))), "");
+    }
+}
+
+#[test]
+fn a_diagonal_of_a_vector_is_told_by_its_components() {
+    let body = |inertia: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; param j[3]: kg*m^2 = [1.0, 2.0, 2.0]; 1 arm[6];
+             body: Body {{ mass: 1.0, inertia: {inertia} }} (arm); }}"
+        )
+    };
+    for (slip, here) in [
+        ("diag(j)", "diag(j.x, j.y, j.z)"),
+        ("diag([1.0, 2.0, 2.0])", "diag(1.0, 2.0, 2.0)"),
+    ] {
+        assert!(
+            told(&body(slip)).contains(&format!("write `{here}`")),
+            "{}",
+            told(&body(slip))
+        );
+        assert_eq!(told(&body(here)), "");
+    }
+}

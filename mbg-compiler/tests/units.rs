@@ -338,7 +338,7 @@ fn a_unit_in_another_spelling_is_answered_with_the_text_to_type() {
         assert!(mended.is_empty(), "{unit}: {mended:#?}");
     }
     // What differs by a letter may be another quantity.
-    for unit in ["furlong", "kkg", "lmn", "mo", "M"] {
+    for unit in ["furlong", "kkg", "lmn", "mo", "P"] {
         let (_, text) = told(&mass(&format!("param x: {unit} = 1.0;")));
         let help = "help: units are products of powers of kg, m, s, A, K";
         assert!(
@@ -592,4 +592,67 @@ fn a_unit_that_makes_roots_is_told_at_its_law() {
     ");
     assert_eq!(reports::told(&text("")), "");
     assert_eq!(reports::told(&text(": N*s/m")), "");
+}
+
+/// A voltage times a current per area is no power.
+#[test]
+fn laws_per_area_are_told_as_pseudo_bonds() {
+    let membrane = |mark: &str| {
+        format!(
+            "model M {{ param g: S/m^2 = 12.0; param c: F/m^2 = 0.01; param rest: V = 0.05; input i: A/m^2;
+             0 n{mark} {{ C s {{ compliance: c }} R r {{ flow: g * (e - rest) }} Sf clamp {{ flow: i }} }}
+             output v: V = s.e; }}"
+        )
+    };
+    insta::assert_snapshot!(reports::told(&membrane("")), @"
+    2:16 the effort of `n` is `V` and its flow `A/m^2`: their product is no power [MBG0501]
+      help: write `0 n pseudo` where effort times flow is no power, as temperature times heat flow
+    ");
+    assert_eq!(reports::told(&membrane(" pseudo")), "");
+    // A unit that is wrong by an area is one that is wrong.
+    let mistaken = membrane("").replace("rest: V", "rest: A");
+    assert!(!reports::told(&mistaken).contains("pseudo"));
+}
+
+#[test]
+fn a_variable_in_a_logarithm_is_told_with_a_quotient() {
+    let pool = |law: &str| {
+        format!(
+            "model M {{ param rt: J/mol = 2479.0; 0 a {{ C x {{ effort: rt * {law}, initial: 1.0 }} R r {{ conductance: 1.0 }} }}
+             output n: mol = x.q; }}"
+        )
+    };
+    let told = diagnose(&pool("ln(q)"));
+    let help =
+        "`ln` takes a pure number, which makes `q` one: where it has a unit write `ln(q / 1.0)`";
+    assert_eq!(told[0].helps, [help]);
+    assert_eq!(reports::told(&pool("ln(q / 1.0)")), "");
+}
+
+#[test]
+fn units_of_other_trades_are_told_with_their_factors() {
+    for (unit, here, factor) in [
+        ("Torr", "Pa", 101_325.0 / 760.0),
+        ("cmH2O", "Pa", 98.0665),
+        ("cP", "Pa*s", 1e-3),
+        ("cSt", "m^2/s", 1e-6),
+        ("gpm", "m^3/s", 3.785_411_784e-3 / 60.0),
+        ("lpm", "m^3/s", 1e-3 / 60.0),
+        ("dL", "m^3", 1e-4),
+        ("M", "mol/m^3", 1e3),
+        ("uM", "mol/m^3", 1e-3),
+        ("BTU", "J", 1055.055_852_62),
+        ("year", "s", 31_557_600.0),
+        ("ppm", "1", 1e-6),
+        ("%", "1", 0.01),
+    ] {
+        let help = &diagnose(&mass(&format!("param _x: {unit} = 1.0;")))[0].helps[0];
+        let (text, number) = help.split_once(", and each value times ").unwrap();
+        assert_eq!(text, format!("write `{here}`"));
+        let number: f64 = number.parse().unwrap();
+        assert!((number / factor - 1.0).abs() < 1e-12, "{unit}: {number}");
+        assert!(diagnose(&mass(&format!("param _x: {here} = 1.0;"))).is_empty());
+    }
+    // These are as large as those of SI.
+    assert!(diagnose(&mass("param _x: mM = 1.0; param _y: kat = 1.0;")).is_empty());
 }

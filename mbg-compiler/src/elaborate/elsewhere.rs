@@ -7,6 +7,7 @@ use syn::{BinOp, Expr, ExprBinary, Lit, Member, UnOp};
 use super::constants::plain_name;
 use super::indices::component_index;
 use crate::graph::ElementKind;
+use crate::syntax::ast::Element;
 use crate::syntax::dump;
 use crate::syntax::words::JUMPING_INPUT;
 
@@ -18,6 +19,10 @@ const CHOICE: &str = "(if a { b } else { c })";
 
 /// What is zero up to a width on both sides.
 const DEAD_ZONE: &str = "(sign(x) * max(abs(x) - width, 0.0))";
+
+const ASINH: &str = "ln(x + sqrt(x * x + 1))";
+const ACOSH: &str = "ln(x + sqrt(x * x - 1))";
+const ATANH: &str = "(ln((1 + x) / (1 - x)) / 2)";
 
 /// A word, its arguments, and what is written here: in parentheses where another operator could come between.
 const WORDS: &[(&str, &[&str], &str)] = &[
@@ -34,6 +39,16 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("arccos", &["x"], "acos(x)"),
     ("sinh", &["x"], "((exp(x) - exp(-x)) / 2)"),
     ("cosh", &["x"], "((exp(x) + exp(-x)) / 2)"),
+    ("asinh", &["x"], ASINH),
+    ("arsinh", &["x"], ASINH),
+    ("acosh", &["x"], ACOSH),
+    ("arcosh", &["x"], ACOSH),
+    ("atanh", &["x"], ATANH),
+    ("artanh", &["x"], ATANH),
+    ("expm1", &["x"], "(exp(x) - 1)"),
+    ("exp_m1", &["x"], "(exp(x) - 1)"),
+    ("log1p", &["x"], "ln(1 + x)"),
+    ("ln_1p", &["x"], "ln(1 + x)"),
     ("log", &["x"], "ln(x)"),
     ("log10", &["x"], "(ln(x) / ln(10.0))"),
     ("log2", &["x"], "(ln(x) / ln(2.0))"),
@@ -135,6 +150,15 @@ const STARTS: &[(ElementKind, &[&str], &str)] = &[
     ),
 ];
 
+/// What the effort of a compliance at the start is called.
+const EFFORTS: &[&str] = &[
+    "initial_effort",
+    "initial_voltage",
+    "initial_force",
+    "initial_pressure",
+    "initial_temperature",
+];
+
 /// What the number of a transformer or gyrator is called.
 const RATIOS: &[&str] = &["ratio", "modulus", "gain", "n", "m", "r"];
 
@@ -161,6 +185,30 @@ fn here(
     let mut own = table.iter().filter(|(owner, ..)| *owner == kind);
     let (.., here) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
     Some(format!("write `{here}: {}`", value_text(value)))
+}
+
+/// What to type for a compliance that is given its effort at the start in the place of its state.
+pub(super) fn effort_at_start(
+    element: &Element,
+    word: &Ident,
+    value: Option<&Expr>,
+) -> Option<String> {
+    let is_effort = EFFORTS.iter().any(|effort| word == effort);
+    let value = value.filter(|_| is_effort && element.kind == ElementKind::C)?;
+    let law = |word: &str| {
+        let law = element.fields.iter().find(|field| field.name == word);
+        law.and_then(|law| law.value.as_ref())
+    };
+    let start = match (law("compliance"), law("stiffness")) {
+        (Some(compliance), _) => filled("c * x", &[("c", compliance), ("x", value)]),
+        (_, Some(stiffness)) => filled("x / k", &[("k", stiffness), ("x", value)]),
+        _ => {
+            return Some(
+                "write `initial: …` with the `q` at which its law gives this effort".to_owned(),
+            );
+        }
+    };
+    Some(format!("write `initial: {start}`: its state is `q`"))
 }
 
 /// What stands behind a word, or a place for it.

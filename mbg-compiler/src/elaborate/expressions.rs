@@ -553,6 +553,9 @@ impl<N: Names> Evaluator<'_, N> {
                 }
             }
             "diag" => {
+                if let [vector] = arguments {
+                    self.check_entries(vector)?;
+                }
                 let entries: Result<Vec<_>> = arguments
                     .iter()
                     .map(|argument| self.scalar(argument))

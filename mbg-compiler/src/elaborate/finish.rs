@@ -292,7 +292,8 @@ impl<'a> Builder<'a> {
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
             let (kind, word, value) = (element.kind, &field.name, field.value.as_ref());
             let here = elsewhere::law(kind, word, value);
-            let report = match here.or_else(|| elsewhere::start(kind, word, value)) {
+            let here = here.or_else(|| elsewhere::start(kind, word, value));
+            let report = match here.or_else(|| elsewhere::effort_at_start(element, word, value)) {
                 Some(help) => report.help(help),
                 None => report.did_you_mean(&field.name.to_string(), &words),
             };

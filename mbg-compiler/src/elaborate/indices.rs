@@ -52,6 +52,25 @@ impl<N: Names> Evaluator<'_, N> {
         is_matrix.then(|| format!("write `{matrix}[{row}][{column}]`"))
     }
 
+    /// Refuses a vector where its components are wanted one by one, with the text for them.
+    pub(super) fn check_entries(&mut self, vector: &Expr) -> Result<()> {
+        let Value::Matrix(product) = self.evaluate(vector)? else {
+            return Ok(());
+        };
+        let text = dump::expression(vector);
+        let entries: Vec<String> = match (vector, product.rows()) {
+            (Expr::Array(entries), _) => entries.elems.iter().map(dump::expression).collect(),
+            (_, 3) => ["x", "y", "z"].map(|it| format!("{text}.{it}")).into(),
+            (_, size) => (0..size).map(|it| format!("{text}[{it}]")).collect(),
+        };
+        let shape = Value::Matrix(product).shape();
+        let message = format!("expected numbers, found {shape}");
+        let report = error(codes::WRONG_DIMENSION, vector.span(), message);
+        Err(Box::new(
+            report.help(format!("write `diag({})`", entries.join(", "))),
+        ))
+    }
+
     /// The component `x`, `y` or `z`.
     pub(super) fn component(&mut self, value: Value, name: &Ident) -> Result<Value> {
         let Some(index) = component_index(name) else {

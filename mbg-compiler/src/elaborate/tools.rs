@@ -60,6 +60,8 @@ enum Stand {
     At,
     /// Between two junctions, on what they differ by.
     Between,
+    /// At the third of its junctions, by what the first two differ by.
+    Across,
 }
 
 /// Components of other tools that are elements here: what stands still has none of its own.
@@ -104,6 +106,16 @@ const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
         ],
         Stand::At,
         &[("Sf", "source", "flow: …")],
+    ),
+    (
+        &["opamp", "operationalamplifier", "idealopamp"],
+        Stand::Across,
+        &[("Se", "amplifier", "effort: …")],
+    ),
+    (
+        &["tank", "reservoir", "vessel"],
+        Stand::At,
+        &[("C", "tank", "compliance: …")],
     ),
     (
         &["mass", "inertia", "rotationalinertia"],
@@ -335,6 +347,10 @@ pub(super) fn elements(
     let text = match (stand, &ends[..], parts) {
         (_, _, []) => at_junction(&[still(kind)], &name, at, dimension),
         (Stand::At, _, [("I", ..)]) if dimension > 1 => of_frame(&name, at, dimension),
+        (Stand::Across, [plus, minus, out], _) => {
+            format!("Se {name} {{ effort: 1e5 * ({plus}.e - {minus}.e) }} -> {out};")
+        }
+        (Stand::Across, ..) => return None,
         (Stand::Between, [_, _], _) if dimension > 1 => return None,
         (Stand::Between, [a, b], _) => between(parts, &name, (kind, [a, b])),
         _ => at_junction(parts, &name, at, dimension),

@@ -156,7 +156,11 @@ impl Cursor {
                 let text = ident.to_string();
                 if words::is_reserved(&text) {
                     let message = format!("expected {what}, found the keyword `{text}`");
-                    return Err(self.failure(codes::SYNTAX, message));
+                    let report = *self.failure(codes::SYNTAX, message);
+                    return Err(Box::new(match text.as_str() {
+                        "_" => report,
+                        _ => report.help(words::another_name(&text)),
+                    }));
                 }
                 let name = ident.clone();
                 self.at += 1;

@@ -128,7 +128,7 @@ fn keyword(cursor: &Cursor, word: &str) -> Option<Box<Diagnostic>> {
     let error = *cursor.failure(codes::SYNTAX, message);
     Some(Box::new(match word {
         "_" => error,
-        _ => error.help(format!("write another name, such as `{word}_`")),
+        _ => error.help(words::another_name(word)),
     }))
 }
 

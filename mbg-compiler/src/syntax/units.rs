@@ -130,7 +130,11 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
         return Ok(());
     }
     let Some(group) = cursor.group(0, Delimiter::Parenthesis).cloned() else {
-        return Err(cursor.expected_with(codes::UNIT, "the name of a unit"));
+        let report = *cursor.expected_with(codes::UNIT, "the name of a unit");
+        return Err(Box::new(match cursor.punct(0, '%') {
+            true => report.help("write `1`, and each value times 0.01"),
+            false => report,
+        }));
     };
     if depth == 0 {
         return Err(cursor.failure(

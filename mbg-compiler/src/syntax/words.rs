@@ -96,6 +96,11 @@ pub(super) fn is_reserved(word: &str) -> bool {
     RESERVED.contains(&word)
 }
 
+/// What to type for a keyword that was meant as a name.
+pub(super) fn another_name(keyword: &str) -> String {
+    format!("write another name, such as `{keyword}_`")
+}
+
 /// The words that carry a law, by element.
 pub(crate) fn law_words(kind: ElementKind) -> &'static [&'static str] {
     match kind {
@@ -144,7 +149,7 @@ pub(crate) fn alternatives(words: &[&str]) -> String {
 }
 
 /// The word that was probably meant: two slips at most, fewer where either word is short, since every word of two
-/// letters is two slips from every other.
+/// letters is two slips from every other, and many of four share two of them.
 pub(crate) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
     // A word far longer than any of ours is none of ours, and measuring it would cost its length squared.
     if found.chars().count() > 16 {
@@ -155,7 +160,7 @@ pub(crate) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
         .iter()
         .filter(|word| **word != found)
         .map(|word| (distance(&lower, &word.to_lowercase()), *word))
-        .filter(|(distance, word)| *distance <= (word.len().min(found.len()) / 2).min(2))
+        .filter(|(distance, word)| *distance <= ((word.len().min(found.len()) + 1) / 3).min(2))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, word)| word)
 }

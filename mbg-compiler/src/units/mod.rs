@@ -8,6 +8,7 @@
 //! they first contradict each other. A number with a decimal point may carry any unit; a whole number counts, and is pure
 //! as a factor. A model that declares no unit at all is not looked at.
 
+mod densities;
 mod dimension;
 mod inference;
 mod names;
@@ -58,17 +59,44 @@ pub fn check(
     let Some(declared) = declared(&claims, &pool, &mut reporter) else {
         return;
     };
+    let mut found = Diagnostics::new();
+    checked(elaborated, &claims, &pool, declared.clone(), &mut found);
+    if !found.any() {
+        return;
+    }
+    match densities::report(elaborated, &claims, &pool, &declared) {
+        Some(report) => diagnostics.report(report),
+        None => found
+            .list()
+            .iter()
+            .for_each(|report| diagnostics.report(report.clone())),
+    }
+}
+
+/// Checks units of which these are declared; the result has the effort and the flow of the first component of each junction.
+fn checked(
+    model: &Elaborated,
+    claims: &Claims,
+    pool: &Pool,
+    declared: BTreeMap<Symbol, Dimension>,
+    diagnostics: &mut Diagnostics,
+) -> Vec<[Dimension; 2]> {
+    let mut reporter = Reporter::new(model, claims, pool, diagnostics);
     let mut unknowns = Unknowns::default();
-    let ports = Ports::of(&elaborated.graph, &mut unknowns, &mut reporter);
-    let symbols = symbols(elaborated, &claims, declared, &ports, &mut unknowns);
-    let inference = Inference::new(&pool, symbols, unknowns);
+    let ports = Ports::of(&model.graph, &mut unknowns, &mut reporter);
+    let symbols = symbols(model, claims, declared, &ports, &mut unknowns);
+    let inference = Inference::new(pool, symbols, unknowns);
     let mut checker = Checker {
-        model: elaborated,
+        model,
         ports,
         inference,
         reporter,
     };
     checker.run(&claims.list);
+    let unknowns = &mut checker.inference.unknowns;
+    let junctions = checker.ports.junctions.iter();
+    let pairs = junctions.map(|pairs| pairs[0].each_ref().map(|unit| unknowns.reduce(unit)));
+    pairs.collect()
 }
 
 /// The units that are declared; none if one of them is no unit of SI, which is told.

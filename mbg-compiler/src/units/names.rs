@@ -60,6 +60,8 @@ const SCALED: &[(&str, f64, Factors)] = &[
     ("d", 86400.0, &[("s", 1)]),
     ("day", 86400.0, &[("s", 1)]),
     ("days", 86400.0, &[("s", 1)]),
+    ("year", 31_557_600.0, &[("s", 1)]),
+    ("years", 31_557_600.0, &[("s", 1)]),
     ("deg", std::f64::consts::PI / 180.0, &[("rad", 1)]),
     ("degree", std::f64::consts::PI / 180.0, &[("rad", 1)]),
     ("degrees", std::f64::consts::PI / 180.0, &[("rad", 1)]),
@@ -88,8 +90,14 @@ const SCALED: &[(&str, f64, Factors)] = &[
     ("l", 1e-3, &[("m", 3)]),
     ("litre", 1e-3, &[("m", 3)]),
     ("liter", 1e-3, &[("m", 3)]),
+    ("dL", 1e-4, &[("m", 3)]),
     ("mL", 1e-6, &[("m", 3)]),
     ("ml", 1e-6, &[("m", 3)]),
+    ("cc", 1e-6, &[("m", 3)]),
+    ("gal", 3.785_411_784e-3, &[("m", 3)]),
+    ("gpm", 3.785_411_784e-3 / 60.0, VOLUME_FLOW),
+    ("lpm", 1e-3 / 60.0, VOLUME_FLOW),
+    ("dyn", 1e-5, &[("N", 1)]),
     ("kgf", 9.806_65, &[("N", 1)]),
     ("lbf", 4.448_221_615_260_5, &[("N", 1)]),
     ("bar", 1e5, &[("Pa", 1)]),
@@ -97,6 +105,20 @@ const SCALED: &[(&str, f64, Factors)] = &[
     ("atm", 101_325.0, &[("Pa", 1)]),
     ("psi", 6_894.757_293_168_36, &[("Pa", 1)]),
     ("mmHg", 133.322_387_415, &[("Pa", 1)]),
+    ("Torr", 101_325.0 / 760.0, &[("Pa", 1)]),
+    ("torr", 101_325.0 / 760.0, &[("Pa", 1)]),
+    ("mmH2O", 9.806_65, &[("Pa", 1)]),
+    ("cmH2O", 98.0665, &[("Pa", 1)]),
+    ("mH2O", 9806.65, &[("Pa", 1)]),
+    ("poise", 0.1, VISCOSITY),
+    ("cP", 1e-3, VISCOSITY),
+    ("cSt", 1e-6, &[("m", 2), ("s", -1)]),
+    ("M", 1e3, CONCENTRATION),
+    ("mM", 1.0, CONCENTRATION),
+    ("uM", 1e-3, CONCENTRATION),
+    ("kat", 1.0, &[("mol", 1), ("s", -1)]),
+    ("BTU", 1055.055_852_62, &[("J", 1)]),
+    ("ppm", 1e-6, &[]),
     ("Wh", 3600.0, &[("J", 1)]),
     ("kWh", 3.6e6, &[("J", 1)]),
     ("eV", 1.602_176_634e-19, &[("J", 1)]),
@@ -110,6 +132,9 @@ const SCALED: &[(&str, f64, Factors)] = &[
 
 const TURNING: Factors = &[("rad", 1), ("s", -1)];
 const SPEED: Factors = &[("m", 1), ("s", -1)];
+const VOLUME_FLOW: Factors = &[("m", 3), ("s", -1)];
+const VISCOSITY: Factors = &[("Pa", 1), ("s", 1)];
+const CONCENTRATION: Factors = &[("mol", 1), ("m", -3)];
 
 /// Prefixes as powers of ten.
 const PREFIXES: &[(&str, i32)] = &[

@@ -17,6 +17,23 @@ pub(super) fn is_thermal([left, right]: [&Dimension; 2]) -> bool {
 
 /// What to type where effort times flow is no power at junctions and at those bonded to them; none where all are marked.
 pub(super) fn advice(graph: &BondGraph, junctions: &[JunctionId]) -> Option<String> {
+    let reached = joined(graph, junctions);
+    let written = reached.iter().map(|id| {
+        let junction = &graph.junctions[id.0];
+        format!("{} pseudo", junction.declaration(junction.kind))
+    });
+    // A junction in a loop or in a component is written once, however many there are.
+    let mut seen = BTreeSet::new();
+    let written = listing(written.filter(|it| seen.insert(it.clone())));
+    (!reached.is_empty()).then(|| {
+        format!(
+            "write {written} where effort times flow is no power, as temperature times heat flow"
+        )
+    })
+}
+
+/// Junctions and those bonded to them, without those that are marked.
+pub(super) fn joined(graph: &BondGraph, junctions: &[JunctionId]) -> Vec<JunctionId> {
     let mut reached: Vec<JunctionId> = Vec::new();
     let mut open = junctions.to_vec();
     while let Some(id) = open.pop() {
@@ -33,18 +50,7 @@ pub(super) fn advice(graph: &BondGraph, junctions: &[JunctionId]) -> Option<Stri
         }
     }
     reached.sort_unstable();
-    let written = reached.iter().map(|id| {
-        let junction = &graph.junctions[id.0];
-        format!("{} pseudo", junction.declaration(junction.kind))
-    });
-    // A junction in a loop or in a component is written once, however many there are.
-    let mut seen = BTreeSet::new();
-    let written = listing(written.filter(|it| seen.insert(it.clone())));
-    (!reached.is_empty()).then(|| {
-        format!(
-            "write {written} where effort times flow is no power, as temperature times heat flow"
-        )
-    })
+    reached
 }
 
 /// The junctions at both ends of what has an origin.

@@ -13,7 +13,7 @@ use crate::elaborate::claims::{Claim, Claims, Site, Subject};
 use crate::elaborate::{Elaborated, Place, Quantity, Signal};
 use crate::graph::{ElementId, ElementKind, JunctionId, OriginId, component_name};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Operation, Pool, Symbol};
+use crate::symbolic::{Expression, Function, Operation, Pool, Symbol};
 use crate::syntax::ast::Unit;
 
 /// How a pure number gets a unit.
@@ -206,7 +206,8 @@ impl<'a> Reporter<'a> {
         note: Option<String>,
         advice: Option<String>,
     ) {
-        let help = match advice.or_else(|| self.no_power(claim, units)) {
+        let advice = advice.or_else(|| self.no_power(claim, units));
+        let help = match advice.or_else(|| self.bare_argument(claim)) {
             None if self.is_numeric(claim) || units.iter().any(|unit| unit.is_pure()) => {
                 Some(FACTOR.to_owned())
             }
@@ -215,6 +216,33 @@ impl<'a> Reporter<'a> {
         let (wanted, found) = self.both(units);
         let message = format!("{what} must be {wanted} here, and this is {found}");
         self.report(&claim.place, message, note, help);
+    }
+
+    /// What to type for the logarithm of a variable of the element itself, which becomes a pure number by it.
+    fn bare_argument(&self, claim: &Claim) -> Option<String> {
+        let Subject::Word(id, _) = &claim.subject else {
+            return None;
+        };
+        let owner = format!("{}.", self.model.graph.elements[id.0].name);
+        let mut open = claim.entries.clone();
+        while let Some(current) = open.pop() {
+            let operation = self.pool.operation(current);
+            if let Operation::Call(function @ (Function::Ln | Function::Exp), arguments) = operation
+                && let [argument] = arguments[..]
+                && let Operation::Symbol(Symbol::State(_) | Symbol::Signal(_)) =
+                    self.pool.operation(argument)
+            {
+                let text = expression_text(self.model, self.claims, self.pool, argument);
+                let text = text.strip_prefix(&owner).unwrap_or(&text);
+                let function = function.name();
+                return Some(format!(
+                    "`{function}` takes a pure number, which makes `{text}` one: where it has a unit write \
+                     `{function}({text} / 1.0)`"
+                ));
+            }
+            open.extend_from_slice(&operation.operands());
+        }
+        None
     }
 
     /// What to type for a storage that is given its effort or flow at the start in the place of its state.

@@ -641,7 +641,7 @@ fn units_of_other_trades_are_told_with_their_factors() {
         ("dL", "m^3", 1e-4),
         ("M", "mol/m^3", 1e3),
         ("uM", "mol/m^3", 1e-3),
-        ("BTU", "J", 1055.055_852_62),
+        ("BTU", "J", 1_055.055_852_62),
         ("year", "s", 31_557_600.0),
         ("ppm", "1", 1e-6),
         ("%", "1", 0.01),

@@ -29,22 +29,21 @@ where
     let times: Vec<f64> = (0..=count)
         .map(|k| end * f64::from(k) / f64::from(count))
         .collect();
-    let (mut instants, mut memory) = (Vec::new(), S::Memory::default());
-    let observer = |time, state: &SVector<f64, N>| {
-        let output = model.output(time, state, &input.at(time), &mut memory);
+    let mut instants = Vec::new();
+    let observer = |time, state: &SVector<f64, N>, output: &SVector<f64, P>| {
         instants.push(Instant {
             time,
             state: *state,
-            output,
+            output: *output,
         });
     };
     // Order 5 gets through the positions in which a loop is singular, where long steps of order 8 may not.
     if S::META.closures.is_empty() {
         let method = Adaptive::new(Dop853, 1e-12, 1e-15);
-        method.sample(model, input, 0.0, start, &times, observer)?;
+        method.sample_outputs(model, input, 0.0, start, &times, observer)?;
     } else {
         let method = Adaptive::new(Tsit5, 1e-8, 1e-8);
-        method.sample(model, input, 0.0, start, &times, observer)?;
+        method.sample_outputs(model, input, 0.0, start, &times, observer)?;
     }
     Ok(instants)
 }

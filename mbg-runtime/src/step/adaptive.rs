@@ -124,7 +124,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (start, end): (T, T),
         mut x: SVector<T, N>,
-        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
     where
         T: Real,
@@ -198,11 +198,13 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             problem.statistics.steps += 1;
             problem.check(span.end, &known, &ahead)?;
             let next = problem.close(span.end, known)?;
+            let memory = problem.memory;
             let mut dense = || steps.polynomial(problem, &from, (&next, Some(ahead)));
-            let mut step = Step::new(span, (x, next), &mut dense);
+            let mut step = Step::new(span, (x, next), memory, &mut dense);
             if observer(&mut step).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
+            problem.memory = memory;
             if last {
                 return Ok(ControlFlow::Continue(next));
             }

@@ -226,7 +226,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         ends: (T, T),
         x: SVector<T, N>,
-        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
     where
         T: Real,
@@ -237,7 +237,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         let (system, input, since) = (problem.system, problem.input, problem.since);
         let mut stiff = None;
         let mut steps = 0_u32;
-        let mut watch = |step: &mut Step<'_, T, N>| {
+        let mut watch = |step: &mut Step<'_, T, N, S::Memory>| {
             observer(step)?;
             steps = (steps + 1) % WATCHED;
             if steps != 0 {
@@ -245,7 +245,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
             }
             let (t, x) = (step.end(), *step.state());
             let u = input.value(t, since);
-            let jacobian = system.jacobian_state(t, &x, &u, &mut S::Memory::default());
+            let jacobian = system.jacobian_state(t, &x, &u, &mut step.memory());
             let (fastest, oscillates) = fastest(&jacobian.map(seen));
             let length = seen(t - step.start());
             if fastest * length > UNSTABLE && fastest * seen(ends.1 - t) > STIFF {

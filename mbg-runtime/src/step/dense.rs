@@ -118,25 +118,28 @@ const fn remainder_at_start(polynomial: &mut [f64; DEGREE], count: usize) -> f64
     value
 }
 
-/// A step with its dense output.
-pub struct Step<'a, T, const N: usize> {
+/// A step with its dense output, and with the memory of a model that has nonlinear loops.
+pub struct Step<'a, T, const N: usize, Memory = ()> {
     span: Span<T>,
     first: SVector<T, N>,
     state: SVector<T, N>,
+    memory: Memory,
     polynomial: Option<Polynomial<T, N>>,
     source: &'a mut dyn FnMut() -> Polynomial<T, N>,
 }
 
-impl<'a, T: Real, const N: usize> Step<'a, T, N> {
+impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
     pub(super) fn new(
         span: Span<T>,
         (first, state): (SVector<T, N>, SVector<T, N>),
+        memory: Memory,
         source: &'a mut dyn FnMut() -> Polynomial<T, N>,
     ) -> Self {
         Self {
             span,
             first,
             state,
+            memory,
             polynomial: None,
             source,
         }
@@ -164,6 +167,32 @@ impl<'a, T: Real, const N: usize> Step<'a, T, N> {
     #[must_use]
     pub fn first(&self) -> &SVector<T, N> {
         &self.first
+    }
+
+    /// What the run remembers of nonlinear loops at the end of the step: outputs and powers that begin with it are those of the
+    /// branch on which the run is, where a loop has several solutions.
+    ///
+    /// ```
+    /// use mbg_runtime::{Adaptive, Constant, Input, Integrator, Stopped, System, Tsit5};
+    ///
+    /// /// The largest dissipated power at the end of a step.
+    /// fn hottest<S, const P: usize>(model: &S) -> Result<f64, Stopped>
+    /// where
+    ///     S: System<f64, 2, 1, P>,
+    /// {
+    ///     let input = Constant([1.0].into());
+    ///     let mut hottest = 0.0_f64;
+    ///     Adaptive::new(Tsit5, 1e-8, 1e-10).integrate(model, &input, 0.0, 1.0, model.initial_state(), |step| {
+    ///         let (t, mut memory) = (step.end(), step.memory());
+    ///         let power = model.power(t, step.state(), &input.at(t), &mut memory);
+    ///         hottest = hottest.max(power.dissipated);
+    ///     })?;
+    ///     Ok(hottest)
+    /// }
+    /// ```
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        self.memory
     }
 
     /// The state at a time of the step, interpolated with [`Method::DENSE_ORDER`](super::Method::DENSE_ORDER); outside

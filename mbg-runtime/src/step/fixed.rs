@@ -87,7 +87,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (start, end): (T, T),
         mut x: SVector<T, N>,
-        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
     where
         T: Real,
@@ -118,6 +118,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                     is_part: parts.size < FINEST,
                     ..Start::of(span, x, slope)
                 };
+                let memory = problem.memory;
                 let trial = work.attempt(problem, &from, None);
                 if !trial.error.is_finite() {
                     let jacobian = work.place_of_jacobian(&from);
@@ -125,6 +126,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                         .map_err(|stopped| problem.traced(stopped, t, jacobian))?;
                     problem.statistics.rejected += 1;
                     if jacobian.is_some() && parts.halve() {
+                        problem.memory = memory;
                         continue;
                     }
                     return Err(Stopped::new(t, Cause::Diverged));
@@ -140,11 +142,13 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                 })?;
                 x = problem.close(t, x)?;
                 problem.statistics.steps += 1;
+                let memory = problem.memory;
                 let mut dense = || work.polynomial(problem, &from, (&x, None));
-                let mut step = Step::new(span, (from.x, x), &mut dense);
+                let mut step = Step::new(span, (from.x, x), memory, &mut dense);
                 if observer(&mut step).is_break() {
                     return Ok(ControlFlow::Break(()));
                 }
+                problem.memory = memory;
                 parts.take();
             }
         }

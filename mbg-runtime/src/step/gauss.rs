@@ -160,6 +160,7 @@ where
         I: Input<T, M>,
     {
         let first = self.length.is_none();
+        let mut memories = [None; S];
         self.predict(start);
         let found = match self.solve {
             Solve::Newton(sweeps) => {
@@ -169,7 +170,7 @@ where
                 for _ in 0..sweeps {
                     before = last;
                     let known = self.slopes[0];
-                    self.sweep(problem, start, Some(&factors));
+                    self.sweep(problem, (start, &mut memories), Some(&factors));
                     last = self.size(start, &known);
                 }
                 let rate = last / before;
@@ -177,11 +178,13 @@ where
             }
             Solve::Sweeps(Some(sweeps)) => {
                 for _ in 0..if first { sweeps + 2 } else { sweeps } {
-                    self.sweep(problem, start, None);
+                    self.sweep(problem, (start, &mut memories), None);
                 }
                 true
             }
-            Solve::Sweeps(None) => settles::<T>(MOST, || self.sweep(problem, start, None)),
+            Solve::Sweeps(None) => {
+                settles::<T>(MOST, || self.sweep(problem, (start, &mut memories), None))
+            }
         };
         let length = start.span.length;
         self.length = Some(length);
@@ -273,7 +276,7 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
     fn sweep<Y, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
-        start: &Start<T, N>,
+        (start, memories): (&Start<T, N>, &mut [Option<Y::Memory>; S]),
         newton: Option<&Shifted<T, N>>,
     ) -> f64
     where
@@ -287,7 +290,7 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
             let direction = combination(&A::TABLEAU.matrix[stage], &known);
             let x = along(&start.x, length, &direction);
             let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
-            let slope = problem.slope(t, &x);
+            let slope = problem.slope_of_stage(t, &x, &mut memories[stage]);
             let mut change = slope - known[stage];
             if let Some(factors) = newton {
                 change = factors.solved::<Y, M, P>(&change);

@@ -32,6 +32,10 @@ pub struct Arrival<T, const N: usize> {
 /// - asks [`System::trouble`] at the start, after each step and behind each jump;
 /// - begins without what a run before has found: the first solve of a nonlinear algebraic loop starts at zero. A loop with
 ///   several solutions may find another one than the end of the run before had.
+///
+/// From then on each solve begins where the one before ended, so that a run stays on its branch of such a loop. Outputs from the
+/// state alone, with a memory that is new, may be those of another branch: take them by
+/// [`sample_outputs`](Integrator::sample_outputs), or begin with [`Step::memory`].
 pub trait Integrator<const N: usize> {
     /// Refuses settings that cannot be met.
     #[doc(hidden)]
@@ -45,7 +49,7 @@ pub trait Integrator<const N: usize> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         ends: (T, T),
         x: SVector<T, N>,
-        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
     where
         T: Real,
@@ -60,7 +64,7 @@ pub trait Integrator<const N: usize> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (t0, t1): (T, T),
         mut x: SVector<T, N>,
-        observer: &mut impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()>,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<(), Stopped>
     where
         T: Real,
@@ -93,7 +97,7 @@ pub trait Integrator<const N: usize> {
         t0: T,
         t1: T,
         x0: SVector<T, N>,
-        mut observer: impl FnMut(&mut Step<'_, T, N>),
+        mut observer: impl FnMut(&mut Step<'_, T, N, S::Memory>),
     ) -> Result<Statistics, Stopped>
     where
         T: Real,
@@ -130,37 +134,62 @@ pub trait Integrator<const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let mut last = t0;
-        for &time in times {
-            check_times(t0, time)?;
-            if less(time, last) {
-                let what = "the times of samples must ascend";
-                return Err(Stopped::new(time, Cause::Argument(what)));
-            }
-            last = time;
-        }
-        let (mut problem, x) = begin(self, system, input, (t0, last), x0)?;
-        let mut rest = times;
-        while let [time, others @ ..] = rest
-            && !less(t0, *time)
-        {
-            observer(*time, &x);
-            rest = others;
-        }
-        self.run(&mut problem, (t0, last), x, &mut |step| {
-            while let [time, others @ ..] = rest
-                && !less(step.end(), *time)
-            {
-                if less(*time, step.end()) {
-                    observer(*time, &step.at(*time));
-                } else {
-                    observer(*time, step.state());
-                }
-                rest = others;
-            }
-            ControlFlow::Continue(())
-        })?;
-        Ok(problem.statistics)
+        sample(self, system, input, (t0, times), x0, |t, x, _memory| {
+            observer(t, x);
+        })
+    }
+
+    /// The same with the outputs, at the input of the time and on the branch on which the run is of a nonlinear loop with
+    /// several solutions.
+    ///
+    /// # Errors
+    ///
+    /// As [`Integrator::sample`].
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
+    ///
+    /// mbg! {
+    ///     /// A comparator that charges a capacitor until this reaches half of its own output.
+    ///     model Astable {
+    ///         0 out; 0 minus; 0 plus; 0 ground { Se earth { effort: 0.0 } }
+    ///         Se comparator { effort: 10.0 * tanh(1000.0 * (plus.e - minus.e)) } -> out;
+    ///         r: Resistor { resistance: 1e4 } (out, minus);
+    ///         c: Capacitor { capacitance: 1e-7, initial: 0.1 } (minus, ground);
+    ///         above: Resistor { resistance: 1e4 } (out, plus);
+    ///         below: Resistor { resistance: 1e4 } (plus, ground);
+    ///         output switched: V = out.e;
+    ///     }
+    /// }
+    ///
+    /// let model = Astable::<f64>::new(AstableParameters::default())?;
+    /// let times: Vec<f64> = (0..100).map(|k| f64::from(k) * 1e-4).collect();
+    /// let solver = Adaptive::new(Dop853, 1e-8, 1e-15);
+    /// solver.sample_outputs(&model, &(), 0.0, model.initial_state(), &times, |_t, _x, y| {
+    ///     assert!(y[0].abs() > 9.9);
+    /// })?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn sample_outputs<T, S, I, const M: usize, const P: usize>(
+        &self,
+        system: &S,
+        input: &I,
+        t0: T,
+        x0: SVector<T, N>,
+        times: &[T],
+        mut observer: impl FnMut(T, &SVector<T, N>, &SVector<T, P>),
+    ) -> Result<Statistics, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        sample(self, system, input, (t0, times), x0, |t, x, mut memory| {
+            let y = system.output(t, x, &input.at(t), &mut memory);
+            observer(t, x, &y);
+        })
     }
 
     /// Runs from `t0` until `guard` goes through zero, at the latest until `t1`; `observer` is given the steps up to the
@@ -171,6 +200,9 @@ pub trait Integrator<const N: usize> {
     /// the start counts when it comes back.
     /// One that is back before an eighth of the first step is missed, with all that follows: a ball that bounces falls through
     /// the floor when its flights have become that short. Let it rest before.
+    ///
+    /// A guard that reads a nonlinear loop with several solutions begins with [`Step::memory`] of the step before, which the
+    /// observer leaves in a [`Cell`](core::cell::Cell) for it.
     ///
     /// # Errors
     ///
@@ -202,7 +234,7 @@ pub trait Integrator<const N: usize> {
         t1: T,
         x0: SVector<T, N>,
         (direction, mut guard): (Direction, impl FnMut(T, &SVector<T, N>) -> T),
-        mut observer: impl FnMut(&mut Step<'_, T, N>),
+        mut observer: impl FnMut(&mut Step<'_, T, N, S::Memory>),
     ) -> Result<Arrival<T, N>, Stopped>
     where
         T: Real,
@@ -242,6 +274,55 @@ pub trait Integrator<const N: usize> {
             statistics: problem.statistics,
         })
     }
+}
+
+/// Runs over the last of the times and gives the state at each, with what the run remembers of nonlinear loops.
+fn sample<D, T, S, I, const N: usize, const M: usize, const P: usize>(
+    integrator: &D,
+    system: &S,
+    input: &I,
+    (t0, times): (T, &[T]),
+    x0: SVector<T, N>,
+    mut observer: impl FnMut(T, &SVector<T, N>, S::Memory),
+) -> Result<Statistics, Stopped>
+where
+    D: Integrator<N> + ?Sized,
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M>,
+{
+    let mut last = t0;
+    for &time in times {
+        check_times(t0, time)?;
+        if less(time, last) {
+            let what = "the times of samples must ascend";
+            return Err(Stopped::new(time, Cause::Argument(what)));
+        }
+        last = time;
+    }
+    let (mut problem, x) = begin(integrator, system, input, (t0, last), x0)?;
+    let mut rest = times;
+    while let [time, others @ ..] = rest
+        && !less(t0, *time)
+    {
+        observer(*time, &x, problem.memory);
+        rest = others;
+    }
+    integrator.run(&mut problem, (t0, last), x, &mut |step| {
+        while let [time, others @ ..] = rest
+            && !less(step.end(), *time)
+        {
+            if less(*time, step.end()) {
+                let x = step.at(*time);
+                observer(*time, &x, step.memory());
+            } else {
+                observer(*time, step.state(), step.memory());
+            }
+            rest = others;
+        }
+        ControlFlow::Continue(())
+    })?;
+    Ok(problem.statistics)
 }
 
 /// Checks what a run is given, and closes the loops of its start.

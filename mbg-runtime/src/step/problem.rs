@@ -87,6 +87,22 @@ where
         self.system.derivative(t, x, &u, &mut self.memory)
     }
 
+    /// The derivative at a stage of a method that sweeps over its stages, with what its loops remember from the sweep before; in
+    /// the first sweep they go on from the stage before.
+    ///
+    /// So a stage before a fold of a loop does not find the far branch from a stage behind it, and one that is there stays.
+    pub(super) fn slope_of_stage(
+        &mut self,
+        t: T,
+        x: &SVector<T, N>,
+        memory: &mut Option<S::Memory>,
+    ) -> SVector<T, N> {
+        self.memory = memory.unwrap_or(self.memory);
+        let slope = self.slope(t, x);
+        *memory = Some(self.memory);
+        slope
+    }
+
     /// The inputs at four stages.
     #[inline]
     pub(super) fn inputs(&self, times: T::Stages) -> SVector<T::Stages, M> {
@@ -115,12 +131,13 @@ where
         *slopes = self.system.derivatives(times, x, u, &mut self.memory);
     }
 
-    /// `∂f/∂x`.
+    /// `∂f/∂x`, which may be asked for ahead: the memory stays as it is.
     pub(super) fn jacobian(&mut self, t: T, x: &SVector<T, N>) -> SMatrix<T, N, N> {
         self.statistics.jacobians += 1;
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
-        self.system.jacobian_state(t, x, &u, &mut self.memory)
+        let mut memory = self.memory;
+        self.system.jacobian_state(t, x, &u, &mut memory)
     }
 
     /// The derivative of `f(t, x, u(t))` by time at a fixed state, for a step of this length.

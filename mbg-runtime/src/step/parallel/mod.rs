@@ -157,6 +157,7 @@ where
         Y: System<T, N, M, P>,
         I: Input<T, M>,
     {
+        let memory = problem.memory;
         let (before, tried) = self.next(start.again);
         let sweep = Sweep::over::<A, _, _, P>(problem, start);
         let sweeps = if before.is_known() {
@@ -176,6 +177,8 @@ where
         let (mut left, mut missed) = (sweeps, 0.0);
         let error = loop {
             for number in 0..left {
+                // Stages before a fold of a loop would find its far branch from stages behind it.
+                problem.memory = memory;
                 sweep.slopes(problem, &stages, slopes);
                 if number == 0
                     && left > 1

@@ -40,6 +40,9 @@ pub(super) struct Newton<
     problem: &'a mut Problem<'b, T, Y, I, N, M, P>,
     start: &'a Start<T, N>,
     factors: &'a Factors<T, N, PAIRS>,
+    /// Of loops in the model, at the start of the step and at each stage in the last sweep.
+    memory: Y::Memory,
+    memories: [Option<Y::Memory>; S],
     method: PhantomData<[A; S]>,
 }
 
@@ -68,6 +71,8 @@ where
         factors: &'a Factors<T, N, PAIRS>,
     ) -> Self {
         Self {
+            memory: problem.memory,
+            memories: [None; S],
             problem,
             start,
             factors,
@@ -84,10 +89,10 @@ where
     ) -> [SVector<T, N>; S] {
         let Start { span, x, .. } = self.start;
         let mut slopes = *stages;
-        for (slope, node) in slopes.iter_mut().zip(A::TABLEAU.nodes) {
-            *slope = self
-                .problem
-                .slope(span.at(T::from_f64(node)), &(x + *slope));
+        let known = A::TABLEAU.nodes.iter().zip(&mut self.memories);
+        for (slope, (node, memory)) in slopes.iter_mut().zip(known) {
+            let t = span.at(T::from_f64(*node));
+            *slope = self.problem.slope_of_stage(t, &(x + *slope), memory);
         }
         let changes = self.changes(inner, &slopes);
         for (inner, change) in inner.iter_mut().zip(&changes) {
@@ -216,7 +221,9 @@ where
         if size <= 1.0 || !doubtful || size.is_nan() {
             return size;
         }
+        let last = core::mem::replace(&mut self.problem.memory, self.memory);
         let slope = self.problem.slope(span.start, &(x + estimate));
+        self.problem.memory = last;
         measure.norm(&real.solved::<Y, M, P>(&(sum + slope)))
     }
 }

@@ -119,6 +119,8 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         Err(Stopped::new(t0, Cause::Argument(what)))
     }
 
+    // In a caller of several methods, such as `Auto`, their matrices would be on the stack side by side.
+    #[inline(never)]
     fn piece<T, S, I, const M: usize, const P: usize>(
         &self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,

@@ -150,11 +150,17 @@ impl<Scheme: Family, T: Real, const N: usize> Crossing<Scheme, T, N> {
         };
         self.tried = 0;
         if self.is_across {
-            self.work = Stepper::new(&self.method);
+            renew(&mut self.work, &self.method);
             control.shorten(length);
         } else {
             control.growth = self.work.growth();
             control.accept(length, error, Scheme::RULE);
         }
     }
+}
+
+/// Forgets all steps, apart from the run: what is new is on the stack no longer than the call.
+#[inline(never)]
+fn renew<A, T: Real, const N: usize>(work: &mut impl Stepper<A, T, N>, method: &A) {
+    *work = Stepper::new(method);
 }

@@ -12,6 +12,7 @@ use crate::sparsity::Elimination;
 use crate::{Real, System};
 
 /// Factors of `d I − s ∂f/∂x` of a system.
+#[derive(Clone, Copy)]
 pub struct Shifted<E, const N: usize> {
     /// In its rows also those by a plan.
     factors: Factors<E, N>,

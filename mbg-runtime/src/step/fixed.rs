@@ -82,6 +82,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
         Ok(())
     }
 
+    #[inline(never)]
     fn piece<T, S, I, const M: usize, const P: usize>(
         &self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,

@@ -165,7 +165,9 @@ where
         let found = match self.solve {
             Solve::Newton(sweeps) => {
                 self.sizes.note(&start.x);
-                let factors = Self::factors(problem, start);
+                let mut factors = Shifted::empty();
+                let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
+                problem.factorise((start.span.start, &start.x), scale, &mut factors);
                 let (mut before, mut last) = (f64::INFINITY, f64::INFINITY);
                 for _ in 0..sweeps {
                     before = last;
@@ -248,21 +250,6 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
             let weights = lagrange(const { &leading(&A::TABLEAU.nodes) }, &distances);
             *slope = combination(&weights, &known);
         }
-    }
-
-    /// `I − h a J` of the first stage.
-    fn factors<Y, I, const M: usize, const P: usize>(
-        problem: &mut Problem<'_, T, Y, I, N, M, P>,
-        start: &Start<T, N>,
-    ) -> Shifted<T, N>
-    where
-        Y: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        let jacobian = problem.jacobian(start.span.start, &start.x);
-        problem.statistics.factorisations += 1;
-        let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
-        Shifted::new::<Y, M, P>(T::from_f64(1.0), scale, &jacobian)
     }
 
     /// How much a sweep of Newton's has changed a stage, whose slope was known as this.

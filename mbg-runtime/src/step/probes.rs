@@ -189,9 +189,8 @@ where
             let moved = beside.zip_map(&slope, |beside, slope| span.length * (beside - slope));
             return !is_small(size, LARGE * (1.0 + measure.norm(&moved)));
         }
-        self.statistics.factorisations += 1;
-        let jacobian = self.jacobian(t, &x);
-        let factors = Shifted::new::<S, M, P>(T::from_f64(1.0), span.length, &jacobian);
+        let mut factors = Shifted::empty();
+        self.factorise((t, &x), span.length, &mut factors);
         !is_small(measure.norm(&factors.solved::<S, M, P>(&defect)), LARGE)
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::elimination::Shifted;
 use super::probes::Probes;
 use super::{Cause, Statistics, Stopped, check_result, first_entry_not_finite, seen};
 use crate::{Columns, Input, Real, System, Trouble};
@@ -131,13 +132,30 @@ where
         *slopes = self.system.derivatives(times, x, u, &mut self.memory);
     }
 
-    /// `∂f/∂x`, which may be asked for ahead: the memory stays as it is.
-    pub(super) fn jacobian(&mut self, t: T, x: &SVector<T, N>) -> SMatrix<T, N, N> {
+    /// Writes `∂f/∂x`, which may be asked for ahead: the memory stays as it is.
+    ///
+    /// A matrix on its way is on the stack no longer than the call.
+    #[inline(never)]
+    pub(super) fn jacobian(&mut self, t: T, x: &SVector<T, N>, jacobian: &mut SMatrix<T, N, N>) {
         self.statistics.jacobians += 1;
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
         let mut memory = self.memory;
-        self.system.jacobian_state(t, x, &u, &mut memory)
+        *jacobian = self.system.jacobian_state(t, x, &u, &mut memory);
+    }
+
+    /// Writes factors of `I − scale ∂f/∂x`.
+    #[inline(never)]
+    pub(super) fn factorise(
+        &mut self,
+        (t, x): (T, &SVector<T, N>),
+        scale: T,
+        factors: &mut Shifted<T, N>,
+    ) {
+        self.statistics.factorisations += 1;
+        let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
+        self.jacobian(t, x, &mut jacobian);
+        factors.factorise::<S, M, P>(T::from_f64(1.0), scale, &jacobian);
     }
 
     /// The derivative of `f(t, x, u(t))` by time at a fixed state, for a step of this length.
@@ -199,7 +217,8 @@ where
         if let Err(stopped) = check_result(self.system, time, &slope, &self.memory) {
             return stopped;
         }
-        let jacobian = self.jacobian(t, &x);
+        let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
+        self.jacobian(t, &x, &mut jacobian);
         first_entry_not_finite::<T, S, N, M, P>(&jacobian)
             .map_or(stopped, |cause| Stopped::new(time, cause))
     }

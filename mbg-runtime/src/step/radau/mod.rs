@@ -28,7 +28,7 @@ use tableaux::{RADAU5, RADAU9};
 ///
 /// The stages are found by Newton's method in the coordinates in which the tableau is diagonal; the estimate is
 /// filtered. Coefficients and most decisions follow `radau5`; other than there, the Jacobian is taken at the predicted
-/// middle of the step. At a fixed step the sweeps go to rounding.
+/// middle of the step. At a fixed step the sweeps go to rounding. What it takes of the stack, [`Auto`](crate::Auto#stack) tells.
 ///
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.8.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,7 +115,7 @@ impl<T: Real, const N: usize, const PAIRS: usize> Factors<T, N, PAIRS> {
         Self {
             length: None,
             real: (T::from_f64(0.0), Shifted::empty()),
-            pairs: core::array::from_fn(|_| (Complex::zero(), Shifted::empty())),
+            pairs: [(Complex::zero(), Shifted::empty()); PAIRS],
         }
     }
 
@@ -245,7 +245,7 @@ where
         let span = &start.span;
         if self.theta > FAST {
             let (t, x) = middle::<A, _, _, _, _>(start, stages);
-            self.jacobian = problem.jacobian(t, &x);
+            problem.jacobian(t, &x, &mut self.jacobian);
             self.factors.length = None;
         }
         if self.factors.length == Some(span.length) {

@@ -51,7 +51,8 @@ pub struct Rodas4;
 /// |---|---|---|---|---|
 /// | 5 | 4, error of power 5 | 4 | 8 evaluations, a Jacobian, a factorisation, 8 solves | A and L, stiffly accurate |
 ///
-/// For stiff electrical and chemical problems, and for problems that are stiff at times only. In `f32` its large
+/// For stiff electrical and chemical problems, and for problems that are stiff at times only. What it takes of the stack,
+/// [`Auto`](crate::Auto#stack) tells. In `f32` its large
 /// coefficients magnify rounding; [`Rodas4`] is better there.
 ///
 /// Source: G. Steinebach, *BIT Numerical Mathematics* 63:27 (2023).
@@ -107,6 +108,7 @@ const NEAR: f64 = 0.03;
 /// What is known where the step starts, and the stages of the last step.
 pub struct Stages<A, T, const N: usize, const S: usize> {
     jacobian: SMatrix<T, N, N>,
+    factors: Shifted<T, N>,
     by_time: SVector<T, N>,
     stages: [SVector<T, N>; S],
     /// Of steps without a tolerance.
@@ -145,6 +147,7 @@ where
         let zero = T::from_f64(0.0);
         Self {
             jacobian: SMatrix::from_element(zero),
+            factors: Shifted::empty(),
             by_time: SVector::from_element(zero),
             stages: [SVector::from_element(zero); S],
             sizes: Sizes::new(),
@@ -165,15 +168,15 @@ where
         let Start { span, x, .. } = start;
         let length = span.length;
         if !start.again {
-            self.jacobian = problem.jacobian(span.start, x);
+            problem.jacobian(span.start, x, &mut self.jacobian);
             self.by_time = problem.slope_by_time(span.start, x, length);
         }
         let one = T::from_f64(1.0);
         let inverse = one / length;
         problem.statistics.factorisations += 1;
         let diagonal = inverse / T::from_f64(A::TABLEAU.diagonal);
-        let mut factors = Shifted::empty();
-        factors.factorise::<Y, M, P>(diagonal, one, &self.jacobian);
+        self.factors
+            .factorise::<Y, M, P>(diagonal, one, &self.jacobian);
         let mut last = SVector::from_element(T::from_f64(0.0));
         for stage in 0..S {
             let [ahead, coupling] = of_stage!(stage, self.ahead(&last));
@@ -187,7 +190,7 @@ where
             let known = coupling.zip_map(&self.by_time, |coupling, change| {
                 inverse * coupling + by_time * change
             });
-            last = factors.solved::<Y, M, P>(&(slope + known));
+            last = self.factors.solved::<Y, M, P>(&(slope + known));
             self.stages[stage] = last;
         }
         let change = combination(const { &A::TABLEAU.result }, &self.stages);

@@ -568,7 +568,7 @@ fn a_bridge_behind_a_coil_wants_a_snubber() {
         let model = Choked::<f64>::new(ChokedParameters { beside }).expect("regular");
         let start = model.initial_state();
         let mut last = start;
-        let observe = |step: &mut Step<'_, f64, 2>| last = *step.state();
+        let observe = |step: &mut Step<'_, f64, 2, _>| last = *step.state();
         integrator.integrate(&model, &(), 0.0, 0.05, start, observe)?;
         Ok(model.output(0.05, &last, &SVector::zeros(), &mut Default::default())[0])
     }

@@ -9,9 +9,9 @@ use nalgebra::SVector;
 use crate::problems::{Law, Written, state};
 
 mbg! {
-    /// Turbulent friction, whose slope at rest is zero, but the square root's is infinite.
+    /// Friction by a root, which is infinitely steep at rest.
     model Throttled {
-        1 v { I b { inertia: 2.0 } R r { effort: f * sqrt(abs(f)) } Se s { effort: 1.0 } }
+        1 v { I b { inertia: 2.0 } R r { effort: sign(f) * sqrt(abs(f)) } Se s { effort: 1.0 } }
         output y = v.f;
     }
 }
@@ -58,7 +58,7 @@ impl Law<2, 0> for Emptying {
     }
 }
 
-/// A stiff state, and a level that falls below zero, where its outflow is zero with a slope that is no number.
+/// A stiff state, and a level that falls below zero, where its outflow is zero by an angle that is none, whose slope is no number.
 #[derive(Clone, Copy)]
 struct Drained;
 
@@ -67,7 +67,7 @@ impl Law<2, 0> for Drained {
 
     fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
         let above = x[0].max(T::from_f64(0.0));
-        let outflow = above * above.sqrt();
+        let outflow = above * above.atan2(above);
         SVector::from([T::from_f64(-1.0) - outflow, T::from_f64(-1e6) * x[1]])
     }
 }
@@ -215,7 +215,7 @@ fn what_auto_picks_tells_the_same() {
         let stopped = run.unwrap_err();
         let (of, by) = ("level", "level");
         assert_eq!(stopped.cause, Cause::JacobianNotFinite { of, by });
-        assert!(stopped.time > 0.3 && stopped.time < 0.5, "{stopped}");
+        assert!(stopped.time > 0.3 && stopped.time < 0.6, "{stopped}");
     }
 }
 

@@ -8,11 +8,11 @@ use super::control::Control;
 use super::crossing::Crossing;
 use super::dense::Step;
 use super::integrator::Integrator;
-use super::method::{Estimating, Span, Start, along};
+use super::method::{Estimating, Span, Start, Stepper, along};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
-use super::{Cause, Stopped, check_result, less, seen};
+use super::{Cause, Stopped, less, seen};
 use crate::{Input, Real, System};
 
 /// A method at steps whose length follows its estimate of the error.
@@ -134,7 +134,9 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         I: Input<T, M>,
     {
         let tolerance = Tolerance::new(self.relative, self.absolute, self.nominal);
-        let mut steps = Crossing::new(self.method, self.relative, self.absolute, self.nominal);
+        let mut work = Scheme::Work::<T, N>::new(&self.method);
+        let tolerances = (self.relative, self.absolute);
+        let mut steps = Crossing::new((&self.method, &mut work), tolerances, self.nominal);
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
@@ -190,16 +192,12 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 refused += 1;
                 // Written so that a step of NaN is refused as well.
                 if control.length.is_nan() || control.length <= smallest(t) {
-                    check_result(problem.system, t, &trial.change, &tried).map_err(|stopped| {
-                        problem.traced(stopped, t, steps.place_of_jacobian(&from))
-                    })?;
-                    return Err(Stopped::new(t, Cause::StepTooSmall));
+                    let place = steps.place_of_jacobian(&from);
+                    return Err(problem.too_small((t, &trial.change), &tried, place));
                 }
                 continue;
             };
-            problem.statistics.steps += 1;
-            problem.check(span.end, &known, &ahead)?;
-            let next = problem.close(span.end, known)?;
+            let next = problem.arrive(span.end, known, &ahead)?;
             let memory = problem.memory;
             let mut dense = || steps.polynomial(problem, &from, (&next, Some(ahead)));
             let mut step = Step::new(span, (x, next), memory, &mut dense);

@@ -21,8 +21,8 @@ const LENGTHS: [f64; 8] = [1.0, 1.5, 0.7, 2.2, 0.5, 3.0, 0.35, 4.0];
 /// The least tolerances for which these are tried one after the other, in units of the root of the precision.
 const DIGITS: [f64; 3] = [0.1, 1.0, 10.0];
 
-/// Steps of a method, and those that it takes across a singular position of a closed loop, such as that of a parallelogram whose
-/// bars are in line.
+/// Steps across a singular position of a closed loop, such as that of a parallelogram whose bars are in line, beside those of a
+/// method.
 ///
 /// Two branches of the motion meet there. Forces in the loop are those of an error of the state divided by the distance from
 /// the position, so that stages of a step near it, which are off the loop by their own error, have large ones. The control of
@@ -32,9 +32,9 @@ const DIGITS: [f64; 3] = [0.1, 1.0, 10.0];
 /// it is not asked for many more digits than half of those of the scalar.
 ///
 /// Steps that are short for another reason are short in this way, too, and the method goes on by itself.
-pub(super) struct Crossing<Scheme: Family, T: Real, const N: usize> {
-    method: Scheme,
-    work: Scheme::Work<T, N>,
+pub(super) struct Crossing<'a, Scheme: Family, T: Real, const N: usize> {
+    method: &'a Scheme,
+    work: &'a mut Scheme::Work<T, N>,
     explicit: <Dop853 as Family>::Work<T, N>,
     tolerances: [Tolerance<N>; DIGITS.len()],
     /// The length of the longest of the last steps.
@@ -45,16 +45,20 @@ pub(super) struct Crossing<Scheme: Family, T: Real, const N: usize> {
     is_across: bool,
 }
 
-impl<Scheme: Family, T: Real, const N: usize> Crossing<Scheme, T, N> {
-    /// Of a method with these relative and absolute tolerances and nominal sizes.
-    pub(super) fn new(method: Scheme, relative: f64, absolute: f64, nominal: &[f64]) -> Self {
+impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
+    /// Beside a method with these relative and absolute tolerances and nominal sizes.
+    pub(super) fn new(
+        (method, work): (&'a Scheme, &'a mut Scheme::Work<T, N>),
+        (relative, absolute): (f64, f64),
+        nominal: &[f64],
+    ) -> Self {
         let tolerance = |part: f64| {
             let least = part * Real::sqrt(T::EPSILON);
             Tolerance::new(relative.max(least), absolute.max(least), nominal)
         };
         Self {
-            work: Stepper::new(&method),
             method,
+            work,
             explicit: Stepper::new(&Dop853),
             tolerances: DIGITS.map(tolerance),
             usual: 0.0,
@@ -92,6 +96,7 @@ impl<Scheme: Family, T: Real, const N: usize> Crossing<Scheme, T, N> {
             .copied()
     }
 
+    /// Tries a step, by the method unless it is one across.
     pub(super) fn attempt<S, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
@@ -110,6 +115,7 @@ impl<Scheme: Family, T: Real, const N: usize> Crossing<Scheme, T, N> {
         }
     }
 
+    /// What is known in between of the step that was tried last.
     pub(super) fn polynomial<S, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
@@ -150,7 +156,7 @@ impl<Scheme: Family, T: Real, const N: usize> Crossing<Scheme, T, N> {
         };
         self.tried = 0;
         if self.is_across {
-            renew(&mut self.work, &self.method);
+            renew(self.work, self.method);
             control.shorten(length);
         } else {
             control.growth = self.work.growth();

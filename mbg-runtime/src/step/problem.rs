@@ -223,6 +223,33 @@ where
             .map_or(stopped, |cause| Stopped::new(time, cause))
     }
 
+    /// Why a step that is as short as time resolves failed: what is not finite in its change, if anything is.
+    #[cold]
+    pub(super) fn too_small(
+        &mut self,
+        (t, change): (T, &SVector<T, N>),
+        tried: &S::Memory,
+        place: Option<(T, SVector<T, N>)>,
+    ) -> Stopped {
+        match check_result(self.system, t, change, tried) {
+            Ok(()) => Stopped::new(t, Cause::StepTooSmall),
+            Err(stopped) => self.traced(stopped, t, place),
+        }
+    }
+
+    /// Goes on from the end of a step, onto the closed loops next to it.
+    #[inline(always)]
+    pub(super) fn arrive(
+        &mut self,
+        t: T,
+        x: SVector<T, N>,
+        slope: &SVector<T, N>,
+    ) -> Result<SVector<T, N>, Stopped> {
+        self.statistics.steps += 1;
+        self.check(t, &x, slope)?;
+        self.close(t, x)
+    }
+
     /// Whether nothing but its state drives the model, until the input jumps.
     pub(super) fn is_left_alone(&self) -> bool {
         self.input.is_constant_between_jumps() && S::AUTONOMOUS

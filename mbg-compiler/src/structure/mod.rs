@@ -14,6 +14,7 @@ mod eliminate;
 mod floating;
 mod formulation;
 mod levels;
+mod linear;
 pub mod matching;
 mod mesh;
 mod moments;

@@ -9,6 +9,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::levels;
+use super::linear::Linear;
 use super::matching;
 use super::refused::{
     apart, report_input, report_second_derivative, report_unmoved, warn_of_jumps,
@@ -770,39 +771,4 @@ fn is_definite(model: &Elaborated, matrix: &Matrix, pool: &mut Pool) -> bool {
             None => assumed(minor),
         }
     })
-}
-
-/// A sum of unknowns with coefficients, and what is known.
-struct Linear {
-    terms: BTreeMap<usize, Expression>,
-    constant: Expression,
-    /// An input whose own derivative would be needed.
-    input: Option<usize>,
-}
-
-impl Default for Linear {
-    fn default() -> Self {
-        Self {
-            terms: BTreeMap::new(),
-            constant: Expression::ZERO,
-            input: None,
-        }
-    }
-}
-
-impl Linear {
-    fn add(&mut self, pool: &mut Pool, unknown: usize, coefficient: Expression) {
-        let known = self.terms.entry(unknown).or_insert(Expression::ZERO);
-        *known = pool.add(*known, coefficient);
-    }
-
-    fn add_scaled(&mut self, pool: &mut Pool, other: &Self, factor: Expression) {
-        for (unknown, coefficient) in &other.terms {
-            let scaled = pool.multiply(*coefficient, factor);
-            self.add(pool, *unknown, scaled);
-        }
-        let scaled = pool.multiply(other.constant, factor);
-        self.constant = pool.add(self.constant, scaled);
-        self.input = self.input.or(other.input);
-    }
 }

@@ -165,7 +165,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 ..Start::of(span, x, slope)
             };
             let memory = problem.memory;
-            let wide = steps.tolerance();
+            let wide = steps.tolerance::<S, M, P>();
             let tolerance = wide.as_ref().unwrap_or(&tolerance);
             let trial = steps.attempt(problem, &from, tolerance);
             let taken = if trial.error <= 1.0 {
@@ -183,7 +183,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                     }
                 }
             } else {
-                steps.reject(&mut control, seen(span.length), trial.error);
+                steps.reject::<S, M, P>(&mut control, seen(span.length), trial.error);
                 None
             };
             let Some((known, ahead)) = taken else {
@@ -211,7 +211,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
             problem
                 .probes
                 .heed(seen(t), seen(span.length), trial.coarse);
-            steps.accept(&mut control, seen(span.length), trial.error);
+            steps.accept::<S, M, P>(&mut control, seen(span.length), trial.error);
             (t, x, slope, refused) = (span.end, next, ahead, 0);
         }
     }

@@ -67,6 +67,14 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         }
     }
 
+    /// Whether the step at hand is one across; where there are no loops that is known while compiling.
+    fn is_across<S, const M: usize, const P: usize>(&self) -> bool
+    where
+        S: System<T, N, M, P>,
+    {
+        !S::META.closures.is_empty() && self.is_across
+    }
+
     /// The length to try where the control has come to this one, after so many refusals.
     pub(super) fn length<S, const M: usize, const P: usize>(
         &mut self,
@@ -88,12 +96,15 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
     }
 
     /// The tolerance of the step at hand, where it is one across.
-    pub(super) fn tolerance(&self) -> Option<Tolerance<N>> {
+    pub(super) fn tolerance<S, const M: usize, const P: usize>(&self) -> Option<Tolerance<N>>
+    where
+        S: System<T, N, M, P>,
+    {
+        if !self.is_across::<S, M, P>() {
+            return None;
+        }
         let place = self.tried.saturating_sub(1) / LENGTHS.len();
-        self.tolerances
-            .get(place)
-            .filter(|_| self.is_across)
-            .copied()
+        self.tolerances.get(place).copied()
     }
 
     /// Tries a step, by the method unless it is one across.
@@ -107,8 +118,8 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        problem.closes_stages = self.is_across;
-        if self.is_across {
+        problem.closes_stages = self.is_across::<S, M, P>();
+        if problem.closes_stages {
             self.explicit.attempt(problem, start, Some(tolerance))
         } else {
             self.work.attempt(problem, start, Some(tolerance))
@@ -126,7 +137,7 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        if self.is_across {
+        if self.is_across::<S, M, P>() {
             self.explicit.polynomial(problem, start, end)
         } else {
             self.work.polynomial(problem, start, end)
@@ -139,23 +150,38 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
     }
 
     /// Hands a refusal on to the control; what a step across is off by says nothing of the method's own.
-    pub(super) fn reject(&self, control: &mut Control, length: f64, error: f64) {
-        if !self.is_across {
+    pub(super) fn reject<S, const M: usize, const P: usize>(
+        &self,
+        control: &mut Control,
+        length: f64,
+        error: f64,
+    ) where
+        S: System<T, N, M, P>,
+    {
+        if !self.is_across::<S, M, P>() {
             control.reject(length, error);
         }
     }
 
     /// Goes on behind a step.
-    pub(super) fn accept(&mut self, control: &mut Control, length: f64, error: f64) {
+    pub(super) fn accept<S, const M: usize, const P: usize>(
+        &mut self,
+        control: &mut Control,
+        length: f64,
+        error: f64,
+    ) where
+        S: System<T, N, M, P>,
+    {
+        let is_across = self.is_across::<S, M, P>();
         // Where no step across was found the method's own is what is usual.
-        let fails = self.tried > 0 && !self.is_across;
+        let fails = self.tried > 0 && !is_across;
         self.usual = if fails {
             length
         } else {
             length.max(REMEMBERED * self.usual)
         };
         self.tried = 0;
-        if self.is_across {
+        if is_across {
             renew(self.work, self.method);
             control.shorten(length);
         } else {

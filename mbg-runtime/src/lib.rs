@@ -15,6 +15,15 @@
 //!
 //! What the macro writes calls this crate `mbg_runtime`. Where `Cargo.toml` gives it another name,
 //! `bonds = { package = "mbg-runtime", … }`, put `extern crate bonds as mbg_runtime;` at the root of your crate.
+//!
+//! Cargo does not optimise macros, in release builds neither. Where a large model takes long to expand, let it, in `Cargo.toml`:
+//!
+//! ```toml
+//! [profile.dev.build-override]
+//! opt-level = 3
+//! [profile.release.build-override]
+//! opt-level = 3
+//! ```
 #![no_std]
 #[cfg(any(test, feature = "std"))]
 extern crate std;

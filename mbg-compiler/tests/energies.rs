@@ -156,7 +156,11 @@ fn energies_of_powers_of_quotients_are_exact() {
 #[test]
 fn energies_of_polynomials_beside_other_functions_are_exact() {
     type Law = (&'static str, fn(f64) -> f64);
-    let laws: [Law; 7] = [
+    let laws: [Law; 8] = [
+        ("a * sin(12 * q) * (1.0 + 0.1 * cos(q))", |q| {
+            let fall = |times: f64| (1.0 - f64::cos(times * q)) / times;
+            0.34 * (fall(12.0) + 0.05 * (fall(13.0) + fall(11.0)))
+        }),
         ("pow(2.0 / (2.0 - q), 1.4)", |q| {
             5.0 * ((1.0 - q / 2.0).powf(-0.4) - 1.0)
         }),

@@ -16,7 +16,7 @@ const MOST_INNER: usize = 500;
 /// hyperbolic tangent of what is affine in the symbol; products, quotients and powers of what is affine and vanishes at one
 /// place; products of sums that are made of such when they are multiplied out; and all of these with choices, absolute
 /// values and signs of what is affine anywhere in them. Further polynomials beside such a power, an exponential, a sine or a
-/// cosine, whole powers of sines and cosines, and logarithms of products and quotients of what is affine. Products of the
+/// cosine, whole powers and products of sines and cosines, and logarithms of products and quotients of what is affine. Products of the
 /// derivative of a function with a function of it are integrated by that one.
 #[must_use]
 pub fn antiderivative(
@@ -115,6 +115,7 @@ impl Integration<'_> {
             self.power(base, exponent)
                 .or_else(|| self.power_of_wave(base, exponent))
         })
+        .or_else(|| self.product_of_waves(a, b))
         .or_else(|| self.distributed(a, b))
         .or_else(|| self.distributed(b, a))
     }

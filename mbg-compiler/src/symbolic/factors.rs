@@ -147,23 +147,6 @@ impl Integration<'_> {
         }
         Some(total)
     }
-
-    /// `∫ sinⁿ = ((n − 1) ∫ sinⁿ⁻² − sinⁿ⁻¹ cos) / n`, and that of the cosine likewise.
-    pub(super) fn power_of_wave(&mut self, base: Expression, exponent: i32) -> Option<Expression> {
-        let (other, angle) = match *self.pool.operation(base) {
-            Operation::Sine(angle) => (self.pool.cosine(angle).negated(), angle),
-            Operation::Cosine(angle) => (self.pool.sine(angle), angle),
-            _ => return None,
-        };
-        let [below, second] = [1, 2].map(|less| self.pool.power(base, exponent - less));
-        let product = self.pool.multiply(below?, other);
-        let first = self.inner(angle, product)?;
-        let second = self.of(second?)?;
-        let [before, all] = [exponent - 1, exponent].map(|it| self.pool.integer(it.into()));
-        let second = self.pool.multiply(before, second);
-        let sum = self.pool.add(first, second);
-        self.pool.divide(sum, all)
-    }
 }
 
 #[cfg(test)]

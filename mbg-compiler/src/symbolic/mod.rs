@@ -27,6 +27,7 @@ mod share;
 pub mod substitute;
 mod uses;
 mod walk;
+mod waves;
 
 pub use affine::{affine, linear_part};
 pub use antiderivative::antiderivative;

@@ -2,6 +2,7 @@
 
 use super::antiderivative::Integration;
 use super::expression::{Expression, Operation};
+use super::substitute::visit;
 
 /// Most factors of a product of waves; each doubles the waves of its sum.
 const MOST_WAVES: usize = 6;
@@ -32,8 +33,7 @@ impl Integration<'_> {
         self.pool.divide(sum, all)
     }
 
-    /// A product of sines and cosines as half the sum of those of sums and differences of their angles, whose slopes are in fixed
-    /// ratios: of others a difference may vanish for some parameters.
+    /// A product of sines and cosines as half the sum of those of sums and differences of their angles.
     pub(super) fn product_of_waves(&mut self, a: Expression, b: Expression) -> Option<Expression> {
         let mut factors = Vec::new();
         for factor in [a, b] {
@@ -42,16 +42,15 @@ impl Integration<'_> {
         let (first, others) = factors
             .split_first()
             .filter(|(_, rest)| rest.len() < MOST_WAVES)?;
-        let slope = self.slope(first.angle)?;
         let mut waves = vec![*first];
         for wave in others {
-            let other = self.slope(wave.angle)?;
-            let ratio = self.pool.divide(other, slope)?;
-            self.pool.constant_value(ratio)?;
-            waves = waves
+            let products = waves
                 .into_iter()
-                .flat_map(|known| self.multiplied(known, *wave))
-                .collect();
+                .flat_map(|known| self.multiplied(known, *wave));
+            waves = products.collect();
+        }
+        if waves.iter().any(|wave| self.may_stand(wave.angle)) {
+            return None;
         }
         let terms: Vec<Expression> = waves.iter().map(|wave| self.written(wave)).collect();
         let sum = self.pool.sum(&terms);
@@ -81,6 +80,18 @@ impl Integration<'_> {
             is_negative,
         });
         Some(())
+    }
+
+    /// Whether an angle that changes may have no slope for some parameters, as a difference of them.
+    fn may_stand(&mut self, angle: Expression) -> bool {
+        let Some(slope) = self.slope(angle) else {
+            return !self.is_free(angle);
+        };
+        let mut is_sum = false;
+        visit(self.pool, &[slope], |_, operation| {
+            is_sum |= matches!(operation, Operation::Add(..));
+        });
+        is_sum
     }
 
     /// Twice the product of two waves.

@@ -25,6 +25,8 @@ mod sampled;
 mod singular;
 #[path = "methods/stability.rs"]
 mod stability;
+#[path = "methods/starts.rs"]
+mod starts;
 #[path = "methods/stops.rs"]
 mod stops;
 #[path = "methods/times.rs"]

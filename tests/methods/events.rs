@@ -2,7 +2,8 @@
 
 use mbg_runtime::{
     Adaptive, Cause, Constant, Direction, Dop853, Dual, Estimating, Fixed, Gauss6, Integrator,
-    Pirk8, Pirk16, Pulse, Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Step, Tsit5, Variable, Verner9,
+    Pirk8, Pirk16, Pulse, Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Step, System, Tsit5, Variable,
+    Verner9, mbg,
 };
 use nalgebra::SVector;
 
@@ -258,4 +259,56 @@ fn jumps_are_met_by_every_method() {
     push(Rodas4);
     push(Rodas5P);
     push(Radau5);
+}
+
+mbg! {
+    /// A top on a ball joint, of which the quaternion is closed after each step.
+    #[derivative]
+    pub(crate) model Top {
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        1 ground[6]; 1 frame[6]; 1 centre[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        tip: Spherical {
+            orientation: quaternion, initial: [0.1, 0.5, 0.2], initial_rate: [0.3, 0.0, 5.0]
+        } (ground, frame);
+        arm: Offset { by: [0.0, 0.0, 0.4] } (frame, centre);
+        body: Body { mass: 1.0, inertia: diag(0.02, 0.02, 0.01) } (centre);
+        output spin: rad/s = frame.f[2];
+    }
+}
+
+/// An event is interpolated, and the next run begins beside it, where the quaternion has length one.
+#[test]
+fn an_event_of_a_closed_model_is_found_once() {
+    let model = Top::<f64>::new(TopParameters::default()).unwrap();
+    let guard = |_t: f64, x: &SVector<f64, 7>| x[1] - 0.1;
+    let events = |tolerance: f64| {
+        let solver = Adaptive::new(Dop853, tolerance, tolerance);
+        let (mut time, mut state) = (0.0, model.initial_state());
+        let mut found = Vec::new();
+        loop {
+            let event = (Direction::Either, guard);
+            let arrival = solver
+                .until(&model, &(), time, 10.0, state, event, |_| ())
+                .unwrap();
+            if !arrival.found {
+                return found;
+            }
+            (time, state) = (arrival.time, arrival.state);
+            found.push(time);
+        }
+    };
+    let strict = events(1e-12);
+    assert!(strict.windows(2).all(|pair| pair[1] - pair[0] > 0.1));
+    for tolerance in [1e-8, 1e-6, 1e-4] {
+        let found = events(tolerance);
+        assert_eq!(found.len(), strict.len(), "{tolerance:e}: {found:?}");
+        let pairs = found.iter().zip(&strict);
+        assert!(
+            pairs
+                .map(|(a, b)| (a - b).abs())
+                .all(|error| error < 300.0 * tolerance)
+        );
+    }
 }

@@ -10,7 +10,7 @@ use mbg_runtime::{
 use nalgebra::SVector;
 
 use crate::errors::{apart, larger};
-use crate::problems::{Law, RigidBody, Robertson, StiffPin, VanDerPol, Written};
+use crate::problems::{Law, RigidBody, Robertson, StiffPin, VanDerPol, Written, state};
 
 fn end<L, D, const N: usize>(
     law: L,
@@ -186,6 +186,39 @@ fn a_rigid_body_keeps_its_invariants_for_a_thousand_seconds() {
     assert!(exact.iter().all(|drift| *drift < 1e-14), "{exact:?}");
     let swept = drift(Fixed::new(Gauss6 { sweeps: Some(3) }, 0.01).compensated());
     assert!(swept.iter().all(|drift| *drift < 1e-9), "{swept:?}");
+}
+
+/// Van der Pol's equation with so much damping; with none, a spring.
+#[derive(Clone, Copy)]
+struct Relaxation(f64);
+
+impl Law<2, 0> for Relaxation {
+    const STATES: &'static [Variable] = &[state("displacement"), state("rate")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let damping = T::from_f64(self.0) * (T::from_f64(1.0) - x[0] * x[0]);
+        SVector::from([x[1], damping * x[1] - x[0]])
+    }
+}
+
+/// Sweeps turn while they converge at steps of this length: the change of one is larger than that of the one before now and
+/// then, long before nothing but rounding is left.
+#[test]
+fn sweeps_go_to_rounding_where_they_turn() {
+    for length in [1.0, 1.05, 1.2, 1.5, 1.9] {
+        let solver = Fixed::new(Gauss6::default(), length).compensated();
+        let start = SVector::from([1.0, 0.0]);
+        let (x, statistics) = end(Relaxation(0.0), solver, 1000.0 * length, start);
+        let drift = (x.norm() - 1.0).abs();
+        println!("steps of {length}: {drift:.1e}, {statistics:?}");
+        assert!(drift < 1e-12, "{length}: {drift:e}");
+    }
+    // Collocation with five stages, which the same sweeps solve: exact to 4e-4 here.
+    let law = Relaxation(3.5);
+    let start = SVector::from([1.3, -0.4]);
+    let strict = end(law, Adaptive::new(Dop853, 1e-12, 1e-12), 4.3, start).0;
+    let found = end(law, Fixed::new(Radau9, 0.43), 4.3, start).0;
+    assert!((found - strict).norm() < 2e-3, "{found:?} {strict:?}");
 }
 
 #[test]

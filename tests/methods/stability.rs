@@ -1,7 +1,8 @@
-//! Limits of stability of explicit methods, at steps of one length.
+//! Limits of stability of explicit methods, at steps of one length and to loose tolerances.
 
 use mbg_runtime::{
-    Dop853, Fixed, Integrator, Method, Pirk8, Pirk16, Real, Rk4, Tsit5, Variable, Verner9,
+    Adaptive, Dop853, Estimating, Fixed, Integrator, Method, Pirk8, Pirk16, Real, Rk4, Tsit5,
+    Variable, Verner9,
 };
 use nalgebra::SVector;
 
@@ -63,4 +64,31 @@ fn modes_grow_beyond_the_limits_of_stability_alone() {
         let rate = grown(Pirk16, [0.0, 0.1 * f64::from(tenths)]).ln() / STEPS;
         assert!(rate < 1e-9, "at {tenths} tenths: {rate:e}");
     }
+}
+
+/// What decays is gone at the end, however loose the tolerance.
+fn assert_decays<M: Estimating>(method: M) {
+    for tolerance in [0.1, 0.03, 0.01, 3e-3, 1e-3] {
+        for mode in [[-1.0, 0.0], [-10.0, 0.0], [-9.0, 4.4], [-3.0, 300.0]] {
+            let start = SVector::from([1.0, 0.0]);
+            let mut last = start;
+            Adaptive::new(method, tolerance, tolerance)
+                .integrate(&Written(Mode(mode)), &(), 0.0, 100.0, start, |step| {
+                    last = *step.state()
+                })
+                .unwrap();
+            let size = last.norm();
+            println!("{} {mode:?} to {tolerance:e}: {size:e}", M::NAME);
+            assert!(size < 200.0 * tolerance.min(1e-2));
+        }
+    }
+}
+
+#[test]
+fn loose_tolerances_do_not_let_modes_grow() {
+    assert_decays(Tsit5);
+    assert_decays(Dop853);
+    assert_decays(Verner9);
+    assert_decays(Pirk8);
+    assert_decays(Pirk16);
 }

@@ -66,6 +66,9 @@ pub struct Adaptive<'a, Method> {
     /// The method.
     pub method: Method,
     /// Tolerance in units of the state.
+    ///
+    /// An explicit method takes both tolerances smaller where this one exceeds 1e-2, [`Pirk16`](super::Pirk16) where it exceeds
+    /// 1e-4: to looser ones steps come to lengths at which what decays grows.
     pub relative: f64,
     /// Tolerance where the state is near zero, in units of its nominal size.
     pub absolute: f64,
@@ -133,15 +136,15 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let tolerance = Tolerance::new(self.relative, self.absolute, self.nominal);
+        let tolerances = self.tolerances();
+        let tolerance = Tolerance::new(tolerances.0, tolerances.1, self.nominal);
         let mut work = Scheme::Work::<T, N>::new(&self.method);
-        let tolerances = (self.relative, self.absolute);
         let mut steps = Crossing::new((&self.method, &mut work), tolerances, self.nominal);
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
         let first = self.first_step(problem, (start, end), (&x, &slope), &tolerance);
-        problem.probes.enter(seen(start), first);
+        problem.probes.enter((seen(start), seen(end)), first);
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
@@ -218,6 +221,12 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
 }
 
 impl<M: Estimating> Adaptive<'_, M> {
+    /// The relative and the absolute tolerance that steps are controlled by.
+    fn tolerances(&self) -> (f64, f64) {
+        let tighter = (M::LOOSEST / self.relative).min(1.0);
+        (tighter * self.relative, tighter * self.absolute)
+    }
+
     /// The first step, no shorter than time resolves: it grows from there.
     fn first_step<T, S, I, const N: usize, const K: usize, const P: usize>(
         &self,
@@ -252,24 +261,26 @@ impl<M: Estimating> Adaptive<'_, M> {
         I: Input<T, K>,
     {
         let longest = seen(end - start).min(self.longest);
+        // The rule compares derivatives of different order: its unit of time is the second, or all the time there is.
+        let unit = longest.min(1.0);
         let measure = tolerance.around(x);
-        let (state, first) = (measure.norm(x), measure.norm(slope));
+        let (state, first) = (measure.norm(x), unit * measure.norm(slope));
         let trial = if state <= 1e-5 || first <= 1e-5 {
-            1e-6
+            1e-6 * unit
         } else {
-            0.01 * state / first
+            0.01 * unit * state / first
         }
         .min(longest);
         // Over rest a step may be as long as the piece, unless input or model may do something in between.
-        let rests = first * longest <= 1e-5 && problem.is_left_alone();
+        let rests = first * longest <= 1e-5 * unit && problem.is_left_alone();
         let most = if rests { longest } else { 100.0 * trial };
         let h = T::from_f64(trial);
         let memory = problem.memory;
         let ahead = problem.slope(start + h, &along(x, h, slope));
         problem.memory = memory;
-        let second = measure.norm(&(ahead - slope)) / trial;
+        let second = unit * (unit / trial) * measure.norm(&(ahead - slope));
         let largest = first.max(second);
-        let accurate = Real::pow(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER));
+        let accurate = unit * Real::pow(0.01 / largest, 1.0 / f64::from(M::ESTIMATE_ORDER));
         // An infinite slope ahead gives zero or NaN; the first trial is safer then.
         let step = most.min(accurate).min(longest);
         if step > 0.0 && second.is_finite() {

@@ -246,9 +246,10 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
         Ok(None)
     }
 
-    /// Leaves the part of the step up to a time in it. Its length stays that of the polynomial, which is over the whole step.
-    pub(super) fn cut(&mut self, end: T) {
-        self.state = self.at(end);
+    /// Leaves the part of the step up to a time in it, with the state there. Its length stays that of the polynomial, which is
+    /// over the whole step.
+    pub(super) fn cut(&mut self, end: T, state: SVector<T, N>) {
+        self.state = state;
         self.span.end = end;
     }
 

@@ -14,7 +14,7 @@ use crate::{Input, Real, System};
 pub struct Arrival<T, const N: usize> {
     /// The time of the event, or the end.
     pub time: T,
-    /// The state there; at an event interpolated.
+    /// The state there; at an event interpolated, and on closed loops.
     pub state: SVector<T, N>,
     /// Whether it was the event.
     pub found: bool,
@@ -244,12 +244,16 @@ pub trait Integrator<const N: usize> {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let (mut time, mut state, mut found) = (t1, x, false);
         let mut undefined = None;
+        // What is interpolated leaves closed loops by the error of the step. The next run begins on them, and there the guard
+        // must have gone through zero, or it would do so once more.
+        let closed = |t: T, x: &SVector<T, N>| system.close(t, *x, &input.at(t), &[]).unwrap_or(*x);
         self.run(&mut problem, (t0, t1), x, &mut |step| {
-            match step.search(direction, &mut guard) {
+            match step.search(direction, |t, x| guard(t, &closed(t, x))) {
                 Ok(None) => {}
                 Ok(Some(crossing)) => {
                     (time, found) = (crossing, true);
-                    step.cut(crossing);
+                    let there = step.at(crossing);
+                    step.cut(crossing, closed(crossing, &there));
                 }
                 Err(time) => {
                     undefined = Some(time);

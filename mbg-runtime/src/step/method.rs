@@ -96,6 +96,10 @@ pub trait Family: Copy {
 
     /// Whether it takes Jacobians.
     const IMPLICIT: bool = true;
+
+    /// The largest relative tolerance that its steps are controlled by. To larger ones the steps of an explicit method come to
+    /// lengths at which it is not stable, and its estimate does not tell.
+    const LOOSEST: f64 = f64::INFINITY;
 }
 
 /// Steps of a method, with the stages of the last one and what else is used again.
@@ -329,30 +333,30 @@ pub(super) fn along<T: Real, const N: usize>(
 /// many times; whether it came to that.
 ///
 /// It has when nothing changes, or when a small change no longer becomes smaller (Hairer, McLachlan and Razakarivony,
-/// *BIT Numerical Mathematics* 48 (2008), 231–243). A component near zero may be all rounding: then a change of a
-/// hundredth that stalls twice counts. Where the iteration is cut off, the last change must be small.
+/// *BIT Numerical Mathematics* 48 (2008), 231–243). Where the iteration turns while it converges, a change is larger than
+/// the one before now and then, and in a component near zero all of it may be rounding: so the longer none has been the
+/// smallest, the larger one is taken for rounding. Where the iteration is cut off, the last change must be small.
 pub(super) fn settles<T: Real>(most: u32, mut change: impl FnMut() -> f64) -> bool {
-    let mut before = f64::INFINITY;
-    let mut stalls = 0;
+    const FIRST: f64 = 64.0;
+    const FACTOR: f64 = 16.0;
+    const LARGEST: f64 = 1e-2;
+    let mut least = f64::INFINITY;
+    let (mut rounding, mut last) = (0.0, f64::INFINITY);
     for _ in 0..most {
-        let change = change();
-        if change >= before {
-            stalls += 1;
+        last = change();
+        if last < least {
+            (least, rounding) = (last, 0.0);
+        } else {
+            rounding = (FACTOR * rounding).clamp(FIRST * T::EPSILON, LARGEST);
         }
-        before = change;
-        let small = match stalls {
-            0 => 0.0,
-            1 => T::SINGULAR,
-            _ => 1e-2,
-        };
-        if change <= small {
+        if last <= rounding {
             return true;
         }
-        if change.is_nan() {
+        if last.is_nan() {
             return false;
         }
     }
-    before < T::SINGULAR
+    last < T::SINGULAR
 }
 
 /// The larger of two sizes, or NaN where one is.

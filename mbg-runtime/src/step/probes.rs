@@ -55,10 +55,11 @@ impl Probes {
         }
     }
 
-    /// Takes note of the first step of a piece of the input, which is short because nothing is known yet.
-    pub(super) fn enter(&mut self, time: f64, length: f64) {
+    /// Takes note of the first step of a piece of the input, which is short because nothing is known yet. Over what hardly
+    /// moves it may be as long as the piece, and is taken for a part of it then.
+    pub(super) fn enter(&mut self, (time, end): (f64, f64), length: f64) {
         if self.shortest == 0.0 {
-            self.begin(time, length, length);
+            self.begin(time, length.min((end - time) / PARTS), length);
         }
         self.longest = length;
     }

@@ -293,6 +293,8 @@ macro_rules! explicit {
             type Work<T: Real, const N: usize> = Slopes<Self, T, N, $stages, $all>;
 
             const IMPLICIT: bool = false;
+
+            const LOOSEST: f64 = 1e-2;
         }
     };
 }

@@ -39,7 +39,9 @@ pub struct Ros2;
 /// |---|---|---|---|---|
 /// | 4 | 3, error of power 4 | 3 | 6 evaluations, a Jacobian, a factorisation, 6 solves | A and L, stiffly accurate |
 ///
-/// For stiff electrical and chemical problems to errors of about 1e-4.
+/// For stiff electrical and chemical problems to errors of about 1e-4. Where a fast mode follows what varies with time, states
+/// in between, samples and events among them, are far less exact than those at the ends of steps:
+/// [`Rodas5P`] does not lose it.
 ///
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.7.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,0 +1,82 @@
+//! First steps: short runs, and runs that begin next to rest.
+
+use mbg_runtime::{
+    Adaptive, Auto, Dop853, Integrator, Radau5, Rodas4, Rodas5P, Ros2, System, Tsit5, mbg,
+};
+
+mbg! {
+    /// A wheel that a smooth pulse drives, the same at any scale of time.
+    pub(crate) model Pushed {
+        param scale: s = 1.0;
+        param initial: kg*m/s = 0.0;
+        param constant: N*s = 0.0;
+        param place = 7.0;
+        param width = 0.5;
+        1 velocity {
+            I body { inertia: 1.0, initial: initial }
+            R damper { resistance: 1.0 / scale }
+            Se push { effort: (constant + 1.0 * exp(-powi((t / scale - place) / width, 2))) / scale }
+        }
+        output velocity = velocity.f;
+    }
+}
+
+/// The momentum after some of ten units of time.
+fn after(time: f64, parameters: PushedParameters, solver: impl Integrator<1>) -> f64 {
+    let scale = parameters.scale;
+    let model = Pushed::<f64>::new(parameters).unwrap();
+    let times = [time * scale, 10.0 * scale];
+    let mut samples = Vec::new();
+    solver
+        .sample(&model, &(), 0.0, model.initial_state(), &times, |_, x| {
+            samples.push(x[0])
+        })
+        .unwrap();
+    samples[0]
+}
+
+#[test]
+fn a_pulse_is_met_at_any_scale_of_time() {
+    for scale in [1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12] {
+        let parameters = PushedParameters {
+            scale,
+            ..Default::default()
+        };
+        for found in [
+            after(7.3, parameters, Auto::new(1e-6, 1e-6)),
+            after(7.3, parameters, Adaptive::new(Tsit5, 1e-6, 1e-6)),
+            after(7.3, parameters, Adaptive::new(Dop853, 1e-6, 1e-6)),
+            after(7.3, parameters, Adaptive::new(Rodas4, 1e-6, 1e-6)),
+            after(7.3, parameters, Adaptive::new(Rodas5P, 1e-6, 1e-6)),
+            after(7.3, parameters, Adaptive::new(Radau5, 1e-6, 1e-6)),
+        ] {
+            assert!((found - 0.482_008_37).abs() < 5e-6, "{scale:e}: {found}");
+        }
+    }
+}
+
+#[test]
+fn a_pulse_behind_a_start_next_to_rest_is_met() {
+    let parameters = PushedParameters {
+        initial: 1.000_000_014,
+        constant: 1.0,
+        place: 7.2,
+        width: 0.15,
+        ..Default::default()
+    };
+    let exact = after(7.3, parameters, Adaptive::new(Dop853, 1e-12, 1e-12));
+    for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
+        for found in [
+            after(7.3, parameters, Auto::new(tolerance, tolerance)),
+            after(7.3, parameters, Adaptive::new(Tsit5, tolerance, tolerance)),
+            after(7.3, parameters, Adaptive::new(Ros2, tolerance, tolerance)),
+            after(7.3, parameters, Adaptive::new(Rodas4, tolerance, tolerance)),
+            after(7.3, parameters, Adaptive::new(Radau5, tolerance, tolerance)),
+        ] {
+            assert!(
+                (found - exact).abs() < 10.0 * tolerance,
+                "{tolerance:e}: {found} {exact}"
+            );
+        }
+    }
+}

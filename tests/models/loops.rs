@@ -1,8 +1,8 @@
 //! Nonlinear algebraic loops against closed forms, bisection, references and identities.
 
 use mbg_runtime::{
-    Adaptive, Cause, Constant, Dop853, Dual, Estimating, Integrator, Loop, Radau5, Real, Rk4,
-    Rodas5P, Smooth, Solver, System, Trouble, Tsit5, mbg,
+    Adaptive, Cause, Constant, Dop853, Dual, Estimating, Integrator, Loop, Pulse, Radau5, Real,
+    Rk4, Rodas5P, Smooth, Solver, System, Trouble, Tsit5, mbg,
 };
 use nalgebra::{SMatrix, SVector};
 
@@ -82,6 +82,24 @@ mbg! {
         integral volume = line.f;
         output flow: m^3/s = line.f;
         output moved = volume;
+    }
+
+    /// Two tanks, a pump between them, and two turbulent losses in a row, whose slopes are zero at rest.
+    pub(crate) model Tanks {
+        causality componentwise;
+        param left = 0.5;
+        param loss = 1.0;
+        input head;
+        0 from { C first { compliance: 1.0, initial: left } }
+        0 to { C second { compliance: 1.0, initial: 0.5 } }
+        1 pipe {
+            Se pump { effort: head }
+            R length { effort: loss * f * abs(f) }
+            R bend { effort: 0.25 * loss * f * abs(f) }
+        }
+        from -> pipe;
+        pipe -> to;
+        output flow = pipe.f;
     }
 
     /// A massless slider with friction that falls with speed, pulled through a damper.
@@ -567,6 +585,44 @@ fn metadata_tells_how_each_loop_is_solved() {
     let linear = super::behaviour::Ladder::<f64>::META.loops[0];
     assert_eq!(linear.through, ["left", "right", "series"]);
     assert_eq!(linear.solver.to_string(), "linear");
+}
+
+#[test]
+fn turbulent_losses_are_solved_at_rest() {
+    let model = Tanks::<f64>::new(TanksParameters::default()).unwrap();
+    let rest = model.initial_state();
+    for head in [0.0, 1e-9, -1e-3, -1.25, 1.25, -5.0, 3.0] {
+        // With 1.25 Newton's first step from one leads to rest.
+        let mut memory = Default::default();
+        let rate = model.derivative(0.0, &rest, &SVector::from([head]), &mut memory);
+        let flow = f64::signum(head) * f64::sqrt(f64::abs(head) / 1.25);
+        assert!(
+            f64::abs(rate[1] - flow) <= 1e-14 * f64::abs(flow),
+            "{head}: {rate}"
+        );
+        assert_eq!(
+            model.trouble(0.0, &rest, &SVector::from([head]), &memory),
+            None
+        );
+    }
+    // At rest until the pump starts: then the difference rises by d' = 2 sqrt((h - d) / 1.25), and stays at h.
+    let pump = Pulse {
+        amplitude: SVector::from([0.8]),
+        start: 1.0,
+        end: 1e3,
+    };
+    let mut samples = Vec::new();
+    Adaptive::new(Tsit5, 1e-8, 1e-8)
+        .sample(&model, &pump, 0.0, rest, &[0.5, 1.5], |_, x| {
+            samples.push(x[1] - x[0])
+        })
+        .unwrap();
+    let gone = f64::sqrt(0.8) - 0.5 / f64::sqrt(1.25);
+    assert_eq!(samples[0], 0.0);
+    assert!(
+        (samples[1] - (0.8 - gone * gone)).abs() < 1e-6,
+        "{samples:?} {gone}"
+    );
 }
 
 #[test]

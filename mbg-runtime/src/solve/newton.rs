@@ -14,6 +14,8 @@ const DAMPINGS: usize = 24;
 const ROUNDING: f64 = 64.0;
 /// A correction that is longer than this part of the one before comes no nearer.
 const SHRINKS: f64 = 0.9;
+/// How often an iteration that came to a point where the Jacobian is singular goes on from beside it.
+const ASIDE: usize = 4;
 /// In units of the precision: what an evaluation leaves of equations, beside their terms, when nothing but rounding is left.
 const LEFT: f64 = 4.0;
 
@@ -51,7 +53,10 @@ pub struct Solved<T, const K: usize> {
 /// is what they leave of it: corrections go no further when each equation is zero but for the rounding of its terms. Of an
 /// unknown below 64 ε they need not settle, since it may be zero, with terms beside it that cancel: it converges where it can.
 ///
-/// It does not converge where there is no solution, where the Jacobian is singular, or from too far away.
+/// Where the Jacobian is singular, as that of `f |f|` at rest, a point that solves the equations exactly is the solution, with
+/// the slopes of [`Dual`](crate::Dual) numbers beside it, and from any other the iteration goes on beside it.
+///
+/// It does not converge where there is no solution, where the Jacobian is singular next to it, or from too far away.
 ///
 /// # Example
 ///
@@ -87,11 +92,21 @@ pub(super) fn attempt<T: Real, const K: usize>(
     let mut size = start.map(Real::abs);
     let (mut was_settled, mut was_small, mut tells) = (false, false, false);
     let mut last = T::from_f64(f64::INFINITY);
-    let mut iterations = 0;
+    let (mut iterations, mut asides) = (0, 0);
     loop {
         iterations += 1;
         let factors = Regular::new(point.jacobian);
         let correction = factors.solution(&point.residual);
+        if correction.iter().any(|step| !step.magnitude().is_finite()) {
+            let beside = point.aside(&correction, &size, &evaluate);
+            if let Some(none) = point.none_left(&beside) {
+                return point.ended(&none, &size, iterations, true);
+            }
+            if asides < ASIDE {
+                (asides, point) = (asides + 1, beside);
+                continue;
+            }
+        }
         let settled = below(&correction, &point.x.map(Real::abs), None);
         let is_settled = in_all(settled);
         if is_settled && was_settled {
@@ -234,6 +249,33 @@ impl<T: Real, const K: usize> Point<T, K> {
         None
     }
 
+    /// The correction at a point that solves the equations exactly, though the Jacobian is singular there: none, but for slopes,
+    /// which are those beside it.
+    fn none_left(&self, beside: &Self) -> Option<SVector<T, K>> {
+        let is_zero = |residual: &T| residual.magnitude() == 0.0;
+        let correction = Regular::new(beside.jacobian).solution(&self.residual);
+        let solves = self.residual.iter().all(is_zero) && correction.iter().all(is_zero);
+        solves.then_some(correction)
+    }
+
+    /// The point next to one of which a correction is not finite.
+    fn aside(
+        &self,
+        correction: &SVector<T, K>,
+        size: &SVector<T, K>,
+        evaluate: &impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
+    ) -> Self {
+        let zero = T::from_f64(0.0);
+        let rounding = T::from_f64(ROUNDING * T::EPSILON);
+        let x = self.x.zip_zip_map(correction, size, |x, step, size| {
+            let aside = T::from_f64(T::SINGULAR) * size + rounding;
+            x + step
+                .abs()
+                .select_less(T::from_f64(f64::INFINITY), zero, aside)
+        });
+        Self::new(x, evaluate)
+    }
+
     /// The length of a correction, beside the largest value that each unknown took on the way.
     fn relative(correction: &SVector<T, K>, size: &SVector<T, K>) -> T {
         let unseen = T::from_f64(ROUNDING * T::EPSILON);
@@ -314,6 +356,46 @@ mod tests {
                 let error = x - eccentricity * x.sin() - mean;
                 assert!(error.abs() < 1e-15 * (1.0 + mean.abs()), "{error:e}");
                 assert!(solved.residual < 1e-14, "{solved:?}");
+            }
+        }
+    }
+
+    /// Two turbulent losses in a row and a drop of pressure, `p = f |f| + 0.2 f |f|`.
+    fn turbulent<T: Real>(drop: T, start: T) -> Solved<T, 1> {
+        newton(SVector::from([start]), |x| {
+            let size = x[0].abs();
+            let losses = T::from_f64(1.2);
+            (
+                SVector::from([drop - losses * x[0] * size]),
+                SMatrix::from([[-losses * T::from_f64(2.0) * size]]),
+            )
+        })
+    }
+
+    #[test]
+    fn rest_is_a_solution_where_slopes_are_zero() {
+        let solved = turbulent(0.0, 0.0);
+        assert!(solved.converged && solved.solution[0] == 0.0, "{solved:?}");
+        let solved = turbulent(0.0_f32, 0.0);
+        assert!(solved.converged && solved.solution[0] == 0.0, "{solved:?}");
+        // There the flow changes infinitely faster than the pressure.
+        let solved = turbulent(Dual::variable(0.0), Dual::constant(0.0));
+        assert!(solved.converged && solved.solution[0].value == 0.0);
+        assert!(solved.solution[0].slope > 1e12, "{solved:?}");
+    }
+
+    #[test]
+    fn a_step_onto_a_singular_point_goes_on() {
+        // Newton's first step leads to rest from one, with these drops of pressure exactly.
+        for drop in [-1.2, 1.2, -4.8, -1.3, 1e-9, -1e9] {
+            for start in [1.0, -1.0, 2.0] {
+                let solved = turbulent(drop, start);
+                let exact = f64::signum(drop) * f64::sqrt(f64::abs(drop) / 1.2);
+                assert!(solved.converged, "{drop} {start} {solved:?}");
+                assert!(
+                    (solved.solution[0] / exact - 1.0).abs() < 1e-14,
+                    "{solved:?}"
+                );
             }
         }
     }

@@ -124,6 +124,57 @@ fn laws_of_whole_vectors_are_no_laws_of_components() {
     assert_eq!(mistake(law), "");
 }
 
+/// In a law `f` is the element's own, and so are its components, whatever else has that name.
+#[test]
+fn own_variables_hide_what_else_has_their_names() {
+    let efforts = |text: &str| {
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &[1.0, 2.0, 0.0],
+            input: &[],
+        };
+        program::evaluate(&compiled(text).program, Routines::OUTPUT, &arguments)
+    };
+    let resistor = |law: &str, other: &str| {
+        efforts(&format!(
+            "component Thing(port 1 a) {{ let x = 5.0; let w = 7.0; a -> R r {{ resistance: 1.0 }}; }}
+             model M {{ 1 v[2] {{ I m {{ inertia: 1.0 }} R d {{ {law} }} }} 1 w {{ I k {{ inertia: 1.0 }} {other}"
+        ))
+    };
+    let flows = "effort: [3.0 * f.x, 4.0 * f[1]]";
+    let read = "} f: Thing (w); output y[3] = [d.e.x, d.e.y, f.x]; }";
+    assert_eq!(resistor(flows, read), [3.0, 8.0, 5.0]);
+    let read = "Se e { effort: 1.0 } } output y[3] = [d.e.x, d.e.y, e.e]; }";
+    assert_eq!(resistor("flow: [e.x, 2.0 * e.y]", read), [1.0, 1.0, 1.0]);
+    let read = "} f: for k in 0..1 { let x = 5.0; } output y[3] = [d.e.x, d.e.y, f[0].x]; }";
+    assert_eq!(resistor(flows, read), [3.0, 8.0, 5.0]);
+    // Four components are no quaternion.
+    let four = "model M { 1 v[4] { I m { inertia: 1.0 } R d { effort: [f.x, f.y, f.z, f[3]] } } }";
+    assert_eq!(compiled(four).states.len(), 4);
+    // Nothing but a component is read behind an own variable: this is what else has the name.
+    let read = "} f: Thing (w); output y[2] = d.e; }";
+    assert_eq!(resistor("effort: f.w * f", read), [7.0, 14.0]);
+    let read = "R r { effort: f[0].x } } f: for k in 0..1 { let x = 5.0; }";
+    insta::assert_snapshot!(mistake(&format!("1 v {{ I b {{ inertia: 1.0 }} {read}")), @"
+    2:42 `f[0]` is a component of the element's own `f`, and nothing is read behind it [MBG0213]
+      help: declare what else has this name by a longer one than `f`
+    ");
+    let known = |law: &str| {
+        mistake(&format!(
+            "let f = 3; 1 v[2] {{ I b {{ inertia: 1.0 }} R r {{ effort: {law} }} }}"
+        ))
+    };
+    insta::assert_snapshot!(known("if f > 2 { 1.0 } else { 2.0 }"), @"
+    2:59 `f` is a variable of `r` in its law, and declared as another value [MBG0202]
+      help: declare the other value by a longer name than `f`
+    ");
+    insta::assert_snapshot!(known("[1.0, f % 2]"), @"
+    2:62 `f` is a variable of `r` in its law, and declared as another value [MBG0202]
+      help: declare the other value by a longer name than `f`
+    ");
+}
+
 /// A law that multiplies is a resistance, whatever word gives it, and so has both causalities.
 #[test]
 fn a_law_that_multiplies_is_a_coefficient() {

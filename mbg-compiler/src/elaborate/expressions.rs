@@ -22,9 +22,6 @@ pub enum Value {
     Matrix(Product),
 }
 
-/// Variables of an element in its own law: displacement, momentum, effort and flow.
-pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
-
 /// A failed evaluation.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
@@ -54,6 +51,11 @@ pub trait Names {
     /// What to write for a path without a value, where that can be told.
     fn advice(&mut self, _pool: &mut Pool, _path: &[Step]) -> Option<String> {
         None
+    }
+
+    /// Whether a name is a variable of the element whose law is read.
+    fn is_own(&self, _name: &Ident) -> bool {
+        false
     }
 
     /// Whether a law is read for one component of a vector: its own variables stand for that one.
@@ -322,8 +324,7 @@ impl<N: Names> Evaluator<'_, N> {
 
     /// A component of an element's own variable is one of the whole vector.
     pub(super) fn check_whole(&self, name: &Ident) -> Result<()> {
-        let is_own = OWN.iter().any(|own| name == own);
-        if is_own && self.names.is_by_component() {
+        if self.names.is_own(name) && self.names.is_by_component() {
             return whole_vector(name.span());
         }
         Ok(())
@@ -399,6 +400,11 @@ impl<N: Names> Evaluator<'_, N> {
     /// A remainder is one of whole numbers, since that of a value that varies would jump.
     fn remainder(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
         let known = self.names.whole(&Expr::Binary(binary.clone()));
+        // A name may have two meanings in a law, of which a whole number is one.
+        if known.is_ok() {
+            self.evaluate(&binary.left)?;
+            self.evaluate(&binary.right)?;
+        }
         let varying = match known {
             Err(_) => self.varying(&[&binary.left, &binary.right]),
             Ok(_) => None,

@@ -26,7 +26,8 @@ impl<N: Names> Evaluator<'_, N> {
             return Some(Err(report));
         }
         let value = self.names.value(self.pool, front)?;
-        let is_quaternion = |value: &Value| value.is_vector_of(4) && !is_of_bond(front);
+        let is_own = matches!(front, [own] if self.names.is_own(&own.name));
+        let is_quaternion = |value: &Value| value.is_vector_of(4) && !is_own && !is_of_bond(front);
         match value {
             Ok(value) if is_quaternion(&value) => Some(Err(no_letter(path, name, place))),
             _ if component_index(name).is_none() => None,

@@ -30,6 +30,7 @@ mod mentions;
 mod model;
 mod moving;
 mod orientation;
+mod own;
 mod quadrature;
 mod rays;
 mod references;

@@ -10,8 +10,9 @@ use super::bonds::is_two_port;
 use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
-use super::expressions::{Names, OWN, Result, Step, Value, fail};
+use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Assumption, Parameter, Place, Quantity, Signals};
+use super::own::{OWN, Own, OwnPath, compared};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
@@ -207,16 +208,6 @@ fn iteration(
     }
 }
 
-/// The variables of the element whose law is being read.
-#[derive(Clone, Debug)]
-pub(super) struct Own {
-    pub(super) element: ElementId,
-    pub(super) states: Range<usize>,
-    pub(super) dimension: usize,
-    /// Set while a scalar law is read for one component.
-    pub(super) component: Option<usize>,
-}
-
 /// Names as one law sees them.
 pub(super) struct Lookup<'a, 'm> {
     pub(super) scopes: &'a Scopes,
@@ -244,14 +235,12 @@ impl Names for Lookup<'_, '_> {
             if name == "t" && !self.is_value("t") {
                 return Some(Ok(Value::Scalar(pool.symbol(Symbol::Time))));
             }
-            if let Some(own) = self.own.clone()
-                && let Some(word) = OWN.into_iter().find(|word| name == word)
-            {
-                if self.is_value(word) {
-                    return Some(self.two_meanings(&own, name));
-                }
-                return Some(self.own_variable(pool, &own, name));
-            }
+        }
+        match self.own_path(path) {
+            Some(OwnPath::Whole) => return Some(self.own_value(pool, &path[0].name)),
+            Some(OwnPath::Component) => return None,
+            Some(OwnPath::Behind(index)) => return Some(self.behind_own(path, index)),
+            None => {}
         }
         let (entity, steps) = match self.scopes.follow(self.scope, path) {
             Ok(found) => found?,
@@ -291,6 +280,9 @@ impl Names for Lookup<'_, '_> {
     }
 
     fn decide(&self, condition: &Expr) -> Result<bool> {
+        for compared in compared(condition) {
+            self.check_meanings(compared)?;
+        }
         self.scopes[self.scope].constants.decide(condition)
     }
 
@@ -300,6 +292,10 @@ impl Names for Lookup<'_, '_> {
 
     fn advice(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
         self.advice_on(pool, path)
+    }
+
+    fn is_own(&self, name: &Ident) -> bool {
+        self.own.is_some() && OWN.iter().any(|own| name == own)
     }
 
     fn is_by_component(&self) -> bool {
@@ -353,7 +349,8 @@ fn written(path: &[Step]) -> String {
 }
 
 /// Why `e` and `f` of a two-port mean nothing.
-const TWO_PORT_VARIABLE: &str = "a two-port has two efforts and two flows; read them at a junction";
+pub(super) const TWO_PORT_VARIABLE: &str =
+    "a two-port has two efforts and two flows; read them at a junction";
 
 impl Lookup<'_, '_> {
     /// The value of what one name stands for.
@@ -392,49 +389,9 @@ impl Lookup<'_, '_> {
     }
 
     /// Whether a name is declared as something with a value.
-    fn is_value(&self, name: &str) -> bool {
+    pub(super) fn is_value(&self, name: &str) -> bool {
         let entity = self.scopes.find(self.scope, name);
         entity.is_some_and(Entity::is_value)
-    }
-
-    fn two_meanings<T>(&self, own: &Own, name: &Ident) -> Result<T> {
-        let element = &self.graph.elements[own.element.0].name;
-        let message = format!(
-            "`{name}` is a variable of `{element}` in its law, and declared as another value"
-        );
-        let report = error(codes::DUPLICATE_NAME, name.span(), message);
-        Err(Box::new(report.help(format!(
-            "declare the other value by a longer name than `{name}`"
-        ))))
-    }
-
-    fn own_variable(&mut self, pool: &mut Pool, own: &Own, name: &Ident) -> Result<Value> {
-        let kind = self.graph.elements[own.element.0].kind;
-        let components = own
-            .component
-            .map_or(0..own.dimension, |component| component..component + 1);
-        match name.to_string().as_str() {
-            "q" if kind == ElementKind::C => Ok(states(pool, &own.states, components)),
-            "p" if kind == ElementKind::I => Ok(states(pool, &own.states, components)),
-            "e" | "f" if is_two_port(kind) => fail(name.span(), TWO_PORT_VARIABLE),
-            "e" | "f" if kind == ElementKind::C => self.no_energy(own, name, ("q", "effort")),
-            "e" | "f" if kind == ElementKind::I => self.no_energy(own, name, ("p", "flow")),
-            "e" => Ok(self.signals(pool, Quantity::Effort, Place::Port(own.element), components)),
-            "f" => Ok(self.signals(pool, Quantity::Flow, Place::Port(own.element), components)),
-            _ => fail(name.span(), format!("a {kind:?} has no `{name}`")),
-        }
-    }
-
-    /// What a storage holds is a function of its state; read with an effort or a flow, a law stores no energy.
-    fn no_energy<T>(&self, own: &Own, name: &Ident, (state, law): (&str, &str)) -> Result<T> {
-        let element = &self.graph.elements[own.element.0].name;
-        let message = format!(
-            "`{element}` stores energy by its own `{state}` alone, and its law reads `{name}`"
-        );
-        let report = error(codes::EXPRESSION, name.span(), message);
-        Err(Box::new(report.help(format!(
-            "write `{law}: …` or `energy: …` as a function of `{state}`"
-        ))))
     }
 
     fn element_variable(
@@ -511,7 +468,7 @@ impl Lookup<'_, '_> {
         }
     }
 
-    fn signals(
+    pub(super) fn signals(
         &mut self,
         pool: &mut Pool,
         quantity: Quantity,
@@ -531,7 +488,7 @@ fn no_variable<T>(owner: &str, name: &Ident, known: &str) -> Result<T> {
     Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)))
 }
 
-fn states(pool: &mut Pool, range: &Range<usize>, components: Range<usize>) -> Value {
+pub(super) fn states(pool: &mut Pool, range: &Range<usize>, components: Range<usize>) -> Value {
     symbols(
         pool,
         components.map(|component| Symbol::State(range.start + component)),

@@ -74,6 +74,14 @@ fn mistakes_in_laws_are_told() {
       help: did you mean `sin`?
       help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, pow, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
     ");
+    insta::assert_snapshot!(mistake("1 v { I b { inertia: q } C c { stiffness: p } R r { resistance: p } TF t { flow: 1.0 } MGY g { effort: 1.0 } }"), @"
+    2:69 a `TF` has two ports; put it between two arrows [MBG0208]
+    2:88 an `MGY` has two ports; put it between two arrows [MBG0208]
+    2:22 an `I` has no `q` [MBG0213]
+    2:43 a `C` has no `p` [MBG0213]
+    2:65 an `R` has no `p` [MBG0213]
+    ");
+    insta::assert_snapshot!(mistake("1 v[8] { I b { inertia: diag(1.0, 2.0) } }"), @"2:25 expected a number or an 8×8 matrix, found a 2×2 matrix [MBG0204]");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0 } } v -> v;"), @"
     2:32 `v -> v` joins a junction to itself, which says nothing [MBG0209]
       help: remove it, or lead it through a `TF` or a `GY`

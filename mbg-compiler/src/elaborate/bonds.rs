@@ -12,6 +12,7 @@ use crate::graph::{
 };
 use crate::symbolic::Expression;
 use crate::syntax::ast::{self, ChainNode};
+use crate::syntax::words::{article, element_name, is_two_port};
 
 impl<'a> Builder<'a> {
     /// Puts the elements in a junction's braces at the junction.
@@ -33,10 +34,10 @@ impl<'a> Builder<'a> {
         }
         for element in &junction.elements {
             if is_two_port(element.kind) {
-                let message = format!(
-                    "a {:?} has two ports; put it between two arrows",
-                    element.kind
-                );
+                let kind = element_name(element.kind);
+                let article = article(kind);
+                let message =
+                    format!("{article} `{kind}` has two ports; put it between two arrows");
                 self.tell(scope, error(codes::UNCONNECTED, element.span, message));
                 continue;
             }
@@ -276,14 +277,6 @@ impl<'a> Builder<'a> {
         }
         Some((End::OnePort(id), End::OnePort(id), size))
     }
-}
-
-/// Whether an element has two ports.
-pub(super) fn is_two_port(kind: ElementKind) -> bool {
-    matches!(
-        kind,
-        ElementKind::TF | ElementKind::GY | ElementKind::MTF | ElementKind::MGY
-    )
 }
 
 fn state_letter(kind: ElementKind) -> Option<char> {

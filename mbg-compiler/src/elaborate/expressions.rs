@@ -10,7 +10,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Pool, Product, Rate};
 use crate::syntax::dump;
-use crate::syntax::words::{FUNCTIONS, JUMPING_INPUT};
+use crate::syntax::words::{FUNCTIONS, JUMPING_INPUT, article};
 use crate::units::without_unit;
 
 /// What an expression stands for.
@@ -115,7 +115,10 @@ impl Value {
             Self::Matrix(product) if product.columns() == 1 => {
                 format!("a vector of {}", product.rows())
             }
-            Self::Matrix(product) => format!("a {}×{} matrix", product.rows(), product.columns()),
+            Self::Matrix(product) => {
+                let (rows, columns) = (product.rows().to_string(), product.columns());
+                format!("{} {rows}×{columns} matrix", article(&rows))
+            }
         }
     }
 }

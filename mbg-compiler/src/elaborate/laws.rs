@@ -6,7 +6,6 @@ use proc_macro2::Span;
 use syn::Expr;
 use syn::spanned::Spanned;
 
-use super::bonds::is_two_port;
 use super::expressions::{Evaluator, Result, Value};
 use super::model::{Assumption, Condition, Place, Quantity};
 use super::own::Own;
@@ -20,7 +19,7 @@ use crate::symbolic::{
     Differentiator, Expression, Factor, Matrix, Pool, Product, Substitution, Symbol, linear_part,
 };
 use crate::syntax::ast::{Element, Field};
-use crate::syntax::words::law_words;
+use crate::syntax::words::{article, is_two_port, law_words};
 
 /// What reading the fields of an element gives.
 pub(super) struct Reading {
@@ -224,7 +223,8 @@ impl Reader<'_, '_, '_> {
             }
             found => {
                 let message = format!(
-                    "expected a number or a {size}×{size} matrix, found {}",
+                    "expected a number or {} {size}×{size} matrix, found {}",
+                    article(&size.to_string()),
                     found.shape()
                 );
                 let report = error(codes::WRONG_DIMENSION, value.span(), message);

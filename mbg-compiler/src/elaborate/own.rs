@@ -5,7 +5,6 @@ use std::ops::Range;
 use proc_macro2::Ident;
 use syn::{BinOp, Expr};
 
-use super::bonds::is_two_port;
 use super::expressions::{Result, Step, Value, fail};
 use super::indices::component_index;
 use super::mentions::mentioned;
@@ -15,6 +14,7 @@ use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{ElementId, ElementKind};
 use crate::symbolic::Pool;
+use crate::syntax::words::{article, element_name, is_two_port};
 
 /// Their names: displacement, momentum, effort and flow.
 pub(super) const OWN: [&str; 4] = ["q", "p", "e", "f"];
@@ -138,7 +138,11 @@ impl Lookup<'_, '_> {
             "e" | "f" if kind == ElementKind::I => self.no_energy(own, name, ("p", "flow")),
             "e" => Ok(self.signals(pool, Quantity::Effort, Place::Port(own.element), components)),
             "f" => Ok(self.signals(pool, Quantity::Flow, Place::Port(own.element), components)),
-            _ => fail(name.span(), format!("a {kind:?} has no `{name}`")),
+            _ => {
+                let kind = element_name(kind);
+                let message = format!("{} `{kind}` has no `{name}`", article(kind));
+                fail(name.span(), message)
+            }
         }
     }
 

@@ -6,7 +6,6 @@ use std::ops::Range;
 use proc_macro2::{Ident, Span};
 use syn::Expr;
 
-use super::bonds::is_two_port;
 use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
 use super::definitions::{Definitions, Missing, Progress};
@@ -17,6 +16,7 @@ use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate, Symbol};
+use crate::syntax::words::is_two_port;
 
 /// The acceleration of free fall: a name of the model that every component sees.
 pub(super) const GRAVITY: &str = "gravity";

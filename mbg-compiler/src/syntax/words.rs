@@ -122,7 +122,7 @@ pub(super) fn element(word: &str) -> Option<ElementKind> {
 }
 
 /// The name of this element.
-pub(super) fn element_name(kind: ElementKind) -> &'static str {
+pub(crate) fn element_name(kind: ElementKind) -> &'static str {
     ELEMENTS
         .iter()
         .find(|(_, other)| *other == kind)
@@ -134,9 +134,26 @@ pub(super) fn element_names() -> Vec<&'static str> {
     ELEMENTS.iter().map(|(name, _)| *name).collect()
 }
 
+/// Whether an element has two ports.
+pub(crate) fn is_two_port(kind: ElementKind) -> bool {
+    matches!(
+        kind,
+        ElementKind::TF | ElementKind::GY | ElementKind::MTF | ElementKind::MGY
+    )
+}
+
 /// The elements as errors list them.
 pub(super) fn element_listing() -> String {
     alternatives(&element_names())
+}
+
+/// The article before the name of an element, which is read by its letters, or before a number.
+pub(crate) fn article(read: &str) -> &'static str {
+    let begins_with_vowel = match read {
+        "11" | "18" => true,
+        _ => read.starts_with(['E', 'I', 'M', 'R', 'S', '8']),
+    };
+    if begins_with_vowel { "an" } else { "a" }
 }
 
 /// `` `a`, `b` or `c` ``.

@@ -135,3 +135,74 @@ fn an_element_between_two_junctions_is_told_a_junction_of_its_own() {
     assert_eq!(typed(&shafts("a -> C s { stiffness: 2.0 } -> b;")), [path]);
     assert_eq!(told(&shafts(path)), "");
 }
+
+#[test]
+fn an_element_without_a_bond_is_told_with_its_bond() {
+    let model = |statement: &str| {
+        format!(
+            "model M {{ 1 v {{ I m {{ inertia: 1.0 }} }} 0 a {{ R k {{ resistance: 1.0 }} }}
+             0 b {{ R l {{ resistance: 1.0 }} }}\n{statement} }}"
+        )
+    };
+    let slips = [
+        (
+            "C c { stiffness: 1.0 } v -> c;",
+            "v -> C c { stiffness: 1.0 };",
+        ),
+        ("Se s { effort: 1.0 } s -> v;", "Se s { effort: 1.0 } -> v;"),
+        (
+            "R r { resistance: 1.0 } (v);",
+            "v -> R r { resistance: 1.0 };",
+        ),
+        (
+            "TF g { flow: 2.0 } (v, a);",
+            "v -> TF g { flow: 2.0 } -> a;",
+        ),
+        (
+            "C c { stiffness: 1.0 } (a, b);",
+            "1 branch { C c { stiffness: 1.0 } } a -> branch; branch -> b;",
+        ),
+    ];
+    for (slip, written) in slips {
+        let texts = typed(&model(slip));
+        assert_eq!(texts.last().unwrap(), written);
+        assert_eq!(told(&model(written)), "", "{written}");
+    }
+    for (slip, written) in [
+        (
+            "R r { resistance: 1.0 } (a, b);",
+            "r: Resistor { resistance: 1.0 } (a, b);",
+        ),
+        (
+            "C r { compliance: 1.0 } (a, b);",
+            "r: Capacitor { capacitance: 1.0 } (a, b);",
+        ),
+        (
+            "I r { inertia: 1.0 } (a, b);",
+            "r: Inductor { inductance: 1.0 } (a, b);",
+        ),
+    ] {
+        let texts = typed(&model(slip));
+        assert_eq!(texts[1], written);
+        for text in texts {
+            assert_eq!(told(&model(&text)), "", "{text}");
+        }
+    }
+    insta::assert_snapshot!(told(&model("C c { stiffness: 1.0 } v -> c;")), @"
+    3:24 expected `->` after `}`, found `v` [MBG0101]
+      help: an element stands in a bond or in the braces of a junction: `v -> C c { stiffness: 1.0 };`
+    ");
+    insta::assert_snapshot!(told(&model("R r { resistance: 1.0 } (a, b);")), @"
+    3:25 expected `->` after `}`, found `(` [MBG0101]
+      help: an element between two nodes stands at a junction of its own: `1 branch { R r { resistance: 1.0 } } a -> branch; branch -> b;`
+      help: components of the library take nodes in parentheses: `r: Resistor { resistance: 1.0 } (a, b);`
+    ");
+    insta::assert_snapshot!(told(&model("C c { stiffness: 1.0 };")), @"
+    3:23 expected `->` after `}`, found `;` [MBG0101]
+      help: an element stands in a bond or in the braces of a junction: `… -> C c { stiffness: 1.0 };`
+    ");
+    insta::assert_snapshot!(told(&model("MTF g { flow: 2.0 }")), @"
+    3:19 expected `->` after `}`, found the end of the braces [MBG0101]
+      help: an element with two ports stands between two arrows: `… -> MTF g { flow: 2.0 } -> …;`
+    ");
+}

@@ -3,6 +3,7 @@
 use proc_macro2::{Delimiter, Group, Span, TokenTree};
 use syn::Expr;
 
+use super::alone::alone;
 use super::ast::{Chain, ChainNode, Instance, Reference, Segment, Selection};
 use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
@@ -22,6 +23,7 @@ pub(super) fn chain(
     derivative: Option<Span>,
     sink: &mut Sink<'_>,
 ) -> Parsed<Chain> {
+    let start = cursor.position();
     let mut nodes = vec![node(cursor, derivative, NODE, sink)?];
     let mut arrows = Vec::new();
     while let Some(arrow) = cursor.take_arrow() {
@@ -35,7 +37,7 @@ pub(super) fn chain(
         )?);
     }
     if arrows.is_empty() {
-        return Err(unbonded(cursor, &nodes[0]));
+        return Err(unbonded(cursor, &nodes[0], start));
     }
     if !cursor.punct(0, ';')
         && let Some(error) = slipped(cursor, nodes.last())
@@ -85,8 +87,8 @@ fn node(
     reference(cursor, what).map(ChainNode::Reference)
 }
 
-/// Nothing follows the first node of a chain but something that is no arrow.
-fn unbonded(cursor: &Cursor, node: &ChainNode) -> Box<Diagnostic> {
+/// Nothing follows the first node of a chain, which begins at a place, but something that is no arrow.
+fn unbonded(cursor: &Cursor, node: &ChainNode, start: usize) -> Box<Diagnostic> {
     if let Some(error) = slipped(cursor, Some(node)) {
         return error;
     }
@@ -105,7 +107,11 @@ fn unbonded(cursor: &Cursor, node: &ChainNode) -> Box<Diagnostic> {
         ChainNode::Reference(_) => "`->` or `.`",
         ChainNode::Element(_) => "`->`",
     };
-    cursor.expected(&format!("{wanted} after {}", cursor.previous()))
+    let mut error = cursor.expected(&format!("{wanted} after {}", cursor.previous()));
+    if let ChainNode::Element(element) = node {
+        error.helps = alone(cursor, element, start);
+    }
+    error
 }
 
 /// The usual slips where an arrow should stand, with what to type.

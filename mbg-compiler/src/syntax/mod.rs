@@ -8,6 +8,7 @@
 //! The structure is read from token trees by hand, and only laws are handed to `syn`: a failed `syn` parse inside
 //! braces spoils the parse of everything around them, which would cost every error but the first.
 
+mod alone;
 pub mod ast;
 mod attributes;
 mod chains;

@@ -407,7 +407,7 @@ fn mistakes_in_loops_are_told() {
     ");
     insta::assert_snapshot!(mistake("for k in 0..2 { 1 b; } a.x -> b;"), @"
     2:31 `b` is not declared [MBG0203]
-      help: junctions here are `a`
+      help: give the loop a name, `cells: for k in 0..2 { … }`, and write `cells[0].b`
     ");
     insta::assert_snapshot!(mistake("for k in 0..n { 1 b; }"), @"
     2:13 expected a whole number that is known while the model is compiled, found `n` [MBG0217]

@@ -2,7 +2,7 @@
 
 use proc_macro2::Ident;
 
-use super::expressions::{Names, Step};
+use super::expressions::{Index, Names, Step};
 use super::indices::component_index;
 use super::scope::{Entity, Lookup};
 use crate::diagnostics::listing;
@@ -18,7 +18,11 @@ impl Lookup<'_, '_> {
                 let id = *id;
                 self.at_junction(pool, path, count, id)
             }
-            Ok(None) => self.in_instance(path).or_else(|| self.of_output(path)),
+            Ok(None) => {
+                let in_loop = self.scopes.in_loop(self.scope, path);
+                let known = in_loop.or_else(|| self.in_instance(path));
+                known.or_else(|| self.of_output(path))
+            }
             _ => None,
         }
     }
@@ -48,7 +52,7 @@ impl Lookup<'_, '_> {
         };
         let own = |variable: &Step| [before, &[plain.clone(), variable.clone()]].concat();
         match (rest, &last.index) {
-            ([variable], Some((index, _))) => {
+            ([variable], Some(Index { number: index, .. })) => {
                 let text = self.read(pool, &own(variable))?;
                 Some(format!("write `{text}[{index}]`"))
             }
@@ -167,8 +171,8 @@ impl Lookup<'_, '_> {
 
 /// `links[2].spring.q`.
 pub(super) fn text(path: &[Step]) -> String {
-    let steps = path.iter().map(|step| match step.index {
-        Some((index, _)) => format!("{}[{index}]", step.name),
+    let steps = path.iter().map(|step| match &step.index {
+        Some(index) => format!("{}[{}]", step.name, index.number),
         None => step.name.to_string(),
     });
     steps.collect::<Vec<_>>().join(".")

@@ -25,13 +25,24 @@ pub enum Value {
 /// A failed evaluation.
 pub type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
-/// A name in a dotted path, with the index in brackets after it and where that stands.
-#[derive(Clone, Debug)]
+/// What stands in brackets after a name.
+#[derive(Clone)]
+pub struct Index {
+    /// Its value.
+    pub number: i64,
+    /// Where messages about it point.
+    pub span: Span,
+    /// As it is written.
+    pub written: Expr,
+}
+
+/// A name in a dotted path, with the index in brackets after it.
+#[derive(Clone)]
 pub struct Step {
     /// The name.
     pub name: Ident,
     /// `2` in `links[2]`.
-    pub index: Option<(i64, Span)>,
+    pub index: Option<Index>,
 }
 
 /// Where names get their meaning.
@@ -245,8 +256,10 @@ impl<N: Names> Evaluator<'_, N> {
                 Expr::Path(path) => Err(no_plain_name(&path.path, &[])),
                 Expr::Field(field) => {
                     let name = member(field)?;
-                    let value = self.evaluate(&field.base)?;
-                    self.component(value, &name)
+                    match self.evaluate(&field.base) {
+                        Ok(value) => self.component(value, &name),
+                        Err(report) => Err(self.twice_indexed(expression).unwrap_or(report)),
+                    }
                 }
                 _ => fail(expression.span(), "expected a plain name"),
             };
@@ -298,8 +311,11 @@ impl<N: Names> Evaluator<'_, N> {
         loop {
             let name = match rest {
                 Expr::Index(indexed) if index.is_none() => {
-                    let number = self.names.whole(&indexed.index)?;
-                    index = Some((number, indexed.index.span()));
+                    index = Some(Index {
+                        number: self.names.whole(&indexed.index)?,
+                        span: indexed.index.span(),
+                        written: (*indexed.index).clone(),
+                    });
                     rest = &indexed.expr;
                     continue;
                 }

@@ -6,7 +6,7 @@ use syn::spanned::Spanned;
 use syn::{Expr, RangeLimits, Token};
 
 use super::advice;
-use super::expressions::{Evaluator, Names, Result, Step, Value, fail, mismatch};
+use super::expressions::{Evaluator, Index, Names, Result, Step, Value, fail, mismatch};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Product;
@@ -46,11 +46,33 @@ impl<N: Names> Evaluator<'_, N> {
         let (last, front) = steps.split_last()?;
         let column = component_index(&last.name)?;
         let mut matrix = front.to_vec();
-        let (row, _) = matrix.last_mut()?.index.take()?;
+        let row = matrix.last_mut()?.index.take()?.number;
         let value = self.names.value(self.pool, &matrix)?.ok()?;
         let is_matrix = matches!(&value, Value::Matrix(it) if it.columns() > column.max(1));
         let matrix = advice::text(&matrix);
         is_matrix.then(|| format!("write `{matrix}[{row}][{column}]`"))
+    }
+
+    /// A mistake in `c[1][2].v`, where an iteration of `c` has a loop inside; none where that is not so.
+    pub(super) fn twice_indexed(&mut self, path: &Expr) -> Option<Box<Diagnostic>> {
+        let Twice {
+            once,
+            iteration,
+            second,
+            behind,
+        } = twice(path)?;
+        let mut steps = self.steps(&once).ok()??;
+        let place = steps.len().checked_sub(behind)?;
+        steps.get_mut(place)?.index.get_or_insert(Index {
+            number: self.names.whole(second).ok()?,
+            span: second.span(),
+            written: second.clone(),
+        });
+        let help = self.names.advice(self.pool, &steps)?;
+        let text = dump::expression(iteration);
+        let message = format!("`{text}` is one iteration, which has no index of its own");
+        let report = error(codes::UNKNOWN_NAME, second.span(), message);
+        Some(Box::new(report.help(help)))
     }
 
     /// Refuses a vector where its components are wanted one by one, with the text for them.
@@ -185,6 +207,43 @@ impl<N: Names> Evaluator<'_, N> {
                 format!("components {start}..{end} of {shape} do not exist"),
             ),
         }
+    }
+}
+
+/// A path with two indices behind one name, `c[1][2].v`.
+struct Twice<'a> {
+    /// `c[1].v`
+    once: Expr,
+    /// `c[1]`
+    iteration: &'a Expr,
+    /// `2`
+    second: &'a Expr,
+    /// How many names stand behind.
+    behind: usize,
+}
+
+fn twice(path: &Expr) -> Option<Twice<'_>> {
+    match path {
+        Expr::Field(field) => {
+            let base = twice(&field.base)?;
+            let once = Expr::Field(syn::ExprField {
+                base: Box::new(base.once),
+                ..field.clone()
+            });
+            let behind = base.behind + 1;
+            Some(Twice {
+                once,
+                behind,
+                ..base
+            })
+        }
+        Expr::Index(outer) if matches!(&*outer.expr, Expr::Index(_)) => Some(Twice {
+            once: (*outer.expr).clone(),
+            iteration: &outer.expr,
+            second: &outer.index,
+            behind: 0,
+        }),
+        _ => None,
     }
 }
 

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use super::Builder;
 use super::expressions::Value;
 use super::scope::{Entity, Scope};
+use super::turns::Turns;
 use crate::syntax::ast::Loop;
+use crate::syntax::dump;
 
 impl<'a> Builder<'a> {
     /// Declares the iterations of a loop and the names inside.
@@ -38,6 +40,7 @@ impl<'a> Builder<'a> {
                         repeated.variable.to_string(),
                         Entity::Value(Value::Scalar(variable)),
                     )]),
+                    variable: Some(repeated.variable.to_string()),
                     ..Scope::default()
                 };
                 let inner = self.scopes.add(iteration);
@@ -45,6 +48,12 @@ impl<'a> Builder<'a> {
                 inner
             })
             .collect();
+        self.scopes[scope].turns.push(Turns {
+            label: repeated.label.as_ref().map(ToString::to_string),
+            head: head(repeated),
+            start,
+            iterations: iterations.clone(),
+        });
         self.scopes[scope].loops.push((path, iterations.clone()));
         if let Some(label) = &repeated.label {
             self.name(scope, label, Entity::Loop(start, iterations));
@@ -67,4 +76,10 @@ impl<'a> Builder<'a> {
         }
         path
     }
+}
+
+/// `for k in 0..n`
+fn head(repeated: &Loop) -> String {
+    let [start, end] = [&repeated.start, &repeated.end].map(dump::expression);
+    format!("for {} in {start}..{end}", repeated.variable)
 }

@@ -39,6 +39,7 @@ mod scope;
 mod size;
 mod spread;
 mod tools;
+mod turns;
 mod unused;
 
 use std::collections::BTreeMap;

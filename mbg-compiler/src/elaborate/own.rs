@@ -66,7 +66,7 @@ impl Lookup<'_, '_> {
             return None;
         }
         match (&first.index, rest) {
-            (Some((index, _)), _) => Some(OwnPath::Behind(*index)),
+            (Some(index), _) => Some(OwnPath::Behind(index.number)),
             (None, []) => Some(OwnPath::Whole),
             (None, [Step { name, index: None }]) => {
                 component_index(name).map(|_| OwnPath::Component)

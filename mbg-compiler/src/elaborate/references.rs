@@ -5,7 +5,7 @@ use std::ops::Range;
 use syn::Expr;
 
 use super::Builder;
-use super::expressions::{Result, Step};
+use super::expressions::{Index, Result, Step};
 use super::indices::component_index;
 use super::scope::Entity;
 use crate::codes;
@@ -125,7 +125,11 @@ impl Builder<'_> {
                     return Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)));
                 }
                 let number = self.scopes[scope].constants.evaluate(&selection.start)?;
-                Some((number, name.span()))
+                Some(Index {
+                    number,
+                    span: name.span(),
+                    written: selection.start.clone(),
+                })
             }
             _ => None,
         };
@@ -146,9 +150,18 @@ impl Builder<'_> {
     fn undeclared(&self, scope: usize, reference: &Reference) -> Box<Diagnostic> {
         let message = format!("`{}` is not declared", dump::reference(reference));
         let known = self.scopes.visible(scope);
+        let report = error(codes::UNKNOWN_NAME, reference.span, message);
+        let segments = reference.path.iter().enumerate();
+        let steps = segments.map(|(place, segment)| {
+            let last = place + 1 == reference.path.len();
+            self.step(scope, segment, last)
+        });
+        let steps: Result<Vec<Step>> = steps.collect();
+        if let Some(help) = steps.ok().and_then(|it| self.scopes.in_loop(scope, &it)) {
+            return Box::new(report.help(help));
+        }
         let last = reference.path.last().map(|last| last.name.to_string());
-        let report = error(codes::UNKNOWN_NAME, reference.span, message)
-            .did_you_mean(&last.unwrap_or_default(), &known);
+        let report = report.did_you_mean(&last.unwrap_or_default(), &known);
         let junctions: Vec<String> = known
             .iter()
             .filter(|name| matches!(self.scopes.find(scope, name), Some(Entity::Junction(..))))

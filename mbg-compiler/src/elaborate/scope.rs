@@ -12,6 +12,7 @@ use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Assumption, Parameter, Place, Quantity, Signals};
 use super::own::{OWN, Own, OwnPath, compared};
+use super::turns::Turns;
 use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
@@ -81,6 +82,10 @@ pub(super) struct Scope {
     pub(super) names: BTreeMap<String, Entity>,
     /// Outputs, which no law reads, by name: what declares a value for laws, and the value itself.
     pub(super) outputs: BTreeMap<String, [String; 2]>,
+    /// In an iteration of a loop: its variable.
+    pub(super) variable: Option<String>,
+    /// Loops, for what is said of names inside them.
+    pub(super) turns: Vec<Turns>,
     /// Loops in order of declaration: their paths, and the scopes of their iterations.
     pub(super) loops: Vec<(String, Vec<usize>)>,
 }
@@ -169,7 +174,9 @@ impl Scopes {
         for (position, pair) in path.windows(2).enumerate() {
             let inner = match (entity, &pair[0].index) {
                 (Entity::Instance(inner), None) => *inner,
-                (Entity::Loop(start, scopes), index) => iteration(&pair[0], *start, scopes, index)?,
+                (Entity::Loop(start, scopes), _) => {
+                    self.iteration(scope, &pair[0], *start, scopes)?
+                }
                 _ => return Ok(Some((entity, position + 1))),
             };
             let Some(next) = self.0[inner].names.get(&pair[1].name.to_string()) else {
@@ -178,33 +185,6 @@ impl Scopes {
             entity = next;
         }
         Ok(Some((entity, path.len())))
-    }
-}
-
-/// The scope of one iteration.
-fn iteration(
-    step: &Step,
-    start: i64,
-    scopes: &[usize],
-    index: &Option<(i64, Span)>,
-) -> Result<usize> {
-    let name = &step.name;
-    let Some((index, span)) = index else {
-        let message =
-            format!("`{name}` is a loop; write `{name}[{start}]` for its first iteration");
-        return Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)));
-    };
-    let place = index
-        .checked_sub(start)
-        .and_then(|place| usize::try_from(place).ok());
-    match place.and_then(|place| scopes.get(place)) {
-        Some(scope) => Ok(*scope),
-        None => {
-            let end = start.saturating_add_unsigned(scopes.len() as u64);
-            let message =
-                format!("`{name}` runs over {start}..{end}, there is no `{name}[{index}]`");
-            Err(Box::new(error(codes::UNKNOWN_NAME, *span, message)))
-        }
     }
 }
 
@@ -342,7 +322,7 @@ impl Names for Lookup<'_, '_> {
 /// A path as it is written.
 fn written(path: &[Step]) -> String {
     let step = |Step { name, index }: &Step| match index {
-        Some((index, _)) => format!("{name}[{index}]"),
+        Some(index) => format!("{name}[{}]", index.number),
         None => name.to_string(),
     };
     path.iter().map(step).collect::<Vec<_>>().join(".")
@@ -380,6 +360,12 @@ impl Lookup<'_, '_> {
                 let matrix = Matrix::new(3, 3, entries.collect());
                 Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
             }
+            Entity::Loop(start, _) => fail(
+                name.span(),
+                format!(
+                    "`{name}` is a loop; read what is inside an iteration, `{name}[{start}].…`"
+                ),
+            ),
             Entity::Element(_) => fail(
                 name.span(),
                 format!("`{name}` is an element; write `{name}.q`, `.p`, `.e` or `.f`"),

@@ -88,3 +88,35 @@ fn a_loop_inside_another_is_to_be_named() {
     ");
     insta::assert_snapshot!(told(&model("c: for k in 0..n { … }\noutput s = c[1];")), @"2:12 `c` is a loop; read what is inside an iteration, `c[0].…` [MBG0213]");
 }
+
+#[test]
+fn an_iteration_behind_the_last_one_is_left_out() {
+    let row = "for k in 0..n { 0 gap { C s { stiffness: 1.0 } R d { resistance: 1.0 } } c[k].v -> gap; LINK }";
+    let link = "gap -> c[k+1].v;";
+    let cells = |end: &str| format!("c: for k in 0..{end} {{ … }}");
+    let statements =
+        |end: &str, link: &str| format!("{} {}", cells(end), row.replace("LINK", link));
+    insta::assert_snapshot!(told(&model(&statements("n", link)).replace("gap ->", "\ngap ->")), @"
+    2:8 `c` runs over 0..3, there is no `c[3]` [MBG0203]
+      help: where there is none, nothing is written: `if k < 2 { … }` around the statement
+      help: or let `c` run to 4: a row has one junction more than elements between them
+    ");
+    leads(
+        &statements("n", link),
+        &["if k < 2 { … }", "c"],
+        &statements("n", "if k < 2 { gap -> c[k+1].v; }"),
+    );
+    assert_eq!(told(&model(&statements("n + 1", link))), "");
+    leads(
+        &statements("n", "gap -> c[2*k].v;"),
+        &["if 2 * k < 3 { … }"],
+        &statements("n", "if 2 * k < 3 { gap -> c[2*k].v; }"),
+    );
+    leads(
+        &statements("n", "gap -> c[k-1].v;"),
+        &["if k > 0 { … }"],
+        &statements("n", "if k > 0 { gap -> c[k-1].v; }"),
+    );
+    // A number says nothing of a loop.
+    assert!(typed(&model(&format!("{} output s = c[3].v.f;", cells("n")))).is_empty());
+}

@@ -398,7 +398,10 @@ fn mistakes_in_loops_are_told() {
       help: junctions here are `a`
     ");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } links[2].b -> a.x;"), @"2:41 `links` runs over 0..2, there is no `links[2]` [MBG0203]");
-    insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = links[k-1].v; }"), @"2:38 `links` runs over 0..2, there is no `links[-1]` [MBG0203]");
+    insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = links[k-1].v; }"), @"
+    2:38 `links` runs over 0..2, there is no `links[-1]` [MBG0203]
+      help: where there is none, nothing is written: `if k > 0 { … }` around the statement
+    ");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = 1.0; } output y = links.v;"), @"2:50 `links` is a loop; write `links[0]` for its first iteration [MBG0203]");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = 1.0; } output y = links[a].v;"), @"
     2:56 expected a whole number that is known while the model is compiled, found `a` [MBG0217]

@@ -1,10 +1,18 @@
 //! Iterations of loops in paths: those that do not exist, and names that stand only inside.
 
+use std::ops::Range;
+
+use syn::{BinOp, Expr};
+
 use super::advice;
-use super::expressions::{Result, Step};
+use super::constants::plain_name;
+use super::elsewhere;
+use super::expressions::{Index, Result, Step};
+use super::mentions::mentioned;
 use super::scope::{Entity, Scopes};
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{Diagnostic, error};
+use crate::syntax::dump;
 
 /// A loop, as its names are looked for from outside.
 #[derive(Debug)]
@@ -45,7 +53,20 @@ impl Scopes {
             "`{name}` runs over {start}..{end}, there is no `{name}[{}]`",
             index.number
         );
-        Err(Box::new(error(codes::UNKNOWN_NAME, index.span, message)))
+        let report = error(codes::UNKNOWN_NAME, index.span, message);
+        Err(Box::new(match self.varying(scope, index) {
+            true => beyond(report, &name.to_string(), index, start..end),
+            false => report,
+        }))
+    }
+
+    /// Whether an index holds the variable of a loop around the place where it stands.
+    fn varying(&self, scope: usize, index: &Index) -> bool {
+        let around = |scope: &usize| self[*scope].around;
+        let scopes = std::iter::successors(Some(scope), around);
+        let mut variables = scopes.filter_map(|scope| self[scope].variable.as_deref());
+        let names = mentioned(&index.written);
+        variables.any(|variable| names.iter().any(|path| path[0].name == variable))
     }
 
     /// What to type for a path whose first unknown name stands inside a loop.
@@ -167,4 +188,45 @@ fn to_name(route: &[(&Turns, i64)], labels: &[String], depth: usize, read: &str)
             format!("give the loops names, {declared}, and write `{read}`")
         }
     }
+}
+
+/// An iteration that a loop reads before the first or behind the last one of another.
+fn beyond(report: Diagnostic, name: &str, index: &Index, range: Range<i64>) -> Diagnostic {
+    let Range { start, end } = range;
+    let condition = if index.number < start {
+        compared(&index.written, ">", start.saturating_sub(1))
+    } else {
+        compared(&index.written, "<", end)
+    };
+    let report = report.help(format!(
+        "where there is none, nothing is written: `if {condition} {{ … }}` around the statement"
+    ));
+    if index.number != end {
+        return report;
+    }
+    report.help(format!(
+        "or let `{name}` run to {}: a row has one junction more than elements between them",
+        end.saturating_add(1)
+    ))
+}
+
+/// `k < 2` for `k + 1 < 3`.
+fn compared(written: &Expr, sign: &str, bound: i64) -> String {
+    if let Expr::Binary(binary) = written
+        && let (Some(variable), Some(offset)) = (
+            plain_name(&binary.left),
+            elsewhere::number(&binary.right).filter(|it| it.fract() == 0.0),
+        )
+    {
+        let offset = offset as i64;
+        let moved = match binary.op {
+            BinOp::Add(_) => bound.checked_sub(offset),
+            BinOp::Sub(_) => bound.checked_add(offset),
+            _ => None,
+        };
+        if let Some(bound) = moved {
+            return format!("{variable} {sign} {bound}");
+        }
+    }
+    format!("{} {sign} {bound}", dump::expression(written))
 }

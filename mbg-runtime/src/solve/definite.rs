@@ -71,7 +71,9 @@ pub(super) enum Factors<T, Other, const K: usize> {
 
 impl<T: Real, Other, const K: usize> Factors<T, Other, K> {
     /// With others for what is not regular.
-    #[inline]
+    ///
+    /// Left to itself a compiler keeps both kinds in memory where one of two rows takes less time than that.
+    #[inline(always)]
     pub(super) fn of(definite: Definite<T, K>, other: impl FnOnce() -> Other) -> Self {
         let all_are = |flag| everywhere(definite.regular, |it| it == flag);
         if all_are(1.0) {
@@ -84,7 +86,7 @@ impl<T: Real, Other, const K: usize> Factors<T, Other, K> {
     }
 
     /// The solution, in each lane by its factors.
-    #[inline]
+    #[inline(always)]
     pub(super) fn solution(
         &self,
         right: &SVector<T, K>,

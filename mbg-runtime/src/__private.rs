@@ -142,11 +142,15 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     (level, rank): (Level, T),
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Result<SVector<T, N>, Trouble> {
-    let least = match level {
-        Level::Positions => DISPLACEMENT,
-        Level::Flows => 0.0,
-    };
-    let rounding = T::EPSILON * size(&x, &evaluate(&x).1, least);
+    let (residuals, jacobian) = evaluate(&x);
+    let rounding = T::EPSILON
+        * match level {
+            Level::Positions => size(&x, &jacobian, DISPLACEMENT),
+            // What drives a loop is no state, and is all there is where rates are zero before.
+            Level::Flows => residuals
+                .iter()
+                .fold(size(&x, &jacobian, 0.0), |size, it| size + it.magnitude()),
+        };
     let tolerance = CLOSED * rounding;
     let found = project_of_rank(x, tolerance, rank, |x| {
         let (residuals, mut jacobian) = evaluate(x);

@@ -34,6 +34,31 @@ mbg! {
         );
     }
 
+    /// A four-bar whose crank a motor turns at a given speed: at the start all rates that are states are zero.
+    #[derivative]
+    pub(crate) model Driven {
+        causality componentwise;
+        param speed: rad/s = 10.0;
+        param start: rad = 1.0;
+        1 ground[3]; 1 crank[3]; 1 crank_tip[3]; 1 coupler[3]; 1 coupler_middle[3]; 1 coupler_tip[3];
+        1 post[3]; 1 rocker[3]; 1 rocker_middle[3]; 1 rocker_tip[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        first: PlanarRevolute { initial: start } (ground, crank);
+        Sf motor { flow: speed } -> first.rate;
+        along_crank: PlanarOffset { x: 1.0 } (crank, crank_tip);
+        second: PlanarRevolute { initial: -0.6 } (crank_tip, coupler);
+        half_coupler: PlanarOffset { x: 1.5 } (coupler, coupler_middle);
+        coupler_body: PlanarBody { mass: 0.5, inertia: 0.01 } (coupler_middle);
+        along_coupler: PlanarOffset { x: 3.0 } (coupler, coupler_tip);
+        base: PlanarOffset { x: 3.0 } (ground, post);
+        third: PlanarRevolute { initial: 1.2 } (post, rocker);
+        half_rocker: PlanarOffset { x: 1.25 } (rocker, rocker_middle);
+        rocker_body: PlanarBody { mass: 0.5, inertia: 0.01 } (rocker_middle);
+        along_rocker: PlanarOffset { x: 2.5 } (rocker, rocker_tip);
+        cut: PlanarCut (coupler_tip, rocker_tip);
+        output angles[2]: rad = [first.angle, third.angle];
+    }
+
     /// A four-bar of any length, whose masses go with the cube of it.
     #[derivative]
     pub(crate) model Scaled {
@@ -205,6 +230,43 @@ fn slope<S: System<f64, N, 0, P, Memory = ()>, const N: usize, const P: usize>(
     let h = 1e-3;
     let at = |step: f64| model.derivative(0.0, &(x + step * direction), &SVector::zeros(), &mut ());
     (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h)
+}
+
+/// The rocker of [`Driven`] above the line from the crank's tip to the post, by the law of cosines.
+fn rocker(crank: f64) -> f64 {
+    let [x, y] = [f64::cos(crank) - 3.0, f64::sin(crank)];
+    let square = x * x + y * y;
+    let cosine = (square + 2.5 * 2.5 - 3.0 * 3.0) / (2.0 * 2.5 * square.sqrt());
+    f64::atan2(y, x) - cosine.acos()
+}
+
+#[test]
+fn a_loop_that_a_source_of_flow_drives_closes_from_rest() {
+    for speed in [10.0, -3.7, 1e-3, 250.0, 0.0] {
+        for start in [0.3, 1.0, 2.0] {
+            let model = Driven::<f64>::new(DrivenParameters { speed, start }).unwrap();
+            let x = model.initial_state();
+            let end = if speed == 0.0 {
+                0.1
+            } else {
+                0.5 / f64::abs(speed)
+            };
+            let x = model.close(0.0, x, &SVector::zeros(), &[]).unwrap();
+            let angles = |t, x| model.output(t, x, &SVector::zeros(), &mut ());
+            let mut last = x;
+            Adaptive::new(Dop853, 1e-9, 1e-9)
+                .integrate(&model, &(), 0.0, end, x, |step| last = *step.state())
+                .unwrap();
+            let (before, behind) = (angles(0.0, &x), angles(end, &last));
+            let turned = behind[0] - before[0] - speed * end;
+            assert!(turned.abs() < 1e-8, "{speed} {start}: {turned:e}");
+            let apart = (behind[1] - rocker(behind[0])) / std::f64::consts::TAU;
+            assert!(
+                (apart - apart.round()).abs() < 1e-8,
+                "{speed} {start}: {behind}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
-use mbg_runtime::{Adaptive, Direction, Dop853, Integrator, Statistics, Stopped, System, Tsit5};
+use mbg_runtime::{
+    Adaptive, Direction, Dop853, Integrator, Radau9, Statistics, Stopped, System, Tsit5,
+};
 use nalgebra::SVector;
 
 use super::double_pendulum::DoublePendulum;
-use super::models::{FourBars2, FourBars2Parameters};
+use super::models::{FourBars2, FourBars2Parameters, Parallelogram, ParallelogramParameters};
 use super::problems::{Oscillator, Written};
 use super::{Expected, Found, Line, apart, larger};
 
@@ -80,10 +82,36 @@ fn energy(solver: &impl Integrator<10>) -> Result<Found, Stopped> {
     Ok(found)
 }
 
-/// Two four-bars that turn over.
-pub(crate) fn four_bars() -> Vec<Line> {
+/// The angles of both cranks of a parallelogram after 20 s: through the lines in which it may turn over they stay equal.
+fn parallelogram(solver: &impl Integrator<6>) -> Result<Found, Stopped> {
+    let Ok(system) = Parallelogram::new(ParallelogramParameters::default()) else {
+        return Ok(Found::NONE);
+    };
+    // By a Taylor series in multiple precision, of the pendulum that it then is.
+    let expected = [-2.840_397_499_998_356_7; 2];
+    let start = system.initial_state();
+    let mut last = start;
+    let keep = |step: &mut mbg_runtime::Step<'_, f64, 6>| last = *step.state();
+    let statistics = solver.integrate(&system, &(), 0.0, 20.0, start, keep)?;
+    let angles = system.output(20.0, &last, &SVector::zeros(), &mut ());
+    Ok(Found::new(apart(angles.as_slice(), &expected), statistics))
+}
+
+/// Two four-bars that turn over, and a parallelogram that might.
+pub(crate) fn singular_loops() -> Vec<Line> {
     let case = "four-bars through singular lines";
+    let parallel = "parallelogram through its lines";
     vec![
+        Line::run(
+            (parallel, "Dop853 at 1e-8", "multiple precision"),
+            Expected::Within(1e-5),
+            || parallelogram(&Adaptive::new(Dop853, 1e-8, 1e-8)),
+        ),
+        Line::run(
+            (parallel, "Radau 9 at 1e-8", "multiple precision"),
+            Expected::Within(1e-5),
+            || parallelogram(&Adaptive::new(Radau9, 1e-8, 1e-8)),
+        ),
         Line::run(
             (case, "Tsit5 at 1e-6", "energy"),
             Expected::Within(5e-5),

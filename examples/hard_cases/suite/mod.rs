@@ -41,7 +41,7 @@ pub(crate) const CASES: &[Case] = &[
     ("stiff pins", stiffness::pins),
     ("constants of the INS", stiffness::navigation),
     ("chaos", mechanisms::double_pendulum),
-    ("singular loops", mechanisms::four_bars),
+    ("singular loops", mechanisms::singular_loops),
     ("impacts", mechanisms::impacts),
     ("dry friction", friction::dry),
     ("single precision", steps::single_precision),

@@ -5,6 +5,7 @@ use mbg_runtime::mbg;
 mbg! {
     include "examples/gallery/flying.mbg";
     include "examples/gallery/top.mbg";
+    include "tests/models/mechanisms/parallelogram.mbg";
     include "tests/models/mechanisms/two_four_bars.mbg";
 
     /// A body whose orientation is held in three angles, turned by a torque.

@@ -381,6 +381,197 @@ fn energies_that_are_modulated_are_noted() {
     );
 }
 
+/// A law that reads a parameter, its value there, and where it has a kink.
+struct Weak {
+    text: &'static str,
+    value: fn(f64, f64) -> f64,
+    kink: fn(f64) -> f64,
+}
+
+/// A law without a kink.
+fn smooth(text: &'static str, value: fn(f64, f64) -> f64) -> Weak {
+    let kink = |_| f64::INFINITY;
+    Weak { text, value, kink }
+}
+
+fn weak_functions() -> Vec<Weak> {
+    vec![
+        smooth("q + sin(a * q)", |a, q| q + (a * q).sin()),
+        smooth("exp(a * q)", |a, q| (a * q).exp()),
+        smooth("exp(a * q - 3.0)", |a, q| (a * q - 3.0).exp()),
+        smooth("cos(a * q + 20.0)", |a, q| (a * q + 20.0).cos()),
+        smooth("tanh(a * q)", |a, q| (a * q).tanh()),
+        smooth("2.0 * a * tanh(a * q) / 3.0", |a, q| {
+            2.0 * a * (a * q).tanh() / 3.0
+        }),
+        smooth("atan2(a * q, 1.0)", |a, q| (a * q).atan2(1.0)),
+        smooth("atan2(a * q - 1.0, 0.5)", |a, q| (a * q - 1.0).atan2(0.5)),
+        smooth("q + ln(1 + a * q)", |a, q| q + (a * q).ln_1p()),
+        smooth("ln(2 - a * q)", |a, q| (2.0 - a * q).ln()),
+        smooth("q + ln((2 + a * q) / (2 - a * q))", |a, q| {
+            q + ((2.0 + a * q) / (2.0 - a * q)).ln()
+        }),
+        smooth("sqrt(1.5 + a * q)", |a, q| (1.5 + a * q).sqrt()),
+        smooth("asin(0.8 * a * q)", |a, q| (0.8 * a * q).asin()),
+        smooth("acos(0.8 * a * q)", |a, q| (0.8 * a * q).acos()),
+        smooth("tan(a * q)", |a, q| (a * q).tan()),
+        smooth("sin(interpolate(q, [-2.0, 0.0, 2.0], [0.0, 0.0, 2.0 * a]))", |a, q| {
+            (a * q.max(0.0)).sin()
+        }),
+    ]
+}
+
+fn weak_products() -> Vec<Weak> {
+    vec![
+        smooth("q * cos(a * q)", |a, q| q * (a * q).cos()),
+        smooth("q * sin(a * q)", |a, q| q * (a * q).sin()),
+        smooth("q * exp(-a * q)", |a, q| q * (-a * q).exp()),
+        smooth("q * q * exp(a * q)", |a, q| q * q * (a * q).exp()),
+        smooth("powi(q, 4) * cos(a * q)", |a, q| q.powi(4) * (a * q).cos()),
+        smooth("powi(sin(a * q), 2)", |a, q| (a * q).sin().powi(2)),
+        smooth("powi(sin(a * q), 3)", |a, q| (a * q).sin().powi(3)),
+        smooth("sin(a * q) * cos(2 * a * q)", |a, q| {
+            (a * q).sin() * (2.0 * a * q).cos()
+        }),
+        smooth("q * (cos(a * q) + sin(30 * q))", |a, q| {
+            q * ((a * q).cos() + (30.0 * q).sin())
+        }),
+        smooth("q / (1.5 + a * q)", |a, q| q / (1.5 + a * q)),
+        smooth("(1 + q * q) / (1.5 + a * q)", |a, q| {
+            (1.0 + q * q) / (1.5 + a * q)
+        }),
+        smooth("powi(q, 3) / (1.5 + a * q)", |a, q| q.powi(3) / (1.5 + a * q)),
+        smooth("1 / (1.5 + a * q)", |a, q| 1.0 / (1.5 + a * q)),
+        smooth("powi(1.5 + a * q, -2)", |a, q| (1.5 + a * q).powi(-2)),
+        smooth("q * powi(1.5 + a * q, -2)", |a, q| q * (1.5 + a * q).powi(-2)),
+        smooth("q * pow(1.5 + a * q, 0.4)", |a, q| {
+            q * (1.5 + a * q).powf(0.4)
+        }),
+        smooth("pow(1.5 + a * q, -1.4)", |a, q| (1.5 + a * q).powf(-1.4)),
+        smooth("powi(1 + a * q, 3) + cos(q)", |a, q| {
+            (1.0 + a * q).powi(3) + q.cos()
+        }),
+        smooth("q / (2 + a * q * q)", |a, q| q / (2.0 + a * q * q)),
+        smooth("q * exp(a * q * q)", |a, q| q * (a * q * q).exp()),
+        smooth("q * sin(a * q * q)", |a, q| q * (a * q * q).sin()),
+        smooth("q * sqrt(2 + a * q * q)", |a, q| q * (2.0 + a * q * q).sqrt()),
+        smooth("q / sqrt(1 + powi(a * q, 2))", |a, q| {
+            q / (1.0 + (a * q).powi(2)).sqrt()
+        }),
+    ]
+}
+
+/// With kinks that go to infinity with the parameter, or stay where they are.
+fn weak_choices() -> Vec<Weak> {
+    let weak = |text, value, kink| Weak { text, value, kink };
+    vec![
+        weak("abs(a * q)", |a, q| (a * q).abs(), |_| 0.0),
+        weak("abs(a * q + 0.2)", |a, q| (a * q + 0.2).abs(), |a| -0.2 / a),
+        weak("sign(a * q + 0.2) * q", |a, q| (a * q + 0.2).signum() * q, |a| -0.2 / a),
+        weak(
+            "if a * q > 0.3 { q * q } else { 0.5 * q }",
+            |a, q| if a * q > 0.3 { q * q } else { 0.5 * q },
+            |a| 0.3 / a,
+        ),
+        weak(
+            "if a * q > 0.3 { exp(a * q) } else { q / (2 + a * q) }",
+            |a, q| if a * q > 0.3 { (a * q).exp() } else { q / (2.0 + a * q) },
+            |a| 0.3 / a,
+        ),
+        weak(
+            "pow(max(a * q - 0.3, 0.0), 1.5)",
+            |a, q| (a * q - 0.3).max(0.0).powf(1.5),
+            |a| 0.3 / a,
+        ),
+        weak(
+            "pow(max(a * q + 0.3, 0.0), 1.5)",
+            |a, q| (a * q + 0.3).max(0.0).powf(1.5),
+            |a| -0.3 / a,
+        ),
+        weak("exp(-a * abs(q))", |a, q| (-a * q.abs()).exp(), |_| 0.0),
+        weak(
+            "max(q - 0.25, 0.0) * exp(a * q)",
+            |a, q| (q - 0.25).max(0.0) * (a * q).exp(),
+            |_| 0.25,
+        ),
+        weak(
+            "q / (1 + a * abs(q - 0.2))",
+            |a, q| q / (1.0 + a * (q - 0.2).abs()),
+            |_| 0.2,
+        ),
+        weak(
+            "min(max(a * q, -0.25), 0.25) * q",
+            |a, q| (a * q).clamp(-0.25, 0.25) * q,
+            |a| (0.25 / a).abs(),
+        ),
+    ]
+}
+
+/// A parameter with states, and their negatives.
+fn both_signs(size: f64, states: &[f64]) -> Vec<[f64; 2]> {
+    let turned = |state: &f64| [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]
+        .map(|[a, q]| [a * size, q * state]);
+    states.iter().flat_map(turned).collect()
+}
+
+/// The integral of a law from zero, by Gauss' rule with three points on each of many stretches between kinks.
+fn reference(law: &Weak, a: f64, state: f64) -> f64 {
+    let kink = (law.kink)(a);
+    let ends = [-kink, kink].map(|place| (place / state).clamp(0.0, 1.0) * state);
+    let [low, high] = if ends[0] / state < ends[1] / state { ends } else { [ends[1], ends[0]] };
+    let between = |from: f64, to: f64| {
+        let count = 400;
+        let step = (to - from) / f64::from(count);
+        let parts = (0..count).map(|k| {
+            let middle = from + step * (f64::from(k) + 0.5);
+            let way = step / 2.0 * 0.6_f64.sqrt();
+            let [a, b, c] = [middle - way, middle, middle + way].map(|q| (law.value)(a, q));
+            (5.0 * (a + c) + 8.0 * b) * step / 18.0
+        });
+        parts.sum::<f64>()
+    };
+    if state == 0.0 {
+        return 0.0;
+    }
+    between(0.0, low) + between(low, high) + between(high, state)
+}
+
+/// Where the closed form divides by what is zero, or nearly so.
+#[test]
+fn energies_are_exact_where_a_slope_vanishes() {
+    let mut bad = Vec::new();
+    let smooth = weak_functions().into_iter().chain(weak_products());
+    for law in smooth.chain(weak_choices()) {
+        let text = format!(
+            "model M {{ param a = 0.0; 1 v {{ C c {{ effort: {} }} I m {{ inertia: 1.0 + a * a }} }} }}",
+            law.text
+        );
+        let model = compiled(&text);
+        assert!(model.notes.is_empty(), "{}: {:?}", law.text, model.notes);
+        let mut worst = 0.0_f64;
+        for size in [0.0, 1e-300, 1e-12, 1e-9, 1e-6, 1e-4, 0.01, 0.1, 0.5, 1.0] {
+            for [a, state] in both_signs(size, &[0.0, 0.05, 0.4, 1.1]) {
+                let expected = reference(&law, a, state);
+                if expected.is_nan() {
+                    continue;
+                }
+                let arguments = Arguments {
+                    parameters: &[a],
+                    time: 0.0,
+                    state: &[state, 0.0],
+                    input: &[],
+                };
+                let found = program::evaluate(&model.program, Routines::ENERGY, &arguments)[0];
+                let error = (found - expected).abs();
+                worst = worst.max(error / expected.abs().max(1e-300));
+                if !(error <= 1e-10 * expected.abs()) { bad.push(format!("{} at {state} with {a:e}: {found:e}, not {expected:e}", law.text)); }
+            }
+        }
+        println!("{worst:.1e} {}", law.text);
+    }
+    assert!(bad.is_empty(), "{}", bad.join("\n"));
+}
+
 /// By Simpson's rule.
 fn integral(value: fn(f64) -> f64, from: f64, to: f64) -> f64 {
     let count = 4096;

@@ -4,7 +4,6 @@ use proc_macro2::Span;
 
 use super::expressions::Result;
 use super::laws::Reader;
-use super::quadrature;
 use super::rays::is_integrable;
 use crate::codes;
 use crate::diagnostics::error;
@@ -12,6 +11,7 @@ use crate::graph::{Integral, component_name};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Differentiator, Evaluation, Expression, Operation, Rate, Substitution, Symbol, antiderivative,
+    quadrature,
 };
 
 /// How near to zero a law is looked at that starts there: nearer than the sizes of what is built.

@@ -31,7 +31,6 @@ mod model;
 mod moving;
 mod orientation;
 mod own;
-mod quadrature;
 mod rays;
 mod references;
 mod rings;

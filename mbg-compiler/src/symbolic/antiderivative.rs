@@ -4,9 +4,13 @@ use super::affine::affine;
 use super::expression::{Expression, Function, Operation, Symbol};
 use super::pool::Pool;
 use super::substitute::{Substitution, replace, symbols, visit};
+use super::vanishing::Change;
 
 /// Most expressions that are tried, where choices in choices double them.
 const MOST: usize = 4000;
+
+/// An exponential, a sine or a cosine is nearly a polynomial while its argument changes by half of this.
+pub(super) const WAVE: i64 = 4;
 
 /// Most inner functions that are tried, each of which takes a walk through what it is in.
 const MOST_INNER: usize = 500;
@@ -18,6 +22,8 @@ const MOST_INNER: usize = 500;
 /// values and signs of what is affine anywhere in them. Further polynomials beside such a power, an exponential, a sine or a
 /// cosine, whole powers and products of sines and cosines, and logarithms of products and quotients of what is affine. Products of the
 /// derivative of a function with a function of it are integrated by that one.
+///
+/// Where it divides by what may vanish it is the integral from zero, see [`super::vanishing`].
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,
@@ -30,6 +36,10 @@ pub fn antiderivative(
         left: MOST,
         inner_left: MOST_INNER,
         sides: Vec::new(),
+        base: Some(Expression::ZERO),
+        parts: 0,
+        is_divided: false,
+        changes: Vec::new(),
     };
     integration.of(expression)
 }
@@ -43,6 +53,14 @@ pub(super) struct Integration<'a> {
     pub(super) inner_left: usize,
     /// Where what is integrated counts: beside these places.
     sides: Vec<Side>,
+    /// Where integrals begin whose closed form may fail, if that is known.
+    pub(super) base: Option<Expression>,
+    /// How many integrals this one is a part of that are no sums of such parts.
+    pub(super) parts: usize,
+    /// Whether the whole is divided by what may vanish.
+    pub(super) is_divided: bool,
+    /// What must change for the closed form to have a value.
+    pub(super) changes: Vec<Change>,
 }
 
 /// All values of the symbol on one side of a place.
@@ -52,14 +70,50 @@ struct Side {
     is_above: bool,
 }
 
+/// Where the two sides of a choice are equal.
+pub(super) struct Meeting {
+    pub(super) difference: Expression,
+    /// Of the difference.
+    pub(super) slope: Expression,
+    pub(super) place: Expression,
+}
+
 impl Integration<'_> {
     pub(super) fn of(&mut self, expression: Expression) -> Option<Expression> {
         self.left = self.left.checked_sub(1)?;
         if self.is_free(expression) {
             let symbol = self.pool.symbol(self.symbol);
+            self.must_change(Expression::ONE, symbol);
             return Some(self.pool.multiply(expression, symbol));
         }
-        let found = match self.pool.operation(expression).clone() {
+        let known = self.changes.len();
+        let magnitude = expression.magnitude();
+        let found = self
+            .tried(|it| it.by_operation(expression))
+            .or_else(|| self.tried(|it| it.by_degree(magnitude)))
+            .or_else(|| self.tried(|it| it.by_factors(magnitude)))
+            .or_else(|| self.tried(|it| it.split(magnitude)))
+            .or_else(|| self.tried(|it| it.by_substitution(magnitude)))?;
+        let found = self.guarded(magnitude, found, known);
+        Some(found.flipped(expression.is_negative()))
+    }
+
+    /// What an attempt finds; one that fails leaves nothing behind.
+    pub(super) fn tried(
+        &mut self,
+        attempt: impl FnOnce(&mut Self) -> Option<Expression>,
+    ) -> Option<Expression> {
+        let known = self.changes.len();
+        let found = attempt(self);
+        if found.is_none() {
+            self.changes.truncate(known);
+        }
+        found
+    }
+
+    /// Of an expression without its sign, by what is done last in it.
+    fn by_operation(&mut self, expression: Expression) -> Option<Expression> {
+        match self.pool.operation(expression).clone() {
             Operation::Constant(_) => None,
             Operation::Symbol(_) => self.power(expression.magnitude(), 1),
             Operation::Add(a, b) => {
@@ -70,20 +124,16 @@ impl Integration<'_> {
             Operation::Divide(a, b) => self.quotient(a, b),
             Operation::Sine(angle) => {
                 let cosine = self.pool.cosine(angle);
-                self.inner(angle, cosine.negated())
+                let scale = self.pool.integer(WAVE);
+                self.inner(angle, cosine.negated(), scale)
             }
             Operation::Cosine(angle) => {
                 let sine = self.pool.sine(angle);
-                self.inner(angle, sine)
+                let scale = self.pool.integer(WAVE);
+                self.inner(angle, sine, scale)
             }
             Operation::Call(function, arguments) => self.call(function, &arguments),
-        };
-        let found = found
-            .or_else(|| self.by_degree(expression.magnitude()))
-            .or_else(|| self.by_factors(expression.magnitude()))
-            .or_else(|| self.split(expression.magnitude()))
-            .or_else(|| self.by_substitution(expression.magnitude()));
-        found.map(|it| it.flipped(expression.is_negative()))
+        }
     }
 
     pub(super) fn is_free(&self, expression: Expression) -> bool {
@@ -97,10 +147,18 @@ impl Integration<'_> {
         (slope != Expression::ZERO).then_some(slope)
     }
 
-    /// An antiderivative by the affine argument, over its slope.
-    pub(super) fn inner(&mut self, argument: Expression, value: Expression) -> Option<Expression> {
+    /// An antiderivative by the affine argument, over its slope. What is integrated is nearly a polynomial while the argument
+    /// changes by half the scale, which counts where the integral begins.
+    pub(super) fn inner(
+        &mut self,
+        argument: Expression,
+        value: Expression,
+        scale: Expression,
+    ) -> Option<Expression> {
         let slope = self.slope(argument)?;
-        self.pool.divide(value, slope)
+        let found = self.pool.divide(value, slope)?;
+        self.must_change(slope, scale);
+        Some(found)
     }
 
     fn product(&mut self, a: Expression, b: Expression) -> Option<Expression> {
@@ -112,12 +170,12 @@ impl Integration<'_> {
         }
         let base = self.base(a, b);
         base.and_then(|(base, exponent)| {
-            self.power(base, exponent)
-                .or_else(|| self.power_of_wave(base, exponent))
+            self.tried(|it| it.power(base, exponent))
+                .or_else(|| self.tried(|it| it.power_of_wave(base, exponent)))
         })
-        .or_else(|| self.product_of_waves(a, b))
-        .or_else(|| self.distributed(a, b))
-        .or_else(|| self.distributed(b, a))
+        .or_else(|| self.tried(|it| it.product_of_waves(a, b)))
+        .or_else(|| self.tried(|it| it.distributed(a, b)))
+        .or_else(|| self.tried(|it| it.distributed(b, a)))
     }
 
     /// A factor times a sum, or times a multiple of one.
@@ -159,7 +217,7 @@ impl Integration<'_> {
             let power = self.pool.power(base, exponent + 1)?;
             self.pool.divide(power, next)?
         };
-        self.inner(base, value)
+        self.inner(base, value, base)
     }
 
     fn quotient(&mut self, a: Expression, b: Expression) -> Option<Expression> {
@@ -189,11 +247,12 @@ impl Integration<'_> {
         match function {
             Function::Exp => {
                 let value = self.pool.call(Function::Exp, &[u]);
-                self.inner(u, value)
+                let scale = self.pool.integer(WAVE);
+                self.inner(u, value, scale)
             }
             Function::Ln => {
                 let value = self.logarithm(u, u);
-                self.inner(u, value)
+                self.inner(u, value, u)
                     .or_else(|| self.logarithm_of_product(u))
             }
             Function::Pow => {
@@ -202,34 +261,35 @@ impl Integration<'_> {
                     .pool
                     .real_power(u, next)
                     .filter(|_| self.is_free(next))?;
-                let value = self.pool.divide(power, next)?;
-                self.inner(u, value)
+                let value = self.over_degree(power, u, next)?;
+                self.inner(u, value, u)
             }
             Function::Sqrt => {
                 let root = self.pool.call(Function::Sqrt, &[u]);
                 let product = self.pool.multiply(u, root);
                 let value = self.share(product, 2, 3)?;
-                self.inner(u, value)
+                self.inner(u, value, u)
             }
             Function::Abs => {
                 let size = self.pool.call(Function::Abs, &[u]);
                 let product = self.pool.multiply(u, size);
                 let value = self.share(product, 1, 2)?;
-                self.inner(u, value)
+                self.inner(u, value, u)
             }
             Function::Sign => {
                 let value = self.pool.call(Function::Abs, &[u]);
-                self.inner(u, value)
+                self.inner(u, value, u)
             }
             Function::Tan => {
                 let cosine = self.pool.cosine(u);
                 let size = self.pool.call(Function::Abs, &[cosine]);
                 let value = self.pool.call(Function::Ln, &[size]);
-                self.inner(u, value.negated())
+                // As near as the next pole.
+                self.inner(u, value.negated(), cosine)
             }
             Function::Tanh => {
                 let value = self.logarithm_of_cosh(u)?;
-                self.inner(u, value)
+                self.inner(u, value, Expression::ONE)
             }
             Function::Atan2 => self.arc_tangent(u, arguments[1]),
             Function::Min => self.choice(u, arguments[1], u, arguments[1]),
@@ -237,7 +297,11 @@ impl Integration<'_> {
             Function::SelectLess => self.choice(u, arguments[1], arguments[2], arguments[3]),
             Function::Asin | Function::Acos => {
                 let value = self.arc(function, u);
-                self.inner(u, value)
+                // No further than half the way to the ends.
+                let square = self.pool.multiply(u, u);
+                let rest = self.pool.subtract(Expression::ONE, square);
+                let scale = self.share(rest, 1, 2)?;
+                self.inner(u, value, scale)
             }
         }
     }
@@ -262,7 +326,7 @@ impl Integration<'_> {
         self.pool.add(product, root)
     }
 
-    fn share(&mut self, value: Expression, numerator: i64, divisor: i64) -> Option<Expression> {
+    pub(super) fn share(&mut self, value: Expression, numerator: i64, divisor: i64) -> Option<Expression> {
         let [numerator, divisor] = [numerator, divisor].map(|it| self.pool.integer(it));
         let product = self.pool.multiply(value, numerator);
         self.pool.divide(product, divisor)
@@ -292,7 +356,7 @@ impl Integration<'_> {
         let product = self.pool.multiply(c, logarithm);
         let second = self.share(product, 1, 2)?;
         let value = self.pool.subtract(first, second);
-        self.inner(u, value)
+        self.inner(u, value, c)
     }
 
     /// A choice inside an expression is one between two expressions: `u |u|` is `-u²` where `u < 0`, else `u²`.
@@ -355,39 +419,65 @@ impl Integration<'_> {
         d: Expression,
     ) -> Option<Expression> {
         let difference = self.pool.subtract(a, b);
-        let [c, d] = if self.is_free(difference) {
-            [self.of(c)?, self.of(d)?]
-        } else {
-            let symbol = self.symbol;
-            let (slope, rest) = affine(self.pool, difference, symbol, |it| *it == symbol)?;
-            let place = self.pool.divide(rest.negated(), slope)?;
-            let rises = self.pool.constant_value(slope).map(|slope| slope > 0.0);
-            let side = |is_above| Some(Side { place, is_above });
-            let first = self.beside(rises.and_then(|rises| side(!rises)), c)?;
-            let second = self.beside(rises.and_then(side), d)?;
-            [
-                self.counted_from(place, first)?,
-                self.counted_from(place, second)?,
-            ]
+        if self.is_free(difference) {
+            let [c, d] = [self.of(c)?, self.of(d)?];
+            return Some(self.pool.call(Function::SelectLess, &[a, b, c, d]));
+        }
+        let symbol = self.symbol;
+        let (slope, rest) = affine(self.pool, difference, symbol, |it| *it == symbol)?;
+        let place = self.pool.divide(rest.negated(), slope)?;
+        let meeting = Meeting {
+            difference,
+            slope,
+            place,
         };
+        self.tried(|it| it.choice_that_may_vanish([a, b, c, d], &meeting))
+            .or_else(|| self.choice_at(place, slope, [a, b, c, d]))
+    }
+
+    /// Of a choice whose branches are counted from a place.
+    pub(super) fn choice_at(
+        &mut self,
+        place: Expression,
+        slope: Expression,
+        [a, b, c, d]: [Expression; 4],
+    ) -> Option<Expression> {
+        let rises = self.pool.constant_value(slope).map(|slope| slope > 0.0);
+        let side = |is_above| Some(Side { place, is_above });
+        let c = self.counted_from(place, rises.and_then(|rises| side(!rises)), c)?;
+        let d = self.counted_from(place, rises.and_then(side), d)?;
         Some(self.pool.call(Function::SelectLess, &[a, b, c, d]))
     }
 
-    /// Of an expression that counts on one side alone, where that is known.
-    fn beside(&mut self, side: Option<Side>, expression: Expression) -> Option<Expression> {
+    /// Of an expression that counts on one side alone, where that is known, and whose integral begins at a place.
+    fn beside(
+        &mut self,
+        place: Expression,
+        side: Option<Side>,
+        expression: Expression,
+    ) -> Option<Expression> {
+        let before = self.base.replace(place);
         self.sides.extend(side);
         let found = self.of(expression);
         self.sides
             .truncate(self.sides.len() - usize::from(side.is_some()));
+        self.base = before;
         found
     }
 
     /// The antiderivative that is zero at a place; of what may have no value there, at the next place at which it counts.
-    fn counted_from(&mut self, place: Expression, found: Expression) -> Option<Expression> {
+    fn counted_from(
+        &mut self,
+        place: Expression,
+        side: Option<Side>,
+        expression: Expression,
+    ) -> Option<Expression> {
+        let mut found = self.beside(place, side, expression)?;
         let mut start = self.at(place, found);
         if start.is_none_or(|it| self.is_limited(it)) {
             let counting = self.nearest(place);
             if counting != place {
+                found = self.beside(counting, side, expression)?;
                 start = self.at(counting, found);
             }
         }
@@ -395,7 +485,7 @@ impl Integration<'_> {
     }
 
     /// The place that is nearest to another on the sides where what is integrated counts.
-    fn nearest(&mut self, place: Expression) -> Expression {
+    pub(super) fn nearest(&mut self, place: Expression) -> Expression {
         let sides = self.sides.clone();
         sides.into_iter().fold(place, |nearest, side| {
             let further = if side.is_above {
@@ -408,7 +498,7 @@ impl Integration<'_> {
     }
 
     /// The value at a place, if it is known to have one.
-    fn at(&mut self, place: Expression, expression: Expression) -> Option<Expression> {
+    pub(super) fn at(&mut self, place: Expression, expression: Expression) -> Option<Expression> {
         let mut there = Substitution::new();
         there.set(self.symbol, place);
         let value = there.apply(self.pool, expression)?;
@@ -416,7 +506,7 @@ impl Integration<'_> {
     }
 
     /// Whether there is a root, a power or a logarithm in it, which some parameters have no value for.
-    fn is_limited(&self, expression: Expression) -> bool {
+    pub(super) fn is_limited(&self, expression: Expression) -> bool {
         let mut found = false;
         visit(self.pool, &[expression], |_, operation| {
             found |= matches!(

@@ -85,11 +85,21 @@ impl Integration<'_> {
         let whole = replace(self.pool, expression, &parts)?;
         let slope = replace(self.pool, slope, &parts)?;
         let factors = self.quotient_without_symbol(whole, slope)?;
-        let outside = std::mem::replace(&mut self.symbol, name);
+        let mut there = Substitution::new();
+        let base = self.base.and_then(|base| {
+            there.set(self.symbol, base);
+            there.apply(self.pool, inner)
+        });
+        let outside = (
+            std::mem::replace(&mut self.symbol, name),
+            std::mem::replace(&mut self.base, base),
+        );
+        let known = self.changes.len();
         let found = self.of_factors(factors);
-        self.symbol = outside;
+        (self.symbol, self.base) = outside;
         let mut back = Substitution::new();
         back.set(name, inner);
+        self.replace_in_changes(known, &mut back)?;
         back.apply(self.pool, found?)
     }
 
@@ -163,9 +173,12 @@ impl Integration<'_> {
             let product = &mut side[usize::from(exponent < 0)];
             *product = self.pool.multiply(*product, power);
         }
+        let is_divided = self.is_divided;
+        self.is_divided |= self.may_vanish(free[1]);
         let [free, varying] = [free, varying].map(|[a, b]| self.pool.divide(a, b));
-        let integral = self.of(varying?)?;
-        Some(self.pool.multiply(free?, integral))
+        let integral = varying.and_then(|varying| self.part(varying));
+        self.is_divided = is_divided;
+        Some(self.pool.multiply(free?, integral?))
     }
 }
 

@@ -124,10 +124,10 @@ impl Integration<'_> {
         let factor = factors
             .iter()
             .fold(Expression::ONE, |a, b| self.pool.multiply(a, *b));
-        let integral = self.of(wave)?;
+        let integral = self.part(wave)?;
         let slope = Differentiator::new(self.symbol).derivative(self.pool, factor);
         let [whole, rest] = [factor, slope].map(|it| self.pool.multiply(it, integral));
-        let rest = self.of(rest)?;
+        let rest = self.part(rest)?;
         Some(self.pool.subtract(whole, rest))
     }
 
@@ -141,7 +141,7 @@ impl Integration<'_> {
                 self.of(logarithm)?
             } else {
                 let value = self.logarithm(factor, size);
-                self.inner(factor, value)?
+                self.inner(factor, value, factor)?
             };
             total = self.pool.add(total, integral.flipped(is_divisor));
         }

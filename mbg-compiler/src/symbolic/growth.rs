@@ -39,9 +39,9 @@ impl Integration<'_> {
             let logarithm = self.pool.call(Function::Ln, &[size]);
             self.pool.multiply(product, logarithm)
         } else {
-            self.pool.divide(product, next)?
+            self.over_degree(product, base, next)?
         };
-        self.inner(base, value)
+        self.inner(base, value, base)
     }
 
     fn growth(&mut self, expression: Expression) -> Option<Growth> {

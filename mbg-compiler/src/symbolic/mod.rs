@@ -22,10 +22,12 @@ pub mod orientation;
 pub mod pool;
 pub mod print;
 mod products;
+pub(crate) mod quadrature;
 mod rest;
 mod share;
 pub mod substitute;
 mod uses;
+mod vanishing;
 mod walk;
 mod waves;
 

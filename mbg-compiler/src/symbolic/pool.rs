@@ -398,6 +398,11 @@ impl Pool {
         {
             return product;
         }
+        if let (Function::SelectLess, &[_, _, yes, no]) = (function, arguments)
+            && yes == no
+        {
+            return yes;
+        }
         let values: Option<Vec<f64>> = arguments
             .iter()
             .map(|argument| self.constant_value(*argument))

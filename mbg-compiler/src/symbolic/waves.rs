@@ -1,6 +1,6 @@
 //! Antiderivatives of powers and products of sines and cosines.
 
-use super::antiderivative::Integration;
+use super::antiderivative::{Integration, WAVE};
 use super::expression::{Expression, Operation};
 use super::substitute::visit;
 
@@ -25,8 +25,9 @@ impl Integration<'_> {
         };
         let [below, second] = [1, 2].map(|less| self.pool.power(base, exponent - less));
         let product = self.pool.multiply(below?, other);
-        let first = self.inner(angle, product)?;
-        let second = self.of(second?)?;
+        let scale = self.pool.integer(WAVE);
+        let first = self.inner(angle, product, scale)?;
+        let second = self.part(second?)?;
         let [before, all] = [exponent - 1, exponent].map(|it| self.pool.integer(it.into()));
         let second = self.pool.multiply(before, second);
         let sum = self.pool.add(first, second);
@@ -54,7 +55,7 @@ impl Integration<'_> {
         }
         let terms: Vec<Expression> = waves.iter().map(|wave| self.written(wave)).collect();
         let sum = self.pool.sum(&terms);
-        let integral = self.of(sum)?;
+        let integral = self.part(sum)?;
         let parts = self.pool.integer(1 << others.len());
         self.pool.divide(integral, parts)
     }

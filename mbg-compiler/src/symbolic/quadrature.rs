@@ -2,14 +2,16 @@
 
 use std::ops::Range;
 
-use crate::symbolic::{Expression, Operation, Pool, Substitution, Symbol};
+use super::expression::{Expression, Operation, Symbol};
+use super::pool::Pool;
+use super::substitute::Substitution;
 
 /// Nodes for laws that are no polynomials; exact to degree 31, and to round-off for smooth laws in a moderate range.
 const NODES: usize = 16;
 
 /// The energy by Gauss–Legendre quadrature; exact when the law is a polynomial, with just as many nodes as it needs; none if the law
 /// divides by zero on the ray.
-pub(super) fn energy(
+pub(crate) fn energy(
     pool: &mut Pool,
     states: &Range<usize>,
     law: &[Expression],
@@ -43,7 +45,7 @@ pub(super) fn energy(
 }
 
 /// Whether the quadrature has no error but that of rounding.
-pub(super) fn is_exact(pool: &Pool, states: &Range<usize>, law: &[Expression]) -> bool {
+pub(crate) fn is_exact(pool: &Pool, states: &Range<usize>, law: &[Expression]) -> bool {
     largest_degree(pool, states, law).is_some_and(|degree| (degree as usize) < 2 * NODES - 1)
 }
 

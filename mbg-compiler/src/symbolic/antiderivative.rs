@@ -326,7 +326,12 @@ impl Integration<'_> {
         self.pool.add(product, root)
     }
 
-    pub(super) fn share(&mut self, value: Expression, numerator: i64, divisor: i64) -> Option<Expression> {
+    pub(super) fn share(
+        &mut self,
+        value: Expression,
+        numerator: i64,
+        divisor: i64,
+    ) -> Option<Expression> {
         let [numerator, divisor] = [numerator, divisor].map(|it| self.pool.integer(it));
         let product = self.pool.multiply(value, numerator);
         self.pool.divide(product, divisor)

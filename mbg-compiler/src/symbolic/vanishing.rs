@@ -154,9 +154,12 @@ impl Integration<'_> {
         let half = self.share(product, 1, 2)?;
         let size = self.pool.call(Function::Abs, &[half]);
         let tangent = self.pool.call(Function::Tanh, &[half]);
-        let part = self.pool.divide(tangent, half)?;
-        let choice = [Expression::ZERO, size, part, Expression::ONE];
-        let part = self.pool.call(Function::SelectLess, &choice);
+        // Of what is zero the quotient is one.
+        let [above, below] = [tangent, half].map(|part| {
+            let choice = [Expression::ZERO, size, part, Expression::ONE];
+            self.pool.call(Function::SelectLess, &choice)
+        });
+        let part = self.pool.divide(above, below)?;
         let [sum, difference] = [first, first.negated()].map(|it| self.pool.add(power, it));
         let mean = self.share(sum, 1, 2)?;
         let near = self.pool.multiply(logarithm, mean);

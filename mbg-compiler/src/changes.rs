@@ -1,6 +1,6 @@
 //! Stage 5e, changes: the times at which a choice by time alone changes, as in `if t < start { 0.0 } else { 2.0 }`.
 
-use crate::symbolic::antiderivative::choice_of;
+use crate::symbolic::choices::choice_of;
 use crate::symbolic::substitute::{replace, symbols, visit};
 use crate::symbolic::{Expression, Pool, Symbol, affine};
 

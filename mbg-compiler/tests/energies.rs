@@ -418,8 +418,8 @@ fn weak_functions() -> Vec<Weak> {
         smooth("atan2(a * q - 1.0, 0.5)", |a, q| (a * q - 1.0).atan2(0.5)),
         smooth("q + ln(2 + a * q)", |a, q| q + (2.0 + a * q).ln()),
         smooth("ln(2 - a * q)", |a, q| (2.0 - a * q).ln()),
-        smooth("q + ln((2 + a * q) / (2 - a * q))", |a, q| {
-            q + ((2.0 + a * q) / (2.0 - a * q)).ln()
+        smooth("3 * q + ln((2 + a * q) / (2 - a * q))", |a, q| {
+            3.0 * q + ((2.0 + a * q) / (2.0 - a * q)).ln()
         }),
         smooth("sqrt(1.5 + a * q)", |a, q| (1.5 + a * q).sqrt()),
         smooth("asin(0.8 * a * q)", |a, q| (0.8 * a * q).asin()),
@@ -527,6 +527,46 @@ fn weak_choices() -> Vec<Weak> {
             |_| 0.2,
         ),
         weak(
+            "ln((2 + a * q) * abs(q - 0.3))",
+            |a, q| ((2.0 + a * q) * (q - 0.3).abs()).ln(),
+            |_| 0.3,
+        ),
+        weak(
+            "q * abs(a * q * q - 0.3)",
+            |a, q| q * (a * q * q - 0.3).abs(),
+            |a| (0.3 / a).max(0.0).sqrt(),
+        ),
+        weak(
+            "q * max(a * q * q - 0.3, 0.0)",
+            |a, q| q * (a * q * q - 0.3).max(0.0),
+            |a| (0.3 / a).max(0.0).sqrt(),
+        ),
+        weak(
+            "q * (if a * q * q > 0.3 { exp(a * q * q) } else { 2.0 })",
+            |a, q| {
+                q * if a * q * q > 0.3 {
+                    (a * q * q).exp()
+                } else {
+                    2.0
+                }
+            },
+            |a| (0.3 / a).max(0.0).sqrt(),
+        ),
+        weak(
+            "interpolate(a * q, [-0.5, 0.0, 0.2, 0.5], [-2.0, 0.0, 1.0, 1.5])",
+            |a, q| {
+                let u = a * q;
+                if u < 0.0 {
+                    4.0 * u
+                } else if u < 0.2 {
+                    5.0 * u
+                } else {
+                    1.0 + (u - 0.2) / 0.6
+                }
+            },
+            |a| 0.2 / a,
+        ),
+        weak(
             "min(max(a * q, -0.25), 0.25) * q",
             |a, q| (a * q).clamp(-0.25, 0.25) * q,
             |a| (0.25 / a).abs(),
@@ -553,7 +593,7 @@ fn reference(value: impl Fn(f64) -> f64, kink: f64, state: f64) -> f64 {
 
 /// By Gauss' rule with three points on each of many stretches, which are short at the ends, where roots begin.
 fn between(value: impl Fn(f64) -> f64, [from, to]: [f64; 2]) -> f64 {
-    let count = 1000;
+    let count = 3000;
     let at = |part: f64| {
         let place = from + (to - from) * part.powi(3) * (10.0 + part * (6.0 * part - 15.0));
         value(place) * 30.0 * (part * (1.0 - part)).powi(2)
@@ -606,7 +646,8 @@ fn energies_are_exact_where_a_slope_vanishes() {
 #[test]
 fn energies_are_exact_where_a_degree_vanishes() {
     type Law = (&'static str, fn(f64, f64) -> f64);
-    let laws: [Law; 4] = [
+    let laws: [Law; 5] = [
+        ("pow(abs(q - 0.5), n)", |n, q| (q - 0.5).abs().powf(n)),
         ("3.0 * pow(1 - q / 2.0, -n)", |n, q| {
             3.0 * (1.0 - q / 2.0).powf(-n)
         }),
@@ -624,7 +665,7 @@ fn energies_are_exact_where_a_degree_vanishes() {
         for part in [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.03, 0.4] {
             for n in [1.0 + part, 1.0 - part, 2.0 + part, 2.0 - part] {
                 for state in [-1.9, -0.3, -1e-3, 1e-3, 0.3, 1.0, 1.9, 1.99] {
-                    let expected = reference(|q| value(n, q), f64::INFINITY, state);
+                    let expected = reference(|q| value(n, q), 0.5, state);
                     if !expected.is_finite() {
                         continue;
                     }

@@ -140,8 +140,12 @@ impl Integration<'_> {
                 let logarithm = self.pool.call(Function::Ln, &[size]);
                 self.of(logarithm)?
             } else {
+                let known = self.changes.len();
                 let value = self.logarithm(factor, size);
-                self.inner(factor, value, factor)?
+                let integral = self.inner(factor, value, factor)?;
+                // By itself, since others may be infinite on the way.
+                let logarithm = self.pool.call(Function::Ln, &[size]);
+                self.guarded(logarithm, integral, known)
             };
             total = self.pool.add(total, integral.flipped(is_divisor));
         }

@@ -6,6 +6,7 @@ pub mod affine;
 pub mod antiderivative;
 mod arithmetic;
 mod chain_rule;
+pub(crate) mod choices;
 pub mod dense;
 pub mod dependence;
 pub mod differentiate;

@@ -5,7 +5,8 @@
 //! while integrating it is noted what must change for the closed form to hold, such as `a x`, and at run time that decides
 //! between the two. The places of choices and the degrees of powers have their own ways.
 
-use super::antiderivative::{Integration, Meeting};
+use super::antiderivative::Integration;
+use super::choices::Meeting;
 use super::evaluate::Evaluation;
 use super::expression::{Expression, Function, Operation, Symbol};
 use super::quadrature;
@@ -54,6 +55,13 @@ impl Integration<'_> {
         Some(self.pool.call(Function::Abs, &[value]))
     }
 
+    /// The value where the integral begins, if it has one there, as a sample shows.
+    fn at_base(&mut self, expression: Expression) -> Option<Expression> {
+        let value = self.at(self.base?, expression)?;
+        let somewhere = Evaluation::new(&|_| 0.5).value(self.pool, value);
+        somewhere.is_finite().then_some(value)
+    }
+
     /// Replaces symbols in what was noted last.
     pub(super) fn replace_in_changes(
         &mut self,
@@ -100,9 +108,8 @@ impl Integration<'_> {
         changes: &[Change],
     ) -> Option<Expression> {
         let base = self.base?;
-        let start = self.at(base, found)?;
-        let somewhere = Evaluation::new(&|_| 0.5).value(self.pool, start);
-        if !somewhere.is_finite() || self.is_limited(start) && self.nearest(base) != base {
+        let start = self.at_base(found)?;
+        if self.is_limited(start) && self.nearest(base) != base {
             return None;
         }
         let Symbol::State(state) = self.symbol else {
@@ -145,11 +152,10 @@ impl Integration<'_> {
         base: Expression,
         degree: Expression,
     ) -> Option<Expression> {
-        let there = self.base?;
-        let (first, start) = (self.at(there, power)?, self.at(there, base)?);
+        let (first, start) = (self.at_base(power)?, self.at_base(base)?);
         let ratio = self.pool.divide(base, start)?;
-        let size = self.pool.call(Function::Abs, &[ratio]);
-        let logarithm = self.pool.call(Function::Ln, &[size]);
+        // Not on the other side of where the base vanishes.
+        let logarithm = self.pool.call(Function::Ln, &[ratio]);
         let product = self.pool.multiply(degree, logarithm);
         let half = self.share(product, 1, 2)?;
         let size = self.pool.call(Function::Abs, &[half]);
@@ -182,7 +188,7 @@ impl Integration<'_> {
         let name = Symbol::Unknown(self.pool.fresh_unknown());
         let place = self.pool.symbol(name);
         let found = self.choice_at(place, meeting.slope, choice)?;
-        let start = self.at(base, found)?;
+        let start = self.at_base(found)?;
         let growth = self.pool.subtract(found, start);
         let way = self.way(meeting.slope)?;
         let distance = self.size_at_base(meeting.difference)?;

@@ -553,6 +553,12 @@ fn weak_choices() -> Vec<Weak> {
             |a| (0.3 / a).max(0.0).sqrt(),
         ),
         weak(
+            "if a * q > 0.3 { min(max(a * q, -0.3), 0.3) } else { 1.0 }",
+            |a, q| if a * q > 0.3 { 0.3 } else { 1.0 },
+            |a| 0.3 / a,
+        ),
+        smooth("exp((a - 0.01) * q)", |a, q| ((a - 0.01) * q).exp()),
+        weak(
             "interpolate(a * q, [-0.5, 0.0, 0.2, 0.5], [-2.0, 0.0, 1.0, 1.5])",
             |a, q| {
                 let u = a * q;

@@ -9,6 +9,7 @@ use crate::codes;
 use crate::diagnostics::error;
 use crate::graph::{Integral, component_name};
 use crate::symbolic::substitute::symbols;
+use crate::symbolic::vanishing::is_regular;
 use crate::symbolic::{
     Differentiator, Evaluation, Expression, Operation, Rate, Substitution, Symbol, antiderivative,
     quadrature,
@@ -193,13 +194,8 @@ impl Reader<'_, '_, '_> {
         let mut at_rest = Substitution::new();
         at_rest.set(Symbol::State(state), Expression::ZERO);
         let start = at_rest.apply(self.pool, energy);
-        let somewhere = |_| 0.5;
-        let is_finite = |it: &Expression| {
-            Evaluation::new(&somewhere)
-                .value(self.pool, *it)
-                .is_finite()
-        };
-        let start = start.filter(is_finite).unwrap_or(Expression::ZERO);
+        let start = start.filter(|it| is_regular(self.pool, *it));
+        let start = start.unwrap_or(Expression::ZERO);
         Some(self.pool.subtract(energy, start))
     }
 

@@ -10,6 +10,9 @@ use super::vanishing::Change;
 /// Most expressions that are tried, where choices in choices double them.
 const MOST: usize = 4000;
 
+/// Most closed forms that are guarded, each of which takes a quadrature, where choices in choices double them.
+const MOST_GUARDS: usize = 48;
+
 /// An exponential, a sine or a cosine is nearly a polynomial while its argument changes by half of this.
 pub(super) const WAVE: i64 = 4;
 
@@ -41,6 +44,7 @@ pub fn antiderivative(
         parts: 0,
         is_divided: false,
         changes: Vec::new(),
+        guards_left: MOST_GUARDS,
     };
     integration.of(expression)
 }
@@ -62,6 +66,8 @@ pub(super) struct Integration<'a> {
     pub(super) is_divided: bool,
     /// What must change for the closed form to have a value.
     pub(super) changes: Vec<Change>,
+    /// How many more closed forms are guarded.
+    pub(super) guards_left: usize,
 }
 
 impl Integration<'_> {

@@ -95,8 +95,11 @@ impl Integration<'_> {
         };
         let known = self.changes.len();
         let found = self
-            .tried(|it| it.choice_that_may_vanish([a, b, c, d], &meeting))
-            .or_else(|| self.choice_at(place, slope, [a, b, c, d]))?;
+            .tried(|it| it.choice_that_may_vanish([c, d], &meeting))
+            .or_else(|| {
+                let [c, d] = self.branches_from(place, slope, [c, d])?;
+                Some(self.pool.call(Function::SelectLess, &[a, b, c, d]))
+            })?;
         if self.parts > 0 {
             // What begins where the branches meet says nothing of the whole, over which there is a kink once it changes so far.
             self.changes.truncate(known);
@@ -105,18 +108,18 @@ impl Integration<'_> {
         Some(found)
     }
 
-    /// Of a choice whose branches are counted from a place.
-    pub(super) fn choice_at(
+    /// Of the branches of a choice, counted from where they meet.
+    pub(super) fn branches_from(
         &mut self,
         place: Expression,
         slope: Expression,
-        [a, b, c, d]: [Expression; 4],
-    ) -> Option<Expression> {
+        [c, d]: [Expression; 2],
+    ) -> Option<[Expression; 2]> {
         let rises = self.pool.constant_value(slope).map(|slope| slope > 0.0);
         let side = |is_above| Some(Side { place, is_above });
         let c = self.counted_from(place, rises.and_then(|rises| side(!rises)), c)?;
         let d = self.counted_from(place, rises.and_then(side), d)?;
-        Some(self.pool.call(Function::SelectLess, &[a, b, c, d]))
+        Some([c, d])
     }
 
     /// Of an expression that counts on one side alone, where that is known, and whose integral begins at a place.

@@ -28,7 +28,7 @@ mod rest;
 mod share;
 pub mod substitute;
 mod uses;
-mod vanishing;
+pub(crate) mod vanishing;
 mod walk;
 mod waves;
 

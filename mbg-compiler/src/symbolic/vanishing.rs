@@ -9,6 +9,7 @@ use super::antiderivative::Integration;
 use super::choices::Meeting;
 use super::evaluate::Evaluation;
 use super::expression::{Expression, Function, Operation, Symbol};
+use super::pool::Pool;
 use super::quadrature;
 use super::substitute::Substitution;
 
@@ -17,6 +18,19 @@ use super::substitute::Substitution;
 pub(super) struct Change {
     size: Expression,
     scale: Expression,
+}
+
+/// Whether it has a value, as a sample shows: beside that of equal symbols, whose difference would be zero.
+#[must_use]
+pub(crate) fn is_regular(pool: &Pool, expression: Expression) -> bool {
+    let sample = |symbol| {
+        let number = match symbol {
+            Symbol::Parameter(number) | Symbol::State(number) | Symbol::Unknown(number) => number,
+            _ => 0,
+        };
+        0.5 + 0.01 * (number as f64 * 0.618).fract()
+    };
+    Evaluation::new(&sample).value(pool, expression).is_finite()
 }
 
 impl Integration<'_> {
@@ -58,8 +72,7 @@ impl Integration<'_> {
     /// The value where the integral begins, if it has one there, as a sample shows.
     fn at_base(&mut self, expression: Expression) -> Option<Expression> {
         let value = self.at(self.base?, expression)?;
-        let somewhere = Evaluation::new(&|_| 0.5).value(self.pool, value);
-        somewhere.is_finite().then_some(value)
+        is_regular(self.pool, value).then_some(value)
     }
 
     /// Replaces symbols in what was noted last.
@@ -108,6 +121,7 @@ impl Integration<'_> {
         changes: &[Change],
     ) -> Option<Expression> {
         let base = self.base?;
+        self.guards_left = self.guards_left.checked_sub(1)?;
         let start = self.at_base(found)?;
         if self.is_limited(start) && self.nearest(base) != base {
             return None;
@@ -175,25 +189,44 @@ impl Integration<'_> {
         Some(self.pool.call(Function::SelectLess, &choice))
     }
 
-    /// Of a choice that changes where an argument vanishes whose slope may do so too. Where that place is not between the begin of
-    /// the integral and the symbol, the branches are counted from there.
+    /// Of a choice that changes where a difference vanishes whose slope may do so too. Where that place is not between the begin of
+    /// the integral and the symbol, the branch that holds on both is counted from the begin.
     pub(super) fn choice_that_may_vanish(
         &mut self,
-        choice: [Expression; 4],
+        branches: [Expression; 2],
         meeting: &Meeting,
     ) -> Option<Expression> {
         let base = self.base.filter(|_| self.may_vanish(meeting.slope))?;
+        self.guards_left = self.guards_left.checked_sub(1)?;
         let known = self.changes.len();
         // Held while the symbol takes the value at the begin.
         let name = Symbol::Unknown(self.pool.fresh_unknown());
         let place = self.pool.symbol(name);
-        let found = self.choice_at(place, meeting.slope, choice)?;
-        let start = self.at_base(found)?;
-        let growth = self.pool.subtract(found, start);
-        let way = self.way(meeting.slope)?;
-        let distance = self.size_at_base(meeting.difference)?;
-        let nearest = [distance, way, meeting.place, base];
-        let nearest = self.pool.call(Function::SelectLess, &nearest);
+        let branches = self.branches_from(place, meeting.slope, branches)?;
+        let here = meeting.difference;
+        let first = self.at(base, here)?;
+        let start = [
+            first,
+            Expression::ZERO,
+            self.at(base, branches[0])?,
+            self.at(base, branches[1])?,
+        ];
+        let start = self.pool.call(Function::SelectLess, &start);
+        if !is_regular(self.pool, start) {
+            return None;
+        }
+        let sign = self.pool.call(Function::Sign, &[here]);
+        let product = self.pool.multiply(sign, first);
+        // One of them may be zero where the branches meet there.
+        let sum = self.pool.add(here, first);
+        let [nearest, difference] =
+            [(meeting.place, base), (here, sum)].map(|(between, beside)| {
+                let choice = [product, Expression::ZERO, between, beside];
+                self.pool.call(Function::SelectLess, &choice)
+            });
+        let end = [difference, Expression::ZERO, branches[0], branches[1]];
+        let end = self.pool.call(Function::SelectLess, &end);
+        let growth = self.pool.subtract(end, start);
         let mut there = Substitution::new();
         there.set(name, nearest);
         self.replace_in_changes(known, &mut there)?;

@@ -45,6 +45,7 @@ pub fn antiderivative(
         is_divided: false,
         changes: Vec::new(),
         guards_left: MOST_GUARDS,
+        choices: 0,
     };
     integration.of(expression)
 }
@@ -68,6 +69,8 @@ pub(super) struct Integration<'a> {
     pub(super) changes: Vec<Change>,
     /// How many more closed forms are guarded.
     pub(super) guards_left: usize,
+    /// How many choices with a place of their own for what may vanish this is a branch of.
+    pub(super) choices: usize,
 }
 
 impl Integration<'_> {

@@ -4,6 +4,7 @@ use super::affine::affine;
 use super::antiderivative::Integration;
 use super::expression::{Expression, Function, Operation};
 use super::substitute::{Substitution, replace, visit};
+use super::vanishing::MOST_CHOICES;
 
 /// All values of the symbol on one side of a place.
 #[derive(Clone, Copy)]
@@ -11,6 +12,9 @@ pub(super) struct Side {
     place: Expression,
     is_above: bool,
 }
+
+/// How much further than the state kinks are where a closed form that is counted from them is left, twice.
+const FAR: i64 = 1024;
 
 /// Where the two sides of a choice are equal.
 pub(super) struct Meeting {
@@ -93,19 +97,24 @@ impl Integration<'_> {
             slope,
             place,
         };
-        let known = self.changes.len();
-        let found = self
-            .tried(|it| it.choice_that_may_vanish([c, d], &meeting))
-            .or_else(|| {
-                let [c, d] = self.branches_from(place, slope, [c, d])?;
-                Some(self.pool.call(Function::SelectLess, &[a, b, c, d]))
-            })?;
-        if self.parts > 0 {
-            // What begins where the branches meet says nothing of the whole, over which there is a kink once it changes so far.
-            self.changes.truncate(known);
-            self.must_change(slope, difference);
+        if let Some(found) = self.tried(|it| it.choice_that_may_vanish([c, d], &meeting))
+            && self.parts == 0
+        {
+            return Some(found);
         }
-        Some(found)
+        let known = self.changes.len();
+        let is_deep = self.choices == MOST_CHOICES && self.may_vanish(slope);
+        self.parts += usize::from(is_deep);
+        let branches = self.branches_from(place, slope, [c, d]);
+        self.parts -= usize::from(is_deep);
+        let [c, d] = branches?;
+        if self.parts > 0 || is_deep {
+            // What begins where the branches meet says nothing of the whole, over which there are kinks unless they are far.
+            self.changes.truncate(known);
+            let near = self.share(difference, 1, FAR)?;
+            self.must_change(slope, near);
+        }
+        Some(self.pool.call(Function::SelectLess, &[a, b, c, d]))
     }
 
     /// Of the branches of a choice, counted from where they meet.

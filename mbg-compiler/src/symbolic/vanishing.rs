@@ -13,6 +13,9 @@ use super::pool::Pool;
 use super::quadrature;
 use super::substitute::Substitution;
 
+/// Most choices in each other that have places of their own: each doubles what is in it, at two places.
+pub(super) const MOST_CHOICES: usize = 2;
+
 /// What an argument changes by from where the integral begins, and at what scale that counts.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Change {
@@ -197,12 +200,17 @@ impl Integration<'_> {
         meeting: &Meeting,
     ) -> Option<Expression> {
         let base = self.base.filter(|_| self.may_vanish(meeting.slope))?;
-        self.guards_left = self.guards_left.checked_sub(1)?;
+        if self.choices == MOST_CHOICES {
+            return None;
+        }
         let known = self.changes.len();
         // Held while the symbol takes the value at the begin.
         let name = Symbol::Unknown(self.pool.fresh_unknown());
         let place = self.pool.symbol(name);
-        let branches = self.branches_from(place, meeting.slope, branches)?;
+        self.choices += 1;
+        let branches = self.branches_from(place, meeting.slope, branches);
+        self.choices -= 1;
+        let branches = branches?;
         let here = meeting.difference;
         let first = self.at(base, here)?;
         let start = [

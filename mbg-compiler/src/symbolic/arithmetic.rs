@@ -127,7 +127,14 @@ impl Pool {
                 };
                 let left = multiply(self, rest, a.is_negative());
                 let right = multiply(self, right, b.is_negative());
-                self.add(left, right)
+                // What is there already may be a product of more: factors would be taken out in turns without an end.
+                let [before, after] = [[a, b], [left, right]]
+                    .map(|terms| terms.map(|it| self.factors(it).len()).iter().sum::<usize>());
+                if after < before {
+                    self.add(left, right)
+                } else {
+                    self.put_sum(left, right)
+                }
             }
         };
         // A product with one of them that is there is not made again.

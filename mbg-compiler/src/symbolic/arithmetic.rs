@@ -130,7 +130,8 @@ impl Pool {
                 // What is there already may be a product of more: factors would be taken out in turns without an end.
                 let [before, after] = [[a, b], [left, right]]
                     .map(|terms| terms.map(|it| self.factors(it).len()).iter().sum::<usize>());
-                if after < before {
+                let are_numbers = [left, right].map(|it| self.constant_value(it).is_some());
+                if after < before || are_numbers == [true; 2] {
                     self.add(left, right)
                 } else {
                     self.put_sum(left, right)

@@ -526,6 +526,13 @@ fn weak_choices() -> Vec<Weak> {
             |a, q| q / (2.0 + a * (q - 0.2).abs()),
             |_| 0.2,
         ),
+    ]
+}
+
+/// With kinks inside other functions, or several.
+fn weak_choices_inside() -> Vec<Weak> {
+    let weak = |text, value, kink| Weak { text, value, kink };
+    vec![
         weak(
             "ln((2 + a * q) * abs(q - 0.3))",
             |a, q| ((2.0 + a * q) * (q - 0.3).abs()).ln(),
@@ -617,7 +624,7 @@ fn between(value: impl Fn(f64) -> f64, [from, to]: [f64; 2]) -> f64 {
 #[test]
 fn energies_are_exact_where_a_slope_vanishes() {
     let smooth = weak_functions().into_iter().chain(weak_products());
-    for law in smooth.chain(weak_choices()) {
+    for law in smooth.chain(weak_choices()).chain(weak_choices_inside()) {
         let text = format!(
             "model M {{ param a = 0.0; 1 v {{ C c {{ effort: {} }} I m {{ inertia: 1.0 + a * a }} }} }}",
             law.text

@@ -27,7 +27,7 @@ const MOST_INNER: usize = 500;
 /// cosine, whole powers and products of sines and cosines, and logarithms of products and quotients of what is affine. Products of the
 /// derivative of a function with a function of it are integrated by that one.
 ///
-/// Where it divides by what may vanish it is the integral from zero, see [`super::vanishing`].
+/// Where it divides by what may vanish it is the integral from zero, see `vanishing`.
 #[must_use]
 pub fn antiderivative(
     pool: &mut Pool,

@@ -24,11 +24,11 @@ use crate::{Input, Real, System};
 /// | the fastest mode moves more than 10 000 rad within the piece; a relative tolerance of at most 1e-5 | [`Radau9`] |
 /// | the same to a larger tolerance; the mode is an oscillation | [`Radau5`] |
 /// | the same, and it decays | [`Rodas5P`] |
-/// | closed loops, a relative tolerance above 3e-6, or less than 20 rad within the piece | [`Tsit5`] |
+/// | a relative tolerance above 3e-6, or less than 20 rad within the piece | [`Tsit5`] |
 /// | else | [`Dop853`] |
 ///
 /// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of
-/// steps of the power method. [`Auto::choose`] tells what is picked and why. A problem may become stiff later on: every
+/// steps of the power method: where many modes are about as fast, within a factor of two. [`Auto::choose`] tells what is picked and why. A problem may become stiff later on: every
 /// 50 steps of a method for smooth problems the fastest mode is looked at again, and where stability is what keeps the
 /// steps short, the piece goes on with a method for stiff ones.
 ///
@@ -97,8 +97,6 @@ pub enum Reason {
     StiffOscillation,
     /// Stiff, the fastest mode decays.
     StiffDecay,
-    /// Closed loops may pass singular positions.
-    ClosedLoops,
     /// Little happens before the next jump.
     ShortPiece,
     /// Smooth, to a moderate tolerance.
@@ -120,7 +118,6 @@ impl fmt::Display for Choice {
             Reason::StiffTight => "stiff, and the tolerance is tight",
             Reason::StiffOscillation => "stiff, and the fastest mode oscillates",
             Reason::StiffDecay => "stiff, and the fastest mode decays",
-            Reason::ClosedLoops => "not stiff, with closed loops that may pass singular positions",
             Reason::ShortPiece => "not stiff, and little happens before the next jump",
             Reason::Moderate => "not stiff, and the tolerance is moderate",
             Reason::Tight => "not stiff, and the tolerance is tight",
@@ -191,8 +188,6 @@ impl Auto<'_> {
         let angle = fastest * horizon;
         let (method, reason) = if angle > STIFF {
             self.stiff(oscillates)
-        } else if !S::META.closures.is_empty() {
-            (Picked::Tsit5, Reason::ClosedLoops)
         } else if angle < SHORT {
             (Picked::Tsit5, Reason::ShortPiece)
         } else if self.relative > MODERATE {

@@ -261,8 +261,8 @@ impl<M: Estimating> Adaptive<'_, M> {
         I: Input<T, K>,
     {
         let longest = seen(end - start).min(self.longest);
-        // The rule compares derivatives of different order: its unit of time is the second, or all the time there is.
-        let unit = longest.min(1.0);
+        // The rule compares derivatives of different order: its unit of time is the second, or the whole run.
+        let unit = problem.whole.min(self.longest).min(1.0);
         let measure = tolerance.around(x);
         let (state, first) = (measure.norm(x), unit * measure.norm(slope));
         let trial = if state <= 1e-5 || first <= 1e-5 {

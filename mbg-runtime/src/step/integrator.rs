@@ -350,7 +350,7 @@ where
     check_times(t0, t1)?;
     integrator.check_settings(t0, t1)?;
     check_finite(system, t0, &x0)?;
-    let problem = Problem::new(system, input, t0);
+    let problem = Problem::new(system, input, (t0, t1));
     let x = problem.close(t0, x0)?;
     Ok((problem, x))
 }

@@ -17,6 +17,8 @@ where
     pub(super) input: &'a I,
     pub(super) statistics: Statistics,
     pub(super) memory: S::Memory,
+    /// How long the run may be.
+    pub(super) whole: f64,
     /// Where the present piece begins.
     pub(super) since: T,
     /// The first and the last time at which laws of time are those of the present piece.
@@ -34,12 +36,13 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M>,
 {
-    pub(super) fn new(system: &'a S, input: &'a I, start: T) -> Self {
+    pub(super) fn new(system: &'a S, input: &'a I, (start, end): (T, T)) -> Self {
         Self {
             system,
             input,
             statistics: Statistics::default(),
             memory: S::Memory::default(),
+            whole: seen(end - start),
             since: start,
             inside: (start, T::from_f64(f64::INFINITY)),
             probes: Probes::new(seen(start)),
@@ -290,7 +293,7 @@ mod tests {
 
     #[test]
     fn an_autonomous_model_is_not_asked_what_time_changes() {
-        let mut problem = Problem::<f64, _, _, 2, 1, 0>::new(&Oscillator, &(), 0.0);
+        let mut problem = Problem::<f64, _, _, 2, 1, 0>::new(&Oscillator, &(), (0.0, 1.0));
         // Any evaluation there would give what is no number.
         let nowhere = SVector::from([f64::NAN; 2]);
         let change = problem.slope_by_time(0.0, &nowhere, 0.1);

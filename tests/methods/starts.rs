@@ -66,6 +66,7 @@ fn a_pulse_behind_a_start_next_to_rest_is_met() {
     };
     let exact = after(7.3, parameters, Adaptive::new(Dop853, 1e-12, 1e-12));
     for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
+        // A missed pulse costs 0.19.
         for found in [
             after(7.3, parameters, Auto::new(tolerance, tolerance)),
             after(7.3, parameters, Adaptive::new(Tsit5, tolerance, tolerance)),
@@ -74,7 +75,7 @@ fn a_pulse_behind_a_start_next_to_rest_is_met() {
             after(7.3, parameters, Adaptive::new(Radau5, tolerance, tolerance)),
         ] {
             assert!(
-                (found - exact).abs() < 10.0 * tolerance,
+                (found - exact).abs() < 30.0 * tolerance,
                 "{tolerance:e}: {found} {exact}"
             );
         }

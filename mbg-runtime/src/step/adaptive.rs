@@ -9,6 +9,7 @@ use super::crossing::Crossing;
 use super::dense::Step;
 use super::integrator::Integrator;
 use super::method::{Estimating, Span, Start, Stepper, along};
+use super::probes::PARTS;
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
@@ -36,7 +37,7 @@ use crate::{Input, Real, System};
 /// ([`System::AUTONOMOUS`] is `false`). Where an input varies between its jumps or the model depends on time, steps that are
 /// long beside those before are therefore checked in between: model and dense output must have much the same derivative.
 /// The checks are half as far apart as steps were when they last became short, and a 24th of the time since: what lasts
-/// longer is seen, once or again and again. The first step counts as a 24th of the run at most. At steps of much the same length there are none after a while. Checked at
+/// longer is seen, once or again and again. Where next to nothing moves at the start, the first step is a 24th of the run at most. At steps of much the same length there are none after a while. Checked at
 /// three points is each step behind a refused one of a driven model, and of any model each whose estimate of the error has
 /// grown by more than its length explains: an estimate presumes a smooth solution, and where a pulse or a contact begins it
 /// may be small by chance.
@@ -144,7 +145,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
         let first = self.first_step(problem, (start, end), (&x, &slope), &tolerance);
-        problem.probes.enter((seen(start), seen(end)), first);
+        problem.probes.enter(seen(start), first);
         let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
@@ -261,8 +262,8 @@ impl<M: Estimating> Adaptive<'_, M> {
         I: Input<T, K>,
     {
         let longest = seen(end - start).min(self.longest);
-        // The rule compares derivatives of different order: its unit of time is the second, or the whole run.
-        let unit = problem.whole.min(self.longest).min(1.0);
+        // The rule compares derivatives of different order: its unit of time is the second, or for short runs a hundred of them.
+        let unit = (100.0 * problem.whole.min(self.longest)).min(1.0);
         let measure = tolerance.around(x);
         let (state, first) = (measure.norm(x), unit * measure.norm(slope));
         let trial = if state <= 1e-5 || first <= 1e-5 {
@@ -271,9 +272,14 @@ impl<M: Estimating> Adaptive<'_, M> {
             0.01 * unit * state / first
         }
         .min(longest);
-        // Over rest a step may be as long as the piece, unless input or model may do something in between.
-        let rests = first * longest <= 1e-5 * unit && problem.is_left_alone();
-        let most = if rests { longest } else { 100.0 * trial };
+        // Over rest a step may be as long as the piece, unless input or model may do something in between: then it is a part that
+        // is looked into, also where the state creeps by less than a tolerance.
+        let way = first * (longest / unit);
+        let most = match problem.is_left_alone() {
+            true if way <= 1e-5 => longest,
+            false if way <= 1.0 => (100.0 * trial).min(longest / PARTS),
+            _ => 100.0 * trial,
+        };
         let h = T::from_f64(trial);
         let memory = problem.memory;
         let ahead = problem.slope(start + h, &along(x, h, slope));

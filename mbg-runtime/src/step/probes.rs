@@ -31,7 +31,7 @@ pub(super) struct Probes {
 }
 
 /// The part of the time since that probes may be apart.
-const PARTS: f64 = 24.0;
+pub(super) const PARTS: f64 = 24.0;
 /// A difference of slopes over a whole step counts from so many times the tolerance on.
 const LARGE: f64 = 30.0;
 
@@ -55,11 +55,10 @@ impl Probes {
         }
     }
 
-    /// Takes note of the first step of a piece of the input, which is short because nothing is known yet. Over what hardly
-    /// moves it may be as long as the piece, and is taken for a part of it then.
-    pub(super) fn enter(&mut self, (time, end): (f64, f64), length: f64) {
+    /// Takes note of the first step of a piece of the input, which is short because nothing is known yet.
+    pub(super) fn enter(&mut self, time: f64, length: f64) {
         if self.shortest == 0.0 {
-            self.begin(time, length.min((end - time) / PARTS), length);
+            self.begin(time, length, length);
         }
         self.longest = length;
     }

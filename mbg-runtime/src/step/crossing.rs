@@ -7,7 +7,7 @@ use super::dense::Polynomial;
 use super::explicit::Dop853;
 use super::method::{Family, Start, Stepper, Trial};
 use super::problem::Problem;
-use super::tolerance::Tolerance;
+use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 
 /// A step that was refused so often may be one that meets a singular position.
@@ -188,6 +188,76 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
             control.growth = self.work.growth();
             control.accept(length, error, Scheme::RULE);
         }
+    }
+}
+
+/// The same beside steps of constant length: where the stages of one are not found, since what is off the loops has no slopes to
+/// go by there.
+pub(super) struct Across<T: Real, const N: usize> {
+    explicit: <Dop853 as Family>::Work<T, N>,
+    sizes: Sizes<N>,
+}
+
+/// What such a step may be off by, in units of what states have been.
+const OFF: f64 = 1e-5;
+
+impl<T: Real, const N: usize> Across<T, N> {
+    pub(super) fn new() -> Self {
+        Self {
+            explicit: Stepper::new(&Dop853),
+            sizes: Sizes::new(),
+        }
+    }
+
+    /// Notes where a step begins.
+    pub(super) fn note<S, const M: usize, const P: usize>(&mut self, x: &SVector<T, N>)
+    where
+        S: System<T, N, M, P>,
+    {
+        if !S::META.closures.is_empty() {
+            self.sizes.note(x);
+        }
+    }
+
+    /// A step across instead of one that is lost, with what the run remembered before it.
+    pub(super) fn instead_of<S, I, const M: usize, const P: usize>(
+        &mut self,
+        trial: &Trial<T, N>,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        memory: S::Memory,
+    ) -> Option<Trial<T, N>>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        if S::META.closures.is_empty() || trial.error.is_finite() {
+            return None;
+        }
+        let tried = core::mem::replace(&mut problem.memory, memory);
+        problem.closes_stages = true;
+        let tolerance = self.sizes.tolerance(OFF);
+        let across = self.explicit.attempt(problem, start, Some(&tolerance));
+        problem.closes_stages = false;
+        let found = across.error <= 1.0;
+        if !found {
+            problem.memory = tried;
+        }
+        found.then_some(across)
+    }
+
+    /// What is known in between of the step that was tried last, which ends at `x`.
+    pub(super) fn polynomial<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        x: &SVector<T, N>,
+    ) -> Polynomial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        self.explicit.polynomial(problem, start, (x, None))
     }
 }
 

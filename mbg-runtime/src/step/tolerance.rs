@@ -79,6 +79,11 @@ impl<const N: usize> Sizes<N> {
         }
     }
 
+    /// A tolerance of so large a part of what states have been and are.
+    pub(super) fn tolerance(&self, part: f64) -> Tolerance<N> {
+        Tolerance::new(part, part, &self.0.map(|size| size.max(f64::MIN_POSITIVE)))
+    }
+
     /// Errors of a step in units of what states have been and become.
     pub(super) fn between<T: Real>(&self, x: &SVector<T, N>, change: &SVector<T, N>) -> Measure<N> {
         let sizes = self.0.map(|size| size.max(ROUNDING * T::EPSILON));

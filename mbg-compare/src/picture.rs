@@ -52,12 +52,16 @@ impl<S, I, const N: usize, const M: usize, const P: usize> Comparison<'_, S, I, 
             .into_iter()
             .map(|method| (method, self.series(method)))
             .collect();
+        series.retain(|(_, points)| !points.is_empty());
+        if series.is_empty() {
+            return Err("no run came to its end, so there is nothing to draw".into());
+        }
         for (_, points) in &mut series {
             points.retain(|point| point.error > 0.0);
         }
         series.retain(|(_, points)| !points.is_empty());
         if series.is_empty() {
-            return Err("no run came to its end, so there is nothing to draw".into());
+            return Err("all errors are zero, which has no place on a logarithmic axis".into());
         }
         let agreement = self.reference().agreement;
         let errors = range(all(&series).map(|point| point.error));
@@ -83,10 +87,14 @@ impl<S, I, const N: usize, const M: usize, const P: usize> Comparison<'_, S, I, 
     }
 }
 
-/// From half the smallest to twice the largest.
+/// From half the smallest to twice the largest of those that have a place on a logarithmic axis.
 fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
+    let values = values.filter(|value| *value > 0.0);
     let low = values.clone().fold(f64::INFINITY, f64::min);
     let high = values.fold(0.0, f64::max);
+    if low > high {
+        return 1.0..10.0;
+    }
     0.5 * low..2.0 * high
 }
 
@@ -150,7 +158,9 @@ fn panel_of(
         chart.draw_series(DashedLineSeries::new(limit, 6, 4, faint()))?;
     }
     for ((_, points), style) in coloured(series) {
-        let line = points.iter().map(|point| (work(point), point.error));
+        // What solvers from elsewhere do not tell is zero.
+        let known = points.iter().filter(|point| work(point) > 0.0);
+        let line = known.map(|point| (work(point), point.error));
         chart.draw_series(LineSeries::new(line, style).point_size(3))?;
     }
     Ok(())

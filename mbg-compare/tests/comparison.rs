@@ -6,7 +6,7 @@
 mod problems;
 
 use mbg_compare::{Comparison, Problem, compare};
-use mbg_runtime::{Rk4, Tsit5};
+use mbg_runtime::{Rk4, Statistics, Tsit5};
 use nalgebra::SVector;
 use problems::{Pendulum, VanDerPol, Written};
 
@@ -80,4 +80,25 @@ fn a_picture_is_drawn() {
     ] {
         assert!(picture.contains(text), "{text}");
     }
+}
+
+#[test]
+fn solvers_that_tell_no_work_and_errors_of_zero_have_no_place_on_logarithmic_axes() {
+    let start = SVector::from([2.0, 1.0]);
+    let problem = Problem::new("pendulum", &Written(Pendulum), &(), (0.0, 10.0), start);
+    let mut comparison: Comparison<'_, _, _, 2, 0, 0> = Comparison::new(problem).unwrap();
+    let exact = comparison.reference().states.clone();
+    comparison.solver("exact", "", |_, states| {
+        states.extend_from_slice(&exact);
+        Ok(Statistics::default())
+    });
+    let path = std::env::temp_dir().join("mbg_compare_without_work.svg");
+    let told = comparison.draw(&path).unwrap_err().to_string();
+    assert!(told.contains("all errors are zero"), "{told}");
+    comparison.solver("another", "", |_, states| {
+        states.extend(exact.iter().map(|state| state + SVector::from([1e-3, 0.0])));
+        Ok(Statistics::default())
+    });
+    comparison.draw(&path).unwrap();
+    assert!(std::fs::read_to_string(&path).unwrap().contains("another"));
 }

@@ -115,12 +115,21 @@ fn angle_about(axis: usize, turn: &Matrix, from: usize) -> f64 {
     }
 }
 
+/// The direction of a vector that is not zero, whose squares may be none.
+fn unit(vector: &Vector) -> Vector {
+    let largest = vector
+        .iter()
+        .fold(0.0, |largest: f64, it| largest.max(it.abs()));
+    let scaled = vector.map(|it| it / largest);
+    let length = scaled.iter().map(|it| it * it).sum::<f64>().sqrt();
+    scaled.map(|it| it / length)
+}
+
 /// A coordinate axis, and a rotation that takes it to the direction of `axis`.
 ///
 /// None where the direction is a coordinate axis itself, half a turn where it is the opposite of one.
 pub(crate) fn aligned(axis: &Vector) -> (usize, Matrix) {
-    let length = axis.iter().map(|it| it * it).sum::<f64>().sqrt();
-    let unit = axis.map(|it| it / length);
+    let unit = unit(axis);
     for along in 0..3 {
         let across = [(along + 1) % 3, (along + 2) % 3];
         if across.iter().any(|it| unit[*it].abs() > RIGHT) {
@@ -182,9 +191,8 @@ impl Pose {
 
     /// Moved along an axis.
     pub(crate) fn moved(axis: &Vector, travel: f64) -> Self {
-        let length = axis.iter().map(|it| it * it).sum::<f64>().sqrt();
         Self {
-            place: axis.map(|it| it / length * travel),
+            place: unit(axis).map(|it| it * travel),
             ..Self::NONE
         }
     }
@@ -336,6 +344,10 @@ mod tests {
             let length = axis.iter().map(|it| it * it).sum::<f64>().sqrt();
             for i in 0..3 {
                 assert!((turn[i][along] - axis[i] / length).abs() < 1e-15);
+            }
+            for size in [1e200, 1e-200] {
+                assert_eq!(along, aligned(&axis.map(|it| size * it)).0);
+                assert_near(&aligned(&axis.map(|it| size * it)).1, &turn);
             }
         }
     }

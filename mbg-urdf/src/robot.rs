@@ -193,10 +193,14 @@ impl<'a> Reader<'a> {
 
     /// Names the tags inside `node` that are neither `known` nor without a bearing on the motion.
     fn note_others(&mut self, node: Node<'_, '_>, known: &[&str]) {
+        let mut seen = BTreeSet::new();
         for child in node.children().filter(Node::is_element) {
             let tag = child.tag_name().name();
+            let is_first = seen.insert(tag) || node.has_tag_name("robot");
             if !known.contains(&tag) && !["visual", "collision", "material"].contains(&tag) {
                 self.note(child, format!("`{tag}` is not converted"));
+            } else if known.contains(&tag) && !is_first {
+                self.note(child, format!("another `{tag}` is not converted"));
             }
         }
     }

@@ -156,6 +156,11 @@ fn what_is_left_out_is_told() {
             "11: `limit` is not converted",
         ),
         (
+            "<axis ",
+            "<axis xyz=\"0 0 1\"/><axis ",
+            "11: another `axis` is not converted",
+        ),
+        (
             "izz=\"1\"",
             "izz=\"-1\"",
             "3: mass or inertia of `b` is negative, as no body's can be",

@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
+use mbg_runtime::lanes::f64x4;
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method,
-    Picked, Radau5, Radau9, Real, Reason, Rodas4, Rodas5P, Ros2, Statistics, System, Tsit5,
+    Adaptive, Auto, Constant, Dop853, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator,
+    Method, Picked, Radau5, Radau9, Real, Reason, Rodas4, Rodas5P, Ros2, Statistics, System, Tsit5,
     Variable,
 };
 use nalgebra::SVector;
@@ -219,6 +220,30 @@ fn sweeps_go_to_rounding_where_they_turn() {
     let strict = end(law, Adaptive::new(Dop853, 1e-12, 1e-12), 4.3, start).0;
     let found = end(law, Fixed::new(Radau9, 0.43), 4.3, start).0;
     assert!((found - strict).norm() < 2e-3, "{found:?} {strict:?}");
+}
+
+/// Decay at a rate that is an input, each lane at its own.
+#[derive(Clone, Copy)]
+struct Decay;
+
+impl Law<1, 1> for Decay {
+    const STATES: &'static [Variable] = &[state("left")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 1>, u: &SVector<T, 1>) -> SVector<T, 1> {
+        SVector::from([-u[0] * x[0]])
+    }
+}
+
+#[test]
+fn auto_looks_at_all_lanes() {
+    for place in 0..4 {
+        let rates: [f64; 4] = std::array::from_fn(|lane| if lane == place { 1e6 } else { 1.0 });
+        let input = Constant(SVector::from([f64x4::from(rates)]));
+        let [start, end] = [0.0, 10.0].map(f64x4::from_f64);
+        let x = SVector::from([f64x4::from_f64(1.0)]);
+        let choice = Auto::new(1e-6, 1e-6).choose(&Written(Decay), &input, start, end, x);
+        assert_eq!(choice.unwrap().method, Picked::Radau9, "{place}");
+    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Steps across singular positions of closed loops, where branches of their motion meet.
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Estimating, Fixed, Gauss6, Integrator, Radau5, Radau9, Rk4, Rodas4,
-    Rodas5P, System, Tsit5, mbg,
+    Adaptive, Auto, Dop853, Estimating, Fixed, Gauss6, Integrator, Picked, Radau5, Radau9, Rk4,
+    Rodas4, Rodas5P, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -40,6 +40,20 @@ fn a_parallelogram_stays_on_its_branch() {
             );
         }
     }
+}
+
+#[test]
+fn auto_takes_the_order_that_a_tolerance_asks_for() {
+    let model = Parallelogram::<f64>::new(ParallelogramParameters::default()).unwrap();
+    let picked = |tolerance: f64| {
+        let auto = Auto::new(tolerance, tolerance);
+        let choice = auto.choose(&model, &(), 0.0, 20.0, model.initial_state());
+        choice.unwrap().method
+    };
+    assert_eq!(
+        [picked(1e-4), picked(1e-8)],
+        [Picked::Tsit5, Picked::Dop853]
+    );
 }
 
 #[test]

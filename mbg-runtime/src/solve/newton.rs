@@ -102,7 +102,7 @@ pub(super) fn attempt<T: Real, const K: usize>(
             if let Some(none) = point.none_left(&beside) {
                 return point.ended(&none, &size, iterations, true);
             }
-            if asides < ASIDE {
+            if asides < ASIDE && iterations < ITERATIONS {
                 (asides, point) = (asides + 1, beside);
                 continue;
             }

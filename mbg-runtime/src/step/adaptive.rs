@@ -37,10 +37,10 @@ use crate::{Input, Real, System};
 /// ([`System::AUTONOMOUS`] is `false`). Where an input varies between its jumps or the model depends on time, steps that are
 /// long beside those before are therefore checked in between: model and dense output must have much the same derivative.
 /// The checks are half as far apart as steps were when they last became short, and a 24th of the time since: what lasts
-/// longer is seen, once or again and again. Where next to nothing moves at the start, the first step is a 24th of the run at most. At steps of much the same length there are none after a while. Checked at
-/// three points is each step behind a refused one of a driven model, and of any model each whose estimate of the error has
-/// grown by more than its length explains: an estimate presumes a smooth solution, and where a pulse or a contact begins it
-/// may be small by chance.
+/// longer is seen, once or again and again. Where next to nothing moves at the start, the first step is a 24th of the run at
+/// most. At steps of much the same length there are none after a while. Checked at three points is each step behind a refused
+/// one of a driven model, and of any model each whose estimate of the error has grown by more than its length explains: an
+/// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance.
 ///
 /// # Example
 ///

@@ -27,10 +27,10 @@ use crate::{Input, Real, System};
 /// | a relative tolerance above 3e-6, or less than 20 rad within the piece | [`Tsit5`] |
 /// | else | [`Dop853`] |
 ///
-/// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of
-/// steps of the power method: where many modes are about as fast, within a factor of two. [`Auto::choose`] tells what is picked and why. A problem may become stiff later on: every
-/// 50 steps of a method for smooth problems the fastest mode is looked at again, and where stability is what keeps the
-/// steps short, the piece goes on with a method for stiff ones.
+/// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of steps of
+/// the power method: where many modes are about as fast, within a factor of two. [`Auto::choose`] tells what is picked and
+/// why. A problem may become stiff later on: every 50 steps of a method for smooth problems the fastest mode is looked at
+/// again, and where stability is what keeps the steps short, the piece goes on with a method for stiff ones.
 ///
 /// # Stack
 ///
@@ -431,18 +431,25 @@ mod tests {
 
     #[test]
     fn the_fastest_of_many_modes_is_found_within_a_factor_of_two() {
-        // A wave along thirty cells: momenta and displacements, with modes up to nearly 2.
-        let wave = SMatrix::<f64, 60, 60>::from_fn(|row, column| {
-            let (own, other) = (row % 30, column % 30);
-            match (row < 30, column < 30) {
-                (true, false) if other == own => -1.0,
-                (true, false) if other + 1 == own => 1.0,
-                (false, true) if other == own => 1.0,
-                (false, true) if other == own + 1 => -1.0,
-                _ => 0.0,
-            }
-        });
-        let (size, _) = fastest(&wave);
-        assert!(size > 1.0 && size < 4.0, "{size}");
+        // A wave along thirty cells: momenta and displacements in their own units, slightly damped, with modes up to
+        // nearly 2.
+        let wave = |unit: f64| {
+            SMatrix::<f64, 60, 60>::from_fn(|row, column| {
+                let (own, other) = (row % 30, column % 30);
+                let damping = if row == column { -1e-3 } else { 0.0 };
+                match (row < 30, column < 30) {
+                    (true, false) if other == own => -unit,
+                    (true, false) if other + 1 == own => unit,
+                    (false, true) if other == own => 1.0 / unit,
+                    (false, true) if other == own + 1 => -1.0 / unit,
+                    (true, true) => damping,
+                    _ => 0.0,
+                }
+            })
+        };
+        for unit in [1.0, 1e3, 1e6, 1e-6] {
+            let (size, _) = fastest(&wave(unit));
+            assert!(size > 1.0 && size < 4.0, "{unit:e}: {size}");
+        }
     }
 }

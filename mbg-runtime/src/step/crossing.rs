@@ -240,7 +240,9 @@ impl<T: Real, const N: usize> Across<T, N> {
         let across = self.explicit.attempt(problem, start, Some(&tolerance));
         problem.closes_stages = false;
         let found = across.error <= 1.0;
-        if !found {
+        if found {
+            problem.statistics.rejected += 1;
+        } else {
             problem.memory = tried;
         }
         found.then_some(across)

@@ -115,12 +115,14 @@ fn angle_about(axis: usize, turn: &Matrix, from: usize) -> f64 {
     }
 }
 
-/// The direction of a vector that is not zero, whose squares may be none.
+/// The direction of a vector that is not zero, whose squares may have no place in a number.
 fn unit(vector: &Vector) -> Vector {
     let largest = vector
         .iter()
         .fold(0.0, |largest: f64, it| largest.max(it.abs()));
-    let scaled = vector.map(|it| it / largest);
+    // By a power of two, which rounds nothing.
+    let scale = largest.log2().floor().clamp(-1000.0, 1000.0).exp2();
+    let scaled = vector.map(|it| it / scale);
     let length = scaled.iter().map(|it| it * it).sum::<f64>().sqrt();
     scaled.map(|it| it / length)
 }

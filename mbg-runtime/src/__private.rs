@@ -209,9 +209,10 @@ fn together<T: Real, const M: usize, const N: usize>(
     (count(&constraints), count(&coordinates))
 }
 
-/// How `R` rates change with `K` variables, for several columns of a Jacobian at once.
+/// How `R` rates change with `K` variables, for several columns of a Jacobian at once. The bits say in which directions, by
+/// their places modulo 64: what changes in none of these is zero, and left out.
 pub type Slopes<'a, T, const K: usize, const R: usize> =
-    dyn Fn(&[<T as Real>::Columns; K]) -> [<T as Real>::Columns; R] + 'a;
+    dyn Fn(u64, &[<T as Real>::Columns; K]) -> [<T as Real>::Columns; R] + 'a;
 
 /// Variables that change together: one, and others with the rows that depend on them instead of on it.
 pub type Direction<'a> = (usize, &'a [(usize, &'a [usize])]);
@@ -227,7 +228,10 @@ pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
     rows: &[usize; R],
     slopes: &Slopes<T, K, R>,
 ) {
-    for together in directions.chunks(<T::Columns as Columns<T>>::COUNT) {
+    let count = <T::Columns as Columns<T>>::COUNT;
+    for (number, together) in directions.chunks(count).enumerate() {
+        let places = number * count..number * count + together.len();
+        let changing = places.fold(0, |changing, place| changing | 1 << (place % 64));
         let mut changes = [<T::Columns as Real>::from_f64(0.0); K];
         for (lane, (first, others)) in together.iter().enumerate() {
             let others = others.iter().map(|(variable, _)| variable);
@@ -239,7 +243,7 @@ pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
                 }
             }
         }
-        let found = slopes(&changes);
+        let found = slopes(changing, &changes);
         for (lane, (first, others)) in together.iter().enumerate() {
             let entries = jacobian.as_mut_slice().chunks_exact_mut(N).nth(*first);
             let entries = entries.unwrap_or_default();

@@ -28,12 +28,13 @@ fn group(writer: &Writer, columns: &Columns) -> TokenStream {
     let mut body = quote! {
         use ::mbg_runtime::Real as _;
         let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
+        let zero = whole(T::from_f64(0.0));
     };
     body.extend([lines, quote!([#(#slopes),*])]);
     let body = block(body);
     quote! {
         #(#constant)*
-        ::mbg_runtime::__private::columns(jacobian, &[#(#directions),*], &[#(#steps),*], &|slopes| #body);
+        ::mbg_runtime::__private::columns(jacobian, &[#(#directions),*], &[#(#steps),*], &|changing, slopes| #body);
     }
 }
 

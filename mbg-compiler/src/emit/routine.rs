@@ -95,10 +95,24 @@ pub(super) fn column_lines(
         ..writer.clone()
     };
     let behind = Made::read(&columns.results);
-    let body = writer.lines(&columns.steps, columns.first, &behind);
+    let body = writer.parts(&parts(columns), columns.first, &behind);
     let results = rows.iter().map(|row| writer.operand(columns.results[*row]));
     let results = results.map(|result| result.into_token_stream());
     (body, results.collect())
+}
+
+/// The steps of columns by stretches. What changes in all directions is never left out.
+fn parts(columns: &Columns) -> Vec<Part<'_>> {
+    let mut rest = &columns.steps[..];
+    let stretches = columns.stretches().into_iter();
+    let parts = stretches.flat_map(|stretch| {
+        let (steps, behind) = rest.split_at(stretch.steps);
+        rest = behind;
+        let some = stretch.directions.len() < columns.directions.len();
+        let changes = some.then(|| stretch.mask());
+        steps.chunks(PART).map(move |steps| Part { steps, changes })
+    });
+    parts.collect()
 }
 
 /// The place of each value that columns of a Jacobian read. These values are put into one array as soon as they are there,
@@ -189,14 +203,21 @@ impl Made {
     }
 }
 
+/// Steps in one block.
+struct Part<'a> {
+    steps: &'a [Step],
+    /// The directions of which one must be worked out, else all of it is zero.
+    changes: Option<u64>,
+}
+
 /// The last part that reads what is made, some of which is read behind all parts.
-fn last_parts(parts: &[&[Step]], behind: &[Made]) -> FxHashMap<Made, usize> {
+fn last_parts(parts: &[Part<'_>], behind: &[Made]) -> FxHashMap<Made, usize> {
     let mut last = FxHashMap::default();
     if parts.len() == 1 {
         return last;
     }
     for (number, part) in parts.iter().enumerate() {
-        for step in *part {
+        for step in part.steps {
             let read = step.operands();
             let read = read.iter().filter_map(|it| Made::of(it.source));
             for made in read.chain(Made::needed_by(step)) {
@@ -238,14 +259,20 @@ impl<'a> Writer<'a> {
     }
 
     /// Steps whose values begin with number `value`, with what is read behind them.
-    fn lines(&self, steps: &[Step], mut value: usize, behind: &[Made]) -> TokenStream {
-        let parts: Vec<&[Step]> = steps.chunks(PART).collect();
-        let last_part = last_parts(&parts, behind);
+    fn lines(&self, steps: &[Step], value: usize, behind: &[Made]) -> TokenStream {
+        let changes = None;
+        let parts = steps.chunks(PART).map(|steps| Part { steps, changes });
+        self.parts(&parts.collect::<Vec<_>>(), value, behind)
+    }
+
+    /// The same, of steps in parts.
+    fn parts(&self, parts: &[Part<'_>], mut value: usize, behind: &[Made]) -> TokenStream {
+        let last_part = last_parts(parts, behind);
         let mut body = TokenStream::new();
         for (number, part) in parts.iter().enumerate() {
             let mut lines = Tokens::default();
             let mut made = Vec::new();
-            let mut rest = *part;
+            let mut rest = part.steps;
             while let Some(step) = rest.first() {
                 let angles = angles(rest, value);
                 let taken = angles.len().max(1);
@@ -271,7 +298,14 @@ impl<'a> Writer<'a> {
             let live: Vec<Ident> = made.iter().map(|made| self.name(*made)).collect();
             lines.extend(quote!((#(#live,)*)));
             let block = block(lines.stream());
-            body.extend(quote!(let (#(#live,)*) = #block;));
+            let zeros = live.iter().map(|_| quote!(zero));
+            body.extend(match part.changes {
+                Some(changes) => {
+                    let changes = Literal::u64_unsuffixed(changes);
+                    quote!(let (#(#live,)*) = if changing & #changes != 0 #block else { (#(#zeros,)*) };)
+                }
+                None => quote!(let (#(#live,)*) = #block;),
+            });
         }
         body
     }

@@ -61,11 +61,17 @@ impl Machine<'_> {
         let rows = columns.first().map_or(0, |it| it.results.len());
         let mut entries = vec![0.0; rows * width];
         for group in columns {
-            for direction in &group.directions {
+            let stretches = group.stretches();
+            for (place, direction) in group.directions.iter().enumerate() {
                 let mut inner = self.clone();
                 inner.changing = direction.iter().map(|it| it.variable).collect();
                 inner.values.resize(group.first, f64::NAN);
-                inner.steps(&group.steps);
+                let mut rest = &group.steps[..];
+                for stretch in &stretches {
+                    let (steps, behind) = rest.split_at(stretch.steps);
+                    inner.stretch(steps, stretch.changes_in(place));
+                    rest = behind;
+                }
                 let slopes = inner.results(&group.results);
                 for column in direction {
                     for row in &column.rows {
@@ -75,6 +81,15 @@ impl Machine<'_> {
             }
         }
         entries
+    }
+
+    /// Steps, or zeros for them where nothing changes them.
+    fn stretch(&mut self, steps: &[Step], changes: bool) {
+        if changes {
+            return self.steps(steps);
+        }
+        let values: usize = steps.iter().map(Step::results).sum();
+        self.values.resize(self.values.len() + values, 0.0);
     }
 
     fn steps(&mut self, steps: &[Step]) {

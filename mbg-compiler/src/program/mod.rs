@@ -20,6 +20,7 @@ mod property;
 mod reorder;
 mod schedule;
 mod signs;
+mod stretches;
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -30,6 +31,7 @@ use crate::symbolic::{Expression, Function, Kind, Place, Symbol};
 pub use dump::dump;
 pub use interpret::{Arguments, evaluate};
 pub use schedule::build;
+pub use stretches::Stretch;
 
 /// Where an operand's value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -260,6 +262,15 @@ impl Columns {
     fn operands(&self) -> Vec<Operand> {
         read(&self.steps, &self.results)
     }
+}
+
+/// The number of the first value of each step, and of the next behind them all.
+fn starts(steps: &[Step]) -> Vec<usize> {
+    let mut starts = vec![0];
+    for step in steps {
+        starts.push(starts[starts.len() - 1] + step.results());
+    }
+    starts
 }
 
 /// What steps read, and what is returned of them.

@@ -10,6 +10,7 @@ use super::contract::contract;
 use super::fixtures::{state, value};
 use super::reorder::reorder;
 use super::signs::signs;
+use super::stretches::by_stretches;
 use super::{Column, Columns, Operand, Routine, Source, Step};
 use crate::symbolic::Symbol;
 
@@ -20,6 +21,7 @@ fn read(operand: Operand, values: &[u64]) -> u64 {
     let number = match operand.source {
         Source::Value(value) => values[value],
         Source::Symbol(Symbol::State(state)) => sine(state as u64 + 1),
+        Source::Symbol(Symbol::Slope(variable)) => sine(variable as u64 + 100),
         Source::Constant(number) => number as u64,
         other => unreachable!("{other:?}"),
     };
@@ -148,6 +150,17 @@ fn last(count: usize) -> Vec<Operand> {
     (count.saturating_sub(3)..count).map(value).collect()
 }
 
+/// In columns, every other state is a slope.
+fn slope(operand: Operand) -> Operand {
+    match operand.source {
+        Source::Symbol(Symbol::State(state)) if !state.is_multiple_of(2) => Operand {
+            source: Source::Symbol(Symbol::Slope(state)),
+            ..operand
+        },
+        _ => operand,
+    }
+}
+
 fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
     let (main, first) = share.steps(main, 0, &(0..0));
     let mut count = first;
@@ -155,13 +168,14 @@ fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
     for drafts in of_columns {
         let begin = count;
         let (steps, end) = share.steps(drafts, begin, &(first..begin));
+        let column = |variable| Column {
+            variable,
+            rows: vec![0],
+        };
         columns.push(Columns {
-            directions: vec![vec![Column {
-                variable: 0,
-                rows: vec![0],
-            }]],
+            directions: (0..share.states).map(|it| vec![column(it)]).collect(),
             first: begin,
-            steps,
+            steps: steps.iter().map(|it| it.with(&slope)).collect(),
             results: vec![Operand::plain(Source::Value(end - 1))],
         });
         count = end;
@@ -191,7 +205,9 @@ proptest! {
         prop_assert_eq!(&results(&contracted), &expected, "contracted");
         let signed = signs(&contracted);
         prop_assert_eq!(&results(&signed), &expected, "with other signs");
-        prop_assert_eq!(&results(&arrange(&signed)), &expected, "arranged");
+        let arranged = arrange(&signed);
+        prop_assert_eq!(&results(&arranged), &expected, "arranged");
+        prop_assert_eq!(&results(&by_stretches(&arranged)), &expected, "in stretches");
     }
 }
 

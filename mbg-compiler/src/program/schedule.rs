@@ -8,6 +8,7 @@ use super::arrange::arrange;
 use super::contract::contract;
 use super::reorder::reorder;
 use super::signs::signs;
+use super::stretches::by_stretches;
 use super::{Columns, Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step};
 use crate::operands::Operands;
 use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
@@ -216,7 +217,7 @@ impl Context<'_> {
         if folding {
             return contract(&draft.routine);
         }
-        arrange(&signs(&contract(&reorder(&draft.routine))))
+        by_stretches(&arrange(&signs(&contract(&reorder(&draft.routine)))))
     }
 
     /// Whether each node changes along a direction; operands come before what uses them.

@@ -12,6 +12,7 @@ mod contract;
 mod dump;
 #[cfg(test)]
 mod fixtures;
+mod hoist;
 mod interpret;
 mod iterate;
 mod latency;

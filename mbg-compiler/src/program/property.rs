@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use super::arrange::arrange;
 use super::contract::contract;
 use super::fixtures::{state, value};
+use super::hoist::hoist;
 use super::reorder::reorder;
 use super::signs::signs;
 use super::stretches::by_stretches;
@@ -205,7 +206,9 @@ proptest! {
         prop_assert_eq!(&results(&contracted), &expected, "contracted");
         let signed = signs(&contracted);
         prop_assert_eq!(&results(&signed), &expected, "with other signs");
-        let arranged = arrange(&signed);
+        let hoisted = hoist(&signed);
+        prop_assert_eq!(&results(&hoisted), &expected, "hoisted");
+        let arranged = arrange(&hoisted);
         prop_assert_eq!(&results(&arranged), &expected, "arranged");
         prop_assert_eq!(&results(&by_stretches(&arranged)), &expected, "in stretches");
     }

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::arrange::arrange;
 use super::contract::contract;
+use super::hoist::hoist;
 use super::reorder::reorder;
 use super::signs::signs;
 use super::stretches::by_stretches;
@@ -217,7 +218,8 @@ impl Context<'_> {
         if folding {
             return contract(&draft.routine);
         }
-        by_stretches(&arrange(&signs(&contract(&reorder(&draft.routine)))))
+        let hoisted = hoist(&signs(&contract(&reorder(&draft.routine))));
+        by_stretches(&arrange(&hoisted))
     }
 
     /// Whether each node changes along a direction; operands come before what uses them.

@@ -1,0 +1,160 @@
+//! What columns of a Jacobian work out although no direction changes it, worked out once, before them.
+//!
+//! Of a product of several factors those are multiplied first that are ready first, and of such as 2 a δb that may be 2 a.
+
+use super::{Columns, Operand, Routine, Source, Step};
+use crate::symbolic::Symbol;
+
+/// The routine with such steps behind its own.
+pub(super) fn hoist(routine: &Routine) -> Routine {
+    let Some(first) = routine.columns.first().map(|it| it.first) else {
+        return routine.clone();
+    };
+    let mut hoist = Hoist {
+        steps: routine.steps.clone(),
+        names: routine.names[..first].to_vec(),
+        numbers: (0..routine.names.len()).collect(),
+    };
+    let rest: Vec<Rest> = routine
+        .columns
+        .iter()
+        .map(|it| hoist.split(routine, it))
+        .collect();
+    let columns = routine.columns.iter().zip(rest);
+    let columns: Vec<Columns> = columns
+        .map(|(columns, rest)| hoist.rest(routine, columns, rest))
+        .collect();
+    let renumbered = |operand: &Operand| operand.renumbered(&hoist.numbers);
+    Routine {
+        results: routine.results.iter().map(renumbered).collect(),
+        steps: hoist.steps,
+        names: hoist.names,
+        columns,
+    }
+}
+
+/// Steps that stay, each with the number of its first value.
+type Rest<'a> = Vec<(usize, &'a Step)>;
+
+/// A routine in the making.
+struct Hoist {
+    steps: Vec<Step>,
+    names: Vec<String>,
+    /// The new number of each value.
+    numbers: Vec<usize>,
+}
+
+impl Hoist {
+    /// Takes those steps of columns that no direction changes, and gives the others.
+    fn split<'a>(&mut self, routine: &Routine, columns: &'a Columns) -> Rest<'a> {
+        let mut changing = vec![false; routine.names.len()];
+        let mut rest = Vec::new();
+        let mut value = columns.first;
+        for step in &columns.steps {
+            let values = value..value + step.results();
+            if changes(step, &changing) {
+                changing[values].fill(true);
+                rest.push((value, step));
+            } else {
+                self.append(step, value, &routine.names);
+            }
+            value += step.results();
+        }
+        rest
+    }
+
+    /// Appends a step whose values began with number `value`.
+    fn append(&mut self, step: &Step, value: usize, names: &[String]) {
+        let step = step.with(&|it| it.renumbered(&self.numbers));
+        for value in value..value + step.results() {
+            self.numbers[value] = self.names.len();
+            self.names.push(names[value].clone());
+        }
+        self.steps.push(step);
+    }
+
+    /// Columns of the steps that stay.
+    fn rest(&mut self, routine: &Routine, columns: &Columns, rest: Rest<'_>) -> Columns {
+        let before = std::mem::take(&mut self.steps);
+        let first = self.names.len();
+        for (value, step) in rest {
+            self.append(step, value, &routine.names);
+        }
+        let steps = std::mem::replace(&mut self.steps, before);
+        Columns {
+            first,
+            steps,
+            ..columns.with(&Step::clone, &|it| it.renumbered(&self.numbers))
+        }
+    }
+}
+
+/// Whether a step of columns changes with the direction, by what values do. What is solved for there does.
+fn changes(step: &Step, changing: &[bool]) -> bool {
+    let changes = |operand: &Operand| match operand.source {
+        Source::Symbol(Symbol::Slope(_)) | Source::Solved(_) => true,
+        Source::Value(value) => changing[value],
+        Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => false,
+    };
+    matches!(step, Step::Solve(_)) || step.operands().iter().any(changes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Column;
+    use crate::program::fixtures::{state, value};
+
+    fn slope() -> Operand {
+        Operand::plain(Source::Symbol(Symbol::Slope(0)))
+    }
+
+    fn columns(first: usize, steps: Vec<Step>, result: usize) -> Columns {
+        let column = Column {
+            variable: 0,
+            rows: vec![0],
+        };
+        Columns {
+            directions: vec![vec![column]],
+            first,
+            steps,
+            results: vec![value(result)],
+        }
+    }
+
+    #[test]
+    fn what_no_direction_changes_is_worked_out_before_all_columns() {
+        let double = |operand| Step::Multiply(Operand::plain(Source::Constant(2.0)), operand);
+        let first = vec![
+            Step::Multiply(slope(), value(0)),
+            double(value(0)),
+            Step::Multiply(value(2), value(1)),
+        ];
+        let second = vec![double(state(1)), Step::Multiply(value(4), slope())];
+        let routine = Routine {
+            steps: vec![Step::Sine(state(0))],
+            names: ["sine", "a", "b", "c", "d", "e"]
+                .map(str::to_owned)
+                .to_vec(),
+            results: vec![value(0)],
+            columns: vec![columns(1, first, 3), columns(4, second, 5)],
+        };
+        let found = hoist(&routine);
+        assert_eq!(found.names, ["sine", "b", "d", "a", "c", "e"]);
+        assert_eq!(
+            found.steps,
+            [Step::Sine(state(0)), double(value(0)), double(state(1))]
+        );
+        let first = [
+            Step::Multiply(slope(), value(0)),
+            Step::Multiply(value(1), value(3)),
+        ];
+        assert_eq!(
+            found.columns,
+            [
+                columns(3, first.to_vec(), 4),
+                columns(5, vec![Step::Multiply(value(2), slope())], 5),
+            ]
+        );
+    }
+}

@@ -66,9 +66,9 @@ impl Hoist {
     /// Appends a step whose values began with number `value`.
     fn append(&mut self, step: &Step, value: usize, names: &[String]) {
         let step = step.with(&|it| it.renumbered(&self.numbers));
-        for value in value..value + step.results() {
-            self.numbers[value] = self.names.len();
-            self.names.push(names[value].clone());
+        for place in 0..step.results() {
+            self.numbers[value + place] = self.names.len();
+            self.names.push(names[value + place].clone());
         }
         self.steps.push(step);
     }

@@ -1,6 +1,6 @@
 //! A model whose Jacobians are too large to write out.
 
-use mbg_runtime::{System, mbg};
+use mbg_runtime::{Convertible, Dual, System, mbg};
 use nalgebra::SVector;
 
 use crate::references::errors::apart;
@@ -31,21 +31,7 @@ mbg! {
 }
 
 mbg! {
-    component Arm(port 1 base[6], port 1 tip[6]) {
-        param stiffness: N*m/rad;
-        param load: kg;
-
-        ends: for k in 0..4 { 1 end[6]; }
-        base -> ends[0].end;
-        links: for k in 0..4 {
-            1 rod[6];
-            hinge: Revolute { axis: k % 2, stiffness: stiffness, initial: 0.3 } (ends[k].end, rod);
-            body: Body { mass: 1.0, inertia: diag(0.03, 0.04, 0.05), centre: [0.0, 0.02, -0.3] } (rod);
-            if k < 3 { length: Offset { by: [0.0, 0.0, -0.5] } (rod, ends[k+1].end); }
-            if k == 3 { length: Offset { by: [0.0, 0.0, -0.5] } (rod, tip); }
-        }
-        held: PointMass { mass: load } (tip);
-    }
+    include "tests/models/columns/arm.mbg";
 
     /// One arm, whose Jacobian is written out.
     #[derivative]
@@ -69,6 +55,23 @@ mbg! {
             1 tip[6];
             arm: Arm { stiffness: (1.0 + k) * stiffness, load: 0.5 } (stand, tip);
         }
+    }
+}
+
+mbg! {
+    include "tests/models/columns/arm.mbg";
+
+    /// Two arms, one at the end of the other: what the last joints turn does not turn with the first.
+    #[derivative]
+    pub(crate) model Row {
+        param stiffness: N*m/rad = 2.0;
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        1 stand[6] { Sf still[6] { flow: 0.0 } }
+        1 elbow[6];
+        1 tip[6];
+        near: Arm { stiffness: stiffness, load: 0.5 } (stand, elbow);
+        far: Arm { stiffness: stiffness, load: 0.5 } (elbow, tip);
     }
 }
 
@@ -173,4 +176,48 @@ fn what_does_not_act_on_each_other_changes_together() {
         alone.derivative_and_jacobian < all.derivative_and_jacobian,
         "{alone:?}"
     );
+}
+
+/// The slope of a derivative along a variable, by dual numbers.
+fn by_dual_numbers(row: &Row<f64>, x: &SVector<f64, 16>, variable: usize) -> SVector<f64, 16> {
+    let dual = row.converted(Dual::constant);
+    let x = SVector::from_fn(|k, _| Dual {
+        value: x[k],
+        slope: if k == variable { 1.0 } else { 0.0 },
+    });
+    let derivative = dual.derivative(Dual::constant(0.0), &x, &SVector::from([]), &mut ());
+    derivative.map(|it| it.slope)
+}
+
+#[test]
+fn columns_are_the_same_however_many_are_worked_out_at_once() {
+    let row = Row::new(RowParameters::default()).unwrap();
+    let x = SVector::<f64, 16>::from_fn(|k, _| 0.7 * (1.3 * k as f64 + 0.2).sin());
+    let none = SVector::from([]);
+    // As many as a register has lanes, one, and lanes of single precision.
+    let (_, together) = row.derivative_and_jacobian(0.0, &x, &none, &mut ());
+    let alone = row.converted(Dual::constant).jacobian_state(
+        Dual::constant(0.0),
+        &x.map(Dual::constant),
+        &none.map(Dual::constant),
+        &mut (),
+    );
+    let single = row.converted(|it| it as f32);
+    let single = single.jacobian_state(0.0, &x.map(|it| it as f32), &SVector::from([]), &mut ());
+    for variable in 0..16 {
+        let expected = by_dual_numbers(&row, &x, variable);
+        let error = |found: SVector<f64, 16>| apart(found.as_slice(), expected.as_slice());
+        assert!(
+            error(together.column(variable).into()) < 1e-12,
+            "{variable}"
+        );
+        assert!(
+            error(alone.column(variable).map(|it| it.value)) < 1e-12,
+            "{variable}"
+        );
+        assert!(
+            error(single.column(variable).map(f64::from)) < 1e-3,
+            "{variable}"
+        );
+    }
 }

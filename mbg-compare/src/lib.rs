@@ -90,10 +90,14 @@ where
         }
     }
 
-    /// The same, judged at these times.
+    /// The same, judged at these times, in whatever order; without any at its end.
     #[must_use]
     pub fn at(mut self, times: impl Into<Vec<f64>>) -> Self {
-        self.times = times.into();
+        let mut times = times.into();
+        times.sort_by(f64::total_cmp);
+        if !times.is_empty() {
+            self.times = times;
+        }
         self
     }
 

@@ -35,6 +35,19 @@ fn smooth_and_stiff_problems_get_their_methods_and_a_reference() {
 }
 
 #[test]
+fn times_may_come_in_any_order_and_none_is_the_end() {
+    let start = SVector::from([2.0, 1.0]);
+    let states = |times: &[f64]| {
+        let problem = Problem::new("pendulum", &Written(Pendulum), &(), (0.0, 2.0), start);
+        let comparison: Comparison<'_, _, _, 2, 0, 0> = Comparison::new(problem.at(times)).unwrap();
+        comparison.reference().states.clone()
+    };
+    assert_eq!(states(&[2.0, 1.0]), states(&[1.0, 2.0]));
+    assert_eq!(states(&[2.0, 1.0]).len(), 2);
+    assert_eq!(states(&[]), states(&[2.0]));
+}
+
+#[test]
 fn runs_that_stop_are_listed_with_the_reason() {
     let start = SVector::from([2.0, 0.0]);
     let problem = Problem::new("Van der Pol", &Written(VanDerPol), &(), (0.0, 2.0), start);

@@ -3,9 +3,11 @@
 //! Input: expressions for everything a model is asked. Output: a [`Program`]: one list of steps per function, each
 //! with only what it needs, and one list that is worked out once, when a model is built. No error is reported here.
 //!
-//! `schedule` makes the steps out of expressions. Four passes follow, none of which changes what a function returns but for
-//! rounding and the signs of zeros: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes negatives where they
-//! save an instruction, and `arrange` puts the steps in the order in which a processor begins them.
+//! `schedule` makes the steps out of expressions. Six passes follow, none of which changes what a function returns but for
+//! rounding and the signs of zeros: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes
+//! negatives where they save an instruction, `hoist` takes out of columns of a Jacobian what is the same in all, `arrange` puts
+//! the steps in the order in which a processor begins them, and `stretches` those of columns in an order in which some can be
+//! left out.
 
 mod arrange;
 mod contract;

@@ -20,11 +20,6 @@ impl Bits {
         self.0.iter_mut().zip(&other.0).for_each(|(a, b)| *a |= b);
     }
 
-    /// Takes in some numbers.
-    pub(crate) fn extend(&mut self, members: impl IntoIterator<Item = usize>) {
-        members.into_iter().for_each(|it| self.insert(it));
-    }
-
     fn widen(&mut self, words: usize) {
         if self.0.len() < words {
             self.0.resize(words, 0);

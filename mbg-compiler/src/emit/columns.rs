@@ -28,7 +28,6 @@ fn group(writer: &Writer, columns: &Columns) -> TokenStream {
     let mut body = quote! {
         use ::mbg_runtime::Real as _;
         let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
-        let zero = whole(T::from_f64(0.0));
     };
     body.extend([lines, quote!([#(#slopes),*])]);
     let body = block(body);

@@ -80,7 +80,7 @@ pub(super) fn written_lines(
 }
 
 /// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
-/// for all columns, and `slopes` holds what changes.
+/// for all columns, `slopes` holds what changes, and `changing` says in which directions.
 pub(super) fn column_lines(
     writer: &Writer,
     columns: &Columns,
@@ -302,7 +302,12 @@ impl<'a> Writer<'a> {
             body.extend(match part.changes {
                 Some(changes) => {
                     let changes = Literal::u64_unsuffixed(changes);
-                    quote!(let (#(#live,)*) = if changing & #changes != 0 #block else { (#(#zeros,)*) };)
+                    quote! {
+                        let (#(#live,)*) = if changing & #changes != 0 #block else {
+                            let zero = whole(T::from_f64(0.0));
+                            (#(#zeros,)*)
+                        };
+                    }
                 }
                 None => quote!(let (#(#live,)*) = #block;),
             });

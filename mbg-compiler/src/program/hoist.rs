@@ -2,8 +2,7 @@
 //!
 //! Of a product of several factors those are multiplied first that are ready first, and of such as 2 a δb that may be 2 a.
 
-use super::{Columns, Operand, Routine, Source, Step};
-use crate::symbolic::Symbol;
+use super::{Columns, Routine, Step};
 
 /// The routine with such steps behind its own.
 pub(super) fn hoist(routine: &Routine) -> Routine {
@@ -24,9 +23,8 @@ pub(super) fn hoist(routine: &Routine) -> Routine {
     let columns: Vec<Columns> = columns
         .map(|(columns, rest)| hoist.rest(routine, columns, rest))
         .collect();
-    let renumbered = |operand: &Operand| operand.renumbered(&hoist.numbers);
     Routine {
-        results: routine.results.iter().map(renumbered).collect(),
+        results: routine.results.clone(),
         steps: hoist.steps,
         names: hoist.names,
         columns,
@@ -47,16 +45,13 @@ struct Hoist {
 impl Hoist {
     /// Takes those steps of columns that no direction changes, and gives the others.
     fn split<'a>(&mut self, routine: &Routine, columns: &'a Columns) -> Rest<'a> {
-        let mut changing = vec![false; routine.names.len()];
         let mut rest = Vec::new();
         let mut value = columns.first;
-        for step in &columns.steps {
-            let values = value..value + step.results();
-            if changes(step, &changing) {
-                changing[values].fill(true);
-                rest.push((value, step));
-            } else {
+        for (step, directions) in columns.steps.iter().zip(columns.changes()) {
+            if directions.len() == 0 {
                 self.append(step, value, &routine.names);
+            } else {
+                rest.push((value, step));
             }
             value += step.results();
         }
@@ -81,41 +76,25 @@ impl Hoist {
             self.append(step, value, &routine.names);
         }
         let steps = std::mem::replace(&mut self.steps, before);
+        let results = columns.results.iter();
         Columns {
+            directions: columns.directions.clone(),
             first,
             steps,
-            ..columns.with(&Step::clone, &|it| it.renumbered(&self.numbers))
+            results: results.map(|it| it.renumbered(&self.numbers)).collect(),
         }
     }
-}
-
-/// Whether a step of columns changes with the direction, by what values do. What is solved for there does.
-fn changes(step: &Step, changing: &[bool]) -> bool {
-    let changes = |operand: &Operand| match operand.source {
-        Source::Symbol(Symbol::Slope(_)) | Source::Solved(_) => true,
-        Source::Value(value) => changing[value],
-        Source::Constant(_) | Source::Symbol(_) | Source::Folded(_) => false,
-    };
-    matches!(step, Step::Solve(_)) || step.operands().iter().any(changes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::Column;
-    use crate::program::fixtures::{state, value};
-
-    fn slope() -> Operand {
-        Operand::plain(Source::Symbol(Symbol::Slope(0)))
-    }
+    use crate::program::fixtures::{direction, slope, state, value};
+    use crate::program::{Operand, Source};
 
     fn columns(first: usize, steps: Vec<Step>, result: usize) -> Columns {
-        let column = Column {
-            variable: 0,
-            rows: vec![0],
-        };
         Columns {
-            directions: vec![vec![column]],
+            directions: vec![direction(0)],
             first,
             steps,
             results: vec![value(result)],
@@ -126,11 +105,11 @@ mod tests {
     fn what_no_direction_changes_is_worked_out_before_all_columns() {
         let double = |operand| Step::Multiply(Operand::plain(Source::Constant(2.0)), operand);
         let first = vec![
-            Step::Multiply(slope(), value(0)),
+            Step::Multiply(slope(0), value(0)),
             double(value(0)),
             Step::Multiply(value(2), value(1)),
         ];
-        let second = vec![double(state(1)), Step::Multiply(value(4), slope())];
+        let second = vec![double(state(1)), Step::Multiply(value(4), slope(0))];
         let routine = Routine {
             steps: vec![Step::Sine(state(0))],
             names: ["sine", "a", "b", "c", "d", "e"]
@@ -146,14 +125,14 @@ mod tests {
             [Step::Sine(state(0)), double(value(0)), double(state(1))]
         );
         let first = [
-            Step::Multiply(slope(), value(0)),
+            Step::Multiply(slope(0), value(0)),
             Step::Multiply(value(1), value(3)),
         ];
         assert_eq!(
             found.columns,
             [
                 columns(3, first.to_vec(), 4),
-                columns(5, vec![Step::Multiply(value(2), slope())], 5),
+                columns(5, vec![Step::Multiply(value(2), slope(0))], 5),
             ]
         );
     }

@@ -7,12 +7,12 @@ use proptest::prelude::*;
 
 use super::arrange::arrange;
 use super::contract::contract;
-use super::fixtures::{state, value};
+use super::fixtures::{direction, state, value};
 use super::hoist::hoist;
 use super::reorder::reorder;
 use super::signs::signs;
 use super::stretches::by_stretches;
-use super::{Column, Columns, Operand, Routine, Source, Step};
+use super::{Columns, Operand, Routine, Source, Step};
 use crate::symbolic::Symbol;
 
 /// How far back a value may be that a step reads.
@@ -169,12 +169,8 @@ fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
     for drafts in of_columns {
         let begin = count;
         let (steps, end) = share.steps(drafts, begin, &(first..begin));
-        let column = |variable| Column {
-            variable,
-            rows: vec![0],
-        };
         columns.push(Columns {
-            directions: (0..share.states).map(|it| vec![column(it)]).collect(),
+            directions: (0..share.states).map(direction).collect(),
             first: begin,
             steps: steps.iter().map(|it| it.with(&slope)).collect(),
             results: vec![Operand::plain(Source::Value(end - 1))],
@@ -210,7 +206,10 @@ proptest! {
         prop_assert_eq!(&results(&hoisted), &expected, "hoisted");
         let arranged = arrange(&hoisted);
         prop_assert_eq!(&results(&arranged), &expected, "arranged");
-        prop_assert_eq!(&results(&by_stretches(&arranged)), &expected, "in stretches");
+        let sorted = by_stretches(&arranged);
+        prop_assert_eq!(&results(&sorted), &expected, "in stretches");
+        let mut stretches = sorted.columns.iter().flat_map(Columns::stretches);
+        prop_assert!(stretches.all(|it| it.mask() != 0), "nothing is left out of all columns");
     }
 }
 

@@ -36,6 +36,18 @@ impl Bits {
         self.0.iter().map(|word| word.count_ones() as usize).sum()
     }
 
+    /// Whether it holds a number.
+    pub(crate) fn contains(&self, member: usize) -> bool {
+        let word = self.0.get(member / WORD).copied().unwrap_or(0);
+        word >> (member % WORD) & 1 == 1
+    }
+
+    /// The largest of the numbers.
+    pub(crate) fn last(&self) -> Option<usize> {
+        let mut words = self.0.iter().enumerate().rev();
+        words.find_map(|(place, word)| Some(WORD * place + word.checked_ilog2()? as usize))
+    }
+
     /// The numbers, ascending.
     pub(crate) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         self.0.iter().enumerate().flat_map(|(place, word)| {
@@ -67,5 +79,15 @@ mod tests {
         assert!(small.meets(&large) && large.meets(&small));
         assert_eq!(small.iter().collect::<Vec<_>>(), [3, 63, 64, 200]);
         assert_eq!((small.len(), large.len(), Bits::default().len()), (4, 2, 0));
+    }
+
+    #[test]
+    fn members_are_found_in_any_word() {
+        let mut some: Bits = [3, 63, 200].into_iter().collect();
+        assert!([3, 63, 200].into_iter().all(|it| some.contains(it)));
+        assert!(![0, 64, 199, 1000].into_iter().any(|it| some.contains(it)));
+        assert_eq!((some.last(), Bits::default().last()), (Some(200), None));
+        some.widen(8);
+        assert_eq!(some.last(), Some(200));
     }
 }

@@ -27,7 +27,7 @@ impl Stretch {
     /// Whether any of it changes in the direction in a place.
     #[must_use]
     pub fn changes_in(&self, place: usize) -> bool {
-        self.directions.iter().any(|it| it == place)
+        self.directions.contains(place)
     }
 
     /// The directions as bits: that of a place is its rest by 64.
@@ -45,7 +45,7 @@ impl Columns {
         let mut stretches: Vec<Stretch> = Vec::new();
         let mut last = None;
         for changes in self.changes() {
-            let end = changes.iter().last();
+            let end = changes.last();
             match stretches.last_mut() {
                 Some(stretch) if end == last || stretch.steps < FEWEST => {
                     stretch.steps += 1;
@@ -144,7 +144,7 @@ pub(super) fn by_stretches(routine: &Routine) -> Routine {
 fn order(columns: &Columns) -> Vec<usize> {
     let changes = columns.changes();
     let mut order: Vec<usize> = (0..changes.len()).collect();
-    order.sort_by_key(|step| changes[*step].iter().last());
+    order.sort_by_key(|step| changes[*step].last());
     order
 }
 

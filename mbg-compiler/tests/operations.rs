@@ -48,6 +48,38 @@ fn seven_links_cost_less_than_the_recursion_by_hand() {
     assert!(count <= BY_HAND, "{count}");
 }
 
+/// Mass on the axis of a hinge moves alike whether it turns with the hinge or not, so that the body before has it.
+#[test]
+fn mass_along_the_axis_of_a_hinge_costs_nothing() {
+    let arm = |along: f64| {
+        let text = format!(
+            "#[derivative]
+            model Arm {{
+                causality componentwise;
+                gravity [0.0, 0.0, -9.81];
+                ends: for k in 0..4 {{ 1 end[6]; }}
+                Sf fixed[6] {{ flow: 0.0 }} -> ends[0].end;
+                links: for k in 0..3 {{
+                    1 rod[6];
+                    hinge: Revolute {{ axis: k }} (ends[k].end, rod);
+                    body: Body {{
+                        mass: 3.0,
+                        inertia: [[0.3, 0.01, 0.02], [0.01, 0.4, 0.03], [0.02, 0.03, 0.5]],
+                        centre: [0.1, 0.2, if k == 2 {{ {along:?} }} else {{ 0.4 }}]
+                    }} (rod);
+                    length: Offset {{ by: [0.3, -0.2, 0.1] }} (rod, ends[k+1].end);
+                }}
+            }}"
+        );
+        models::compiled(&text).program.routines[Routines::DERIVATIVE].operations()
+    };
+    let counts = [0.0, 0.5].map(arm);
+    println!(
+        "three links, the last with its mass on and off its middle plane: {counts:?} operations"
+    );
+    assert_eq!(counts[0], counts[1]);
+}
+
 /// The ends of the chain cost less than its middle, by the same number for any length; so growth is measured on what
 /// the second half of the links adds.
 #[test]

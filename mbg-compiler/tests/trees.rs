@@ -30,7 +30,7 @@ struct Body {
     /// From the frame of the parent to the joint.
     by: Vector3<f64>,
     mass: f64,
-    inertia: Vector3<f64>,
+    inertia: Matrix3<f64>,
     centre: Vector3<f64>,
     position: f64,
     rate: f64,
@@ -40,6 +40,11 @@ struct Body {
 
 fn vector(of: &Vector3<f64>) -> String {
     format!("[{:?}, {:?}, {:?}]", of.x, of.y, of.z)
+}
+
+fn matrix(of: &Matrix3<f64>) -> String {
+    let rows = [0, 1, 2].map(|row| vector(&of.row(row).transpose()));
+    format!("[{}]", rows.join(", "))
 }
 
 /// The tree in the language.
@@ -54,9 +59,7 @@ fn text(tree: &[Body]) -> String {
         };
         let word = if body.slides { "Prismatic" } else { "Revolute" };
         let axis = body.axis;
-        let inertia = vector(&body.inertia)
-            .replace('[', "diag(")
-            .replace(']', ")");
+        let inertia = matrix(&body.inertia);
         let (by, centre, mass) = (vector(&body.by), vector(&body.centre), body.mass);
         write!(
             text,
@@ -158,7 +161,7 @@ struct Load {
 impl Load {
     fn of(body: &Body, frame: &Frame) -> Self {
         let centre = frame.at(&(frame.axes * body.centre));
-        let inertia = frame.axes * Matrix3::from_diagonal(&body.inertia) * frame.axes.transpose();
+        let inertia = frame.axes * body.inertia * frame.axes.transpose();
         Self {
             force: body.mass * (centre.acceleration - GRAVITY),
             torque: inertia * centre.alpha + centre.omega.cross(&(inertia * centre.omega)),
@@ -295,11 +298,18 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
         place(),
     );
     let positive = || prop_oneof![prop::sample::select(&[1.0, 2.0, 0.5][..]), 0.2..2.0_f64];
-    let inertia = prop_oneof![
+    let moments = prop_oneof![
         positive().prop_map(|equal| [equal; 3]),
         prop::array::uniform3(positive()),
     ];
-    let body = (positive(), inertia.prop_map(Vector3::from), place());
+    // Small beside the moments, so that the inertia is positive.
+    let products = prop_oneof![
+        Just([0.0; 3]),
+        prop::array::uniform3(prop_oneof![Just(0.0), -0.08..0.08_f64]),
+    ];
+    let inertia = (moments, products)
+        .prop_map(|([xx, yy, zz], [xy, yz, zx])| Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz));
+    let body = (positive(), inertia, place());
     let servo = prop::option::weighted(servos, -1.0..1.0_f64);
     let motion = (special, -1.0..1.0_f64, servo);
     prop::collection::vec((joint, body, motion), sizes).prop_map(|all| {

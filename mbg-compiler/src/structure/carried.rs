@@ -32,8 +32,8 @@ pub(super) struct Carried {
 /// A component of a vector to which an arm adds.
 #[derive(Clone, Copy)]
 pub(super) struct End {
-    /// The same of the vector at the arm's other end.
-    pub(super) from: usize,
+    /// The same of the vector at the arm's other end; none if that is at rest.
+    pub(super) from: Option<usize>,
     /// The rate with which the arm turns.
     pub(super) omega: Triple,
     /// The arm.
@@ -353,7 +353,9 @@ impl Carrier<'_> {
         Some(Some(Arm {
             turning,
             omega: turning.map(self.velocity),
-            length: length(&matrix, &turning),
+            length: length(&matrix.map(|row| {
+                turning.map(|rate| row.get(&rate).copied().unwrap_or(Expression::ZERO))
+            })),
             velocity,
         }))
     }
@@ -361,15 +363,16 @@ impl Carrier<'_> {
 
 /// The components of a vector to which a rigid arm adds.
 fn ends((vector, origin): &(Triple, Origin)) -> Vec<(usize, End)> {
-    let &Origin::Moved {
-        from,
-        arm: Some(arm),
-    } = origin
-    else {
-        return Vec::new();
+    let (from, arm) = match *origin {
+        Origin::Moved {
+            from,
+            arm: Some(arm),
+        } => (Some(from), arm),
+        Origin::Base { arm: Some(arm) } => (None, arm),
+        _ => return Vec::new(),
     };
     let end = |component: usize, length| End {
-        from: from[component],
+        from: from.map(|from| from[component]),
         omega: arm.turning,
         arm: length,
         component,
@@ -393,14 +396,10 @@ fn holding(vectors: &[Triple]) -> BTreeMap<usize, Vec<Triple>> {
 }
 
 /// The vector `r` of a matrix that gives `ω × r`.
-fn length(matrix: &[BTreeMap<usize, Expression>; 3], omega: &Triple) -> Option<[Expression; 3]> {
-    let entry = |row: usize, column: usize| {
-        let entry = matrix[row].get(&omega[column]).copied();
-        entry.unwrap_or(Expression::ZERO)
-    };
+pub(super) fn length(matrix: &[[Expression; 3]; 3]) -> Option<[Expression; 3]> {
     let is_skew = (0..3)
-        .all(|row| (0..=row).all(|column| entry(row, column) == entry(column, row).negated()));
-    is_skew.then(|| [entry(1, 2), entry(2, 0), entry(0, 1)])
+        .all(|row| (0..=row).all(|column| matrix[row][column] == matrix[column][row].negated()));
+    is_skew.then(|| [matrix[1][2], matrix[2][0], matrix[0][1]])
 }
 
 /// `ω × ṙ`.
@@ -440,7 +439,7 @@ fn only<T>(mut items: impl Iterator<Item = T>) -> Option<T> {
 }
 
 /// Whether rows of length one at right angles are those of the identity; none if they are not such rows.
-fn is_orthonormal(matrix: &[[Image; 3]; 3]) -> Option<bool> {
+pub(super) fn is_orthonormal(matrix: &[[Image; 3]; 3]) -> Option<bool> {
     let unit = |a: usize, b: usize| if a == b { Image::ONE } else { Image::ZERO };
     let dot = |a: usize, b: usize| {
         (0..3).fold(Image::ZERO, |sum, k| {

@@ -173,6 +173,17 @@ impl System {
         self.right[row] = right;
     }
 
+    /// Makes an entry of an open row another one.
+    pub(super) fn set(&mut self, row: usize, column: usize, value: Expression) {
+        if value == Expression::ZERO {
+            self.rows[row].remove(&column);
+            self.columns[column].remove(&row);
+        } else {
+            self.rows[row].insert(column, value);
+            self.columns[column].insert(row);
+        }
+    }
+
     /// Number of unknowns.
     pub(super) fn size(&self) -> usize {
         self.rows.len()

@@ -8,11 +8,14 @@
 //! iteration on more than three unknowns divide by pivots that nothing is known of. Errors: `MBG04xx`.
 
 pub mod blocks;
+mod bodies;
 mod carried;
 mod congruence;
 mod eliminate;
 mod floating;
 mod formulation;
+mod hinges;
+mod inertia;
 mod levels;
 mod linear;
 pub mod matching;
@@ -22,6 +25,7 @@ mod nonlinear;
 mod outlook;
 mod reduction;
 mod refused;
+mod regrouping;
 mod resolve;
 mod rest;
 mod selection;

@@ -18,18 +18,18 @@ use crate::symbolic::{Expression, Pool};
 pub(super) struct Moment {
     /// The rates that change the body's rate of turning.
     pub(super) omega: Triple,
-    inertia: [Vector; 3],
+    pub(super) inertia: [Vector; 3],
     /// By component.
-    efforts: [Effort; 3],
+    pub(super) efforts: [Effort; 3],
 }
 
 /// One of its components.
-struct Effort {
+pub(super) struct Effort {
     /// The row that gives it, without what is known.
-    law: Given,
-    row: usize,
+    pub(super) law: Given,
+    pub(super) row: usize,
     /// The only other row that it is in, and what is left there.
-    balance: usize,
+    pub(super) balance: usize,
     left: Expression,
 }
 

@@ -6,9 +6,11 @@
 
 use std::collections::BTreeMap;
 
+use super::bodies::Body;
 use super::carried::{Carried, End, Triple};
 use super::eliminate::System;
 use super::moments::Moment;
+use super::regrouping::regroup;
 use super::tensor::Tensor;
 use super::tree::Tree;
 use crate::symbolic::field::Image;
@@ -74,17 +76,17 @@ impl Given {
 }
 
 /// The motion that rates are counted from.
-struct Motion<'a> {
+pub(super) struct Motion<'a> {
     velocity: &'a dyn Fn(usize) -> Expression,
     rates: BTreeMap<usize, Expression>,
 }
 
 impl Motion<'_> {
-    fn rate(&self, column: usize) -> Expression {
+    pub(super) fn rate(&self, column: usize) -> Expression {
         self.rates.get(&column).copied().unwrap_or(Expression::ZERO)
     }
 
-    fn tensor(&self, omega: &Triple) -> Tensor {
+    pub(super) fn tensor(&self, omega: &Triple) -> Tensor {
         Tensor {
             omega: omega.map(self.velocity),
             alpha: omega.map(|rate| self.rate(rate)),
@@ -95,7 +97,8 @@ impl Motion<'_> {
     fn end(&self, pool: &mut Pool, end: &End) -> Expression {
         let tensor = self.tensor(&end.omega);
         let more = tensor.acceleration(pool, end.component, &end.arm);
-        pool.add(self.rate(end.from), more)
+        let from = end.from.map_or(Expression::ZERO, |it| self.rate(it));
+        pool.add(from, more)
     }
 }
 
@@ -147,15 +150,20 @@ impl Shift {
                 });
             system.set_right(row, right);
         }
+        let bodies = Body::all(pool, system, tree, vectors, &carried, &moments);
+        let mut laws = Vec::new();
         for moment in moments {
             let tensor = motion.tensor(&moment.omega);
-            rows.extend(moment.shift(pool, system, &tensor));
+            laws.extend(moment.shift(pool, system, &tensor));
         }
         for (balance, inertia) in carried.masses {
             system.set_right(balance, Expression::ZERO);
-            rows.push(inertia);
+            laws.push(inertia);
         }
-        Some(Self { rows })
+        let mut all = regroup(pool, system, tree, &rows, &motion, bodies);
+        all.append(&mut rows);
+        all.append(&mut laws);
+        Some(Self { rows: all })
     }
 
     /// Counts the solution from zero again.

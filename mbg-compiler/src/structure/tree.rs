@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::eliminate::System;
 use super::shift::Given;
-use crate::equations::{Scalars, Turn};
+use crate::equations::{Owner, Scalars, Turn};
 use crate::symbolic::{Pool, Rate};
 
 pub(super) type Columns = BTreeSet<usize>;
@@ -29,6 +29,10 @@ pub(super) struct Tree {
     balances: BTreeMap<usize, Option<usize>>,
     /// Efforts that these rows give.
     balanced: Columns,
+    /// Rows in which junctions and two-ports pass efforts on.
+    structure: BTreeSet<usize>,
+    /// Efforts that close loops.
+    multipliers: Columns,
 }
 
 /// What belongs to the column of a rate.
@@ -81,6 +85,17 @@ impl Tree {
                 balances.insert(row, place.get(effort).copied());
             }
         }
+        let structure = equations.iter().enumerate();
+        let structure = structure.filter_map(|(row, equation)| {
+            let equation = &scalars.equations[*equation];
+            (equation.owner == Owner::Structure && equation.rate.is_none()).then_some(row)
+        });
+        let structure: BTreeSet<usize> = structure.collect();
+        let closures = scalars.closures.iter();
+        let multipliers = closures
+            .flat_map(|closure| &closure.multipliers)
+            .filter_map(|multiplier| place.get(multiplier).copied())
+            .collect();
         let independent = scalars.independent.values();
         let turns = place.iter();
         let turns = turns.filter_map(|(unknown, column)| Some((*column, scalars.turns[*unknown]?)));
@@ -107,6 +122,8 @@ impl Tree {
             together,
             conjugates,
             balances,
+            structure,
+            multipliers,
         }
     }
 
@@ -118,6 +135,17 @@ impl Tree {
     /// The rate that a row gives.
     pub(super) fn given_by(&self, row: usize) -> Option<usize> {
         self.given.get(&row).copied()
+    }
+
+    /// Whether a junction or a two-port passes efforts on in a row.
+    pub(super) fn passes_on(&self, row: usize) -> bool {
+        self.structure.contains(&row)
+    }
+
+    /// Whether a column is an effort that rows give: neither a rate nor what closes a loop.
+    pub(super) fn is_effort(&self, column: usize) -> bool {
+        let is_rate = self.is_given(column) || self.independent.contains(&column);
+        !is_rate && !self.multipliers.contains(&column)
     }
 
     /// The rows that give rates, each after those of the rates from which its own follows. None if there is no such

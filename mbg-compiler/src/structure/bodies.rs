@@ -1,0 +1,199 @@
+//! Rigid bodies among the equations.
+
+use super::carried::{Carried, End, Triple};
+use super::eliminate::System;
+use super::inertia::Distribution;
+use super::moments::Moment;
+use super::shift::Given;
+use super::tensor::Vector;
+use super::tree::Tree;
+use crate::symbolic::field::Image;
+use crate::symbolic::{Expression, Pool};
+
+/// A body whose mass is at the end of an arm.
+pub(super) struct Body {
+    pub(super) mass: Mass,
+    /// Mass and moments about the frame's origin.
+    pub(super) inertia: Distribution,
+    /// What gives its moment about the mass, by component.
+    pub(super) moment: [Law; 3],
+}
+
+/// A mass at the end of an arm.
+#[derive(Clone, Copy)]
+pub(super) struct Mass {
+    /// The rates with which the arm turns.
+    pub(super) omega: Triple,
+    /// The rates of the velocity of the frame's origin; none if it is at rest.
+    pub(super) origin: Option<Triple>,
+    /// Those of the mass.
+    pub(super) centre: Triple,
+    pub(super) arm: Vector,
+    amount: Expression,
+    /// What gives the force on it.
+    pub(super) force: [Law; 3],
+    /// The same force where the arm passes it on, and whether its sign is the other.
+    pub(super) passed: [(usize, bool); 3],
+}
+
+/// An effort and the row that gives it from rates.
+#[derive(Clone, Copy)]
+pub(super) struct Law {
+    pub(super) effort: usize,
+    pub(super) row: usize,
+}
+
+impl Body {
+    /// Those of a block, each alone in its frame.
+    pub(super) fn all(
+        pool: &mut Pool,
+        system: &System,
+        tree: &Tree,
+        vectors: &[Triple],
+        carried: &Carried,
+        moments: &[Moment],
+    ) -> Vec<Self> {
+        let masses: Vec<Mass> = vectors
+            .iter()
+            .filter_map(|centre| Mass::at(system, tree, carried, *centre))
+            .collect();
+        let mut bodies = Vec::new();
+        for moment in moments {
+            let mut own = masses.iter().filter(|mass| mass.omega == moment.omega);
+            if let (Some(mass), None) = (own.next(), own.next())
+                && mass.adds_its_moment(pool, system, moment)
+            {
+                bodies.push(Self::of(pool, *mass, moment));
+            }
+        }
+        bodies
+    }
+
+    fn of(pool: &mut Pool, mass: Mass, moment: &Moment) -> Self {
+        let at_centre = Distribution {
+            mass: mass.amount,
+            first: [Expression::ZERO; 3],
+            second: moment.inertia,
+        };
+        let law = |k: usize| Law {
+            effort: moment.efforts[k].law.unknown,
+            row: moment.efforts[k].row,
+        };
+        Self {
+            inertia: at_centre.moved(pool, &mass.arm),
+            moment: [0, 1, 2].map(law),
+            mass,
+        }
+    }
+
+    /// Whether a rate is one of the frame's.
+    pub(super) fn has(&self, rate: usize) -> bool {
+        let mut origin = self.mass.origin.iter().flatten();
+        self.mass.omega.contains(&rate) || origin.any(|it| *it == rate)
+    }
+}
+
+impl Mass {
+    fn at(system: &System, tree: &Tree, carried: &Carried, centre: Triple) -> Option<Self> {
+        let ends: Vec<&End> = all(centre, |rate| carried.ends.get(&rate))?;
+        let masses: Vec<&(usize, Given)> = all(centre, |rate| {
+            let mut masses = carried.masses.iter();
+            masses.find(|(_, law)| law.terms[0].0 == rate)
+        })?;
+        let amount = masses[0].1.terms[0].1;
+        let is_one = (0..3).all(|k| {
+            let is_same = ends[k].omega == ends[0].omega && ends[k].arm == ends[0].arm;
+            is_same && ends[k].component == k && masses[k].1.terms[0].1 == amount
+        });
+        let law = |k: usize| {
+            let (balance, law) = masses[k];
+            let effort = law.unknown;
+            let row = system.rows_with(effort).find(|row| row != balance)?;
+            Some(Law { effort, row })
+        };
+        let passed = |k: usize| {
+            let (balance, law) = masses[k];
+            let own = system.entry(*balance, law.unknown);
+            let mut others = system
+                .row(*balance)
+                .filter(|(column, _)| *column != law.unknown);
+            let (Some((effort, other)), None) = (others.next(), others.next()) else {
+                return None;
+            };
+            let is_same =
+                own.magnitude() == Expression::ONE && other.magnitude() == Expression::ONE;
+            (tree.passes_on(*balance) && is_same).then_some((effort, own == other))
+        };
+        let origin: Option<Vec<usize>> = ends.iter().map(|end| end.from).collect();
+        let found = Self {
+            omega: ends[0].omega,
+            origin: origin.and_then(|it| it.try_into().ok()),
+            centre,
+            arm: ends[0].arm,
+            amount,
+            force: [law(0)?, law(1)?, law(2)?],
+            passed: [passed(0)?, passed(1)?, passed(2)?],
+        };
+        is_one.then_some(found)
+    }
+
+    /// Whether the force on the mass adds `arm × force` to the body's moment about its centre.
+    fn adds_its_moment(&self, pool: &Pool, system: &System, moment: &Moment) -> bool {
+        moment
+            .efforts
+            .iter()
+            .zip(across(&self.arm))
+            .all(|(effort, expected)| {
+                let own = system.entry(effort.balance, effort.law.unknown);
+                let mut found = [Image::ZERO; 3];
+                for (column, value) in system.row(effort.balance) {
+                    if let Some(parts) = self.parts(pool, system, column) {
+                        let value = pool.image(value);
+                        found = [0, 1, 2].map(|k| found[k].plus(value.times(parts[k])));
+                    }
+                }
+                let expected = expected.map(|entry| pool.image(entry.flipped(own.is_negative())));
+                own.magnitude() == Expression::ONE && found == expected
+            })
+    }
+
+    /// What an effort is of the components of the force, if it is the force itself or a two-port gives it from nothing else.
+    fn parts(&self, pool: &Pool, system: &System, effort: usize) -> Option<[Image; 3]> {
+        let own = |column: usize| self.passed.iter().position(|(passed, _)| *passed == column);
+        let part = |place: usize, value: Image| {
+            let mut parts = [Image::ZERO; 3];
+            let is_reversed = self.passed[place].1;
+            parts[place] = if is_reversed { value.negated() } else { value };
+            parts
+        };
+        if let Some(place) = own(effort) {
+            return Some(part(place, Image::ONE));
+        }
+        system.rows_with(effort).find_map(|row| {
+            let divisor = pool.image(system.entry(row, effort)).negated().inverted()?;
+            let others = system.row(row).filter(|(column, _)| *column != effort);
+            others
+                .map(|(column, value)| Some(part(own(column)?, pool.image(value).times(divisor))))
+                .try_fold([Image::ZERO; 3], |sum, part| {
+                    let part = part?;
+                    Some([0, 1, 2].map(|k| sum[k].plus(part[k])))
+                })
+        })
+    }
+}
+
+/// Something of each rate of a vector.
+fn all<'a, T>(rates: Triple, of: impl Fn(usize) -> Option<&'a T>) -> Option<Vec<&'a T>> {
+    rates.into_iter().map(of).collect()
+}
+
+/// The matrix that gives `vector × another`.
+pub(super) fn across(vector: &Vector) -> [Vector; 3] {
+    let [x, y, z] = *vector;
+    let zero = Expression::ZERO;
+    [
+        [zero, z.negated(), y],
+        [z, zero, x.negated()],
+        [y.negated(), x, zero],
+    ]
+}

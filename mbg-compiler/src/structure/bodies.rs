@@ -17,6 +17,8 @@ pub(super) struct Body {
     pub(super) inertia: Distribution,
     /// What gives its moment about the mass, by component.
     pub(super) moment: [Law; 3],
+    /// Rows, and columns there, by which the force on the mass adds to the moment.
+    pub(super) levers: Vec<(usize, usize)>,
 }
 
 /// A mass at the end of an arm.
@@ -33,7 +35,7 @@ pub(super) struct Mass {
     /// What gives the force on it.
     pub(super) force: [Law; 3],
     /// The same force where the arm passes it on, and whether its sign is the other.
-    pub(super) passed: [(usize, bool); 3],
+    passed: [(usize, bool); 3],
 }
 
 /// An effort and the row that gives it from rates.
@@ -61,15 +63,15 @@ impl Body {
         for moment in moments {
             let mut own = masses.iter().filter(|mass| mass.omega == moment.omega);
             if let (Some(mass), None) = (own.next(), own.next())
-                && mass.adds_its_moment(pool, system, moment)
+                && let Some(levers) = mass.levers(pool, system, moment)
             {
-                bodies.push(Self::of(pool, *mass, moment));
+                bodies.push(Self::of(pool, *mass, moment, levers));
             }
         }
         bodies
     }
 
-    fn of(pool: &mut Pool, mass: Mass, moment: &Moment) -> Self {
+    fn of(pool: &mut Pool, mass: Mass, moment: &Moment, levers: Vec<(usize, usize)>) -> Self {
         let at_centre = Distribution {
             mass: mass.amount,
             first: [Expression::ZERO; 3],
@@ -82,6 +84,7 @@ impl Body {
         Self {
             inertia: at_centre.moved(pool, &mass.arm),
             moment: [0, 1, 2].map(law),
+            levers,
             mass,
         }
     }
@@ -137,47 +140,54 @@ impl Mass {
         is_one.then_some(found)
     }
 
-    /// Whether the force on the mass adds `arm × force` to the body's moment about its centre.
-    fn adds_its_moment(&self, pool: &Pool, system: &System, moment: &Moment) -> bool {
-        moment
-            .efforts
-            .iter()
-            .zip(across(&self.arm))
-            .all(|(effort, expected)| {
-                let own = system.entry(effort.balance, effort.law.unknown);
-                let mut found = [Image::ZERO; 3];
-                for (column, value) in system.row(effort.balance) {
-                    if let Some(parts) = self.parts(pool, system, column) {
-                        let value = pool.image(value);
-                        found = [0, 1, 2].map(|k| found[k].plus(value.times(parts[k])));
-                    }
+    /// The entries by which the force on the mass adds to the body's moment about its centre, if that is `arm × force`.
+    fn levers(&self, pool: &Pool, system: &System, moment: &Moment) -> Option<Vec<(usize, usize)>> {
+        let mut levers = Vec::new();
+        for (effort, expected) in moment.efforts.iter().zip(across(&self.arm)) {
+            let own = system.entry(effort.balance, effort.law.unknown);
+            let mut found = [Image::ZERO; 3];
+            for (column, value) in system.row(effort.balance) {
+                if let Some((row, parts)) = self.lever(pool, system, effort.balance, column) {
+                    let value = pool.image(value);
+                    found = [0, 1, 2].map(|k| found[k].plus(value.times(parts[k])));
+                    levers.extend(self.passed.map(|(force, _)| (row, force)));
                 }
-                let expected = expected.map(|entry| pool.image(entry.flipped(own.is_negative())));
-                own.magnitude() == Expression::ONE && found == expected
-            })
+            }
+            let expected = expected.map(|entry| pool.image(entry.flipped(own.is_negative())));
+            if own.magnitude() != Expression::ONE || found != expected {
+                return None;
+            }
+        }
+        Some(levers)
     }
 
-    /// What an effort is of the components of the force, if it is the force itself or a two-port gives it from nothing else.
-    fn parts(&self, pool: &Pool, system: &System, effort: usize) -> Option<[Image; 3]> {
-        let own = |column: usize| self.passed.iter().position(|(passed, _)| *passed == column);
+    /// The row that gives an effort in a balance from the force alone, and the coefficients of the latter's components:
+    /// that of a two-port, or the balance itself.
+    fn lever(
+        &self,
+        pool: &Pool,
+        system: &System,
+        balance: usize,
+        effort: usize,
+    ) -> Option<(usize, [Image; 3])> {
+        let place = |column: usize| self.passed.iter().position(|(passed, _)| *passed == column);
         let part = |place: usize, value: Image| {
             let mut parts = [Image::ZERO; 3];
             let is_reversed = self.passed[place].1;
             parts[place] = if is_reversed { value.negated() } else { value };
             parts
         };
-        if let Some(place) = own(effort) {
-            return Some(part(place, Image::ONE));
+        if let Some(place) = place(effort) {
+            return Some((balance, part(place, Image::ONE)));
         }
         system.rows_with(effort).find_map(|row| {
             let divisor = pool.image(system.entry(row, effort)).negated().inverted()?;
-            let others = system.row(row).filter(|(column, _)| *column != effort);
-            others
-                .map(|(column, value)| Some(part(own(column)?, pool.image(value).times(divisor))))
-                .try_fold([Image::ZERO; 3], |sum, part| {
-                    let part = part?;
-                    Some([0, 1, 2].map(|k| sum[k].plus(part[k])))
-                })
+            let mut parts = [Image::ZERO; 3];
+            for (column, value) in system.row(row).filter(|(column, _)| *column != effort) {
+                let more = part(place(column)?, pool.image(value).times(divisor));
+                parts = [0, 1, 2].map(|k| parts[k].plus(more[k]));
+            }
+            Some((row, parts))
         })
     }
 }

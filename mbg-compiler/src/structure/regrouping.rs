@@ -58,11 +58,12 @@ pub(super) fn regroup(
 }
 
 impl Body {
-    /// Writes its laws about the origin instead of the mass: its moment as what `arm × force` leaves of the whole.
+    /// Writes its laws about the origin instead of the mass: the force adds nothing to its moment then.
     fn write(&self, pool: &mut Pool, system: &mut System, motion: &Motion) {
-        let Mass {
-            omega, origin, arm, ..
-        } = self.mass;
+        for (row, force) in &self.levers {
+            system.set(*row, *force, Expression::ZERO);
+        }
+        let Mass { omega, origin, .. } = self.mass;
         let Distribution {
             mass,
             first,
@@ -76,14 +77,10 @@ impl Body {
             let products = [0, 1, 2].map(|it| pool.multiply(forwards[k][it], base[it]));
             let straight = pool.sum(&products);
             let turning = tensor.moment(pool, k, &second);
-            let passed = [0, 1, 2].map(|it| {
-                let (force, is_reversed) = self.mass.passed[it];
-                (force, across(&arm)[k][it].flipped(!is_reversed))
-            });
             let turned = omega.into_iter().zip(second[k]);
             let moved = origin.into_iter().flatten().zip(forwards[k]);
             let known = pool.add(straight, turning);
-            law.write(system, turned.chain(moved).chain(passed), known);
+            law.write(system, turned.chain(moved), known);
         }
         let Some(origin) = origin else {
             return;

@@ -309,7 +309,8 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
     ];
     let inertia = (moments, products)
         .prop_map(|([xx, yy, zz], [xy, yz, zx])| Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz));
-    let body = (positive(), inertia, place());
+    let centre = prop_oneof![4 => place(), 1 => Just(Vector3::zeros())];
+    let body = (positive(), inertia, centre);
     let servo = prop::option::weighted(servos, -1.0..1.0_f64);
     let motion = (special, -1.0..1.0_f64, servo);
     prop::collection::vec((joint, body, motion), sizes).prop_map(|all| {

@@ -10,7 +10,7 @@ use super::tree::Tree;
 use crate::symbolic::field::Image;
 use crate::symbolic::{Expression, Pool};
 
-/// A body whose mass is at the end of an arm.
+/// A body whose mass is at the origin of its frame, or at the end of an arm.
 pub(super) struct Body {
     pub(super) mass: Mass,
     /// Mass and moments about the frame's origin.
@@ -21,10 +21,17 @@ pub(super) struct Body {
     pub(super) levers: Vec<(usize, usize)>,
 }
 
-/// A mass at the end of an arm.
+/// The rates of a frame: those with which it turns, and those of its origin's velocity.
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) omega: Triple,
+    pub(super) origin: Triple,
+}
+
+/// A mass in a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Mass {
-    /// The rates with which the arm turns.
+    /// The rates with which the frame turns.
     pub(super) omega: Triple,
     /// The rates of the velocity of the frame's origin; none if it is at rest.
     pub(super) origin: Option<Triple>,
@@ -34,8 +41,10 @@ pub(super) struct Mass {
     amount: Expression,
     /// What gives the force on it.
     pub(super) force: [Law; 3],
-    /// The same force where the arm passes it on, and whether its sign is the other.
-    passed: [(usize, bool); 3],
+    /// Whether the force counts as one that the frame puts on the mass.
+    is_inward: bool,
+    /// The same force where an arm passes it on, and whether its sign is the other.
+    passed: [Option<(usize, bool)>; 3],
 }
 
 /// An effort and the row that gives it from rates.
@@ -51,13 +60,13 @@ impl Body {
         pool: &mut Pool,
         system: &System,
         tree: &Tree,
-        vectors: &[Triple],
+        (vectors, frames): (&[Triple], &[Frame]),
         carried: &Carried,
         moments: &[Moment],
     ) -> Vec<Self> {
         let masses: Vec<Mass> = vectors
             .iter()
-            .filter_map(|centre| Mass::at(system, tree, carried, *centre))
+            .filter_map(|centre| Mass::at(system, tree, carried, frames, *centre))
             .collect();
         let mut bodies = Vec::new();
         for moment in moments {
@@ -97,45 +106,52 @@ impl Body {
 }
 
 impl Mass {
-    fn at(system: &System, tree: &Tree, carried: &Carried, centre: Triple) -> Option<Self> {
-        let ends: Vec<&End> = all(centre, |rate| carried.ends.get(&rate))?;
+    /// The mass with these rates.
+    fn at(
+        system: &System,
+        tree: &Tree,
+        carried: &Carried,
+        frames: &[Frame],
+        centre: Triple,
+    ) -> Option<Self> {
         let masses: Vec<&(usize, Given)> = all(centre, |rate| {
             let mut masses = carried.masses.iter();
             masses.find(|(_, law)| law.terms[0].0 == rate)
         })?;
         let amount = masses[0].1.terms[0].1;
-        let is_one = (0..3).all(|k| {
-            let is_same = ends[k].omega == ends[0].omega && ends[k].arm == ends[0].arm;
-            is_same && ends[k].component == k && masses[k].1.terms[0].1 == amount
-        });
         let law = |k: usize| {
             let (balance, law) = masses[k];
             let effort = law.unknown;
             let row = system.rows_with(effort).find(|row| row != balance)?;
             Some(Law { effort, row })
         };
+        let own = |k: usize| system.entry(masses[k].0, masses[k].1.unknown);
         let passed = |k: usize| {
             let (balance, law) = masses[k];
-            let own = system.entry(*balance, law.unknown);
             let mut others = system
                 .row(*balance)
                 .filter(|(column, _)| *column != law.unknown);
             let (Some((effort, other)), None) = (others.next(), others.next()) else {
                 return None;
             };
-            let is_same =
-                own.magnitude() == Expression::ONE && other.magnitude() == Expression::ONE;
-            (tree.passes_on(*balance) && is_same).then_some((effort, own == other))
+            let is_same = other.magnitude() == Expression::ONE;
+            (tree.passes_on(*balance) && is_same).then_some((effort, own(k) == other))
         };
-        let origin: Option<Vec<usize>> = ends.iter().map(|end| end.from).collect();
+        let (omega, origin, arm) = place(system, tree, carried, frames, centre)?;
+        let is_one = (0..3).all(|k| {
+            masses[k].1.terms[0].1 == amount
+                && own(k).magnitude() == Expression::ONE
+                && own(k) == own(0)
+        });
         let found = Self {
-            omega: ends[0].omega,
-            origin: origin.and_then(|it| it.try_into().ok()),
+            omega,
+            origin,
             centre,
-            arm: ends[0].arm,
+            arm,
             amount,
+            is_inward: own(0).is_negative(),
             force: [law(0)?, law(1)?, law(2)?],
-            passed: [passed(0)?, passed(1)?, passed(2)?],
+            passed: [passed(0), passed(1), passed(2)],
         };
         is_one.then_some(found)
     }
@@ -150,11 +166,13 @@ impl Mass {
                 if let Some((row, parts)) = self.lever(pool, system, effort.balance, column) {
                     let value = pool.image(value);
                     found = [0, 1, 2].map(|k| found[k].plus(value.times(parts[k])));
-                    levers.extend(self.passed.map(|(force, _)| (row, force)));
+                    let forces = self.passed.iter().flatten();
+                    levers.extend(forces.map(|(force, _)| (row, *force)));
                 }
             }
             let expected = expected.map(|entry| pool.image(entry.flipped(own.is_negative())));
-            if own.magnitude() != Expression::ONE || found != expected {
+            let is_alike = own.is_negative() == self.is_inward;
+            if !is_alike || own.magnitude() != Expression::ONE || found != expected {
                 return None;
             }
         }
@@ -170,21 +188,22 @@ impl Mass {
         balance: usize,
         effort: usize,
     ) -> Option<(usize, [Image; 3])> {
-        let place = |column: usize| self.passed.iter().position(|(passed, _)| *passed == column);
-        let part = |place: usize, value: Image| {
-            let mut parts = [Image::ZERO; 3];
-            let is_reversed = self.passed[place].1;
-            parts[place] = if is_reversed { value.negated() } else { value };
-            parts
+        let part = |column: usize, value: Image| {
+            self.passed.iter().enumerate().find_map(|(place, passed)| {
+                let is_reversed = passed.filter(|(force, _)| *force == column)?.1;
+                let mut parts = [Image::ZERO; 3];
+                parts[place] = if is_reversed { value.negated() } else { value };
+                Some(parts)
+            })
         };
-        if let Some(place) = place(effort) {
-            return Some((balance, part(place, Image::ONE)));
+        if let Some(parts) = part(effort, Image::ONE) {
+            return Some((balance, parts));
         }
         system.rows_with(effort).find_map(|row| {
             let divisor = pool.image(system.entry(row, effort)).negated().inverted()?;
             let mut parts = [Image::ZERO; 3];
             for (column, value) in system.row(row).filter(|(column, _)| *column != effort) {
-                let more = part(place(column)?, pool.image(value).times(divisor));
+                let more = part(column, pool.image(value).times(divisor))?;
                 parts = [0, 1, 2].map(|k| parts[k].plus(more[k]));
             }
             Some((row, parts))
@@ -192,9 +211,41 @@ impl Mass {
     }
 }
 
+/// Where the mass with these rates is: the rates with which its frame turns, those of the frame's origin, and the arm.
+fn place(
+    system: &System,
+    tree: &Tree,
+    carried: &Carried,
+    frames: &[Frame],
+    centre: Triple,
+) -> Option<(Triple, Option<Triple>, Vector)> {
+    let is_at = |frame: &&Frame| {
+        let mut pairs = centre.into_iter().zip(frame.origin);
+        pairs.all(|(rate, origin)| rate == origin || is_same(system, tree, rate, origin))
+    };
+    if let Some(frame) = frames.iter().find(is_at) {
+        return Some((frame.omega, Some(frame.origin), [Expression::ZERO; 3]));
+    }
+    let ends: Vec<&End> = all(centre, |rate| carried.ends.get(&rate))?;
+    let is_one = (0..3).all(|k| {
+        let is_same = ends[k].omega == ends[0].omega && ends[k].arm == ends[0].arm;
+        is_same && ends[k].component == k
+    });
+    let origin: Option<Vec<usize>> = ends.iter().map(|end| end.from).collect();
+    let origin = origin.and_then(|it| it.try_into().ok());
+    is_one.then_some((ends[0].omega, origin, ends[0].arm))
+}
+
 /// Something of each rate of a vector.
 fn all<'a, T>(rates: Triple, of: impl Fn(usize) -> Option<&'a T>) -> Option<Vec<&'a T>> {
     rates.into_iter().map(of).collect()
+}
+
+/// Whether a row gives a rate as another one.
+fn is_same(system: &System, tree: &Tree, rate: usize, other: usize) -> bool {
+    let row = tree.conjugates.get(&rate).map(|conjugate| conjugate.row);
+    let given = row.and_then(|row| Given::of(system, row, rate));
+    given.is_some_and(|given| given.terms == [(other, Expression::ONE)])
 }
 
 /// The matrix that gives `vector × another`.

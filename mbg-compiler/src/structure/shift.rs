@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::bodies::Body;
+use super::bodies::{Body, Frame};
 use super::carried::{Carried, End, Triple};
 use super::eliminate::System;
 use super::moments::Moment;
@@ -109,7 +109,7 @@ impl Shift {
         pool: &mut Pool,
         system: &mut System,
         tree: &Tree,
-        vectors: &[Triple],
+        (vectors, frames): (&[Triple], &[Frame]),
         velocity: &dyn Fn(usize) -> Expression,
     ) -> Option<Self> {
         let mut rows = tree.base_to_leaves(system)?;
@@ -150,7 +150,7 @@ impl Shift {
                 });
             system.set_right(row, right);
         }
-        let bodies = Body::all(pool, system, tree, vectors, &carried, &moments);
+        let bodies = Body::all(pool, system, tree, (vectors, frames), &carried, &moments);
         let mut laws = Vec::new();
         for moment in moments {
             let tensor = motion.tensor(&moment.omega);

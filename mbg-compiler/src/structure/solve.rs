@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::bodies::Frame;
 use super::congruence;
 use super::eliminate::{System, Vanished};
 use super::shift::Shift;
@@ -277,29 +278,37 @@ impl Solver<'_> {
         place: &BTreeMap<usize, usize>,
     ) -> Option<Shift> {
         let rate_of = &self.scalars.rate_of;
-        let rate = |pair: &[usize; 2]| {
-            let rates = pair.iter().filter_map(|unknown| rate_of.get(unknown));
-            rates
-                .filter_map(|rate| place.get(rate).copied())
-                .find(|rate| tree.is_given(*rate))
+        let rate = |unknown: &usize| {
+            let rate = place.get(rate_of.get(unknown)?).copied();
+            rate.filter(|rate| tree.is_given(*rate))
         };
         let vectors: BTreeSet<[usize; 3]> = self
             .scalars
             .wires
             .iter()
             .filter_map(|wire| {
-                let rates: Option<Vec<usize>> = wire.iter().map(rate).collect();
-                rates?.try_into().ok()
+                let rates = wire.iter().map(|pair| pair.iter().find_map(rate));
+                rates.collect::<Option<Vec<usize>>>()?.try_into().ok()
             })
             .collect();
         let vectors: Vec<[usize; 3]> = vectors.into_iter().collect();
+        let common = self.scalars.common.iter();
+        let frames = common.filter_map(|flows| {
+            let rates: Option<Vec<usize>> = flows.iter().map(rate).collect();
+            let [a, b, c, x, y, z] = rates?.try_into().ok()?;
+            Some(Frame {
+                omega: [a, b, c],
+                origin: [x, y, z],
+            })
+        });
+        let frames: Vec<Frame> = frames.collect();
         let unknown_of: BTreeMap<usize, usize> = rate_of
             .iter()
             .map(|(unknown, rate)| (*rate, *unknown))
             .collect();
         let values = &self.solution.values;
         let velocity = |column: usize| values[unknown_of[&unknowns[column]]];
-        Shift::of(self.pool, system, tree, &vectors, &velocity)
+        Shift::of(self.pool, system, tree, (&vectors, &frames), &velocity)
     }
 
     /// Rows and columns of a block by level.

@@ -10,6 +10,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::bodies::Frame;
 use super::eliminate::System;
 use super::shift::Given;
 use super::tree::Tree;
@@ -45,7 +46,7 @@ pub(super) struct End {
 /// How the rate of a vector follows from that of another.
 #[derive(Clone, Copy)]
 enum Origin {
-    /// From none, but for what an arm adds.
+    /// From none, or from rates that are independent, but for what an arm adds.
     Base { arm: Option<Arm> },
     /// In the same axes, but for what an arm adds.
     Moved { from: Triple, arm: Option<Arm> },
@@ -85,7 +86,7 @@ impl Carried {
         pool: &mut Pool,
         system: &System,
         tree: &Tree,
-        vectors: &[Triple],
+        (vectors, frames): (&[Triple], &[Frame]),
         rows: &[Given],
         velocity: &dyn Fn(usize) -> Expression,
     ) -> Option<Self> {
@@ -101,7 +102,9 @@ impl Carried {
         };
         let mut masses = Vec::new();
         let mut path: Vec<(Triple, Origin)> = Vec::new();
-        for vector in vectors {
+        // A moment of inertia that is alike about all axes is no mass.
+        let turns = |vector: &Triple| frames.iter().any(|frame| frame.omega == *vector);
+        for vector in vectors.iter().filter(|vector| !turns(vector)) {
             if let Some(mass) = carrier.mass(pool, vector)
                 && let Some(branch) = carrier.branch(pool, *vector, &path)
             {
@@ -207,12 +210,19 @@ impl Carrier<'_> {
                 arm: self.arm(pool, vector, &from)?,
             },
             (Some((from, false)), None) => Origin::Turned { from },
+            (None, _) if self.is_free(vector) => Origin::Base { arm: None },
             (None, _) => Origin::Base {
                 arm: self.arm(pool, vector, &[usize::MAX; 3])?,
             },
             _ => return None,
         };
         Some(origin)
+    }
+
+    /// Whether a vector follows from independent rates alone, as the velocity of what flies does.
+    fn is_free(&self, vector: &Triple) -> bool {
+        let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
+        terms().next().is_some() && terms().all(|(cause, _)| !self.given.contains_key(cause))
     }
 
     /// Whether a vector is at the base, or follows from another with its length.

@@ -113,7 +113,8 @@ impl Shift {
         velocity: &dyn Fn(usize) -> Expression,
     ) -> Option<Self> {
         let mut rows = tree.base_to_leaves(system)?;
-        let carried = Carried::of(pool, system, tree, vectors, &rows, velocity).unwrap_or_default();
+        let carried =
+            Carried::of(pool, system, tree, (vectors, frames), &rows, velocity).unwrap_or_default();
         let mut motion = Motion {
             velocity,
             rates: BTreeMap::new(),

@@ -21,11 +21,11 @@ pub(super) struct Body {
     pub(super) levers: Vec<(usize, usize)>,
 }
 
-/// The rates of a frame: those with which it turns, and those of its origin's velocity.
+/// The rates of a frame: those with which it turns, and those of its origin's velocity if none of them is known.
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
     pub(super) omega: Triple,
-    pub(super) origin: Triple,
+    pub(super) origin: Option<Triple>,
 }
 
 /// A mass in a frame.
@@ -219,12 +219,15 @@ fn place(
     frames: &[Frame],
     centre: Triple,
 ) -> Option<(Triple, Option<Triple>, Vector)> {
-    let is_at = |frame: &&Frame| {
-        let mut pairs = centre.into_iter().zip(frame.origin);
+    let is_at = |origin: &Triple| {
+        let mut pairs = centre.into_iter().zip(*origin);
         pairs.all(|(rate, origin)| rate == origin || is_same(system, tree, rate, origin))
     };
-    if let Some(frame) = frames.iter().find(is_at) {
-        return Some((frame.omega, Some(frame.origin), [Expression::ZERO; 3]));
+    if let Some(frame) = frames
+        .iter()
+        .find(|frame| frame.origin.as_ref().is_some_and(is_at))
+    {
+        return Some((frame.omega, frame.origin, [Expression::ZERO; 3]));
     }
     let ends: Vec<&End> = all(centre, |rate| carried.ends.get(&rate))?;
     let is_one = (0..3).all(|k| {

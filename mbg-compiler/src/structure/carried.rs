@@ -221,8 +221,11 @@ impl Carrier<'_> {
 
     /// Whether a vector follows from independent rates alone, as the velocity of what flies does.
     fn is_free(&self, vector: &Triple) -> bool {
-        let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
-        terms().next().is_some() && terms().all(|(cause, _)| !self.given.contains_key(cause))
+        vector.iter().all(|rate| {
+            let terms = &self.given[rate].terms;
+            let is_independent = |(cause, _): &(usize, Expression)| !self.given.contains_key(cause);
+            !terms.is_empty() && terms.iter().all(is_independent)
+        })
     }
 
     /// Whether a vector is at the base, or follows from another with its length.

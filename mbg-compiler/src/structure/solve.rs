@@ -293,12 +293,16 @@ impl Solver<'_> {
             .collect();
         let vectors: Vec<[usize; 3]> = vectors.into_iter().collect();
         let common = self.scalars.common.iter();
-        let frames = common.filter_map(|flows| {
+        let triple = |flows: &[usize]| -> Option<[usize; 3]> {
             let rates: Option<Vec<usize>> = flows.iter().map(rate).collect();
-            let [a, b, c, x, y, z] = rates?.try_into().ok()?;
+            rates?.try_into().ok()
+        };
+        let frames = common.filter(|flows| flows.len() == 6);
+        let frames = frames.filter_map(|flows| {
+            let (omega, origin) = flows.split_at(3);
             Some(Frame {
-                omega: [a, b, c],
-                origin: [x, y, z],
+                omega: triple(omega)?,
+                origin: triple(origin),
             })
         });
         let frames: Vec<Frame> = frames.collect();

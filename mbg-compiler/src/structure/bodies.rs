@@ -219,14 +219,9 @@ fn place(
     frames: &[Frame],
     centre: Triple,
 ) -> Option<(Triple, Option<Triple>, Vector)> {
-    let is_at = |origin: &Triple| {
-        let mut pairs = centre.into_iter().zip(*origin);
-        pairs.all(|(rate, origin)| rate == origin || is_same(system, tree, rate, origin))
-    };
-    if let Some(frame) = frames
-        .iter()
-        .find(|frame| frame.origin.as_ref().is_some_and(is_at))
-    {
+    let moved = centre.map(|rate| cause(system, tree, rate));
+    let is_at = |frame: &&Frame| [Some(centre), Some(moved)].contains(&frame.origin);
+    if let Some(frame) = frames.iter().find(is_at) {
         return Some((frame.omega, frame.origin, [Expression::ZERO; 3]));
     }
     let ends: Vec<&End> = all(centre, |rate| carried.ends.get(&rate))?;
@@ -244,11 +239,14 @@ fn all<'a, T>(rates: Triple, of: impl Fn(usize) -> Option<&'a T>) -> Option<Vec<
     rates.into_iter().map(of).collect()
 }
 
-/// Whether a row gives a rate as another one.
-fn is_same(system: &System, tree: &Tree, rate: usize, other: usize) -> bool {
+/// The rate that a rate is by the row that gives it; itself if it is no other.
+fn cause(system: &System, tree: &Tree, rate: usize) -> usize {
     let row = tree.conjugates.get(&rate).map(|conjugate| conjugate.row);
     let given = row.and_then(|row| Given::of(system, row, rate));
-    given.is_some_and(|given| given.terms == [(other, Expression::ONE)])
+    match given.as_ref().map(|given| &*given.terms) {
+        Some([(other, Expression::ONE)]) => *other,
+        _ => rate,
+    }
 }
 
 /// The matrix that gives `vector × another`.

@@ -102,7 +102,7 @@ impl Carried {
         };
         let mut masses = Vec::new();
         let mut path: Vec<(Triple, Origin)> = Vec::new();
-        // A moment of inertia that is alike about all axes is no mass.
+        // A moment of inertia about its principal axes has laws as a mass has, and is none.
         let turns = |vector: &Triple| frames.iter().any(|frame| frame.omega == *vector);
         for vector in vectors.iter().filter(|vector| !turns(vector)) {
             if let Some(mass) = carrier.mass(pool, vector)

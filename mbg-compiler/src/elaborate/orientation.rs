@@ -8,7 +8,7 @@ use super::expressions::{Evaluator, Names, Result, Value, fail, mismatch};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::symbolic::orientation::{angles_of, matrix_of, quaternion_of};
-use crate::symbolic::{Expression, Factor, Matrix, Pool, Product};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, rounded};
 
 /// How each function is called.
 const USAGES: [&str; 11] = [
@@ -51,7 +51,7 @@ impl<N: Names> Evaluator<'_, N> {
                 .rotation(matrix)
                 .map(|matrix| Value::column(quaternion_of(self.pool, &matrix).to_vec())),
             ("angles_of", [matrix, axes @ ..]) if axes.len() == 3 => self.angles_of(matrix, axes),
-            ("rotation", [matrix]) => self.rotation(matrix).and_then(|_| self.evaluate(matrix)),
+            ("rotation", [matrix]) => self.checked(matrix),
             (known, _) => {
                 let usages = USAGES
                     .iter()
@@ -108,6 +108,16 @@ impl<N: Names> Evaluator<'_, N> {
         rotation(self.pool, value, matrix.span())
     }
 
+    /// A rotation as it is written, but for the rounding of numbers.
+    fn checked(&mut self, argument: &Expr) -> Result<Value> {
+        let matrix = self.rotation(argument)?;
+        let is_number = |entry: &Expression| self.pool.constant_value(*entry).is_some();
+        if matrix.entries.iter().all(is_number) {
+            return Ok(Value::Matrix(Product::of(Factor::Dense(matrix))));
+        }
+        self.evaluate(argument)
+    }
+
     /// A vector of known dimension.
     pub(super) fn column<const D: usize>(&mut self, argument: &Expr) -> Result<[Expression; D]> {
         let value = self.evaluate(argument)?;
@@ -158,8 +168,18 @@ pub(super) fn rotation(pool: &mut Pool, value: Value, span: Span) -> Result<Matr
         Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
             let is_turn = |factor: &Factor| matches!(factor, Factor::Rotation { .. });
             let matrix = product.to_matrix(pool);
-            if product.factors.iter().all(is_turn) || is_rotation(pool, &matrix) {
+            if product.factors.iter().all(is_turn) {
                 return Ok(matrix);
+            }
+            let errors = errors(pool, &matrix);
+            let is_rounding = |error: &Expression| {
+                let constant = pool.constant_value(*error);
+                constant.is_none_or(|error| error.abs() <= ROUNDING)
+            };
+            if errors.iter().all(is_rounding) {
+                let is_exact = errors.iter().all(|error| *error == Expression::ZERO);
+                let numbers = numbers(pool, &matrix).filter(|_| !is_exact);
+                return Ok(numbers.map_or(matrix, |numbers| rounded::rotation(pool, numbers)));
             }
             let message =
                 "this matrix is no rotation: its columns must be orthonormal and right-handed";
@@ -175,19 +195,26 @@ pub(super) fn rotation(pool: &mut Pool, value: Value, span: Span) -> Result<Matr
     }
 }
 
-/// Whether a matrix can be a rotation, by what is constant of its products.
-fn is_rotation(pool: &mut Pool, matrix: &Matrix) -> bool {
+/// By how much the products of a matrix differ from those of a rotation.
+fn errors(pool: &mut Pool, matrix: &Matrix) -> Vec<Expression> {
     let gram = matrix.transpose().times(pool, matrix);
     let determinant = matrix.determinant(pool);
     let wanted = Matrix::diagonal(&[Expression::ONE; 3]);
-    let mut pairs = gram
+    let pairs = gram
         .entries
         .iter()
         .zip(&wanted.entries)
         .chain([(&determinant, &Expression::ONE)]);
-    pairs.all(|(found, wanted)| {
-        let difference = pool.subtract(*found, *wanted);
-        let constant = pool.constant_value(difference);
-        constant.is_none_or(|difference| difference.abs() <= ROUNDING)
-    })
+    pairs
+        .map(|(found, wanted)| pool.subtract(*found, *wanted))
+        .collect()
+}
+
+/// The entries by rows, if they are numbers.
+fn numbers(pool: &Pool, matrix: &Matrix) -> Option<[[f64; 3]; 3]> {
+    let row = |row: usize| {
+        let entry = |column: usize| pool.constant_value(matrix.at(row, column));
+        Some([entry(0)?, entry(1)?, entry(2)?])
+    };
+    Some([row(0)?, row(1)?, row(2)?])
 }

@@ -25,6 +25,7 @@ pub mod print;
 mod products;
 pub(crate) mod quadrature;
 mod rest;
+pub mod rounded;
 mod share;
 pub mod substitute;
 mod uses;

@@ -114,28 +114,29 @@ impl Mass {
         frames: &[Frame],
         centre: Triple,
     ) -> Option<Self> {
-        let masses: Vec<&(usize, Given)> = all(centre, |rate| {
-            let mut masses = carried.masses.iter();
-            masses.find(|(_, law)| law.terms[0].0 == rate)
+        let masses: Vec<(usize, &Given)> = all(centre, |rate| {
+            let mut inertias = carried.inertias.iter();
+            let inertia = inertias.find(|it| it.rate == rate && it.left == Expression::ZERO)?;
+            Some((inertia.balance, inertia.law.as_ref()?))
         })?;
         let amount = masses[0].1.terms[0].1;
         let law = |k: usize| {
             let (balance, law) = masses[k];
             let effort = law.unknown;
-            let row = system.rows_with(effort).find(|row| row != balance)?;
+            let row = system.rows_with(effort).find(|row| *row != balance)?;
             Some(Law { effort, row })
         };
         let own = |k: usize| system.entry(masses[k].0, masses[k].1.unknown);
         let passed = |k: usize| {
             let (balance, law) = masses[k];
             let mut others = system
-                .row(*balance)
+                .row(balance)
                 .filter(|(column, _)| *column != law.unknown);
             let (Some((effort, other)), None) = (others.next(), others.next()) else {
                 return None;
             };
             let is_same = other.magnitude() == Expression::ONE;
-            (tree.passes_on(*balance) && is_same).then_some((effort, own(k) == other))
+            (tree.passes_on(balance) && is_same).then_some((effort, own(k) == other))
         };
         let (omega, origin, arm) = place(system, tree, carried, frames, centre)?;
         let is_one = (0..3).all(|k| {
@@ -235,7 +236,7 @@ fn place(
 }
 
 /// Something of each rate of a vector.
-fn all<'a, T>(rates: Triple, of: impl Fn(usize) -> Option<&'a T>) -> Option<Vec<&'a T>> {
+fn all<T>(rates: Triple, of: impl Fn(usize) -> Option<T>) -> Option<Vec<T>> {
     rates.into_iter().map(of).collect()
 }
 

@@ -24,10 +24,21 @@ pub(super) type Triple = [usize; 3];
 pub(super) struct Carried {
     /// What is left in the rows that give rates, where it is not what was there.
     pub(super) left: BTreeMap<usize, Expression>,
-    /// Balances of which nothing is left, and the effort of the mass in each.
-    pub(super) masses: Vec<(usize, Given)>,
+    /// Of the masses whose rates these are.
+    pub(super) inertias: Vec<Inertia>,
     /// Rates to which an arm adds.
     pub(super) ends: BTreeMap<usize, End>,
+}
+
+/// A component of a mass.
+pub(super) struct Inertia {
+    pub(super) rate: usize,
+    /// The row in which the efforts on it balance: its own law, if all of them are known.
+    pub(super) balance: usize,
+    /// What gives its effort, unless that is known.
+    pub(super) law: Option<Given>,
+    /// What is left in the balance.
+    pub(super) left: Expression,
 }
 
 /// A component of a vector to which an arm adds.
@@ -59,12 +70,27 @@ enum Origin {
 struct Arm {
     /// The rates with which the arm turns.
     turning: Triple,
-    /// The velocity with which the arm turns.
-    omega: [Expression; 3],
     /// Its length, if it is rigid.
     length: Option<[Expression; 3]>,
-    /// What its end has of velocity more.
-    velocity: [Expression; 3],
+    /// `ω × ṙ`, which is known.
+    convection: [Expression; 3],
+}
+
+impl Arm {
+    fn convection(arm: Option<Self>) -> [Expression; 3] {
+        arm.map_or([Expression::ZERO; 3], |arm| arm.convection)
+    }
+}
+
+/// A component of a mass that may be taken.
+struct Component {
+    rate: usize,
+    balance: usize,
+    law: Option<Given>,
+    /// Of the rate, in the balance.
+    coefficient: Image,
+    /// Value at which the known efforts vanish.
+    value: Image,
 }
 
 struct Carrier<'a> {
@@ -75,13 +101,15 @@ struct Carrier<'a> {
     /// The vectors of which each rate is a component.
     holding: BTreeMap<usize, Vec<Triple>>,
     velocity: &'a dyn Fn(usize) -> Expression,
+    /// The vectors of masses, and those that they follow from.
+    path: Vec<(Triple, Origin)>,
     /// Value that each rate is counted from.
     values: BTreeMap<usize, Image>,
     left: BTreeMap<usize, Expression>,
+    inertias: Vec<Inertia>,
 }
 
 impl Carried {
-    /// None if nothing is gained.
     pub(super) fn of(
         pool: &mut Pool,
         system: &System,
@@ -89,7 +117,7 @@ impl Carried {
         (vectors, frames): (&[Triple], &[Frame]),
         rows: &[Given],
         velocity: &dyn Fn(usize) -> Expression,
-    ) -> Option<Self> {
+    ) -> Self {
         let mut carrier = Carrier {
             system,
             tree,
@@ -97,87 +125,135 @@ impl Carried {
             vectors,
             holding: holding(vectors),
             velocity,
+            path: Vec::new(),
             values: BTreeMap::new(),
             left: BTreeMap::new(),
+            inertias: Vec::new(),
         };
-        let mut masses = Vec::new();
-        let mut path: Vec<(Triple, Origin)> = Vec::new();
         // A moment of inertia about its principal axes has laws as a mass has, and is none.
         let turns = |vector: &Triple| frames.iter().any(|frame| frame.omega == *vector);
-        for vector in vectors.iter().filter(|vector| !turns(vector)) {
-            if let Some(mass) = carrier.mass(pool, vector)
-                && let Some(branch) = carrier.branch(pool, *vector, &path)
-            {
-                path.extend(branch);
-                for (rate, value, balance, law) in mass {
-                    carrier.values.insert(rate, value);
-                    masses.push((balance, law));
-                }
-            }
+        let masses = vectors.iter().filter(|vector| !turns(vector));
+        let masses = masses.filter_map(|vector| Some((*vector, carrier.mass(pool, vector)?)));
+        let mut open: Vec<(Triple, [Component; 3])> = masses.collect();
+        // Where a force is known beside gravity, the value at the base is found by another mass.
+        let mut count = usize::MAX;
+        while open.len() < count {
+            count = open.len();
+            open.retain(|(vector, mass)| carrier.take(pool, *vector, mass).is_none());
         }
-        for (vector, origin) in &path {
-            carrier.pass(pool, &path, *vector, *origin)?;
+        if carrier.moves_more() {
+            return Self::default();
         }
-        let left = std::mem::take(&mut carrier.left);
-        let is_mass = |row| {
-            let efforts = masses.iter().map(|(_, law): &(usize, Given)| law.unknown);
-            let mut entries = efforts.map(|effort| system.entry(row, effort));
-            entries.any(|entry| entry != Expression::ZERO)
-        };
-        let moves_more = |rate: &usize| {
-            let mut rows = system.rows_with(*rate);
-            rows.any(|row| match tree.given_by(row) {
-                Some(given) => !left.contains_key(&given),
-                None => !is_mass(row),
-            })
-        };
-        let is_gain = !masses.is_empty() && !left.keys().any(moves_more);
-        is_gain.then(|| Self {
-            ends: path.iter().flat_map(ends).collect(),
-            left,
-            masses,
-        })
+        Self {
+            ends: carrier.path.iter().flat_map(ends).collect(),
+            left: carrier.left,
+            inertias: carrier.inertias,
+        }
     }
 }
 
 impl Carrier<'_> {
-    /// If every component of a vector moves a mass: its rate, the value at which the efforts known there vanish, the
-    /// balance of these efforts, and the law of the mass.
-    fn mass(&self, pool: &Pool, vector: &Triple) -> Option<Vec<(usize, Image, usize, Given)>> {
-        let component = |rate: &usize| {
-            let others = self.system.rows_with(*rate);
+    /// The components of the mass that moves with a vector.
+    fn mass(&self, pool: &Pool, vector: &Triple) -> Option<[Component; 3]> {
+        let component = |rate: usize| {
+            let others = self.system.rows_with(rate);
             let inertia = only(others.filter(|row| self.tree.given_by(*row).is_none()))?;
-            let effort = only(
-                self.system
-                    .row(inertia)
-                    .filter(|(column, _)| column != rate),
-            )?
-            .0;
+            let own = pool.image(self.system.entry(inertia, rate));
+            let others = self.system.row(inertia);
+            let mut efforts = others.filter(|(column, _)| *column != rate);
+            let Some((effort, _)) = efforts.next() else {
+                return self.component(pool, rate, inertia, None, own);
+            };
             let law = Given::of(self.system, inertia, effort)?;
             let balance = only(self.system.rows_with(effort).filter(|row| *row != inertia))?;
-            let factor = pool.image(self.system.entry(balance, effort));
-            let factor = factor.times(pool.image(law.terms[0].1)).inverted()?;
-            let value = pool
-                .image(self.system.right(balance))
-                .times(factor)
-                .negated();
-            (law.constant == Expression::ZERO).then_some((*rate, value, balance, law))
+            let [(_, amount)] = *law.terms else {
+                return None;
+            };
+            let own = pool.image(self.system.entry(balance, effort));
+            let coefficient = own.times(pool.image(amount));
+            (law.constant == Expression::ZERO)
+                .then(|| self.component(pool, rate, balance, Some(law), coefficient))?
         };
-        vector.iter().map(component).collect()
+        let [x, y, z] = vector.map(component);
+        Some([x?, y?, z?])
+    }
+
+    fn component(
+        &self,
+        pool: &Pool,
+        rate: usize,
+        balance: usize,
+        law: Option<Given>,
+        coefficient: Image,
+    ) -> Option<Component> {
+        let known = pool.image(self.system.right(balance));
+        Some(Component {
+            rate,
+            balance,
+            law,
+            coefficient,
+            value: known.times(coefficient.inverted()?).negated(),
+        })
+    }
+
+    /// Takes a mass that moves with a vector; none, and nothing is done, if it does not fit to those that are taken.
+    fn take(&mut self, pool: &mut Pool, vector: Triple, mass: &[Component; 3]) -> Option<()> {
+        let branch = self.branch(pool, vector)?;
+        let own = [0, 1, 2].map(|k| mass[k].value);
+        let passed = self.pass(pool, &branch, own)?;
+        let value = |rate: &usize| match passed.get(rate) {
+            Some((value, _)) => *value,
+            None => self.values[rate],
+        };
+        let left = |component: &Component| {
+            let known = pool.image(self.system.right(component.balance));
+            let value = value(&component.rate);
+            pool.find(known.plus(component.coefficient.times(value)))
+        };
+        let inertia = |component: &Component| {
+            Some(Inertia {
+                rate: component.rate,
+                balance: component.balance,
+                law: component.law.clone(),
+                left: left(component)?,
+            })
+        };
+        let inertias: Vec<Inertia> = mass.iter().map(inertia).collect::<Option<_>>()?;
+        for (rate, (value, left)) in passed {
+            self.values.insert(rate, value);
+            self.left.insert(rate, left);
+        }
+        self.path.extend(branch);
+        self.inertias.extend(inertias);
+        Some(())
+    }
+
+    /// Whether other rows hold rates that are counted anew: what they are counted from, which nothing computes, is known in
+    /// the rows of the path and in the balances of the masses alone.
+    fn moves_more(&self) -> bool {
+        let efforts = self.inertias.iter().filter_map(|it| it.law.as_ref());
+        let efforts: BTreeSet<usize> = efforts.map(|law| law.unknown).collect();
+        let balances: BTreeSet<usize> = self.inertias.iter().map(|it| it.balance).collect();
+        let is_mass = |row: usize| {
+            let mut columns = self.system.row(row).map(|(column, _)| column);
+            balances.contains(&row) || columns.any(|column| efforts.contains(&column))
+        };
+        let mut rows = self
+            .left
+            .keys()
+            .flat_map(|rate| self.system.rows_with(*rate));
+        rows.any(|row| match self.tree.given_by(row) {
+            Some(given) => !self.left.contains_key(&given),
+            None => !is_mass(row),
+        })
     }
 
     /// The vectors from which a vector follows, and how, from the base on, but for those that are known already.
-    fn branch(
-        &self,
-        pool: &mut Pool,
-        vector: Triple,
-        known: &[(Triple, Origin)],
-    ) -> Option<Vec<(Triple, Origin)>> {
+    fn branch(&self, pool: &mut Pool, vector: Triple) -> Option<Vec<(Triple, Origin)>> {
         let mut branch = Vec::new();
         let mut next = Some(vector);
-        while let Some(vector) =
-            next.filter(|vector| known.iter().all(|(other, _)| other != vector))
-        {
+        let is_known = |vector: &Triple| self.path.iter().any(|(other, _)| other == vector);
+        while let Some(vector) = next.filter(|vector| !is_known(vector)) {
             let origin = self.origin(pool, &vector)?;
             branch.push((vector, origin));
             next = match origin {
@@ -210,7 +286,6 @@ impl Carrier<'_> {
                 arm: self.arm(pool, vector, &from)?,
             },
             (Some((from, false)), None) => Origin::Turned { from },
-            (None, _) if self.is_free(vector) => Origin::Base { arm: None },
             (None, _) => Origin::Base {
                 arm: self.arm(pool, vector, &[usize::MAX; 3])?,
             },
@@ -219,21 +294,12 @@ impl Carrier<'_> {
         Some(origin)
     }
 
-    /// Whether a vector follows from independent rates alone, as the velocity of what flies does.
-    fn is_free(&self, vector: &Triple) -> bool {
-        vector.iter().all(|rate| {
-            let terms = &self.given[rate].terms;
-            let is_independent = |(cause, _): &(usize, Expression)| !self.given.contains_key(cause);
-            !terms.is_empty() && terms.iter().all(is_independent)
-        })
-    }
-
     /// Whether a vector is at the base, or follows from another with its length.
     fn is_moved_itself(&self, pool: &Pool, vector: &Triple) -> bool {
-        let terms = || vector.iter().flat_map(|rate| &self.given[rate].terms);
+        let mut terms = vector.iter().flat_map(|rate| &self.given[rate].terms);
         let others = self.candidates(vector);
         let mut others = others.iter().filter(|other| *other != vector);
-        terms().next().is_none()
+        terms.all(|(cause, _)| !self.given.contains_key(cause))
             || others.any(|other| is_orthonormal(&self.images(pool, vector, other)).is_some())
     }
 
@@ -260,78 +326,97 @@ impl Carrier<'_> {
             .map(|row| row.map(|entry| pool.image(entry)))
     }
 
-    /// Passes the value on to a vector.
+    /// The values of a branch and what is left in its rows; `own` is the value at its end, if no other is known.
     fn pass(
-        &mut self,
-        pool: &mut Pool,
-        path: &[(Triple, Origin)],
-        vector: Triple,
-        origin: Origin,
-    ) -> Option<()> {
-        let (values, left) = match origin {
-            Origin::Base { arm } => {
-                let values = self.above(pool, path, vector)?;
-                let product = convection(pool, arm);
-                let mut left = [Expression::ZERO; 3];
-                for k in 0..3 {
-                    let constant = pool.image(self.given[&vector[k]].constant);
-                    let rest = constant.plus(values[k]).minus(pool.image(product[k]));
-                    let rest = pool.find(rest)?;
-                    left[k] = pool.add(rest, product[k]);
-                }
-                (values, left)
-            }
-            Origin::Moved { from, arm } => {
-                let product = convection(pool, arm);
-                let values = [0, 1, 2].map(|k| self.values[&from[k]].plus(pool.image(product[k])));
-                let left = [0, 1, 2].map(|k| pool.add(self.given[&vector[k]].constant, product[k]));
-                (values, left)
-            }
-            Origin::Turned { from } => {
-                let matrix = self.images(pool, &vector, &from);
-                let value = |k: usize| {
-                    let start = pool.image(self.given[&vector[k]].constant).negated();
-                    (0..3).fold(start, |sum, j| {
-                        sum.plus(matrix[k][j].times(self.values[&from[j]]))
-                    })
-                };
-                ([0, 1, 2].map(value), [Expression::ZERO; 3])
-            }
-        };
-        for k in 0..3 {
-            if *self.values.entry(vector[k]).or_insert(values[k]) != values[k] {
-                return None;
-            }
-            self.left.insert(vector[k], left[k]);
-        }
-        Some(())
-    }
-
-    /// The value of a vector, from that of a mass that follows from it.
-    fn above(
         &self,
         pool: &mut Pool,
-        path: &[(Triple, Origin)],
-        vector: Triple,
-    ) -> Option<[Image; 3]> {
-        if self.values.contains_key(&vector[0]) {
-            return Some(vector.map(|rate| self.values[&rate]));
+        branch: &[(Triple, Origin)],
+        own: [Image; 3],
+    ) -> Option<BTreeMap<usize, (Image, Expression)>> {
+        let mut passed = BTreeMap::new();
+        let mut values = [Image::ZERO; 3];
+        for (vector, origin) in branch {
+            let left;
+            let known = |from: &Triple| match self.values.contains_key(&from[0]) {
+                true => from.map(|rate| self.values[&rate]),
+                false => values,
+            };
+            (values, left) = match origin {
+                Origin::Base { arm } => {
+                    let values = self.above(pool, branch, own);
+                    let product = Arm::convection(*arm);
+                    (values, self.rest(pool, vector, values, product)?)
+                }
+                Origin::Moved { from, arm } => {
+                    let (from, product) = (known(from), Arm::convection(*arm));
+                    let values = [0, 1, 2].map(|k| from[k].plus(pool.image(product[k])));
+                    let constant = vector.map(|rate| self.given[&rate].constant);
+                    let left = [0, 1, 2].map(|k| pool.add(constant[k], product[k]));
+                    (values, left)
+                }
+                Origin::Turned { from } => {
+                    let matrix = self.images(pool, vector, from);
+                    let constants = self.constants(pool, vector);
+                    let from = known(from);
+                    let value = |k: usize| dot(&matrix[k], &from).minus(constants[k]);
+                    ([0, 1, 2].map(value), [Expression::ZERO; 3])
+                }
+            };
+            for k in 0..3 {
+                let new = (values[k], left[k]);
+                let before = self.values.get(&vector[k]);
+                let before = before.map_or(values[k], |value| *value);
+                if before != values[k] || passed.insert(vector[k], new).is_some_and(|it| it != new)
+                {
+                    return None;
+                }
+            }
         }
-        let follows = |(_, origin): &&(Triple, Origin)| match origin {
-            Origin::Base { .. } => false,
-            Origin::Moved { from, .. } | Origin::Turned { from } => *from == vector,
-        };
-        let (next, origin) = path.iter().find(follows)?;
-        let values = self.above(pool, path, *next)?;
-        if let Origin::Moved { arm, .. } = origin {
-            let product = convection(pool, *arm);
-            return Some([0, 1, 2].map(|k| values[k].minus(pool.image(product[k]))));
+        Some(passed)
+    }
+
+    /// The value at the base of a branch, from that at its end.
+    fn above(&self, pool: &Pool, branch: &[(Triple, Origin)], end: [Image; 3]) -> [Image; 3] {
+        let mut values = end;
+        for (vector, origin) in branch.iter().rev() {
+            match origin {
+                Origin::Base { .. } => break,
+                Origin::Moved { arm, .. } => {
+                    let product = Arm::convection(*arm);
+                    values = [0, 1, 2].map(|k| values[k].minus(pool.image(product[k])));
+                }
+                Origin::Turned { from } => {
+                    let constants = self.constants(pool, vector);
+                    let turned = [0, 1, 2].map(|k| values[k].plus(constants[k]));
+                    let matrix = self.images(pool, vector, from);
+                    let column = |column: usize| matrix.map(|row| row[column]);
+                    values = [0, 1, 2].map(|k| dot(&column(k), &turned));
+                }
+            }
         }
-        let matrix = self.images(pool, next, &vector);
-        let ahead = [0, 1, 2].map(|k| values[k].plus(pool.image(self.given[&next[k]].constant)));
-        let value =
-            |k: usize| (0..3).fold(Image::ZERO, |sum, j| sum.plus(matrix[j][k].times(ahead[j])));
-        Some([0, 1, 2].map(value))
+        values
+    }
+
+    /// What is left in the rows of a vector at the base, which is known by itself but for a product.
+    fn rest(
+        &self,
+        pool: &mut Pool,
+        vector: &Triple,
+        values: [Image; 3],
+        product: [Expression; 3],
+    ) -> Option<[Expression; 3]> {
+        let constants = self.constants(pool, vector);
+        let mut left = product;
+        for k in 0..3 {
+            let rest = constants[k].plus(values[k]).minus(pool.image(product[k]));
+            let rest = pool.find(rest)?;
+            left[k] = pool.add(rest, product[k]);
+        }
+        Some(left)
+    }
+
+    fn constants(&self, pool: &Pool, vector: &Triple) -> [Image; 3] {
+        vector.map(|rate| pool.image(self.given[&rate].constant))
     }
 
     /// What is added to a vector beyond another one; none if it does not follow from the turning of an arm.
@@ -339,17 +424,17 @@ impl Carrier<'_> {
         let mut causes = Vec::new();
         let mut velocity = [Expression::ZERO; 3];
         let mut matrix: [BTreeMap<usize, Expression>; 3] = Default::default();
+        // What an arm slides by is independent.
+        let mut is_rigid = true;
         for ((rate, sum), row) in vector.iter().zip(&mut velocity).zip(&mut matrix) {
             let terms = self.given[rate].terms.iter();
             for (column, coefficient) in terms.filter(|(column, _)| !from.contains(column)) {
-                causes.extend(
-                    self.given
-                        .get(column)?
-                        .terms
-                        .iter()
-                        .map(|(cause, _)| *cause),
-                );
-                for (cause, value) in &self.given[column].terms {
+                self.tree.is_rate(*column).then_some(())?;
+                let given = self.given.get(column);
+                is_rigid &= given.is_some();
+                let given = given.map_or(&[][..], |given| &given.terms);
+                for (cause, value) in given {
+                    causes.push(*cause);
                     let product = pool.multiply(*coefficient, *value);
                     let entry = row.entry(*cause).or_insert(Expression::ZERO);
                     *entry = pool.add(*entry, product);
@@ -363,13 +448,14 @@ impl Carrier<'_> {
         }
         let holds_all = |other: &&Triple| causes.iter().all(|cause| other.contains(cause));
         let turning = *self.vectors.iter().find(holds_all)?;
+        let length =
+            length(&matrix.map(|row| {
+                turning.map(|rate| row.get(&rate).copied().unwrap_or(Expression::ZERO))
+            }));
         Some(Some(Arm {
             turning,
-            omega: turning.map(self.velocity),
-            length: length(&matrix.map(|row| {
-                turning.map(|rate| row.get(&rate).copied().unwrap_or(Expression::ZERO))
-            })),
-            velocity,
+            length: length.filter(|_| is_rigid),
+            convection: convection(pool, turning.map(self.velocity), velocity),
         }))
     }
 }
@@ -416,13 +502,11 @@ pub(super) fn length(matrix: &[[Expression; 3]; 3]) -> Option<[Expression; 3]> {
 }
 
 /// `ω × ṙ`.
-fn convection(pool: &mut Pool, arm: Option<Arm>) -> [Expression; 3] {
-    let Some(Arm {
-        omega, velocity, ..
-    }) = arm
-    else {
-        return [Expression::ZERO; 3];
-    };
+fn convection(
+    pool: &mut Pool,
+    omega: [Expression; 3],
+    velocity: [Expression; 3],
+) -> [Expression; 3] {
     [0, 1, 2].map(|k| {
         let (next, last) = ((k + 1) % 3, (k + 2) % 3);
         let (scale, [forward, backward]) = common_scale(pool, [velocity[last], velocity[next]]);
@@ -451,16 +535,15 @@ fn only<T>(mut items: impl Iterator<Item = T>) -> Option<T> {
     items.next().is_none().then_some(item)
 }
 
+fn dot(a: &[Image; 3], b: &[Image; 3]) -> Image {
+    (0..3).fold(Image::ZERO, |sum, k| sum.plus(a[k].times(b[k])))
+}
+
 /// Whether rows of length one at right angles are those of the identity; none if they are not such rows.
 pub(super) fn is_orthonormal(matrix: &[[Image; 3]; 3]) -> Option<bool> {
     let unit = |a: usize, b: usize| if a == b { Image::ONE } else { Image::ZERO };
-    let dot = |a: usize, b: usize| {
-        (0..3).fold(Image::ZERO, |sum, k| {
-            sum.plus(matrix[a][k].times(matrix[b][k]))
-        })
-    };
     let pairs = || (0..3).flat_map(|a| (0..3).map(move |b| (a, b)));
     pairs()
-        .all(|(a, b)| dot(a, b) == unit(a, b))
+        .all(|(a, b)| dot(&matrix[a], &matrix[b]) == unit(a, b))
         .then(|| pairs().all(|(a, b)| matrix[a][b] == unit(a, b)))
 }

@@ -22,6 +22,7 @@ pub(super) struct Shift {
 }
 
 /// `unknown = Σ coefficient · other + constant`.
+#[derive(Clone)]
 pub(super) struct Given {
     pub(super) unknown: usize,
     pub(super) terms: Vec<(usize, Expression)>,
@@ -113,8 +114,7 @@ impl Shift {
         velocity: &dyn Fn(usize) -> Expression,
     ) -> Option<Self> {
         let mut rows = tree.base_to_leaves(system)?;
-        let carried =
-            Carried::of(pool, system, tree, (vectors, frames), &rows, velocity).unwrap_or_default();
+        let carried = Carried::of(pool, system, tree, (vectors, frames), &rows, velocity);
         let mut motion = Motion {
             velocity,
             rates: BTreeMap::new(),
@@ -133,7 +133,10 @@ impl Shift {
             motion.rates.insert(given.unknown, value);
             system.set_right(tree.conjugates[&given.unknown].row, Expression::ZERO);
         }
-        let taken = carried.masses.iter().map(|(balance, _)| *balance);
+        for inertia in &carried.inertias {
+            system.set_right(inertia.balance, inertia.left);
+        }
+        let taken = carried.inertias.iter().map(|inertia| inertia.balance);
         let moments = Moment::all(pool, system, tree, vectors, velocity, taken.collect());
         for row in system
             .open()
@@ -157,10 +160,7 @@ impl Shift {
             let tensor = motion.tensor(&moment.omega);
             laws.extend(moment.shift(pool, system, &tensor));
         }
-        for (balance, inertia) in carried.masses {
-            system.set_right(balance, Expression::ZERO);
-            laws.push(inertia);
-        }
+        laws.extend(carried.inertias.into_iter().filter_map(|it| it.law));
         let mut all = regroup(pool, system, tree, &rows, &motion, bodies);
         all.append(&mut rows);
         all.append(&mut laws);

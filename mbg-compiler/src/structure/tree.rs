@@ -20,6 +20,8 @@ pub(super) struct Tree {
     given: BTreeMap<usize, usize>,
     /// The rate with which each effort comes.
     coming: BTreeMap<usize, usize>,
+    /// Rates of velocities.
+    rates: Columns,
     /// Rates that no row gives.
     independent: Columns,
     turns: BTreeMap<usize, Turn>,
@@ -117,6 +119,10 @@ impl Tree {
             independent: independent
                 .filter_map(|rate| place.get(&rate.unknown).copied())
                 .collect(),
+            rates: unknown_of
+                .keys()
+                .filter_map(|rate| place.get(rate).copied())
+                .collect(),
             balanced: balances.values().flatten().copied().collect(),
             turns,
             together,
@@ -125,6 +131,11 @@ impl Tree {
             structure,
             multipliers,
         }
+    }
+
+    /// Whether a column is the rate of a velocity.
+    pub(super) fn is_rate(&self, column: usize) -> bool {
+        self.rates.contains(&column)
     }
 
     /// Whether a row gives this rate.

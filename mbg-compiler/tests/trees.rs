@@ -1,5 +1,5 @@
 //! Random trees of rigid bodies on hinges and slides, of components of the library, against Kane's equations in the
-//! axes of the world, and the efforts in them against Newton's and Euler's. Joints at right angles and at zero are as
+//! axes of the world, and the efforts in them against Newton's and Euler's: on the ground, or on a body that flies. Joints at right angles and at zero are as
 //! frequent as any: nothing that is divided by may vanish. Masses and lengths are often round numbers: what is equal by
 //! chance must not be taken for the same.
 
@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::program::{Arguments, evaluate};
-use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 const DAMPING: f64 = 0.1;
@@ -29,6 +29,10 @@ struct Body {
     axis: usize,
     /// From the frame of the parent to the joint.
     by: Vector3<f64>,
+    /// Its axes, in numbers that are rounded.
+    turn: Matrix3<f64>,
+    /// A force on the frame's origin, in its axes.
+    push: Vector3<f64>,
     mass: f64,
     inertia: Matrix3<f64>,
     centre: Vector3<f64>,
@@ -47,11 +51,19 @@ fn matrix(of: &Matrix3<f64>) -> String {
     format!("[{}]", rows.join(", "))
 }
 
+/// What holds the ground of a tree, or moves it.
+const GROUND: &str = "    1 ground[6] { Sf fixed { flow: 0.0 } }\n";
+const FLIGHT: &str = "    1 world[6] { Sf fixed { flow: 0.0 } }
+    1 ground[6];
+    float: Free { orientation: quaternion } (world, ground);
+    hull: Body { mass: 1.3, inertia: [[0.9, 0.05, -0.02], [0.05, 0.7, 0.0], [-0.02, 0.0, 1.1]], centre: [0.1, 0.0, -0.2] } (ground);
+    output pushed[3] = hull.force.e;
+    output turned[3] = hull.spin.e;
+";
+
 /// The tree in the language.
-fn text(tree: &[Body]) -> String {
-    let mut text = String::from(
-        "#[derivative]\nmodel Tree {\n    gravity [0.0, 0.0, -9.81];\n    1 ground[6] { Sf fixed { flow: 0.0 } }\n",
-    );
+fn text(base: &str, tree: &[Body]) -> String {
+    let mut text = format!("#[derivative]\nmodel Tree {{\n    gravity [0.0, 0.0, -9.81];\n{base}");
     for (k, body) in tree.iter().enumerate() {
         let frame = match body.parent {
             Some(parent) => format!("frame{parent}"),
@@ -61,18 +73,28 @@ fn text(tree: &[Body]) -> String {
         let axis = body.axis;
         let inertia = matrix(&body.inertia);
         let (by, centre, mass) = (vector(&body.by), vector(&body.centre), body.mass);
+        let (turn, push) = (matrix(&body.turn), vector(&body.push));
         write!(
             text,
             "    1 base{k}[6];
+    1 seat{k}[6];
     1 frame{k}[6];
     offset{k}: Offset {{ by: {by} }} ({frame}, base{k});
-    joint{k}: {word} {{ axis: {axis}, damping: {DAMPING:?} }} (base{k}, frame{k});
+    turn{k}: Turn {{ by: {turn} }} (base{k}, seat{k});
+    joint{k}: {word} {{ axis: {axis}, damping: {DAMPING:?} }} (seat{k}, frame{k});
     body{k}: Body {{ mass: {mass:?}, inertia: {inertia}, centre: {centre} }} (frame{k});
     output force{k}[3] = body{k}.force.e;
     output turning{k}[3] = body{k}.spin.e;
 "
         )
         .expect("a string grows");
+        if body.push != Vector3::zeros() {
+            writeln!(
+                text,
+                "    Se push{k} {{ effort: {push} }} -> frame{k}[3..6];"
+            )
+            .expect("a string grows");
+        }
         if let Some(acceleration) = body.servo {
             let rate = body.rate;
             writeln!(
@@ -125,7 +147,8 @@ impl Frame {
 
     /// The frame behind a joint whose own rate changes by `acceleration`.
     fn behind(&self, body: &Body, acceleration: f64) -> (Self, Joint) {
-        let base = self.at(&(self.axes * body.by));
+        let mut base = self.at(&(self.axes * body.by));
+        base.axes *= body.turn;
         let unit = Vector3::from_fn(|row, _| f64::from(u8::from(row == body.axis)));
         let axis = base.axes * unit;
         let place = base.place;
@@ -154,17 +177,44 @@ impl Frame {
 struct Load {
     centre: Frame,
     inertia: Matrix3<f64>,
+    /// On its centre, and what of it comes from the joint.
     force: Vector3<f64>,
-    torque: Vector3<f64>,
+    held: Vector3<f64>,
+    /// About the centre, from the joint.
+    held_torque: Vector3<f64>,
+}
+
+impl Body {
+    /// The base in [`FLIGHT`].
+    fn hull() -> Self {
+        Self {
+            parent: None,
+            slides: false,
+            axis: 0,
+            by: Vector3::zeros(),
+            turn: Matrix3::identity(),
+            push: Vector3::zeros(),
+            mass: 1.3,
+            inertia: Matrix3::new(0.9, 0.05, -0.02, 0.05, 0.7, 0.0, -0.02, 0.0, 1.1),
+            centre: Vector3::new(0.1, 0.0, -0.2),
+            position: 0.0,
+            rate: 0.0,
+            servo: None,
+        }
+    }
 }
 
 impl Load {
     fn of(body: &Body, frame: &Frame) -> Self {
         let centre = frame.at(&(frame.axes * body.centre));
         let inertia = frame.axes * body.inertia * frame.axes.transpose();
+        let push = frame.axes * body.push;
+        let force = body.mass * (centre.acceleration - GRAVITY);
+        let torque = inertia * centre.alpha + centre.omega.cross(&(inertia * centre.omega));
         Self {
-            force: body.mass * (centre.acceleration - GRAVITY),
-            torque: inertia * centre.alpha + centre.omega.cross(&(inertia * centre.omega)),
+            held: force - push,
+            held_torque: torque - (frame.place - centre.place).cross(&push),
+            force,
             centre,
             inertia,
         }
@@ -172,9 +222,9 @@ impl Load {
 }
 
 /// The frame that holds a body.
-fn above(body: &Body, frames: &[Frame]) -> Frame {
+fn above(body: &Body, ground: &Frame, frames: &[Frame]) -> Frame {
     body.parent
-        .map_or_else(Frame::ground, |parent| frames[parent].clone())
+        .map_or_else(|| ground.clone(), |parent| frames[parent].clone())
 }
 
 /// `M q̈ = τ − b` (Kane), with the partial velocities of the joints above each body: the accelerations of the joints, and
@@ -185,13 +235,14 @@ fn motion(tree: &[Body]) -> (Vec<f64>, Vec<f64>) {
     let mut matrix = vec![vec![0.0; size]; size];
     let mut right: Vec<f64> = tree.iter().map(|body| -DAMPING * body.rate).collect();
     for (k, body) in tree.iter().enumerate() {
-        let (frame, joint) = above(body, &frames).behind(body, 0.0);
+        let (frame, joint) = above(body, &Frame::ground(), &frames).behind(body, 0.0);
         joints.push(joint);
         let Load {
             centre,
             inertia,
-            force,
-            torque,
+            held,
+            held_torque,
+            ..
         } = Load::of(body, &frame);
         let mut partials = Vec::new();
         let mut next = Some(k);
@@ -205,7 +256,7 @@ fn motion(tree: &[Body]) -> (Vec<f64>, Vec<f64>) {
             next = tree[j].parent;
         }
         for (i, velocity, omega) in &partials {
-            right[*i] -= velocity.dot(&force) + omega.dot(&torque);
+            right[*i] -= velocity.dot(&held) + omega.dot(&held_torque);
             for (j, other, turned) in &partials {
                 matrix[*i][*j] += body.mass * velocity.dot(other) + omega.dot(&(inertia * turned));
             }
@@ -229,18 +280,16 @@ fn motion(tree: &[Body]) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// The outputs of the tree, from the accelerations of its joints (Newton and Euler) and what servos add.
-fn efforts(tree: &[Body], accelerations: &[f64], drives: &[f64]) -> Vec<f64> {
+fn efforts(tree: &[Body], ground: &Frame, accelerations: &[f64], drives: &[f64]) -> Vec<f64> {
     let mut frames: Vec<Frame> = Vec::new();
     let mut outputs = Vec::new();
     let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
     for ((body, acceleration), drive) in tree.iter().zip(accelerations).zip(drives) {
-        let (frame, _) = above(body, &frames).behind(body, *acceleration);
+        let (frame, _) = above(body, ground, &frames).behind(body, *acceleration);
         let load = Load::of(body, &frame);
-        force += load.force;
-        moment += load.torque + load.centre.place.cross(&load.force);
-        let inward = frame.axes.transpose();
-        outputs.extend((inward * load.force).iter());
-        outputs.extend((inward * (load.inertia * load.centre.alpha)).iter());
+        force += load.held;
+        moment += load.held_torque + load.centre.place.cross(&load.held);
+        outputs.extend(own_efforts(&frame, &load));
         outputs.extend(body.servo.map(|_| *drive));
         frames.push(frame);
     }
@@ -249,40 +298,79 @@ fn efforts(tree: &[Body], accelerations: &[f64], drives: &[f64]) -> Vec<f64> {
     outputs
 }
 
-/// Accelerations and outputs by the program.
-fn compiled(tree: &[Body], model: &Compiled) -> (Vec<f64>, Vec<f64>) {
-    let names: Vec<&str> = model
-        .states
-        .iter()
-        .map(|state| model.model.states[*state].variable.name.as_str())
-        .collect();
-    let mut state = vec![0.0; names.len()];
-    let mut places = Vec::new();
-    for (k, body) in tree.iter().enumerate() {
-        let word = if body.slides { "travel" } else { "angle" };
-        let find = |name: String| names.iter().position(|known| *known == name);
-        // A position that nothing depends on is no state.
-        if let Some(place) = find(format!("joint{k}.{word}")) {
-            state[place] = body.position;
+/// The efforts of a body in its axes: on its centre, and what changes its rate of turning.
+fn own_efforts(frame: &Frame, load: &Load) -> Vec<f64> {
+    let inward = frame.axes.transpose();
+    let mut outputs: Vec<f64> = (inward * load.force).iter().copied().collect();
+    outputs.extend((inward * (load.inertia * load.centre.alpha)).iter());
+    outputs
+}
+
+/// A model at a state of a tree.
+struct Compared {
+    model: Compiled,
+    state: Vec<f64>,
+    /// Where the rates of joints without servos are.
+    places: Vec<usize>,
+}
+
+impl Compared {
+    fn of(text: &str, tree: &[Body]) -> Self {
+        let model = models::compiled(text);
+        let state = vec![0.0; model.states.len()];
+        let mut compared = Self {
+            model,
+            state,
+            places: Vec::new(),
+        };
+        for (k, body) in tree.iter().enumerate() {
+            let word = if body.slides { "travel" } else { "angle" };
+            compared.set(&format!("joint{k}.{word}"), body.position);
+            if body.servo.is_none() {
+                let place = compared.set(&format!("joint{k}.rate.f"), body.rate);
+                compared.places.push(place.expect("the rates are states"));
+            }
         }
-        if body.servo.is_none() {
-            let place = find(format!("joint{k}.rate.f")).expect("the rates are states");
-            state[place] = body.rate;
-            places.push(place);
-        }
+        compared
     }
-    let arguments = Arguments {
-        parameters: &[],
-        time: 0.0,
-        state: &state,
-        input: &[],
-    };
-    let rates = evaluate(&model.program, Routines::DERIVATIVE, &arguments);
-    let outputs = evaluate(&model.program, Routines::OUTPUT, &arguments);
-    (
-        places.into_iter().map(|place| rates[place]).collect(),
-        outputs,
-    )
+
+    /// Sets a state, if there is one: a position that nothing depends on is none.
+    fn set(&mut self, name: &str, value: f64) -> Option<usize> {
+        let mut states = self.model.states.iter();
+        let place =
+            states.position(|state| self.model.model.states[*state].variable.name == name)?;
+        self.state[place] = value;
+        Some(place)
+    }
+
+    fn evaluated(&self, routine: usize) -> Vec<f64> {
+        let arguments = Arguments {
+            parameters: &[],
+            time: 0.0,
+            state: &self.state,
+            input: &[],
+        };
+        evaluate(&self.model.program, routine, &arguments)
+    }
+}
+
+/// Axes in numbers that are rounded; mostly none.
+fn axes() -> impl Strategy<Value = Matrix3<f64>> {
+    let angle = || prop_oneof![Just(0.0), Just(1.5708), -3.0..3.0_f64];
+    let turned = (angle(), angle(), angle())
+        .prop_map(|(x, y, z)| Rotation3::from_euler_angles(x, y, z).into_inner());
+    prop_oneof![2 => Just(Matrix3::identity()), 1 => turned]
+}
+
+fn flight() -> impl Strategy<Value = Flight> {
+    let vector = || prop::array::uniform3(-1.0..1.0_f64).prop_map(Vector3::from);
+    let quaternion = prop::array::uniform3(-1.0..1.0_f64)
+        .prop_map(|[x, y, z]| UnitQuaternion::from_quaternion(Quaternion::new(0.3, x, y, z)));
+    (quaternion, vector(), vector()).prop_map(|(quaternion, velocity, spin)| Flight {
+        quaternion,
+        velocity,
+        spin,
+    })
 }
 
 /// So many bodies, with these shares of slides and of servos.
@@ -291,11 +379,12 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
     let round = || prop::sample::select(&[0.0, 0.0, 1.0, -1.0, 0.5][..]);
     let place =
         || prop::array::uniform3(prop_oneof![round(), -1.0..1.0_f64]).prop_map(Vector3::from);
+    let force = prop_oneof![2 => Just(Vector3::zeros()), 1 => place()];
     let joint = (
         any::<usize>(),
         prop::bool::weighted(slides),
         0..3_usize,
-        place(),
+        (place(), axes(), force),
     );
     let positive = || prop_oneof![prop::sample::select(&[1.0, 2.0, 0.5][..]), 0.2..2.0_f64];
     let moments = prop_oneof![
@@ -319,7 +408,11 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
             .map(
                 |(
                     k,
-                    ((parent, slides, axis, by), (mass, inertia, centre), (position, rate, servo)),
+                    (
+                        (parent, slides, axis, (by, turn, push)),
+                        (mass, inertia, centre),
+                        (position, rate, servo),
+                    ),
                 )| {
                     Body {
                         // Chains are more frequent than stars.
@@ -327,6 +420,8 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
                         slides,
                         axis,
                         by,
+                        turn,
+                        push,
                         mass,
                         inertia,
                         centre,
@@ -342,28 +437,124 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
 
 /// What a tree says of itself is what the equations of mechanics say.
 fn assert_moves(tree: &[Body]) -> Result<(), TestCaseError> {
-    let text = text(tree);
-    let (rates, outputs) = compiled(tree, &models::compiled(&text));
+    let text = text(GROUND, tree);
+    let compared = Compared::of(&text, tree);
+    let rates = compared.evaluated(Routines::DERIVATIVE);
+    let rates: Vec<f64> = compared.places.iter().map(|place| rates[*place]).collect();
+    let outputs = compared.evaluated(Routines::OUTPUT);
     let (accelerations, drives) = motion(tree);
-    let efforts = efforts(tree, &accelerations, &drives);
+    let efforts = efforts(tree, &Frame::ground(), &accelerations, &drives);
     let both = tree.iter().zip(accelerations);
     let free = both.filter_map(|(body, it)| body.servo.is_none().then_some(it));
-    for (found, expected) in [(rates, free.collect()), (outputs, efforts)] {
-        prop_assert_eq!(found.len(), expected.len());
-        let size = expected.iter().fold(1.0_f64, |size, a| size.max(a.abs()));
-        for (found, expected) in found.iter().zip(&expected) {
-            let error = (found - expected).abs() / size;
-            prop_assert!(
-                error < 1e-11,
-                "{} {} {:e}\n{}",
-                found,
-                expected,
-                error,
-                text
-            );
-        }
+    assert_same(&text, &rates, &free.collect::<Vec<_>>())?;
+    assert_same(&text, &outputs, &efforts)
+}
+
+fn assert_same(text: &str, found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
+    prop_assert_eq!(found.len(), expected.len());
+    let size = expected.iter().fold(1.0_f64, |size, a| size.max(a.abs()));
+    for (found, expected) in found.iter().zip(expected) {
+        let error = (found - expected).abs() / size;
+        prop_assert!(
+            error < 1e-11,
+            "{} {} {:e}\n{}",
+            found,
+            expected,
+            error,
+            text
+        );
     }
     Ok(())
+}
+
+/// Where a base that flies is turned to, its velocity in axes of the world, and its rate of turning in its own.
+#[derive(Clone, Debug)]
+struct Flight {
+    quaternion: UnitQuaternion<f64>,
+    velocity: Vector3<f64>,
+    spin: Vector3<f64>,
+}
+
+impl Flight {
+    /// The base, with the rates of both.
+    fn frame(&self, velocity: Vector3<f64>, spin: Vector3<f64>) -> Frame {
+        let axes = self.quaternion.to_rotation_matrix().into_inner();
+        Frame {
+            axes,
+            place: Vector3::zeros(),
+            omega: axes * self.spin,
+            alpha: axes * spin,
+            acceleration: velocity,
+        }
+    }
+}
+
+/// With the accelerations of the model, a tree and its base are held by nothing, and what a joint puts on the bodies behind
+/// it along its axis is its damping.
+fn assert_flies(flight: &Flight, tree: &[Body]) -> Result<(), TestCaseError> {
+    let text = text(FLIGHT, tree);
+    let mut compared = Compared::of(&text, tree);
+    let [x, y, z, w]: [f64; 4] = flight.quaternion.coords.into();
+    for (part, value) in [w, x, y, z].into_iter().enumerate() {
+        compared.set(&format!("float.rotation.quaternion.{part}"), value);
+    }
+    let mut places = Vec::new();
+    for (name, values) in [
+        ("velocity.f", flight.velocity),
+        ("rotation.rate.f", flight.spin),
+    ] {
+        for (axis, value) in ["x", "y", "z"].into_iter().zip(values.iter()) {
+            let place = compared.set(&format!("float.{name}.{axis}"), *value);
+            places.push(place.expect("the base moves"));
+        }
+    }
+    let rates = compared.evaluated(Routines::DERIVATIVE);
+    let part = |from: usize| Vector3::from_fn(|row, _| rates[places[from + row]]);
+    let ground = flight.frame(part(0), part(3));
+    let accelerations: Vec<f64> = compared.places.iter().map(|place| rates[*place]).collect();
+    let mut expected = efforts(tree, &ground, &accelerations, &vec![0.0; tree.len()]);
+    let held = expected.split_off(expected.len() - 6);
+    let hull = Load::of(&Body::hull(), &ground);
+    expected.splice(0..0, own_efforts(&ground, &hull));
+    expected.extend([0.0; 6]);
+    assert_same(&text, &compared.evaluated(Routines::OUTPUT), &expected)?;
+    let moment = hull.held_torque + hull.centre.place.cross(&hull.held);
+    let pushed: Vec<f64> = moment
+        .iter()
+        .chain(hull.held.iter())
+        .map(|it| -it)
+        .collect();
+    assert_same(&text, &held, &pushed)?;
+    let damping: Vec<f64> = tree.iter().map(|body| -DAMPING * body.rate).collect();
+    assert_same(
+        &text,
+        &along_joints(tree, &ground, &accelerations),
+        &damping,
+    )
+}
+
+/// What the joints put on the bodies behind them along their axes.
+fn along_joints(tree: &[Body], ground: &Frame, accelerations: &[f64]) -> Vec<f64> {
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut joints: Vec<Joint> = Vec::new();
+    let mut along = vec![0.0; tree.len()];
+    for (k, (body, acceleration)) in tree.iter().zip(accelerations).enumerate() {
+        let (frame, joint) = above(body, ground, &frames).behind(body, *acceleration);
+        let load = Load::of(body, &frame);
+        frames.push(frame);
+        joints.push(joint);
+        let mut next = Some(k);
+        while let Some(j) = next {
+            let Joint { axis, place } = &joints[j];
+            let arm = load.centre.place - place;
+            along[j] += match tree[j].slides {
+                true => axis.dot(&load.held),
+                false => axis.dot(&(load.held_torque + arm.cross(&load.held))),
+            };
+            next = tree[j].parent;
+        }
+    }
+    along
 }
 
 proptest! {
@@ -381,5 +572,17 @@ proptest! {
     #[test]
     fn servos_are_given_what_they_take(tree in tree(1..4, 0.5, 0.4)) {
         assert_moves(&tree)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn trees_that_fly_are_held_by_nothing(flight in flight(), mut tree in tree(1..5, 0.3, 0.1)) {
+        for body in &mut tree {
+            body.servo = None;
+        }
+        assert_flies(&flight, &tree)?;
     }
 }

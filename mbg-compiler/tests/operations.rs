@@ -80,6 +80,67 @@ fn mass_along_the_axis_of_a_hinge_costs_nothing() {
     assert_eq!(counts[0], counts[1]);
 }
 
+/// An arm of four links, its hinges in these axes, with more behind its last end.
+fn arm(axes: &str, more: &str) -> usize {
+    let text = format!(
+        "#[derivative]
+        model Arm {{
+            causality componentwise;
+            gravity [0.0, 0.0, -9.81];
+            input force[3];
+            ends: for k in 0..5 {{ 1 end[6]; }}
+            Sf fixed[6] {{ flow: 0.0 }} -> ends[0].end;
+            links: for k in 0..4 {{
+                1 seat[6];
+                1 rod[6];
+                axes: Turn {{ by: {axes} }} (ends[k].end, seat);
+                hinge: Revolute {{ axis: k % 2 }} (seat, rod);
+                body: Body {{ mass: 3.0, inertia: diag(0.3, 0.4, 0.5), centre: [0.1, 0.2, 0.4] }} (rod);
+                length: Offset {{ by: [0.3, -0.2, 0.1] }} (rod, ends[k+1].end);
+            }}
+            {more}
+        }}"
+    );
+    models::compiled(&text).program.routines[Routines::DERIVATIVE].operations()
+}
+
+/// Accelerations in space are those of all links, whatever pushes them and whatever slides at their end.
+#[test]
+fn forces_and_slides_cost_what_they_are() {
+    const AXES: &str = "rot_x(0.3)";
+    let finger = |k: usize| {
+        format!(
+            "1 finger{k}[6];
+            slide{k}: Prismatic {{ axis: 1, force: force[{k}] }} (ends[4].end, finger{k});
+            tip{k}: Body {{ mass: 0.3, inertia: diag(0.01, 0.02, 0.03), centre: [0.0, 0.0, 0.02] }} (finger{k});"
+        )
+    };
+    let [first, second] = [0, 1].map(finger);
+    let plain = arm(AXES, "");
+    let push = arm(AXES, "Se push[3] { effort: force } -> links[2].rod[3..6];");
+    let fingers = [first.clone(), first + &second].map(|fingers| arm(AXES, &fingers));
+    println!("an arm: {plain} operations, pushed: {push}, with fingers: {fingers:?}");
+    assert_eq!(push, plain + 3);
+    assert!(fingers[0] <= plain + 400 && fingers[1] <= fingers[0] + 100);
+}
+
+/// Numbers that are rounded are a rotation as angles are, and three turns in a row are one.
+#[test]
+fn axes_cost_as_little_in_numbers() {
+    let [(sx, cx), (sy, cy)] = [0.3_f64, 0.2].map(f64::sin_cos);
+    let rows = [
+        [cy, 0.0, sy],
+        [sx * sy, cx, -sx * cy],
+        [-cx * sy, sx, cx * cy],
+    ];
+    let numbers = arm(&format!("{rows:?}"), "");
+    let turns = arm("rot_x(0.3) * rot_y(0.2)", "");
+    let three = arm("rot_x(0.3) * rot_y(0.2) * rot_x(0.1)", "");
+    println!("two turns: {turns} operations, in numbers: {numbers}, three turns: {three}");
+    assert_eq!(turns, numbers);
+    assert!(three <= turns + 350);
+}
+
 /// The ends of the chain cost less than its middle, by the same number for any length; so growth is measured on what
 /// the second half of the links adds.
 #[test]

@@ -8,7 +8,7 @@ use super::expressions::{Evaluator, Names, Result, Value, fail, mismatch};
 use crate::codes;
 use crate::diagnostics::error;
 use crate::symbolic::orientation::{angles_of, matrix_of, quaternion_of};
-use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, rounded};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate, rounded};
 
 /// How each function is called.
 const USAGES: [&str; 11] = [
@@ -51,7 +51,10 @@ impl<N: Names> Evaluator<'_, N> {
                 .rotation(matrix)
                 .map(|matrix| Value::column(quaternion_of(self.pool, &matrix).to_vec())),
             ("angles_of", [matrix, axes @ ..]) if axes.len() == 3 => self.angles_of(matrix, axes),
-            ("rotation", [matrix]) => self.checked(matrix),
+            ("rotation", [matrix]) => self
+                .evaluate(matrix)
+                .and_then(|value| checked(self.pool, value, matrix.span()))
+                .map(Value::Matrix),
             (known, _) => {
                 let usages = USAGES
                     .iter()
@@ -108,16 +111,6 @@ impl<N: Names> Evaluator<'_, N> {
         rotation(self.pool, value, matrix.span())
     }
 
-    /// A rotation as it is written, but for the rounding of numbers.
-    fn checked(&mut self, argument: &Expr) -> Result<Value> {
-        let matrix = self.rotation(argument)?;
-        let is_number = |entry: &Expression| self.pool.constant_value(*entry).is_some();
-        if matrix.entries.iter().all(is_number) {
-            return Ok(Value::Matrix(Product::of(Factor::Dense(matrix))));
-        }
-        self.evaluate(argument)
-    }
-
     /// A vector of known dimension.
     pub(super) fn column<const D: usize>(&mut self, argument: &Expr) -> Result<[Expression; D]> {
         let value = self.evaluate(argument)?;
@@ -163,13 +156,28 @@ impl<N: Names> Evaluator<'_, N> {
 
 /// The entries of a 3×3 matrix, or of the number 1 for the unit matrix. What is constant must be that of a rotation.
 pub(super) fn rotation(pool: &mut Pool, value: Value, span: Span) -> Result<Matrix> {
+    Ok(checked(pool, value, span)?.to_matrix(pool))
+}
+
+/// A rotation as it is written, but for the rounding of numbers. Numbers that make three turns make one matrix, which costs
+/// less.
+fn checked(pool: &mut Pool, value: Value, span: Span) -> Result<Product> {
     match value {
-        Value::Scalar(Expression::ONE) => Ok(Matrix::diagonal(&[Expression::ONE; 3])),
+        Value::Scalar(Expression::ONE) => {
+            let unit = Matrix::diagonal(&[Expression::ONE; 3]);
+            Ok(Product::of(Factor::Dense(unit)))
+        }
         Value::Matrix(product) if (product.rows(), product.columns()) == (3, 3) => {
             let is_turn = |factor: &Factor| matches!(factor, Factor::Rotation { .. });
             let matrix = product.to_matrix(pool);
             if product.factors.iter().all(is_turn) {
-                return Ok(matrix);
+                let mut entries = matrix.entries.iter();
+                let is_one = product.factors.len() > 2
+                    && entries.all(|entry| pool.rate(*entry) == Rate::Constant);
+                return Ok(match is_one {
+                    true => Product::of(Factor::Dense(matrix)),
+                    false => product,
+                });
             }
             let errors = errors(pool, &matrix);
             let is_rounding = |error: &Expression| {
@@ -179,7 +187,7 @@ pub(super) fn rotation(pool: &mut Pool, value: Value, span: Span) -> Result<Matr
             if errors.iter().all(is_rounding) {
                 let is_exact = errors.iter().all(|error| *error == Expression::ZERO);
                 let numbers = numbers(pool, &matrix).filter(|_| !is_exact);
-                return Ok(numbers.map_or(matrix, |numbers| rounded::rotation(pool, numbers)));
+                return Ok(numbers.map_or(product, |numbers| rounded::rotation(pool, numbers)));
             }
             let message =
                 "this matrix is no rotation: its columns must be orthonormal and right-handed";

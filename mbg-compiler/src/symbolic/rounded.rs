@@ -4,9 +4,8 @@
 //! So they stand for the three turns about axes that lead to them: each has a sine and a cosine of which the squares are
 //! one, exactly.
 
-use super::expression::Expression;
 use super::field::Image;
-use super::matrix::Matrix;
+use super::matrix::{Factor, Matrix, Product};
 use super::pool::Pool;
 
 /// A number with its exact image.
@@ -16,39 +15,47 @@ struct Number {
     image: Image,
 }
 
-/// By the angle between a first axis and a second.
+type Numbers = [[Number; 3]; 3];
+
+/// In the plane of two axes, from the first to the second.
 #[derive(Clone, Copy)]
 struct Turn {
+    axes: (usize, usize),
     cosine: Number,
     sine: Number,
 }
 
-/// The rotation nearest to a matrix of numbers, but for rounding. What is nothing in the matrix mostly is so in the rotation.
+/// The rotation nearest to a matrix of numbers, but for rounding.
+///
+/// Two turns in a row, as where there is a zero off the diagonal, cost less one by one; three cost more than their product.
 #[must_use]
-pub fn rotation(pool: &mut Pool, matrix: [[f64; 3]; 3]) -> Matrix {
+pub fn rotation(pool: &mut Pool, matrix: [[f64; 3]; 3]) -> Product {
     let mut rest = matrix;
     let turns = planes(&matrix).map(|(first, second)| {
-        let turn = Turn::towards(rest[first][first], rest[second][first]);
+        let turn = Turn::towards((first, second), rest[first][first], rest[second][first]);
         let (cosine, sine) = (turn.cosine.value, turn.sine.value);
         for column in 0..3 {
             let [along, across] = [first, second].map(|row| rest[row][column]);
             rest[first][column] = cosine * along + sine * across;
             rest[second][column] = cosine * across - sine * along;
         }
-        (first, second, turn)
+        turn
     });
-    let mut entries = [0, 1, 2].map(|row| [0, 1, 2].map(|column| Number::unit(row == column)));
-    for (first, second, Turn { cosine, sine }) in turns.into_iter().rev() {
-        for column in 0..3 {
-            let [along, across] = [first, second].map(|row: usize| entries[row][column]);
-            entries[first][column] = cosine.times(along).plus(sine.negated().times(across));
-            entries[second][column] = cosine.times(across).plus(sine.times(along));
-        }
+    let made = turns.iter().filter(|turn| !turn.is_nothing());
+    let mut factors: Vec<Numbers> = made.map(Turn::matrix).collect();
+    match factors[..] {
+        [] => factors.push(turns[0].matrix()),
+        [first, second, third] => factors = vec![product(&product(&first, &second), &third)],
+        _ => {}
     }
-    let entries = entries.as_flattened().iter();
-    let constants = entries.map(|entry| pool.constant(entry.value, entry.image));
-    let constants: Vec<Expression> = constants.collect();
-    Matrix::new(3, 3, constants)
+    let factors = factors.iter().map(|factor| {
+        let entries = factor.as_flattened().iter();
+        let constants = entries.map(|entry| pool.constant(entry.value, entry.image));
+        Factor::Dense(Matrix::new(3, 3, constants.collect()))
+    });
+    Product {
+        factors: factors.collect(),
+    }
 }
 
 /// The planes of three turns in a row that make a rotation, the first of them nothing where the matrix has a zero.
@@ -62,7 +69,7 @@ fn planes(matrix: &[[f64; 3]; 3]) -> [(usize, usize); 3] {
 
 impl Turn {
     /// Towards a point; nothing if that is the origin.
-    fn towards(along: f64, across: f64) -> Self {
+    fn towards(axes: (usize, usize), along: f64, across: f64) -> Self {
         let length = along.hypot(across);
         let (cosine, sine) = match length > 0.0 {
             true => (along / length, across / length),
@@ -88,10 +95,33 @@ impl Turn {
         };
         let number = |value, image| Number { value, image };
         Self {
+            axes,
             cosine: number(cosine, images.0),
             sine: number(sine, images.1),
         }
     }
+
+    fn is_nothing(&self) -> bool {
+        self.sine.value == 0.0 && self.cosine.value > 0.0
+    }
+
+    fn matrix(&self) -> Numbers {
+        let mut matrix = [0, 1, 2].map(|row| [0, 1, 2].map(|column| Number::unit(row == column)));
+        let (first, second) = self.axes;
+        (matrix[first][first], matrix[first][second]) = (self.cosine, self.sine.negated());
+        (matrix[second][first], matrix[second][second]) = (self.sine, self.cosine);
+        matrix
+    }
+}
+
+fn product(left: &Numbers, right: &Numbers) -> Numbers {
+    let zero = Number::unit(false);
+    let entry = |row: usize, column: usize| {
+        (0..3).fold(zero, |sum, k| {
+            sum.plus(left[row][k].times(right[k][column]))
+        })
+    };
+    [0, 1, 2].map(|row| [0, 1, 2].map(|column| entry(row, column)))
 }
 
 impl Number {
@@ -127,6 +157,7 @@ impl Number {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Expression;
     use super::*;
 
     fn values(pool: &Pool, matrix: &Matrix) -> Vec<f64> {
@@ -156,7 +187,7 @@ mod tests {
             for z in angles {
                 let mut pool = Pool::new();
                 let matrix = product([x, y, z]);
-                let rotation = rotation(&mut pool, matrix);
+                let rotation = rotation(&mut pool, matrix).to_matrix(&mut pool);
                 assert!(is_exact(&mut pool, &rotation), "{matrix:?}");
                 for (value, wanted) in values(&pool, &rotation).iter().zip(matrix.as_flattened()) {
                     assert!((value - wanted).abs() < 5e-16, "{matrix:?}");
@@ -179,7 +210,7 @@ mod tests {
                 std::array::from_fn(|column| first[(row + shift) % 3][(column + shift) % 3])
             });
             let mut pool = Pool::new();
-            let rotation = rotation(&mut pool, matrix);
+            let rotation = rotation(&mut pool, matrix).to_matrix(&mut pool);
             let zero = ((3 - shift) % 3, (4 - shift) % 3);
             assert_eq!(rotation.at(zero.0, zero.1), Expression::ZERO);
             assert!(is_exact(&mut pool, &rotation));
@@ -190,7 +221,7 @@ mod tests {
     fn right_angles_are_whole() {
         let mut pool = Pool::new();
         let matrix = [[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]];
-        let rotation = rotation(&mut pool, matrix);
+        let rotation = rotation(&mut pool, matrix).to_matrix(&mut pool);
         let whole = matrix
             .as_flattened()
             .iter()

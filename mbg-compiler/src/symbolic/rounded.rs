@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn rounded_numbers_become_a_rotation_that_is_exact() {
-        let angles = [0.3, -1.2, 2.9, 3.1, -2.2, 1.5708, -1.5708, 0.0];
+        let angles = [0.3, -1.2, 2.9, 3.1, -2.2, 1.5709, -1.5709, 0.0];
         for (x, y) in angles.iter().flat_map(|x| angles.map(|y| (*x, y))) {
             for z in angles {
                 let mut pool = Pool::new();
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn a_zero_off_the_diagonal_stays_nothing() {
         let (sx, cx) = 0.3f64.sin_cos();
-        let (sy, cy) = 1.5708f64.sin_cos();
+        let (sy, cy) = 1.5709f64.sin_cos();
         let first = [
             [cy, 0.0, sy],
             [sx * sy, cx, -sx * cy],

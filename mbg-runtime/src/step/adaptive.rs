@@ -40,7 +40,9 @@ use crate::{Input, Real, System};
 /// longer is seen, once or again and again. Where next to nothing moves at the start, the first step is a 24th of the run at
 /// most. At steps of much the same length there are none after a while. Checked at three points is each step behind a refused
 /// one of a driven model, and of any model each whose estimate of the error has grown by more than its length explains: an
-/// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance.
+/// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance. A pulse over a state
+/// of a model that nothing drives, such as a bump over the way of what rolls at rest, may be stepped over as a whole:
+/// [`Adaptive::longest`] is the remedy there, too.
 ///
 /// # Example
 ///

@@ -58,7 +58,7 @@ codes! {
     MISSING_PORT = "MBG0407", "a storage that a motion changes, and which does no work on it";
     NO_BODY = "MBG0408", "an inertia that no body has";
     LOST_IMPULSE = "MBG0409", "a law of time that jumps, and which storages follow";
-    UNKNOWN_MOTION = "MBG0410", "geometry that changes with time and moves nothing";
+    UNKNOWN_MOTION = "MBG0410", "geometry that moves inertia, by a rate that no flow knows";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

@@ -608,3 +608,23 @@ fn a_nonlinear_storage_across_a_source_is_told_no_other() {
     let told = helps(&across(""), codes::ORDER_LOST_UNSUPPORTED);
     assert_eq!(told, ["put a resistor between `c` and `s`"]);
 }
+
+#[test]
+fn a_vector_input_whose_rate_is_needed_is_told_once() {
+    let text = |input: &str| {
+        format!(
+            "#[derivative] model M {{ {input} 1 v[3] {{ Sf drive {{ flow: speed }} I m {{ inertia: 2.0 }} }}
+             output force[3] = drive.e; }}"
+        )
+    };
+    let vector = text("input speed[3]: m/s;");
+    assert_eq!(diagnose(&vector).list().len(), 1);
+    let told = helps(&vector, codes::ORDER_LOST_UNSUPPORTED);
+    assert!(
+        told[1].starts_with("in the place of `input speed[3]: m/s;`"),
+        "{told:?}"
+    );
+    compiles(&text(
+        "input speed_rate[3]; integral speed[3]: m/s = speed_rate;",
+    ));
+}

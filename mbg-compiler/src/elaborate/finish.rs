@@ -490,6 +490,7 @@ impl<'a> Builder<'a> {
             signals: self.signals,
             assumptions: self.assumptions,
             rings,
+            moving_inputs: self.moving_inputs,
         }
     }
 }

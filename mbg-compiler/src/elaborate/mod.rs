@@ -230,6 +230,8 @@ struct Builder<'a> {
     unknown: BTreeMap<usize, Unknown<'a>>,
     /// Where two ways lead to one frame.
     meetings: Vec<Meeting>,
+    /// What is told of geometry that inputs move, by input.
+    moving_inputs: BTreeMap<usize, Diagnostic>,
     assumptions: Vec<Assumption>,
     pending: Vec<Pending<'a>>,
     integrals: Vec<(usize, &'a Statement)>,
@@ -282,6 +284,7 @@ impl<'a> Builder<'a> {
             is_misled: false,
             unknown: BTreeMap::new(),
             meetings: Vec::new(),
+            moving_inputs: BTreeMap::new(),
             assumptions: Vec::new(),
             pending: Vec::new(),
             integrals: Vec::new(),

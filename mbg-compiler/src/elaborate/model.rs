@@ -6,6 +6,7 @@ use proc_macro2::{Ident, Span};
 use syn::{Attribute, Visibility};
 
 use super::rings::Ring;
+use crate::diagnostics::Diagnostic;
 use crate::graph::{BondGraph, ElementId, JunctionId};
 use crate::symbolic::{Expression, Symbol};
 
@@ -36,6 +37,8 @@ pub struct Elaborated {
     pub assumptions: Vec<Assumption>,
     /// Rings of joints that no cut closes.
     pub rings: Vec<Ring>,
+    /// What is told of geometry that inputs move, by input.
+    pub moving_inputs: BTreeMap<usize, Diagnostic>,
 }
 
 impl Elaborated {

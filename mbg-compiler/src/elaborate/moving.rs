@@ -1,64 +1,291 @@
-//! Warnings of what moves by time alone and should not: the flow of a frame behind an offset that a law of time changes does
-//! not know of it.
+//! Warnings of geometry that moves and should not: the flow of a frame behind it knows nothing of its rate.
+//!
+//! Where forces alone act at such a frame that is right, as they act on the point of the body that is there at the moment,
+//! and so is contact without slip. Where inertia moves with the frame, its velocity lacks a part.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::Ident;
+use syn::Expr;
 
 use super::Builder;
 use super::definitions::Progress;
 use super::expressions::Value;
+use super::frames::{Frame, IN_SPACE};
+use super::model::StateRate;
 use super::scope::Entity;
 use crate::codes;
-use crate::diagnostics::{Diagnostic, error};
-use crate::symbolic::Symbol;
+use crate::diagnostics::error;
+use crate::graph::{Element, ElementId, ElementKind, End, JunctionId};
 use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Expression, Symbol};
+use crate::syntax::ast::Instance;
+use crate::syntax::dump;
 
 /// Parameters of the library that tell where something is fixed to a frame, and how it is turned there.
-const GEOMETRY: &[&str] = &["by", "x", "y", "centre", "end", "offset", "tilt", "zero"];
+const GEOMETRY: &[&str] = &[
+    "by",
+    "x",
+    "y",
+    "centre",
+    "end",
+    "offset",
+    "tilt",
+    "zero",
+    "azimuth",
+    "direction",
+];
 
-impl Builder<'_> {
-    /// Warns of geometry that reads the time. What reads states may be a point at which something rolls.
+/// Those of them that are angles or rotations, as is `by` of a `Turn`.
+const TURNS: &[&str] = &["tilt", "zero", "azimuth", "direction"];
+
+/// Geometry that the user has written.
+struct Geometry<'a> {
+    /// Scope of the component.
+    inner: usize,
+    instance: &'a Instance,
+    name: &'a Ident,
+    value: Option<&'a Expr>,
+    entries: Vec<Expression>,
+}
+
+impl Geometry<'_> {
+    /// Whether it leads from a point of a body to another one, where bodies may roll on each other.
+    fn is_point(&self) -> bool {
+        match self.instance.component.to_string().as_str() {
+            "Offset" | "PlanarOffset" => true,
+            "Mount" => self.name == "offset",
+            _ => false,
+        }
+    }
+
+    /// Whether it does nothing but lead from a frame to another one.
+    fn leads(&self) -> bool {
+        let component = self.instance.component.to_string();
+        ["Offset", "PlanarOffset", "Turn"].contains(&component.as_str())
+    }
+
+    fn turns(&self) -> bool {
+        self.instance.component == "Turn" || TURNS.iter().any(|turn| self.name == turn)
+    }
+
+    /// The axis that it turns about, as far as it is written so.
+    fn axis(&self) -> &'static str {
+        match self.value.map(dump::expression) {
+            _ if self.name == "azimuth" => "2",
+            Some(text) if text.starts_with("rot_x(") => "0",
+            Some(text) if text.starts_with("rot_y(") => "1",
+            Some(text) if text.starts_with("rot_z(") => "2",
+            _ => "…",
+        }
+    }
+
+    /// The joint that moves so, with what goes before the frames.
+    fn joint(&self, size: usize) -> String {
+        match (size, self.turns()) {
+            (IN_SPACE, true) => format!("Revolute {{ axis: {}, initial: … }}", self.axis()),
+            (IN_SPACE, false) => "Prismatic { axis: …, initial: … }".to_owned(),
+            (_, true) => "PlanarRevolute { initial: … }".to_owned(),
+            (_, false) => "PlanarPrismatic { direction: …, initial: … }".to_owned(),
+        }
+    }
+}
+
+impl<'a> Builder<'a> {
+    /// Warns of geometry that moves inertia, and notes where inputs move any.
     pub(super) fn warn_of_moving(&mut self) {
-        let mut warnings: Vec<Diagnostic> = Vec::new();
+        let prescribed = self.prescribed();
+        let first = self.joined();
+        let inert = self.inert(&first);
+        for geometry in self.geometry() {
+            let read = symbols(self.pool, &geometry.entries);
+            let mut causes = read.into_iter();
+            let Some(cause) = causes.find(|it| self.moves(&geometry, *it, &prescribed)) else {
+                continue;
+            };
+            let span = geometry.name.span();
+            let message = format!(
+                "`{}` of `{}` changes with {}, and the flow of what is fixed there does not know of it",
+                geometry.name,
+                geometry.instance.name,
+                self.cause(cause)
+            );
+            let mut report = error(codes::UNKNOWN_MOTION, span, message);
+            report.helps = self.by_joint(&geometry, cause);
+            if let Symbol::Input(input) = cause {
+                self.moving_inputs.insert(input, report.clone());
+            }
+            if self.carries(geometry.inner, &inert) {
+                self.diagnostics.warn(report);
+            }
+        }
+    }
+
+    /// What a component of the library hands on is told where it got it.
+    fn geometry(&mut self) -> Vec<Geometry<'a>> {
+        let mut found = Vec::new();
         for (inner, (scope, instance)) in &self.called {
-            // What a component of the library hands on is told where it got it.
             if self.scopes[*inner].library.is_none() || self.scopes[*scope].library.is_some() {
                 continue;
             }
             for argument in &instance.arguments {
                 let name = argument.name.to_string();
-                if !GEOMETRY.contains(&name.as_str()) {
-                    continue;
-                }
-                let Some(Entity::Definition(id)) = self.scopes[*inner].names.get(&name) else {
-                    continue;
-                };
-                let Progress::Known(value) = &self.definitions[*id].progress else {
-                    continue;
-                };
-                let entries = match value {
-                    Value::Scalar(value) => vec![*value],
-                    Value::Matrix(product) => product.to_matrix(self.pool).entries,
-                };
-                if symbols(self.pool, &entries).contains(&Symbol::Time) {
-                    let message = format!(
-                        "`{name}` of `{}` changes with time, and the flow of what is fixed there does not know of it",
-                        instance.name
-                    );
-                    let report = error(codes::UNKNOWN_MOTION, argument.name.span(), message);
-                    let turns = instance.component == "Turn" || name == "tilt" || name == "zero";
-                    let joint = match (instance.component.to_string().starts_with("Planar"), turns)
-                    {
-                        (true, true) => "PlanarRevolute {}",
-                        (true, false) => "PlanarPrismatic {}",
-                        (false, true) => "Revolute { axis: 2 }",
-                        (false, false) => "Prismatic { axis: 2 }",
+                let entity = self.scopes[*inner].names.get(&name);
+                if GEOMETRY.contains(&name.as_str())
+                    && let Some(Entity::Definition(id)) = entity
+                    && let Progress::Known(value) = &self.definitions[*id].progress
+                {
+                    let entries = match value {
+                        Value::Scalar(value) => vec![*value],
+                        Value::Matrix(product) => product.to_matrix(self.pool).entries,
                     };
-                    warnings.push(report.help(format!(
-                        "move it by a joint whose rate is given: `guide: {joint} (a, b);` and `Sf drive {{ flow: … }} -> guide.rate;`"
-                    )));
+                    found.push(Geometry {
+                        inner: *inner,
+                        instance,
+                        name: &argument.name,
+                        value: argument.value.as_ref(),
+                        entries,
+                    });
                 }
             }
         }
-        warnings
-            .into_iter()
-            .for_each(|it| self.diagnostics.warn(it));
+        found
+    }
+
+    /// Integrals that no flow moves, by what they read.
+    fn prescribed(&self) -> BTreeSet<usize> {
+        let integrals = self.states.iter().enumerate();
+        let mut read: BTreeMap<usize, Vec<Symbol>> = integrals
+            .filter_map(|(number, state)| match state.rate {
+                StateRate::Expression(rate) => Some((number, symbols(self.pool, &[rate]))),
+                _ => None,
+            })
+            .collect();
+        loop {
+            let by_itself = |symbol: &Symbol| match symbol {
+                Symbol::State(other) => read.contains_key(other),
+                Symbol::Parameter(_) | Symbol::Input(_) | Symbol::Time => true,
+                _ => false,
+            };
+            let moved = |(number, read): (&usize, &Vec<Symbol>)| {
+                (!read.iter().all(by_itself)).then_some(*number)
+            };
+            let moved: Vec<usize> = read.iter().filter_map(moved).collect();
+            if moved.is_empty() {
+                return read.into_keys().collect();
+            }
+            moved.iter().for_each(|number| {
+                read.remove(number);
+            });
+        }
+    }
+
+    /// Whether geometry that reads this moves, other than where bodies roll: that depends on how they are turned.
+    fn moves(&self, geometry: &Geometry, read: Symbol, prescribed: &BTreeSet<usize>) -> bool {
+        let Symbol::State(number) = read else {
+            return !matches!(read, Symbol::Parameter(_));
+        };
+        let state = &self.states[number];
+        match state.rate {
+            StateRate::Expression(Expression::ZERO) => false,
+            _ if !geometry.is_point() => true,
+            _ => prescribed.contains(&number) || state.variable.unit == "m",
+        }
+    }
+
+    /// Frames that inertia is bonded to.
+    fn inert(&self, first: &[JunctionId]) -> BTreeSet<JunctionId> {
+        let is_inertia = |id: &ElementId| self.graph.elements[id.0].kind == ElementKind::I;
+        let bonds = self.graph.bonds.iter();
+        let junctions = bonds.filter_map(|bond| match (&bond.from, &bond.to) {
+            (End::Junction(id, _), End::OnePort(element))
+            | (End::OnePort(element), End::Junction(id, _))
+                if is_inertia(element) =>
+            {
+                Some(first[id.0])
+            }
+            _ => None,
+        });
+        junctions.collect()
+    }
+
+    /// Whether inertia moves with a component: its own, or that of the frames to which its second port leads.
+    fn carries(&self, inner: usize, inert: &BTreeSet<JunctionId>) -> bool {
+        let own = &self.scopes[inner].prefix;
+        let is_own = |scope: &usize| self.scopes[*scope].prefix.starts_with(own.as_str());
+        let elements = &self.graph.elements;
+        let within = |it: &Element| it.kind == ElementKind::I && it.name.starts_with(own.as_str());
+        let Some([_, end]) = self.frames.get(&inner).map(Vec::as_slice) else {
+            return true;
+        };
+        let mut open = vec![end.place.0];
+        let mut reached = BTreeSet::new();
+        while let Some(frame) = open.pop() {
+            if !reached.insert(frame) {
+                continue;
+            }
+            let others = self.frames.iter().filter(|(scope, _)| !is_own(scope));
+            let others = others.map(|(_, frames)| frames);
+            let at = |frames: &&Vec<Frame>| {
+                frames
+                    .iter()
+                    .any(|it| it.place.0 == frame && it.component.library)
+            };
+            open.extend(others.filter(at).flatten().map(|it| it.place.0));
+        }
+        elements.iter().any(within) || reached.iter().any(|frame| inert.contains(frame))
+    }
+
+    fn cause(&self, cause: Symbol) -> String {
+        match cause {
+            Symbol::Time => "time".to_owned(),
+            Symbol::Input(input) => format!("the input `{}`", self.inputs[input].name),
+            Symbol::State(state) => format!("`{}`", self.states[state].variable.name),
+            _ => "what moves".to_owned(),
+        }
+    }
+
+    /// What to write where geometry moves: a joint whose rate is given.
+    fn by_joint(&self, geometry: &Geometry, cause: Symbol) -> Vec<String> {
+        let instance = geometry.instance;
+        let size = self.frames.get(&geometry.inner);
+        let size = size
+            .and_then(|it| it.first())
+            .map_or(IN_SPACE, |it| it.place.2);
+        let joint = geometry.joint(size);
+        let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
+        let first = ends.first().map_or("…", String::as_str);
+        let (name, place, write) = if geometry.leads() {
+            let name = instance.name.to_string();
+            let write = format!("`{name}: {joint} ({});`", ends.join(", "));
+            (name, "in its place", write)
+        } else {
+            let write = format!(
+                "`1 guided[{size}]; guide: {joint} ({first}, guided);`, with `guided` as the frame of `{}`",
+                instance.name
+            );
+            ("guide".to_owned(), "before it", write)
+        };
+        let joint = format!("write a joint {place}, whose rate is given: {write},");
+        let Symbol::Input(input) = cause else {
+            return vec![format!(
+                "{joint} and `Sf drive {{ flow: … }} -> {name}.rate;`"
+            )];
+        };
+        let input = &self.inputs[input].name.replace('.', "_");
+        let (motor, coordinate) = match geometry.turns() {
+            true => ("torque", "angle"),
+            false => ("force", "travel"),
+        };
+        vec![
+            format!(
+                "{joint} and `Sf drive {{ flow: {input}_rate }} -> {name}.rate;`, where \
+                 `input {input}_acceleration; integral {input}_rate = {input}_acceleration;`"
+            ),
+            format!(
+                "or in the place of `Sf drive` let an actuator move it, by \
+                 `{motor}: … * ({input} - {name}.{coordinate}), damping: …` of the joint"
+            ),
+        ]
     }
 }

@@ -69,7 +69,7 @@ pub(super) fn report_unmoved(model: &Elaborated, closure: usize, diagnostics: &m
     diagnostics.report(report.help(help));
 }
 
-/// A storage that depends on an input.
+/// A storage that depends on an input: one mistake, whichever components of it show it.
 pub(super) fn report_input(
     model: &Elaborated,
     owner: Owner,
@@ -77,23 +77,32 @@ pub(super) fn report_input(
     diagnostics: &mut Diagnostics,
 ) {
     let graph = &model.graph;
-    let span = match owner {
-        Owner::Element(id, _) => graph.origins.span(graph.elements[id.0].origin),
-        Owner::Structure | Owner::Coordinate(..) => model.name.span(),
+    let element = match owner {
+        Owner::Element(id, _) => Some(id),
+        Owner::Structure | Owner::Coordinate(..) => None,
     };
-    let name = &model.inputs[input].name;
-    let message = format!("a dependent storage needs the time derivative of the input `{name}`");
-    let mut report = error(codes::ORDER_LOST_UNSUPPORTED, span, message)
-        .note("an input is known by its value alone");
-    if let Owner::Element(id, _) = owner
-        && let Some(help) = through(graph, id, Between::Resistor)
+    let why = "an input is known by its value alone";
+    let is_source = element.is_some_and(|id| graph.elements[id.0].kind == ElementKind::Sf);
+    if let Some(moving) = model.moving_inputs.get(&input)
+        && !is_source
     {
-        report = report.help(help);
+        let mut report = moving.clone().note(why);
+        report.code = codes::ORDER_LOST_UNSUPPORTED;
+        return diagnostics.report_once(report, 0);
     }
-    diagnostics.report(
-        report
-            .help(by_rate(model, input))
-            .help(format!("or {IN_PLACE} the input write a law of `t`")),
+    let span = element.map_or(model.name.span(), |id| {
+        graph.origins.span(graph.elements[id.0].origin)
+    });
+    let name = own_name(&model.inputs[input]);
+    let message = format!("a dependent storage needs the time derivative of the input `{name}`");
+    let mut report = error(codes::ORDER_LOST_UNSUPPORTED, span, message).note(why);
+    let apart = element.and_then(|id| through(graph, id, Between::Resistor));
+    let or = if apart.is_some() { "or " } else { "" };
+    report.helps.extend(apart);
+    let report = report.help(format!("{or}{}", by_rate(model, input)));
+    diagnostics.report_once(
+        report.help(format!("or {IN_PLACE} the input write a law of `t`")),
+        0,
     );
 }
 
@@ -151,16 +160,19 @@ pub fn report_energy(
     );
     let span = model.graph.origins.span(element.origin);
     let report = error(codes::EXPRESSION, span, message);
-    let by_rate = by_rate(model, input);
-    let help = by_rate.trim_start_matches("or ").to_owned();
-    diagnostics.report(report.help(help));
+    diagnostics.report(report.help(by_rate(model, input)));
+}
+
+/// The name of an input without its component.
+fn own_name(input: &Variable) -> &str {
+    input.name.split('.').next().unwrap_or_default()
 }
 
 /// How an input is given by its rate instead.
 fn by_rate(model: &Elaborated, input: usize) -> String {
-    let name = |input: &Variable| input.name.split('.').next().unwrap_or_default().to_owned();
-    let own = name(&model.inputs[input]);
-    let size = match model.inputs.iter().filter(|it| name(it) == own).count() {
+    let own = own_name(&model.inputs[input]);
+    let of_it = model.inputs.iter().filter(|it| own_name(it) == own);
+    let size = match of_it.count() {
         1 => String::new(),
         count => format!("[{count}]"),
     };
@@ -169,7 +181,7 @@ fn by_rate(model: &Elaborated, input: usize) -> String {
         unit => format!(": {unit}"),
     };
     format!(
-        "or {IN_PLACE} `input {own}{size}{unit};` write its rate: `input {own}_rate{size}; \
+        "{IN_PLACE} `input {own}{size}{unit};` write its rate: `input {own}_rate{size}; \
          integral {own}{size}{unit} = {own}_rate;`"
     )
 }

@@ -512,7 +512,7 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     let undecided = "model M { param n = 1.0; 1 a[6]; 1 b[6];
         hinge: Revolute { axis: n, blocked: compliant } (a, b); }";
     insta::assert_snapshot!(elaborated(undecided).err().unwrap(), @"
-    2:9 expected a condition that is decided while the model is compiled, found `k != axis` [MBG0220]
+    2:9 expected a condition that is decided while the model is compiled, found `free == 3` [MBG0220]
       this is inside `Revolute`, a component of the library
       help: it compares whole numbers that are known then, or a parameter with one of its words, as in `blocked == ideal`
       help: it may ask `given(parameter)`, and join conditions by `&&`, `||` and `!`
@@ -571,4 +571,34 @@ fn a_joint_starts_with_its_rate() {
     assert_eq!(initial[place(&model)], 0.6);
     let model = pendulum("0.0");
     assert_eq!(run(&model, Routines::INITIAL, &[])[place(&model)], 0.0);
+}
+
+/// What would create energy is told at its value, whether the spring is a storage or not.
+#[test]
+fn springs_with_an_asymmetric_matrix_are_refused() {
+    let told = |joint: &str| {
+        let text = format!("model M {{ 1 a[6]; 1 b[6];\njoint: {joint} (a, b); }}");
+        elaborated(&text).err().unwrap()
+    };
+    let skew = "[[100.0, 30.0, 0.0], [20.0, 400.0, 0.0], [0.0, 0.0, 900.0]]";
+    for word in ["angles", "quaternion", "matrix"] {
+        let found = told(&format!(
+            "Spherical {{ orientation: {word}, stiffness: {skew} }}"
+        ));
+        let place = format!("2:{} ", 46 + word.len());
+        assert!(found.starts_with(&place), "{found}");
+        assert_eq!(found.matches("[MBG0213]").count(), 1, "{found}");
+        assert!(
+            found.contains("entry `[0][1]` is 30, entry `[1][0]` is 20"),
+            "{found}"
+        );
+    }
+    let bearing = |value: &str| {
+        told(&format!(
+            "Fixed {{ blocked: compliant, blocked_stiffness: {value} }}"
+        ))
+    };
+    assert!(bearing(skew).contains("the matrix of a storage must be symmetric"));
+    let vector = bearing("[1e6, 1e6, 3e6]");
+    assert!(vector.contains("write `diag(…)` for a matrix"), "{vector}");
 }

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use syn::Expr;
 use syn::spanned::Spanned;
+use syn::{Expr, ExprPath};
 
 use super::Builder;
 use super::claims::Subject;
-use super::expressions::Result;
+use super::definitions::{Definition, Progress};
+use super::expressions::{Result, Value};
+use super::laws::check_symmetry;
 use super::model::{Attitude, StateRate};
 use super::orientation::rotation;
 use super::scope::Entity;
@@ -71,6 +73,41 @@ impl Builder<'_> {
             self.initial_value(state, initial, place)?;
         }
         Ok(())
+    }
+
+    /// Reports springs of quaternions and rotation matrices that would create energy, as those of other joints are.
+    pub(super) fn check_springs(&mut self) {
+        let rotations = self.called.iter();
+        let rotations = rotations.filter(|(inner, (_, instance))| {
+            let inside = &self.scopes[**inner];
+            let is_free = inside.library.is_some() && instance.component == "FreeRotation";
+            // The springs of angles are storages, which are checked where they are read.
+            is_free && !inside.names.contains_key("gimbal")
+        });
+        let scopes: Vec<usize> = rotations.map(|(inner, _)| *inner).collect();
+        for scope in scopes {
+            let Some(Entity::Definition(id)) = self.scopes[scope].names.get("stiffness") else {
+                continue;
+            };
+            let Definition { name, progress, .. } = &self.definitions[*id];
+            let name = *name;
+            let Progress::Known(Value::Matrix(stiffness)) = progress else {
+                continue;
+            };
+            // Another shape is told where the spring reads it.
+            if stiffness.rows() != stiffness.columns() {
+                continue;
+            }
+            let stiffness = stiffness.to_matrix(self.pool);
+            if let Err(report) = check_symmetry(self.pool, &stiffness, name.span()) {
+                let read = Expr::Path(ExprPath {
+                    attrs: Vec::new(),
+                    qself: None,
+                    path: name.clone().into(),
+                });
+                self.tell_of(scope, *report, &[&read]);
+            }
+        }
     }
 
     /// The components of a value of which it is known how many it has.

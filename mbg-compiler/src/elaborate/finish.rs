@@ -150,6 +150,7 @@ impl<'a> Builder<'a> {
                 builder.resolve_law(pending.clone())
             });
         }
+        self.check_springs();
         self.warn_of_idle();
         self.warn_of_moving();
         self.define_unread();

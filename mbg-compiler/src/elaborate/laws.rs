@@ -319,7 +319,7 @@ impl Reader<'_, '_, '_> {
         let (coenergy, (energy, integral)) = match word {
             "inertia" | "compliance" | "stiffness" => {
                 let matrix = self.coefficient(value)?;
-                self.check_symmetry(&matrix, value.span())?;
+                check_symmetry(self.pool, &matrix, value.span())?;
                 if word == "inertia" {
                     assumptions = self.positive(&matrix, value.span())?;
                 }
@@ -425,33 +425,6 @@ impl Reader<'_, '_, '_> {
         let sum = self.pool.sum(&terms);
         let two = self.pool.integer(2);
         self.pool.divide(sum, two).unwrap_or(Expression::ZERO)
-    }
-
-    /// The first two entries that would be equal in a symmetric matrix, and are not.
-    fn asymmetry(&self, matrix: &Matrix) -> Option<String> {
-        let pairs = (0..matrix.rows).flat_map(|row| (0..row).map(move |column| (column, row)));
-        let mut pairs = pairs.map(|(row, column)| [(row, column), (column, row)]);
-        let entry = |(row, column): (usize, usize)| matrix.at(row, column);
-        let [first, second] = pairs.find(|[a, b]| entry(*a) != entry(*b))?;
-        let text = |(row, column): (usize, usize)| {
-            let value = self.pool.constant_value(matrix.at(row, column));
-            let value = value.map_or_else(String::new, |value| format!(" is {}", number(value)));
-            format!("entry `[{row}][{column}]`{value}")
-        };
-        let (first, second) = (text(first), text(second));
-        Some(format!("two of its entries differ: {first}, {second}"))
-    }
-
-    fn check_symmetry(&self, matrix: &Matrix, span: Span) -> Result<()> {
-        if matrix.is_symmetric() {
-            return Ok(());
-        }
-        let message = "the matrix of a storage must be symmetric, or it would create energy";
-        let report = error(codes::EXPRESSION, span, message);
-        Err(Box::new(match self.asymmetry(matrix) {
-            Some(note) => report.note(note),
-            None => report,
-        }))
     }
 
     /// The inverse of what stands behind a word.
@@ -588,4 +561,32 @@ impl Reader<'_, '_, '_> {
         let inertia = self.inverse("slope", &Matrix::new(size, size, entries), span)?;
         Ok(inertia.times(self.pool, &Matrix::column(added)).entries)
     }
+}
+
+/// A storage keeps its energy on all ways between two states where its matrix is symmetric.
+pub(super) fn check_symmetry(pool: &Pool, matrix: &Matrix, span: Span) -> Result<()> {
+    if matrix.is_symmetric() {
+        return Ok(());
+    }
+    let message = "the matrix of a storage must be symmetric, or it would create energy";
+    let report = error(codes::EXPRESSION, span, message);
+    Err(Box::new(match asymmetry(pool, matrix) {
+        Some(note) => report.note(note),
+        None => report,
+    }))
+}
+
+/// The first two entries that would be equal in a symmetric matrix, and are not.
+fn asymmetry(pool: &Pool, matrix: &Matrix) -> Option<String> {
+    let pairs = (0..matrix.rows).flat_map(|row| (0..row).map(move |column| (column, row)));
+    let mut pairs = pairs.map(|(row, column)| [(row, column), (column, row)]);
+    let entry = |(row, column): (usize, usize)| matrix.at(row, column);
+    let [first, second] = pairs.find(|[a, b]| entry(*a) != entry(*b))?;
+    let text = |(row, column): (usize, usize)| {
+        let value = pool.constant_value(matrix.at(row, column));
+        let value = value.map_or_else(String::new, |value| format!(" is {}", number(value)));
+        format!("entry `[{row}][{column}]`{value}")
+    };
+    let (first, second) = (text(first), text(second));
+    Some(format!("two of its entries differ: {first}, {second}"))
 }

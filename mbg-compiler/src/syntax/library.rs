@@ -22,6 +22,7 @@ macro_rules! files {
 files! {
     "Accumulator": "accumulator.mbg",
     "Bearing": "bearing.mbg",
+    "Bearings": "bearings.mbg",
     "Blade": "blade.mbg",
     "Body": "body.mbg",
     "Capacitor": "capacitor.mbg",

@@ -286,10 +286,7 @@ fn a_rotor_hands_on_angles_and_torques_of_its_blades() {
     let start = model.initial_state();
     let rates = model.derivative(0.0, &start, &SVector::zeros(), &mut ());
     assert!(rates.amax() < 1e-12, "{rates}");
-    let model = Motored::new(MotoredParameters {
-        start: 0.7,
-        ..MotoredParameters::default()
-    });
+    let model = Motored::new(MotoredParameters { start: 0.7 });
     let model = model.unwrap();
     let found = model.output(0.0, &model.initial_state(), &SVector::zeros(), &mut ());
     assert!(

@@ -512,7 +512,7 @@ fn mistakes_inside_the_library_are_told_at_the_instance() {
     let undecided = "model M { param n = 1.0; 1 a[6]; 1 b[6];
         hinge: Revolute { axis: n, blocked: compliant } (a, b); }";
     insta::assert_snapshot!(elaborated(undecided).err().unwrap(), @"
-    2:9 expected a condition that is decided while the model is compiled, found `free == 3` [MBG0220]
+    2:9 expected a condition that is decided while the model is compiled, found `free == 0` [MBG0220]
       this is inside `Revolute`, a component of the library
       help: it compares whole numbers that are known then, or a parameter with one of its words, as in `blocked == ideal`
       help: it may ask `given(parameter)`, and join conditions by `&&`, `||` and `!`

@@ -98,6 +98,10 @@ fn all_geometry_that_moves_inertia_is_told() {
     ] {
         cases.push(("", format!("1 root[6]; {}", behind.replace("BODY", BODY))));
     }
+    // Where a bearing gives way, nothing needs the rate of the input.
+    let pod = "1 root[6]; 1 pod[6]; arm: Mount { tilt: rot_x(swivel) } (hub, root);
+         joint: Fixed { blocked: compliant } (root, pod); body: Body { mass: 1.0, inertia: 1.0 } (pod);";
+    cases.push(("input swivel: rad;", pod.to_owned()));
     for (declared, behind) in cases {
         let found = warned(&on_a_hub(declared, &behind));
         assert_eq!(found.matches("[MBG0410]").count(), 1, "{behind}: {found}");

@@ -126,6 +126,8 @@ pub struct Diagnostics {
     calls: Vec<usize>,
     /// What is warned of, in a sink of its own.
     warnings: Option<Box<Self>>,
+    /// The constant in which the mistakes are told, that of shells of models.
+    constant: Option<Ident>,
 }
 
 impl Diagnostics {
@@ -238,6 +240,11 @@ impl Diagnostics {
         &mut self.list[number]
     }
 
+    /// Says in which constant the mistakes are told, which leave it without a value.
+    pub(crate) fn tell_in(&mut self, constant: Option<Ident>) {
+        self.constant = constant;
+    }
+
     /// One `compile_error!` per mistake and one lint per warning, each at its own token.
     #[must_use]
     pub fn to_tokens(&self) -> TokenStream {
@@ -245,7 +252,12 @@ impl Diagnostics {
             let text = diagnostic.text();
             quote_spanned!(diagnostic.span=> ::core::compile_error!(#text);)
         });
-        errors.chain(self.warnings().iter().map(lint)).collect()
+        let mut told = match &self.constant {
+            Some(constant) => quote!(const #constant: usize = { #(#errors)* 0 };),
+            None => errors.collect(),
+        };
+        told.extend(self.warnings().iter().map(lint));
+        told
     }
 }
 

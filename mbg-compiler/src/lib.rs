@@ -108,7 +108,7 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
     let sound = !diagnostics.any();
     let components = elaborate::component_table(&source);
     elaborate::warn(&source, diagnostics);
-    let mut output = TokenStream::new();
+    let (mut output, mut mistakes) = (TokenStream::new(), None);
     for item in &source.items {
         let Item::Model(model) = item else { continue };
         let compiled = if sound {
@@ -118,7 +118,10 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
         };
         output.extend(match &compiled {
             Some(compiled) => emit::model(compiled),
-            None => emit::shell(model, elaborate::sizes(model, &components)),
+            None => {
+                let mistakes = mistakes.get_or_insert_with(|| emit::mistakes(model));
+                emit::shell(model, mistakes)
+            }
         });
         // A shell without an error would build, and never return.
         if compiled.is_none() && !diagnostics.any() {
@@ -127,5 +130,6 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
             diagnostics.error(codes::SINGULAR_JUNCTIONS, model.name.span(), message);
         }
     }
+    diagnostics.tell_in(mistakes);
     output
 }

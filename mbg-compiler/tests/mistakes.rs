@@ -475,7 +475,7 @@ fn names_are_taken_once_and_leave_no_types_that_rust_refuses() {
     let twice = beside_a_mass("param mass = 1.0; param mass = 2.0;");
     assert_eq!(found(&twice), ["MBG0202"]);
     let expansion = items(twice.parse().unwrap(), &mut Diagnostics::new()).to_string();
-    assert_eq!(expansion.matches("pub mass : T").count(), 1);
+    assert_eq!(expansion.matches("pub mass :").count(), 1);
 }
 
 #[test]

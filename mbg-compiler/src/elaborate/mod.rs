@@ -90,37 +90,6 @@ pub fn elaborate(
     (builder.diagnostics.list().len() == builder.before).then(|| builder.finish(model))
 }
 
-/// How many scalars a model has for its surroundings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sizes {
-    /// States declared.
-    pub states: usize,
-    /// Inputs.
-    pub inputs: usize,
-    /// Outputs.
-    pub outputs: usize,
-}
-
-/// The sizes of a model that may be broken, as far as it declares them.
-#[must_use]
-pub fn sizes(model: &ast::Model, components: &BTreeMap<String, &ast::Component>) -> Sizes {
-    let (mut pool, mut unheard) = (Pool::new(), Diagnostics::new());
-    if !size::check(model, components, &mut unheard) {
-        return Sizes::default();
-    }
-    let mut builder = Builder::new(model, components, &mut pool, &mut unheard);
-    builder.declare_all(&model.statements);
-    let outputs = builder.pending.iter().map(|pending| match pending {
-        Pending::Output { output, .. } => output.dimension,
-        _ => 0,
-    });
-    Sizes {
-        states: builder.states.len(),
-        inputs: builder.inputs.len(),
-        outputs: outputs.sum(),
-    }
-}
-
 /// A law or value that is read once all names are known.
 #[derive(Clone)]
 enum Pending<'a> {

@@ -14,11 +14,10 @@ mod sparsity;
 mod system;
 mod tokens;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use crate::compile::Compiled;
-use crate::elaborate::Sizes;
 use crate::syntax::ast;
 
 /// All items of a model.
@@ -29,8 +28,15 @@ pub fn model(compiled: &Compiled) -> TokenStream {
     quote!(#parameters #system)
 }
 
-/// What is left of a model with a mistake: its types and their methods, so that whatever uses them still resolves.
+/// What is left of a model with a mistake: its types and their methods, so that whatever uses them still resolves. Its sizes
+/// are the constant in which the mistakes are told, see [`mistakes`].
 #[must_use]
-pub fn shell(model: &ast::Model, sizes: Sizes) -> TokenStream {
-    shell::items(model, sizes)
+pub fn shell(model: &ast::Model, mistakes: &Ident) -> TokenStream {
+    shell::items(model, mistakes)
+}
+
+/// The constant in which the mistakes of all models are told, by the first that has one.
+#[must_use]
+pub fn mistakes(model: &ast::Model) -> Ident {
+    shell::constant(model)
 }

@@ -1,62 +1,41 @@
 //! What stands in for a model with a mistake.
 //!
 //! Its types and methods exist, so that the code around the model compiles and the user sees the mistake and nothing
-//! else. None of it ever runs: the error stops the build.
+//! else. None of it ever runs: the error stops the build. Nothing is known of its sizes. All of them are the constant in
+//! which the mistakes are told: it has no value, and to Rust it is whatever size the code around asks for.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::elaborate::Sizes;
 use crate::syntax::ast::{self, Statement};
 
-pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
+/// The constant in which mistakes are told, by the first model that has one.
+pub(super) fn constant(model: &ast::Model) -> Ident {
+    format_ident!("{}Mistakes", model.name, span = Span::call_site())
+}
+
+pub(super) fn items(model: &ast::Model, size: &Ident) -> TokenStream {
     let (visibility, name) = (&model.visibility, &model.name);
-    let parameters = format_ident!("{}Parameters", name);
-    // A name given twice is the mistake that has been told.
-    let fields: BTreeMap<&Ident, Option<usize>> = model
-        .statements
-        .iter()
-        .filter_map(|statement| match statement {
-            Statement::Parameter(parameter) => Some((&parameter.name, parameter.dimension)),
-            _ => None,
-        })
-        .collect();
-    let scalar = fields
-        .is_empty()
-        .then(|| quote!(#[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>));
-    let fields =
-        fields.into_iter().map(
-            |(name, dimension)| match dimension.map(Literal::usize_suffixed) {
-                None => quote!(#name: T),
-                Some(size) => quote!(#name: [T; #size]),
-            },
-        );
-    let behaviour = behaviour(name, sizes);
-    let [n, m, p] = [sizes.states, sizes.inputs, sizes.outputs].map(Literal::usize_suffixed);
+    let names = format_ident!("{}Parameters", name);
+    let parameters = parameters(model, &names, size);
+    let behaviour = behaviour(name, size);
     quote! {
-        #[allow(missing_docs)]
+        /// Stands in for a model with a mistake.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #visibility struct #name<T = f64> { scalar: ::core::marker::PhantomData<T> }
-        #[allow(missing_docs)]
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        #visibility struct #parameters<T = f64> {
-            #(pub #fields,)*
-            #scalar
-        }
-        impl<T> ::core::default::Default for #parameters<T> {
-            fn default() -> Self { loop {} }
-        }
-        #[allow(missing_docs)]
+        #parameters
         impl<T: ::mbg_runtime::Real> #name<T> {
-            pub fn new(_: #parameters<T>) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> {
+            /// As that of the model.
+            pub fn new(_: #names<T>) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> {
                 loop {}
             }
-            pub fn parameters(&self) -> &#parameters<T> { loop {} }
+            /// As those of the model.
+            pub fn parameters(&self) -> &#names<T> { loop {} }
         }
-        impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> { #behaviour }
-        impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
+        impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #size, #size, #size> for #name<T> { #behaviour }
+        impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #size, #size, #size> for #name<T> {
             type With<L: ::mbg_runtime::Real> = #name<L>;
             const STRAIGHT: bool = true;
             fn converted<L: ::mbg_runtime::Real>(&self, _: impl ::core::ops::Fn(T) -> L) -> #name<L> { loop {} }
@@ -64,13 +43,50 @@ pub(super) fn items(model: &ast::Model, sizes: Sizes) -> TokenStream {
     }
 }
 
+/// The type of the parameters. An array of no known size is no iterator, and what it would iterate over is to Rust whatever
+/// type is asked for: that of each field, and that of all parameters where a statement that was not read may have been one.
+fn parameters(model: &ast::Model, name: &Ident, size: &Ident) -> TokenStream {
+    let visibility = &model.visibility;
+    let whatever = quote!(<[T; #size] as ::core::iter::Iterator>::Item);
+    let statements = || model.statements.iter();
+    if statements().any(|statement| matches!(statement, Statement::Broken(_))) {
+        return quote! {
+            /// Stands in for the parameters of a model with a mistake.
+            #visibility type #name<T = f64> = #whatever;
+        };
+    }
+    // A name given twice is the mistake that has been told.
+    let fields: BTreeSet<&Ident> = statements()
+        .filter_map(|statement| match statement {
+            Statement::Parameter(parameter) => Some(&parameter.name),
+            _ => None,
+        })
+        .collect();
+    let scalar = fields
+        .is_empty()
+        .then(|| quote!(#[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>));
+    let fields = fields.into_iter();
+    quote! {
+        /// Stands in for the parameters of a model with a mistake.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #visibility struct #name<T = f64> {
+            #(
+                /// As that of the model.
+                pub #fields: #whatever,
+            )*
+            #scalar
+        }
+        impl<T> ::core::default::Default for #name<T> {
+            fn default() -> Self { loop {} }
+        }
+    }
+}
+
 /// The methods of `System`, as they are declared.
-fn behaviour(name: &Ident, sizes: Sizes) -> TokenStream {
-    let [n, m, p] = [sizes.states, sizes.inputs, sizes.outputs].map(Literal::usize_suffixed);
-    let vector = |size: &Literal| quote!(::mbg_runtime::__private::SVector<T, #size>);
-    let matrix = |columns: &Literal| quote!(::mbg_runtime::__private::SMatrix<T, #n, #columns>);
-    let (x, u, y) = (vector(&n), vector(&m), vector(&p));
-    let (by_state, by_input) = (matrix(&n), matrix(&m));
+fn behaviour(name: &Ident, size: &Ident) -> TokenStream {
+    let vector = quote!(::mbg_runtime::__private::SVector<T, #size>);
+    let matrix = quote!(::mbg_runtime::__private::SMatrix<T, #size, #size>);
+    let memory = quote!([(); #size]);
     let name = name.to_string();
     quote! {
         const META: &'static ::mbg_runtime::Meta = &::mbg_runtime::Meta {
@@ -80,15 +96,15 @@ fn behaviour(name: &Ident, sizes: Sizes) -> TokenStream {
                 derivative: 0, output: 0, derivative_and_jacobian: 0, jacobian_input: 0, energy: 0, power: 0, angles: 0,
             },
         };
-        type Memory = ();
-        type Conditioning = [T; 0];
-        fn initial_state(&self) -> #x { loop {} }
-        fn derivative(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #x { loop {} }
-        fn output(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #y { loop {} }
-        fn jacobian_state(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #by_state { loop {} }
-        fn jacobian_input(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> #by_input { loop {} }
-        fn energy(&self, _: T, _: &#x) -> T { loop {} }
-        fn power(&self, _: T, _: &#x, _: &#u, _: &mut ()) -> ::mbg_runtime::Power<T> { loop {} }
-        fn conditioning(&self, _: T, _: &#x, _: &#u) -> [T; 0] { loop {} }
+        type Memory = #memory;
+        type Conditioning = [T; #size];
+        fn initial_state(&self) -> #vector { loop {} }
+        fn derivative(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #vector { loop {} }
+        fn output(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #vector { loop {} }
+        fn jacobian_state(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #matrix { loop {} }
+        fn jacobian_input(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #matrix { loop {} }
+        fn energy(&self, _: T, _: &#vector) -> T { loop {} }
+        fn power(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> ::mbg_runtime::Power<T> { loop {} }
+        fn conditioning(&self, _: T, _: &#vector, _: &#vector) -> [T; #size] { loop {} }
     }
 }

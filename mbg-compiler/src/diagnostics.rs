@@ -268,9 +268,8 @@ fn lint(warning: &Diagnostic) -> TokenStream {
     quote! {
         const _: () = {
             #[deprecated(note = #text)]
-            #[allow(non_upper_case_globals)]
-            const #name: () = ();
-            #name
+            const fn #name() {}
+            #name()
         };
     }
 }

@@ -1,9 +1,10 @@
 //! Mistakes in parameters, whose fields other code gives and reads: one message each.
+#![forbid(future_incompatible, missing_docs)]
 
 use mbg_runtime::mbg;
 
 mbg! {
-    model Pair {
+    pub model Pair {
         param mass: kg = +2.0;
         param arms: [2]: m = [1.0, 2.0];
         const spring: N/m = 2.0;
@@ -12,7 +13,7 @@ mbg! {
     }
 }
 mbg! {
-    model Weight {
+    pub model Weight {
         param mass: kg = 2.0;
         param arms = [1.0, 2.0];
         1 velocity { I body { inertia: mass } }

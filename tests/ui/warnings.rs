@@ -1,5 +1,6 @@
 //! What is written and changes nothing; warnings, but for the first line.
 #![deny(deprecated)]
+#![forbid(non_upper_case_globals)]
 
 use mbg_runtime::mbg;
 

@@ -1,6 +1,6 @@
 //! The parameters' type.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::meta::spaced;
@@ -53,14 +53,33 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     } else {
         (TokenStream::new(), TokenStream::new())
     };
+    let (derived, debug) = if phantom {
+        (quote!(PartialEq, Eq), Some(bare_debug(&name)))
+    } else {
+        (quote!(Debug, PartialEq), None)
+    };
     quote! {
         #[doc = #documentation]
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Copy, #derived)]
         #visibility struct #name<T = f64> { #(#declared,)* #field }
+        #debug
 
         #[automatically_derived]
         impl<T: ::mbg_runtime::Real> ::core::default::Default for #name<T> {
             fn default() -> Self { Self { #(#defaults,)* #default } }
+        }
+    }
+}
+
+/// `Debug` of parameters without any, whose only field is nobody's business.
+fn bare_debug(name: &Ident) -> TokenStream {
+    let text = name.to_string();
+    quote! {
+        #[automatically_derived]
+        impl<T> ::core::fmt::Debug for #name<T> {
+            fn fmt(&self, formatter: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                formatter.write_str(#text)
+            }
         }
     }
 }

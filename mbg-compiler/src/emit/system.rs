@@ -32,7 +32,7 @@ fn structure(compiled: &Compiled) -> TokenStream {
         #(#documentation)*
         #(#[doc = #summary])*
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #visibility struct #name<T = f64> { parameters: #parameters<T>, folded: [T; #folded] }
+        #visibility struct #name<T = f64> { folded: [T; #folded], parameters: #parameters<T> }
     }
 }
 
@@ -79,7 +79,6 @@ fn constructor(compiled: &Compiled) -> TokenStream {
     };
     quote! {
         #[automatically_derived]
-        #[allow(clippy::all, unused_variables, unused_parens)]
         impl<T: ::mbg_runtime::Real> #name<T> {
             /// Checks the parameters and works out whatever depends on them alone.
             ///
@@ -143,7 +142,6 @@ fn system(compiled: &Compiled) -> TokenStream {
     let jacobians = jacobians::methods(compiled, &arguments, &memory);
     quote! {
         #[automatically_derived]
-        #[allow(clippy::all, unused_variables, unused_parens)]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
             const META: &'static ::mbg_runtime::Meta = #meta;
             const AUTONOMOUS: bool = #autonomous;

@@ -1,0 +1,65 @@
+//! Generated code needs no lint to be allowed, and so users may forbid any.
+#![forbid(unused_variables, unused_parens, missing_docs, future_incompatible)]
+#![forbid(clippy::all, clippy::nursery)]
+
+/// Models of any visibility.
+pub mod models {
+    use mbg_runtime::mbg;
+
+    mbg! {
+        /// Matrices, outputs, inputs and parameters.
+        pub model Oscillator {
+            param mass: kg = 2.0;
+            param spans[2]: m = [0.5, -0.25];
+            input force: N;
+            1 velocity {
+                I body { inertia: mass }
+                C spring { stiffness: 100.0 / (1.0 - spans[1] / spans[0]) }
+                R damper { effort: -3.0 * f * abs(f) }
+                Se drive { effort: force + 2.0 * sin(3.0 * t) }
+            }
+            output position: m = spring.q;
+        }
+        /// No parameters, and nothing to fold.
+        pub(crate) model Bare {
+            1 velocity { I body { inertia: 2.0 } C spring { effort: sin(q) } }
+        }
+        /// An algebraic loop that is solved by iteration.
+        pub model Rectifier {
+            1 coil { Se source { effort: sin(t) } I inductor { inertia: 1.0 } }
+            0 node;
+            coil -> node;
+            node -> R diode { flow: 1e-12 * (exp(e / 0.026) - 1.0) };
+            1 load { R resistor { effort: 3.0 * f * f * f + f } C capacitor { stiffness: 2.0 } }
+            node -> load;
+            output voltage = diode.e;
+        }
+        /// Joints, whose Jacobian is worked out by columns.
+        #[derivative]
+        pub model Pendulum {
+            gravity [0.0, 0.0, -9.81];
+            1 ground[6];
+            Sf still[6] { flow: 0.0 } -> ground;
+            1 upper[6];
+            1 lower[6];
+            shoulder: Revolute { axis: 2 } (ground, upper);
+            elbow: Revolute { axis: 2 } (upper, lower);
+            arm: Body { mass: 1.0, inertia: 2.0 } (upper);
+            forearm: Body { mass: 2.0, inertia: 2.0 } (lower);
+        }
+    }
+}
+
+#[test]
+fn parameters_show_what_they_have() {
+    let bare = models::BareParameters::<f64>::default();
+    assert_eq!(format!("{bare:?}"), "BareParameters");
+    let model = models::Bare::new(bare).map_err(|error| error.to_string());
+    assert_eq!(model.map(|it| *it.parameters()), Ok(bare));
+    let oscillator = models::OscillatorParameters {
+        mass: 1.0,
+        spans: [2.0, 3.0],
+    };
+    let text = "OscillatorParameters { mass: 1.0, spans: [2.0, 3.0] }";
+    assert_eq!(format!("{oscillator:?}"), text);
+}

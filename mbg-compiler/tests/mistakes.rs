@@ -434,12 +434,16 @@ fn a_source_that_asks_for_an_inverse_can_act_through_a_storage() {
     }
 }
 
-/// Names of the items that a text becomes.
+/// Names of the types that a text becomes. Each is declared at that of its model, where Rust tells of another one.
 fn types(text: &str) -> Vec<String> {
     let expansion = items(text.parse().unwrap(), &mut Diagnostics::new());
     let file: syn::File = syn::parse2(expansion).unwrap();
     let names = file.items.iter().filter_map(|item| match item {
-        syn::Item::Struct(it) => Some(it.ident.to_string()),
+        syn::Item::Struct(it) => {
+            let places = [it.struct_token.span, it.ident.span()].map(|span| span.start());
+            assert_eq!(places[0], places[1]);
+            Some(it.ident.to_string())
+        }
         _ => None,
     });
     let mut names: Vec<String> = names.collect();

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::meta::spaced;
+use super::tokens::structure;
 use crate::compile::Compiled;
 use crate::elaborate::Parameter;
 use crate::symbolic::print;
@@ -58,10 +59,11 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     } else {
         (quote!(Debug, PartialEq), None)
     };
+    let declared = structure(visibility, &name, quote!(#(#declared,)* #field));
     quote! {
         #[doc = #documentation]
         #[derive(Clone, Copy, #derived)]
-        #visibility struct #name<T = f64> { #(#declared,)* #field }
+        #declared
         #debug
 
         #[automatically_derived]

@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
+use super::tokens::structure;
 use crate::syntax::ast::{self, Statement};
 
 /// The constant in which mistakes are told, by the first model that has one.
@@ -21,10 +22,12 @@ pub(super) fn items(model: &ast::Model, size: &Ident) -> TokenStream {
     let names = format_ident!("{}Parameters", name);
     let parameters = parameters(model, &names, size);
     let behaviour = behaviour(name, size);
+    let scalar = quote!(scalar: ::core::marker::PhantomData<T>);
+    let declared = structure(visibility, name, scalar);
     quote! {
         /// Stands in for a model with a mistake.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #visibility struct #name<T = f64> { scalar: ::core::marker::PhantomData<T> }
+        #declared
         #parameters
         impl<T: ::mbg_runtime::Real> #name<T> {
             /// As that of the model.
@@ -65,17 +68,17 @@ fn parameters(model: &ast::Model, name: &Ident, size: &Ident) -> TokenStream {
     let scalar = fields
         .is_empty()
         .then(|| quote!(#[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>));
-    let fields = fields.into_iter();
+    let fields = fields.into_iter().map(|field| {
+        quote! {
+            /// As that of the model.
+            pub #field: #whatever,
+        }
+    });
+    let declared = structure(visibility, name, quote!(#(#fields)* #scalar));
     quote! {
         /// Stands in for the parameters of a model with a mistake.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #visibility struct #name<T = f64> {
-            #(
-                /// As that of the model.
-                pub #fields: #whatever,
-            )*
-            #scalar
-        }
+        #declared
         impl<T> ::core::default::Default for #name<T> {
             fn default() -> Self { loop {} }
         }

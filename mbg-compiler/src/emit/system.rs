@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::close::{self, close};
 use super::routine::{Setting, Writer, lines, written_lines};
 use super::tokens::block;
-use super::{jacobians, meta, parameters, sparsity};
+use super::{jacobians, meta, parameters, sparsity, tokens};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
 use crate::program::Step;
@@ -28,11 +28,13 @@ fn structure(compiled: &Compiled) -> TokenStream {
     let folded = compiled.program.folded.results.len() + compiled.ranks.groups.len();
     let folded = Literal::usize_suffixed(folded);
     let summary = meta::documentation(compiled);
+    let fields = quote!(folded: [T; #folded], parameters: #parameters<T>);
+    let declared = tokens::structure(visibility, name, fields);
     quote! {
         #(#documentation)*
         #(#[doc = #summary])*
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #visibility struct #name<T = f64> { folded: [T; #folded], parameters: #parameters<T> }
+        #declared
     }
 }
 

@@ -1,6 +1,8 @@
 //! Tokens one after the other.
 
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+use quote::quote;
+use syn::Visibility;
 
 /// Tokens that more are added to. `quote!` makes a stream of each piece and copies it into the next, which in thousands
 /// of lines is most of the work of an unoptimised macro.
@@ -51,6 +53,16 @@ impl Tokens {
 /// `{ tokens }`.
 pub(super) fn block(tokens: TokenStream) -> Group {
     Group::new(Delimiter::Brace, tokens)
+}
+
+/// `pub struct Name<T = f64> { fields }`. What Rust has to tell of the type, such as another one of its name, it tells at the
+/// name that the user has written.
+pub(super) fn structure(visibility: &Visibility, name: &Ident, fields: TokenStream) -> TokenStream {
+    let span = Span::call_site().located_at(name.span());
+    let word = Ident::new("struct", span);
+    let mut fields = block(fields);
+    fields.set_span(span);
+    quote!(#visibility #word #name<T = f64> #fields)
 }
 
 /// The words of which most lines are made.

@@ -253,7 +253,9 @@ impl Diagnostics {
             quote_spanned!(diagnostic.span=> ::core::compile_error!(#text);)
         });
         let mut told = match &self.constant {
-            Some(constant) => quote!(const #constant: usize = { #(#errors)* 0 };),
+            Some(constant) => {
+                quote!(const #constant: ::core::primitive::usize = { #(#errors)* 0 };)
+            }
             None => errors.collect(),
         };
         told.extend(self.warnings().iter().map(lint));

@@ -56,7 +56,7 @@ fn an_included_component_is_as_one_that_is_written_out() {
     let found = expand(CART.parse().unwrap(), &read).to_string();
     let written = CART.replace("include \"brake.mbg\";", BRAKE);
     let written = expand(written.parse().unwrap(), &no_file).to_string();
-    let dependency = "const _ : & [u8] = :: core :: include_bytes ! (:: core :: concat ! (:: core :: env ! (\"CARGO_MANIFEST_DIR\") , \"/brake.mbg\")) ;";
+    let dependency = "const _ : & [:: core :: primitive :: u8] = :: core :: include_bytes ! (:: core :: concat ! (:: core :: env ! (\"CARGO_MANIFEST_DIR\") , \"/brake.mbg\")) ;";
     assert_eq!(found, format!("{written} {dependency}"));
 }
 

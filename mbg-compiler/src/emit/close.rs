@@ -37,7 +37,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             t: T,
             x: ::mbg_runtime::__private::SVector<T, #n>,
             u: &::mbg_runtime::__private::SVector<T, #m>,
-            held: &[usize],
+            held: &[::core::primitive::usize],
         ) -> ::core::result::Result<::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::Trouble> {
             #positions
             #flows
@@ -120,7 +120,7 @@ pub(super) fn positions(compiled: &Compiled) -> Option<TokenStream> {
             t: T,
             x: &::mbg_runtime::__private::SVector<T, #n>,
             u: &::mbg_runtime::__private::SVector<T, #m>,
-            held: &[usize],
+            held: &[::core::primitive::usize],
         ) -> (
             ::mbg_runtime::__private::SVector<T, #size>,
             ::mbg_runtime::__private::SMatrix<T, #size, #n>,

@@ -40,7 +40,7 @@ pub(super) fn items(model: &ast::Model, size: &Ident) -> TokenStream {
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #size, #size, #size> for #name<T> { #behaviour }
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #size, #size, #size> for #name<T> {
             type With<L: ::mbg_runtime::Real> = #name<L>;
-            const STRAIGHT: bool = true;
+            const STRAIGHT: ::core::primitive::bool = true;
             fn converted<L: ::mbg_runtime::Real>(&self, _: impl ::core::ops::Fn(T) -> L) -> #name<L> { loop {} }
         }
     }
@@ -55,7 +55,7 @@ fn parameters(model: &ast::Model, name: &Ident, size: &Ident) -> TokenStream {
     if statements().any(|statement| matches!(statement, Statement::Broken(_))) {
         return quote! {
             /// Stands in for the parameters of a model with a mistake.
-            #visibility type #name<T = f64> = #whatever;
+            #visibility type #name<T = ::core::primitive::f64> = #whatever;
         };
     }
     // A name given twice is the mistake that has been told.

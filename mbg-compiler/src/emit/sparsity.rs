@@ -88,11 +88,12 @@ fn unrolled(pattern: &Pattern, plan: &Elimination) -> TokenStream {
     let [eliminated, substituted] = [eliminated(pattern, plan), substituted(plan)];
     let size = Literal::usize_suffixed(pattern.len());
     quote! {
-        const UNROLLED: bool = true;
+        const UNROLLED: ::core::primitive::bool = true;
         #[inline]
         fn eliminate<E: ::mbg_runtime::__private::Element>(
-            entry: impl ::core::ops::Fn(usize, usize) -> E, rows: &mut [[E; #size]; #size],
-        ) -> bool {
+            entry: impl ::core::ops::Fn(::core::primitive::usize, ::core::primitive::usize) -> E,
+            rows: &mut [[E; #size]; #size],
+        ) -> ::core::primitive::bool {
             let mut holds = true;
             #eliminated
             holds

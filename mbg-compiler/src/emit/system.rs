@@ -146,7 +146,7 @@ fn system(compiled: &Compiled) -> TokenStream {
         #[automatically_derived]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
             const META: &'static ::mbg_runtime::Meta = #meta;
-            const AUTONOMOUS: bool = #autonomous;
+            const AUTONOMOUS: ::core::primitive::bool = #autonomous;
             type Memory = #memory;
             type Conditioning = [T; #k];
 
@@ -249,7 +249,7 @@ fn convertible(compiled: &Compiled) -> TokenStream {
         #[automatically_derived]
         impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
             type With<L: ::mbg_runtime::Real> = #name<L>;
-            const STRAIGHT: bool = #straight;
+            const STRAIGHT: ::core::primitive::bool = #straight;
             #[inline]
             fn converted<L: ::mbg_runtime::Real>(
                 &self,

@@ -62,7 +62,7 @@ pub(super) fn structure(visibility: &Visibility, name: &Ident, fields: TokenStre
     let word = Ident::new("struct", span);
     let mut fields = block(fields);
     fields.set_span(span);
-    quote!(#visibility #word #name<T = f64> #fields)
+    quote!(#visibility #word #name<T = ::core::primitive::f64> #fields)
 }
 
 /// The words of which most lines are made.

@@ -173,7 +173,7 @@ impl Inclusion {
         let dependency = |file: &File| {
             let path = format!("/{}", file.path);
             quote! {
-                const _: &[u8] = ::core::include_bytes!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #path));
+                const _: &[::core::primitive::u8] = ::core::include_bytes!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #path));
             }
         };
         self.files.iter().map(dependency).collect()

@@ -1,4 +1,5 @@
-//! Generated code needs no lint to be allowed, and so users may forbid any.
+//! Generated code among what is forbidden and called by names of Rust: it needs no lint to be allowed, and takes its types from
+//! no scope.
 #![forbid(unused_variables, unused_parens, missing_docs, future_incompatible)]
 #![forbid(clippy::all, clippy::nursery)]
 
@@ -46,6 +47,45 @@ pub mod models {
             elbow: Revolute { axis: 2 } (upper, lower);
             arm: Body { mass: 1.0, inertia: 2.0 } (upper);
             forearm: Body { mass: 2.0, inertia: 2.0 } (lower);
+        }
+    }
+}
+
+/// A scope in which types of Rust are others.
+pub mod renamed {
+    #![allow(non_camel_case_types)]
+
+    /// No number.
+    pub struct f64;
+    /// No number.
+    pub struct usize;
+    /// No truth.
+    pub struct bool;
+
+    mbg_runtime::mbg! {
+        /// A loop that is closed.
+        #[derivative]
+        pub model Crank {
+            gravity [0.0, -9.81];
+            1 ground[3];
+            Sf still[3] { flow: 0.0 } -> ground;
+            1 crank[3];
+            1 pin[3];
+            1 rod[3];
+            turn: PlanarRevolute { initial: 0.5 } (ground, crank);
+            along: PlanarOffset { x: 1.0 } (crank, pin);
+            joint: PlanarRevolute { initial: -1.0 } (pin, rod);
+            wheel: PlanarBody { mass: 1.0, inertia: 2.0 } (crank);
+            bar: PlanarBody { mass: 1.0, inertia: 2.0 } (rod);
+            back: PlanarCut { joint: slot } (rod, ground);
+        }
+        /// What is eliminated row by row.
+        pub model Row {
+            1 first { I one { inertia: 1.0 } C spring { stiffness: 2.0 } }
+            1 second { I two { inertia: 1.0 } }
+            0 between { C link { stiffness: 2.0 } }
+            first -> between;
+            between -> second;
         }
     }
 }

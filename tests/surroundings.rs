@@ -20,6 +20,7 @@ pub mod models {
                 Se drive { effort: force + 2.0 * sin(3.0 * t) }
             }
             output position: m = spring.q;
+            output shares[4]: m = [1.570_796_3 * spring.q, -0.3183 * spring.q, 3.1416 * spring.q, 1.618_034 * spring.q];
         }
         /// No parameters, and nothing to fold.
         pub(crate) model Bare {

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::meta::spaced;
-use super::tokens::structure;
+use super::tokens::{self, structure};
 use crate::compile::Compiled;
 use crate::elaborate::Parameter;
 use crate::symbolic::print;
@@ -54,8 +54,8 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     } else {
         (TokenStream::new(), TokenStream::new())
     };
-    let (derived, debug) = if phantom {
-        (quote!(PartialEq, Eq), Some(bare_debug(&name)))
+    let (derived, written) = if phantom {
+        (TokenStream::new(), Some(bare_traits(&name)))
     } else {
         (quote!(Debug, PartialEq), None)
     };
@@ -64,7 +64,7 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
         #[doc = #documentation]
         #[derive(Clone, Copy, #derived)]
         #declared
-        #debug
+        #written
 
         #[automatically_derived]
         impl<T: ::mbg_runtime::Real> ::core::default::Default for #name<T> {
@@ -73,15 +73,18 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
     }
 }
 
-/// `Debug` of parameters without any, whose only field is nobody's business.
-fn bare_debug(name: &Ident) -> TokenStream {
+/// Traits of parameters without any, whose only field is nobody's business. Derived, clippy would have `Eq` beside them.
+fn bare_traits(name: &Ident) -> TokenStream {
     let text = name.to_string();
     quote! {
-        #[automatically_derived]
         impl<T> ::core::fmt::Debug for #name<T> {
             fn fmt(&self, formatter: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
                 formatter.write_str(#text)
             }
+        }
+
+        impl<T> ::core::cmp::PartialEq for #name<T> {
+            fn eq(&self, _: &Self) -> ::core::primitive::bool { true }
         }
     }
 }
@@ -102,7 +105,7 @@ pub(super) fn read(parameter: &Parameter) -> TokenStream {
 
 /// A number of the scalar's type.
 fn number(value: f64) -> TokenStream {
-    let literal = Literal::f64_suffixed(value.abs());
+    let literal = tokens::number(value.abs());
     let positive = quote!(T::from_f64(#literal));
     if value < 0.0 {
         quote!(-#positive)

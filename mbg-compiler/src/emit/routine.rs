@@ -229,6 +229,30 @@ fn last_parts(parts: &[Part<'_>], behind: &[Made]) -> FxHashMap<Made, usize> {
     last
 }
 
+/// Steps in a block, with what later ones read of them.
+fn bound(mut lines: Tokens, live: &[Ident], changes: Option<u64>) -> TokenStream {
+    if live.is_empty() {
+        let block = block(lines.stream());
+        let changes = changes.map(Literal::u64_unsuffixed);
+        return match changes {
+            Some(changes) => quote!(if changing & #changes != 0 #block),
+            None => quote!(#block),
+        };
+    }
+    lines.extend(quote!((#(#live,)*)));
+    let block = block(lines.stream());
+    let Some(changes) = changes.map(Literal::u64_unsuffixed) else {
+        return quote!(let (#(#live,)*) = #block;);
+    };
+    let zeros = live.iter().map(|_| quote!(zero));
+    quote! {
+        let (#(#live,)*) = if changing & #changes != 0 #block else {
+            let zero = whole(T::from_f64(0.0));
+            (#(#zeros,)*)
+        };
+    }
+}
+
 /// What writes the steps of a routine.
 #[derive(Clone)]
 pub(super) struct Writer<'a> {
@@ -296,21 +320,7 @@ impl<'a> Writer<'a> {
             made.retain(|made| last_part.get(made).is_some_and(|last| *last > number));
             made.sort_unstable();
             let live: Vec<Ident> = made.iter().map(|made| self.name(*made)).collect();
-            lines.extend(quote!((#(#live,)*)));
-            let block = block(lines.stream());
-            let zeros = live.iter().map(|_| quote!(zero));
-            body.extend(match part.changes {
-                Some(changes) => {
-                    let changes = Literal::u64_unsuffixed(changes);
-                    quote! {
-                        let (#(#live,)*) = if changing & #changes != 0 #block else {
-                            let zero = whole(T::from_f64(0.0));
-                            (#(#zeros,)*)
-                        };
-                    }
-                }
-                None => quote!(let (#(#live,)*) = #block;),
-            });
+            body.extend(bound(lines, &live, part.changes));
         }
         body
     }
@@ -546,7 +556,7 @@ impl<'a> Writer<'a> {
                 tokens.colons();
                 tokens.name(&words.from_f64);
                 let mut number = Tokens::default();
-                number.literal(Literal::f64_suffixed(value));
+                number.extend(super::tokens::number(value));
                 tokens.group(Delimiter::Parenthesis, number);
             }
             Source::Symbol(Symbol::Parameter(index)) => {

@@ -55,6 +55,43 @@ pub(super) fn block(tokens: TokenStream) -> Group {
     Group::new(Delimiter::Brace, tokens)
 }
 
+/// A number. What is next to a constant of Rust, by whose name clippy would have it called, is written as a quotient.
+pub(super) fn number(value: f64) -> TokenStream {
+    use std::f64::consts::*;
+    const NAMED: [f64; 19] = [
+        E,
+        PI,
+        TAU,
+        SQRT_2,
+        LN_2,
+        LN_10,
+        LOG2_10,
+        LOG2_E,
+        LOG10_2,
+        LOG10_E,
+        FRAC_1_PI,
+        FRAC_1_SQRT_2,
+        FRAC_2_PI,
+        FRAC_PI_2,
+        FRAC_PI_3,
+        FRAC_PI_4,
+        FRAC_PI_6,
+        FRAC_PI_8,
+        FRAC_2_SQRT_PI,
+    ];
+    // A power of two, by which nothing is rounded, and above those that lead from one constant to another.
+    const SCALE: f64 = 32.0;
+    if NAMED
+        .iter()
+        .any(|named| (value.abs() - named).abs() < 1e-2 * named)
+    {
+        let [scaled, scale] = [SCALE * value, SCALE].map(Literal::f64_suffixed);
+        quote!(#scaled / #scale)
+    } else {
+        TokenTree::from(Literal::f64_suffixed(value)).into()
+    }
+}
+
 /// `pub struct Name<T = f64> { fields }`. What Rust has to tell of the type, such as another one of its name, it tells at the
 /// name that the user has written.
 pub(super) fn structure(visibility: &Visibility, name: &Ident, fields: TokenStream) -> TokenStream {

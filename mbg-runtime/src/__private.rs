@@ -3,6 +3,8 @@
 use ::core::cell::Cell;
 
 pub use core;
+#[cfg(feature = "macros")]
+pub use mbg_macros::expand;
 pub use nalgebra::{SMatrix, SVector};
 
 pub use crate::solve::ITERATIONS;

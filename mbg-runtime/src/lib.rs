@@ -13,9 +13,6 @@
 //! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 //!
-//! What the macro writes calls this crate `mbg_runtime`. Where `Cargo.toml` gives it another name,
-//! `bonds = { package = "mbg-runtime", … }`, put `extern crate bonds as mbg_runtime;` at the root of your crate.
-//!
 //! Cargo does not optimise macros, in release builds neither. Where a large model takes long to expand, let it, in `Cargo.toml`:
 //!
 //! ```toml
@@ -33,6 +30,8 @@ pub mod __private;
 pub mod attitude;
 #[cfg(feature = "dispatch")]
 pub mod batch;
+#[cfg(all(test, feature = "macros"))]
+mod called;
 mod columns;
 mod convertible;
 mod dual;
@@ -81,5 +80,11 @@ pub use step::{
 };
 pub use system::{ParameterError, Power, System, Trouble};
 
+/// Compiles multibond graphs into flat, allocation-free state-space code, as [`language`] tells.
 #[cfg(feature = "macros")]
-pub use mbg_macros::mbg;
+#[macro_export]
+macro_rules! mbg {
+    ($($written:tt)*) => {
+        $crate::__private::expand! { $crate $($written)* }
+    };
+}

@@ -1,7 +1,7 @@
 //! Generated code among what is forbidden and called by names of Rust: it needs no lint to be allowed, and takes its types from
 //! no scope.
 #![forbid(unused_variables, unused_parens, missing_docs, future_incompatible)]
-#![forbid(clippy::all, clippy::nursery)]
+#![forbid(clippy::all)]
 
 /// Models of any visibility.
 pub mod models {

@@ -72,7 +72,8 @@ pub fn judge(
 #[must_use]
 pub fn diagram(graph: &BondGraph, strokes: &[bool]) -> String {
     let names = |bond: &Bond| (graph.end_name(&bond.from), graph.end_name(&bond.to));
-    let widths = graph.bonds.iter().map(|bond| names(bond).0.len());
+    let length = |name: &str| name.chars().count();
+    let widths = graph.bonds.iter().map(|bond| length(&names(bond).0));
     let width = widths.max().unwrap_or(0);
     let line = |(index, bond): (usize, &Bond)| {
         let arrow = match strokes.get(index) {
@@ -81,7 +82,9 @@ pub fn diagram(graph: &BondGraph, strokes: &[bool]) -> String {
             None => " ──⇀ ",
         };
         let (from, to) = names(bond);
-        format!("{from:width$} {arrow} {to} [{}]", bond.dimension)
+        // Formatting pads to 65,535 at most.
+        let space = " ".repeat(width - length(&from));
+        format!("{from}{space} {arrow} {to} [{}]", bond.dimension)
     };
     let lines: Vec<String> = graph.bonds.iter().enumerate().map(line).collect();
     lines.join("\n")

@@ -3,6 +3,8 @@
 
 mod models;
 
+use mbg_compiler::diagnostics::Diagnostics;
+use mbg_compiler::items;
 use models::{compiled, elaborated, flat, mistake};
 
 #[test]
@@ -326,6 +328,17 @@ fn a_choice_and_what_is_not_given_are_handed_on() {
     output b.h.law = 0
     output b.h.count = 3
     ");
+}
+
+/// Formatting pads to 65,535 characters.
+#[test]
+fn names_may_be_of_any_length() {
+    let name = "a".repeat(70_000);
+    let text = format!("model M {{ 1 {name} {{ I m {{ inertia: 1.0 }} }} 1 b; {name} -> b; }}");
+    let mut diagnostics = Diagnostics::new();
+    let code = items(text.parse().unwrap(), &mut diagnostics).to_string();
+    assert!(!diagnostics.any(), "{:?}", diagnostics.list());
+    assert!(code.contains(&format!("\\n{name} ")));
 }
 
 #[test]

@@ -365,6 +365,8 @@ impl core::fmt::Display for Trouble {
     }
 }
 
+impl core::error::Error for Trouble {}
+
 /// A parameter that breaks an assumption of the chosen causality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterError {
@@ -387,3 +389,20 @@ impl core::fmt::Display for ParameterError {
 }
 
 impl core::error::Error for ParameterError {}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+
+    use super::*;
+
+    #[test]
+    fn trouble_is_handed_on_as_any_error() {
+        let singular = Trouble::Singular {
+            name: "det",
+            value: 0.0,
+        };
+        let error: Box<dyn core::error::Error> = singular.into();
+        assert!(error.downcast_ref::<Trouble>() == Some(&singular));
+    }
+}

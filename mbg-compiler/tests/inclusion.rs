@@ -197,7 +197,7 @@ fn files_that_cannot_be_included_are_refused() {
         &'static [(&'static str, &'static str)],
         &'static str,
     );
-    let cases: [Case; 8] = [
+    let cases: [Case; 9] = [
         (
             "include \"nowhere.mbg\";",
             &[],
@@ -240,14 +240,72 @@ fn files_that_cannot_be_included_are_refused() {
             "`'` means nothing in the language [MBG0105]\n  in a.mbg:1:25\n    component A(port a) { } 'a'\n                            ^",
         ),
         (
-            "include \"a.mbg\" model M { }",
+            "model M { } include \"a.mbg\";",
             &[],
             "a file is included before the first model and component [MBG0105]\n  help: write `include \"joints/mine.mbg\";` at the top, with the path from the root of the crate",
+        ),
+        (
+            "include \"a/..\";",
+            &[],
+            "expected the path of a file between the quotes [MBG0105]",
         ),
     ];
     for (text, files, expected) in cases {
         assert_eq!(reported(text, files), [expected], "{text} {files:?}");
     }
+}
+
+#[test]
+fn a_statement_that_is_written_otherwise_is_told_as_it_is_written() {
+    let path = "expected the path of a file between quotes after `include`, found";
+    let cases = [
+        (
+            "include \"m/x.mbg\"",
+            "expected `;` after `\"m/x.mbg\"`, found `model`".to_owned(),
+        ),
+        ("include!(\"m/x.mbg\");", format!("{path} `!`")),
+        ("include b\"m/x.mbg\";", format!("{path} `b\"m/x.mbg\"`")),
+        ("include m/x.mbg;", format!("{path} `m`")),
+        (
+            "pub include \"m/x.mbg\";",
+            "expected `include` alone, found `pub` before it".to_owned(),
+        ),
+        (
+            "/// Parts.\n include \"m/x.mbg\";",
+            "expected `include` alone, found an attribute or a documentation comment before it"
+                .to_owned(),
+        ),
+    ];
+    for (statement, message) in cases {
+        let expected = format!("{message} [MBG0105]\n  help: write `include \"m/x.mbg\";`");
+        assert_eq!(
+            reported(&format!("{statement} model M {{ }}"), &[]),
+            [expected]
+        );
+    }
+    assert_eq!(
+        reported("include concat!(\"m/\", \"x.mbg\");", &[]),
+        [format!(
+            "{path} `concat` [MBG0105]\n  help: write `include \"joints/mine.mbg\";`"
+        )]
+    );
+}
+
+#[test]
+fn a_file_counts_once_however_its_path_is_written() {
+    let paths = [
+        "m/x.mbg",
+        "./m/x.mbg",
+        "m//x.mbg",
+        "m/../m/x.mbg",
+        "m/./x.mbg",
+    ];
+    let text: String = paths.map(|path| format!("include {path:?}; ")).concat();
+    assert_eq!(reported(&text, &[("m/x.mbg", BRAKE)]), [""; 0]);
+    assert_eq!(
+        reported("include \"../../x.mbg\";", &[("../../x.mbg", BRAKE)]),
+        [""; 0]
+    );
 }
 
 #[test]

@@ -245,6 +245,33 @@ fn fragments_of_other_macros_are_read() {
     assert_eq!(dump(&source), tree(INS));
 }
 
+/// A visibility, documentation and a unit that are handed on are several tokens in one group.
+#[test]
+fn fragments_of_several_tokens_are_read() {
+    let group = |text: &str| {
+        let inside: TokenStream = text.parse().expect("tokens");
+        TokenTree::from(Group::new(Delimiter::None, inside))
+    };
+    let (documentation, public) = (group("doc = \"M.\""), group("pub(crate)"));
+    let (quotient, product) = (group("N/m"), group("N*m"));
+    let tokens = quote::quote! {
+        #[#documentation] #public model M {
+            param a: #quotient = 1.0;
+            param b: 1/#product = 1.0;
+            #[#documentation] param c: #product^2 = 1.0;
+        }
+        #public model N { }
+    };
+    let mut diagnostics = Diagnostics::new();
+    let source = parse(tokens, &mut diagnostics);
+    assert!(!diagnostics.any(), "{:?}", diagnostics.list());
+    let written = "/**M.*/ pub(crate) model M {
+            param a: N/m = 1.0; param b: 1/(N*m) = 1.0; /**M.*/ param c: (N*m)^2 = 1.0;
+        }
+        pub(crate) model N { }";
+    assert_eq!(dump(&source), tree(written));
+}
+
 #[test]
 fn a_model_of_five_thousand_bonds_is_read() {
     let mut text = String::from("model Large {\n");

@@ -105,7 +105,13 @@ impl Inclusion {
         read: &Read<'_>,
     ) -> Result<(), Box<Diagnostic>> {
         let fail = |message: String| Err(Box::new(error(codes::INCLUDE, from, message)));
+        if path.starts_with('/') || Path::new(path).is_absolute() {
+            return fail(format!("`{path}` is no path from the root of the crate"));
+        }
         let path = plain(path);
+        if path.is_empty() {
+            return fail("expected the path of a file between the quotes".to_owned());
+        }
         if let Some(start) = open.iter().position(|other| *other == path) {
             open.push(path.clone());
             let cycle: Vec<String> = open[start..].iter().map(|it| format!("`{it}`")).collect();
@@ -115,9 +121,6 @@ impl Inclusion {
         }
         if self.files.iter().any(|file| file.path == path) {
             return Ok(());
-        }
-        if path.starts_with('/') || Path::new(&path).is_absolute() {
-            return fail(format!("`{path}` is no path from the root of the crate"));
         }
         let text = match read(&path) {
             Ok(text) => text,
@@ -213,17 +216,18 @@ fn first(trees: &[TokenTree]) -> Option<Statement> {
     })
 }
 
-/// A file is included where it cannot be, or not as it is written.
-pub(crate) fn misplaced(place: Span) -> Diagnostic {
-    let message = "a file is included before the first model and component";
-    let help =
-        "write `include \"joints/mine.mbg\";` at the top, with the path from the root of the crate";
-    error(codes::INCLUDE, place, message).help(help)
-}
-
-/// A path without steps that lead nowhere, so that each file has one.
+/// A path without steps that lead nowhere or back, so that each file has one.
 fn plain(path: &str) -> String {
-    let steps: Vec<&str> = path.split('/').filter(|step| *step != ".").collect();
+    let mut steps: Vec<&str> = Vec::new();
+    for step in path.split('/') {
+        match step {
+            "" | "." => {}
+            ".." if steps.last().is_some_and(|last| *last != "..") => {
+                steps.pop();
+            }
+            _ => steps.push(step),
+        }
+    }
     steps.join("/")
 }
 

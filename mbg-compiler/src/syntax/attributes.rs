@@ -60,6 +60,8 @@ impl Attributes {
             return;
         };
         let mut inner = Cursor::inside(group);
+        // What a `$d:meta` stands for.
+        inner.open();
         let word = inner.ident(0).map(ToString::to_string).unwrap_or_default();
         match word.as_str() {
             "doc" => {

@@ -30,10 +30,10 @@ pub(super) struct Cursor {
 }
 
 impl Cursor {
-    /// The tokens of the whole macro call.
+    /// The tokens of the whole macro call, where no value stands that an invisible group would keep together.
     pub(super) fn new(stream: TokenStream) -> Self {
         Self {
-            tokens: dissolved(stream),
+            tokens: opened(stream),
             at: 0,
             close: Span::call_site(),
             end: "the end of the macro call",
@@ -53,6 +53,14 @@ impl Cursor {
             at: 0,
             close: group.span_close(),
             end,
+        }
+    }
+
+    /// Replaces an invisible group that stands here by its tokens.
+    pub(super) fn open(&mut self) {
+        if let Some(group) = self.group(0, Delimiter::None) {
+            let inside = opened(group.stream());
+            self.tokens.splice(self.at..=self.at, inside);
         }
     }
 
@@ -79,6 +87,11 @@ impl Cursor {
     /// Steps over `count` tokens.
     pub(super) fn advance(&mut self, count: usize) {
         self.at = (self.at + count).min(self.tokens.len());
+    }
+
+    /// Steps back to a place, where an error belongs.
+    pub(super) fn step_back(&mut self, place: usize) {
+        self.at = place.min(self.at);
     }
 
     /// The identifier `offset` places ahead.
@@ -396,6 +409,20 @@ pub(crate) fn dissolved(stream: TokenStream) -> Vec<TokenTree> {
         let empty = matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::None && group.stream().is_empty());
         if !empty {
             tokens.push(token);
+        }
+    }
+    tokens
+}
+
+/// The tokens, without any of the invisible groups that `macro_rules!` leaves.
+fn opened(stream: TokenStream) -> Vec<TokenTree> {
+    let mut tokens = Vec::new();
+    for token in stream {
+        match token {
+            TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
+                tokens.extend(opened(group.stream()));
+            }
+            token => tokens.push(token),
         }
     }
     tokens

@@ -9,10 +9,9 @@ use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
 use super::recovery::Sink;
 use super::statements::body;
-use super::words;
+use super::{inclusions, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::inclusion;
 
 /// Reads everything.
 pub(super) fn source(tokens: TokenStream, sink: &mut Sink<'_>) -> Source {
@@ -40,9 +39,13 @@ pub(super) fn source(tokens: TokenStream, sink: &mut Sink<'_>) -> Source {
 /// Reads one model or component. It fails only before its name is known: from there on, what uses the name is
 /// spared a second error.
 fn item(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Item> {
+    let start = cursor.position();
     let attributes = Attributes::read(cursor, sink)?;
     let place = cursor.span();
     let visibility = visibility(cursor)?;
+    if cursor.ident(0).is_some_and(|word| word == words::INCLUDE) {
+        return Err(inclusions::refused(cursor, start));
+    }
     let public = !matches!(visibility, Visibility::Inherited);
     match keyword(cursor, public, sink)? {
         "component" => {
@@ -115,9 +118,6 @@ fn keyword(cursor: &mut Cursor, public: bool, sink: &mut Sink<'_>) -> Parsed<&'s
 
 /// What stands here is no item; perhaps it is a statement.
 fn elsewhere(cursor: &Cursor, error: Diagnostic, word: &str) -> Box<Diagnostic> {
-    if word == words::INCLUDE {
-        return Box::new(inclusion::misplaced(cursor.span()));
-    }
     let statement = words::STATEMENTS.contains(&word)
         || words::element(word).is_some()
         || cursor.junction_digit(0)

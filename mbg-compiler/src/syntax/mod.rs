@@ -19,6 +19,7 @@ pub mod dump;
 mod elements;
 mod elsewhere;
 mod expressions;
+mod inclusions;
 mod items;
 pub mod library;
 mod loops;

@@ -17,10 +17,9 @@ use super::expressions::{condition, expression};
 use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
-use super::{elsewhere, slips, words};
+use super::{elsewhere, inclusions, slips, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::inclusion;
 
 /// Reads the statements between braces.
 pub(super) fn body(group: &Group, sink: &mut Sink<'_>) -> Vec<Statement> {
@@ -87,7 +86,7 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
             return declaration(cursor, first, attributes, sink);
         }
         if word == words::INCLUDE {
-            return Err(Box::new(inclusion::misplaced(cursor.span())));
+            return Err(inclusions::misplaced(cursor));
         }
     }
     if word == "if" {

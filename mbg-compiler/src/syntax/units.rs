@@ -24,6 +24,10 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
     if !cursor.take_punct(':') {
         return None;
     }
+    // A `$u:expr` stays together below a power.
+    if !cursor.punct(1, '^') {
+        cursor.open();
+    }
     let length = cursor.length_until(|cursor, offset| {
         ['=', ',', ';'].iter().any(|&end| cursor.punct(offset, end))
             || opens(cursor, offset)
@@ -129,7 +133,9 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
         unit.text.push('1');
         return Ok(());
     }
-    let Some(group) = cursor.group(0, Delimiter::Parenthesis).cloned() else {
+    let mut brackets = [Delimiter::Parenthesis, Delimiter::None].into_iter();
+    let group = brackets.find_map(|brackets| cursor.group(0, brackets).cloned());
+    let Some(group) = group else {
         let report = *cursor.expected_with(codes::UNIT, "the name of a unit");
         return Err(Box::new(match cursor.punct(0, '%') {
             true => report.help("write `1`, and each value times 0.01"),

@@ -76,7 +76,7 @@ impl Diagnostic {
         ))
     }
 
-    /// The text that the user reads.
+    /// The text that the user reads. Keywords that are names are told as names, and typed as `r#type`.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!("{} [{}]", self.message, self.code.text);
@@ -84,6 +84,7 @@ impl Diagnostic {
             text.push_str("\n  ");
             text.push_str(note);
         }
+        text = without_raw(&text);
         if self.alike > 0 {
             text += &format!("\n  and {} more, which differ in their numbers", self.alike);
         }
@@ -101,6 +102,20 @@ impl Diagnostic {
             && without_numbers(&self.message).eq(without_numbers(&other.message))
             && place(self) == place(other)
     }
+}
+
+/// A text with `type` for `r#type`.
+fn without_raw(text: &str) -> String {
+    let mut parts = text.split("r#");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let is_name = part.starts_with(char::is_alphabetic);
+        if !is_name || plain.ends_with(|before: char| before.is_alphanumeric() || before == '_') {
+            plain += "r#";
+        }
+        plain += part;
+    }
+    plain
 }
 
 /// What tells places apart.

@@ -337,7 +337,7 @@ fn a_file_that_is_missing_is_the_only_mistake() {
 
 #[test]
 fn included_text_is_cut_as_the_compiler_cuts_it() {
-    let own = "/* a /* b */ c */ component C(port a[3]) { //! said\n let x = 1..2 + 1. + 1.e + a.x - 2e-3 * 1_000 -> ..= ; } //// d";
+    let own = "/* a /* b */ c */ component C(port a[3]) { //! said\n let x = 1..2 + 1. + 1.e + a.x - 2e-3 * 1_000 -> ..= ; r#type + r#c } //// d";
     for text in library::names().filter_map(library::text).chain([own]) {
         let read = |_: &str| Ok(text.to_owned());
         let found = Inclusion::of(

@@ -2,7 +2,7 @@
 
 mod told;
 
-use told::{diagnose, warned};
+use told::{diagnose, told, warned};
 
 /// Of a model with a wheel, after a component.
 fn around_a_wheel(component: &str, body: &str) -> String {
@@ -36,6 +36,25 @@ fn names_that_nothing_reads_are_told() {
                 1 other[3] { Se push { effort: factor * gust } } other[0] -> I n { inertia: 1.0 };
                 for i in 0..size { Sf spin { flow: k * turns } -> other[i + 1]; }";
     assert_eq!(around_a_wheel("", read), "");
+}
+
+/// `r#c` is the name `c`; a keyword is told without its mark and typed with it.
+#[test]
+fn raw_names_are_the_names() {
+    let text = "component K(port a, port r#fn) { a -> R r { resistance: 1.0 }; }
+        model M { param r#type = 1.0; param c = 1.0; 1 a { I m { inertia: 2.0 * (r#c) } } }";
+    insta::assert_snapshot!(warned(text), @"
+    1:26 `K` bonds nothing to its port `fn` [MBG0223]
+      help: remove it, or call it `_fn`
+    2:25 `M` does not read its parameter `type` [MBG0223]
+      help: remove it, or call it `_type`
+    ");
+    let text =
+        "model M { param c = 1.0; param r#c = 2.0; param x = r#in; 1 a { I m { inertia: x } } }";
+    insta::assert_snapshot!(told(text), @"
+    1:32 `c` is declared twice [MBG0202]
+    1:53 `in` is not declared [MBG0203]
+    ");
 }
 
 /// Values of a component are there for those who call it; its parameters are not.

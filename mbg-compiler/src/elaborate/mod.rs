@@ -46,6 +46,7 @@ use std::ops::Range;
 
 use proc_macro2::{Ident, Span};
 use syn::Expr;
+use syn::ext::IdentExt;
 
 pub use finish::component_table;
 pub use model::{
@@ -304,7 +305,7 @@ impl<'a> Builder<'a> {
     }
 
     fn path(&self, scope: usize, name: &Ident) -> String {
-        format!("{}{name}", self.scopes[scope].prefix)
+        format!("{}{}", self.scopes[scope].prefix, name.unraw())
     }
 
     /// Gives a name its meaning; a second meaning is an error.

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Ident, TokenTree};
 use quote::ToTokens;
+use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 use syn::{Expr, ExprLit, Lit};
 
@@ -48,7 +49,7 @@ pub fn warn(source: &Source, diagnostics: &mut Diagnostics) {
                     }
                     _ => report,
                 };
-                diagnostics.warn(report.help(format!("remove it, or call it `_{name}`")));
+                diagnostics.warn(report.help(format!("remove it, or call it `_{}`", name.unraw())));
             }
         }
     }
@@ -124,7 +125,8 @@ fn unbonded_ports(component: &Component, diagnostics: &mut Diagnostics) {
         if !read.contains(&name) && !bonded.contains(&name) && !name.starts_with('_') {
             let message = format!("`{}` bonds nothing to its port `{name}`", component.name);
             let report = error(codes::UNREAD, port.name.span(), message);
-            diagnostics.warn(report.help(format!("remove it, or call it `_{name}`")));
+            let help = format!("remove it, or call it `_{}`", port.name.unraw());
+            diagnostics.warn(report.help(help));
         }
     }
 }

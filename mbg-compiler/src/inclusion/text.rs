@@ -250,8 +250,11 @@ impl Reader<'_> {
         let rest = self.rest();
         let length = rest.find(|letter| !unicode_ident::is_xid_continue(letter));
         let word = &rest[..length.unwrap_or(rest.len())];
-        let mut ident = Ident::new(word, Span::call_site());
-        ident.set_span(self.take(word.len()));
+        let (mut ident, length) = match raw(rest) {
+            Some(name) => (Ident::new_raw(name, Span::call_site()), 2 + name.len()),
+            None => (Ident::new(word, Span::call_site()), word.len()),
+        };
+        ident.set_span(self.take(length));
         self.trees.push(ident.into());
     }
 
@@ -268,6 +271,17 @@ impl Reader<'_> {
         punct.set_span(self.take(1));
         self.trees.push(punct.into());
     }
+}
+
+/// The name behind `r#`, with which a text begins.
+fn raw(text: &str) -> Option<&str> {
+    let text = text.strip_prefix("r#")?;
+    let length = text.find(|letter| !unicode_ident::is_xid_continue(letter));
+    let name = &text[..length.unwrap_or(text.len())];
+    let begins = name.starts_with(|first| first == '_' || unicode_ident::is_xid_start(first));
+    // These cannot be raw.
+    let is_kept = ["_", "self", "Self", "super", "crate"].contains(&name);
+    (begins && !is_kept).then_some(name)
 }
 
 /// The first line of a text.

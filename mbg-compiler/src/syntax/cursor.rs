@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, Group, Ident, Spacing, Span, TokenStream, TokenTree
 use syn::LitInt;
 
 use super::ast::JunctionKind;
-use super::{LARGEST_DIMENSION, words};
+use super::{LARGEST_DIMENSION, raw, words};
 use crate::codes;
 use crate::diagnostics::{Code, Diagnostic, error};
 
@@ -408,7 +408,7 @@ pub(crate) fn dissolved(stream: TokenStream) -> Vec<TokenTree> {
         }
         let empty = matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::None && group.stream().is_empty());
         if !empty {
-            tokens.push(token);
+            tokens.push(raw::plain(token));
         }
     }
     tokens
@@ -422,7 +422,7 @@ fn opened(stream: TokenStream) -> Vec<TokenTree> {
             TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
                 tokens.extend(opened(group.stream()));
             }
-            token => tokens.push(token),
+            token => tokens.push(raw::plain(token)),
         }
     }
     tokens

@@ -9,7 +9,7 @@ use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
 use super::recovery::opens;
 use super::ternaries::ternary;
-use super::{dump, slips};
+use super::{dump, raw, slips};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 
@@ -90,7 +90,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         cursor.advance(length);
         return Err(report);
     }
-    let law = cursor.ahead(length).to_vec();
+    let law = raw::plain_within(cursor.ahead(length).to_vec());
     let tokens: TokenStream = law.iter().cloned().collect();
     let mut unread = 0;
     let parser = |input: ParseStream<'_>| {

@@ -23,6 +23,7 @@ mod inclusions;
 mod items;
 pub mod library;
 mod loops;
+mod raw;
 mod reads;
 mod recovery;
 mod slips;
@@ -36,6 +37,7 @@ pub use dump::dump;
 use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, TokenStream};
+use syn::ext::IdentExt;
 
 use crate::codes;
 use crate::diagnostics::Diagnostics;
@@ -100,6 +102,6 @@ fn names_of(name: &Ident, is_model: bool) -> Vec<(String, String)> {
     let parameters = format!("the parameters of model `{name}`");
     vec![
         (name.to_string(), format!("model `{name}`")),
-        (format!("{name}Parameters"), parameters),
+        (format!("{}Parameters", name.unraw()), parameters),
     ]
 }

@@ -330,6 +330,20 @@ fn a_choice_and_what_is_not_given_are_handed_on() {
     ");
 }
 
+#[test]
+fn raw_names_are_the_names() {
+    let text =
+        "model M { param r#type = 1.0; 1 a { I r#m { inertia: type_ } C c { stiffness: r#type } }
+        let type_ = 2.0 * (r#type); output r#in = r#c.q + m.p; }";
+    insta::assert_snapshot!(flat(text), @"
+    a -> m [1]
+    a -> c [1]
+    state m.p = 0
+    state c.q = 0
+    output in = c.q + m.p
+    ");
+}
+
 /// Formatting pads to 65,535 characters.
 #[test]
 fn names_may_be_of_any_length() {
@@ -438,6 +452,13 @@ fn mistakes_in_loops_are_told() {
     2:13 expected a whole number, found `5 / 2`, which is 2.5 [MBG0217]
       help: its whole part is `(5 - 5 % 2) / 2`
     ");
+    insta::assert_snapshot!(mistake("let z = 4000000000; for k in 0..z*z { 1 b; }"), @"2:33 expected a whole number, found `z * z`, which is beyond the largest, 9223372036854775807 [MBG0217]");
+    insta::assert_snapshot!(mistake("for k in 0..1/0 { 1 b; }"), @"2:13 expected a whole number, found `1 / 0`, which divides by zero [MBG0217]");
+    insta::assert_snapshot!(mistake("output y = a.f[18446744073709551616];"), @"2:16 expected a whole number, found `18446744073709551616`, which is beyond the largest, 9223372036854775807 [MBG0217]");
+    insta::assert_snapshot!(mistake("output y = a.f[1e3];"), @"
+    2:16 expected a whole number that is known while the model is compiled, found `1e3` [MBG0217]
+      help: a whole number has no decimal point: write `1000`
+    ");
     insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]");
     insta::assert_snapshot!(mistake("a[2..1] -> R r { resistance: 1.0 };"), @"2:1 `a[2..1]` selects no component [MBG0204]");
     insta::assert_snapshot!(mistake("output y = a.f[3];"), @"2:16 component 3 of a vector of 3 does not exist [MBG0204]");
@@ -494,11 +515,16 @@ fn mistakes_with_gravity_are_told() {
 fn the_size_of_loops_is_known_before_they_are_built() {
     let nested = "for i in 0..1000000 { for j in 0..1000000 { a.x -> R r { resistance: 1.0 }; } }";
     insta::assert_snapshot!(mistake(nested), @"
-    1:7 `M` has too many instances and iterations of loops, the limit is 4096 [MBG0601]
+    2:35 `M` has too many instances and iterations of loops, the limit is 4096 [MBG0601]
       help: split the scene into models that exchange inputs and outputs
     ");
     let dependent = "for i in 0..1000000 { for j in 0..i { for k in 0..j {} } }";
     insta::assert_snapshot!(mistake(dependent), @"
+    2:13 `M` has too many instances and iterations of loops, the limit is 4096 [MBG0601]
+      help: split the scene into models that exchange inputs and outputs
+    ");
+    let side_by_side = "for i in 0..4000 {} for j in 0..4000 {}";
+    insta::assert_snapshot!(mistake(side_by_side), @"
     1:7 `M` has too many instances and iterations of loops, the limit is 4096 [MBG0601]
       help: split the scene into models that exchange inputs and outputs
     ");

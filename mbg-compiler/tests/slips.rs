@@ -732,3 +732,14 @@ fn entries_that_break_a_symmetry_are_told() {
       two of its entries differ: entry `[0][1]`, entry `[1][0]`
     ");
 }
+
+#[test]
+fn a_whole_exponent_beyond_what_is_multiplied_out_is_told_as_a_power() {
+    let law = |law: &str| {
+        format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} C c {{ effort: {law} }} }} }}")
+    };
+    for slip in ["powi(q, 100)", "q ^ 100"] {
+        assert_eq!(typed(&law(slip)), ["pow(q, 100)", "q"]);
+    }
+    assert_eq!(told(&law("pow(q, 100)")), "");
+}

@@ -160,36 +160,50 @@ impl Constants {
     /// The number that an expression stands for.
     pub(super) fn evaluate(&self, expression: &Expr) -> Result<i64> {
         self.number(expression)
-            .ok_or_else(|| match self.broken_quotient(expression) {
+            .ok_or_else(|| match self.broken(expression) {
                 Some(report) => report,
                 None => unknown(expression),
             })
     }
 
-    /// What is wrong with a quotient of whole numbers that is not whole.
-    fn broken_quotient(&self, expression: &Expr) -> Option<Box<Diagnostic>> {
+    /// What is wrong with a number that is known and no whole number, or a larger one than can be held.
+    fn broken(&self, expression: &Expr) -> Option<Box<Diagnostic>> {
+        let refused = |which: String| {
+            let text = dump::expression(expression);
+            let message = format!("expected a whole number, found `{text}`, which {which}");
+            error(codes::WHOLE_NUMBER, expression.span(), message)
+        };
+        let large = || Box::new(refused(format!("is beyond the largest, {}", i64::MAX)));
         let binary = match expression {
-            Expr::Paren(inner) => return self.broken_quotient(&inner.expr),
-            Expr::Group(inner) => return self.broken_quotient(&inner.expr),
+            Expr::Paren(inner) => return self.broken(&inner.expr),
+            Expr::Group(inner) => return self.broken(&inner.expr),
+            Expr::Unary(unary) => return self.broken(&unary.expr),
+            Expr::Lit(literal) => {
+                let is_whole = matches!(&literal.lit, Lit::Int(it) if it.suffix().is_empty());
+                return (is_whole && self.number(expression).is_none()).then(large);
+            }
             Expr::Binary(binary) => binary,
             _ => return None,
         };
         let (left, right) = (self.number(&binary.left), self.number(&binary.right));
         let (Some(left), Some(right)) = (left, right) else {
             let mut parts = [&binary.left, &binary.right].into_iter();
-            return parts.find_map(|part| self.broken_quotient(part));
+            return parts.find_map(|part| self.broken(part));
         };
-        if !matches!(binary.op, BinOp::Div(_)) || right == 0 {
-            return None;
+        match binary.op {
+            BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) => Some(large()),
+            BinOp::Div(_) | BinOp::Rem(_) if right == 0 => {
+                Some(Box::new(refused("divides by zero".to_owned())))
+            }
+            BinOp::Div(_) => {
+                let report = refused(format!("is {}", left as f64 / right as f64));
+                let whole_part = elsewhere::whole_part(binary);
+                Some(Box::new(
+                    report.help(format!("its whole part is `{whole_part}`")),
+                ))
+            }
+            _ => None,
         }
-        let text = dump::expression(expression);
-        let quotient = left as f64 / right as f64;
-        let message = format!("expected a whole number, found `{text}`, which is {quotient}");
-        let report = error(codes::WHOLE_NUMBER, expression.span(), message);
-        let whole_part = elsewhere::whole_part(binary);
-        Some(Box::new(
-            report.help(format!("its whole part is `{whole_part}`")),
-        ))
     }
 
     fn number(&self, expression: &Expr) -> Option<i64> {
@@ -279,7 +293,7 @@ pub(super) fn plain_name(expression: &Expr) -> Option<String> {
 
 /// What to type for a whole number with a decimal point.
 pub(super) fn without_point(expression: &Expr) -> Option<String> {
-    let number = elsewhere::number(expression).filter(|it| it.fract() == 0.0)?;
+    let number = elsewhere::number(expression).filter(|it| it.fract() == 0.0 && it.abs() < 1e15)?;
     Some(format!(
         "a whole number has no decimal point: write `{number}`"
     ))

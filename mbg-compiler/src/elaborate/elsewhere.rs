@@ -7,6 +7,7 @@ use syn::{BinOp, Expr, ExprBinary, Lit, Member, UnOp};
 use super::constants::plain_name;
 use super::indices::component_index;
 use crate::graph::ElementKind;
+use crate::symbolic::LARGEST_POWER;
 use crate::syntax::ast::Element;
 use crate::syntax::dump;
 use crate::syntax::words::JUMPING_INPUT;
@@ -383,7 +384,7 @@ pub(super) fn power(base: &Expr, exponent: &Expr) -> String {
     let places = [("x", base), ("n", exponent)];
     match number(exponent) {
         Some(0.5) => format!("write `{}`", filled("sqrt(x)", &places)),
-        Some(whole) if whole.fract() == 0.0 => {
+        Some(whole) if whole.fract() == 0.0 && whole.abs() <= LARGEST_POWER => {
             format!("write `{}`", filled(&format!("powi(x, {whole})"), &places))
         }
         _ => {

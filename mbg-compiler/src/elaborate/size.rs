@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use proc_macro2::Span;
+use syn::spanned::Spanned;
 
 use super::constants::Constants;
 use crate::codes;
@@ -26,10 +27,14 @@ pub(super) fn check(
         probing: false,
     };
     let constants = Constants::of_model(&model.statements);
+    let mut place = model.name.span();
     let found = match counter.count(&model.statements, &constants) {
         Ok(size) if size.bonds <= LIMIT => return true,
         Ok(size) => format!("{} vector bonds", size.bonds),
-        Err(Stop::Scopes) => "too many instances and iterations of loops".to_owned(),
+        Err(Stop::Scopes(of_loop)) => {
+            place = of_loop.unwrap_or(place);
+            "too many instances and iterations of loops".to_owned()
+        }
         Err(Stop::Mistake(report)) => {
             diagnostics.report(*report);
             return false;
@@ -38,7 +43,7 @@ pub(super) fn check(
         Err(Stop::Unknown) => return true,
     };
     let message = format!("`{}` has {found}, the limit is {LIMIT}", model.name);
-    let report = error(codes::TOO_LARGE, model.name.span(), message);
+    let report = error(codes::TOO_LARGE, place, message);
     diagnostics.report(report.help("split the scene into models that exchange inputs and outputs"));
     false
 }
@@ -58,7 +63,7 @@ impl Size {
         self.bonds = grown(self.bonds, other.bonds);
         self.scopes = grown(self.scopes, other.scopes);
         if self.scopes > LIMIT {
-            return Err(Stop::Scopes);
+            return Err(Stop::Scopes(None));
         }
         Ok(())
     }
@@ -66,8 +71,8 @@ impl Size {
 
 /// Why counting ended early.
 enum Stop {
-    /// Too many instances and iterations to count on.
-    Scopes,
+    /// Too many instances and iterations to count on, and the end of the loop that makes them, if one does.
+    Scopes(Option<Span>),
     /// A bound of a loop or a condition is not known.
     Unknown,
     /// A condition is not known, or a component contains itself.
@@ -159,8 +164,19 @@ impl Counter<'_> {
         }))
     }
 
-    /// All iterations at once where they are alike; otherwise one after the other, as far as the limit.
+    /// What a loop makes, which is told of where it is too much.
     fn repeated(&mut self, repeated: &Loop, constants: &Constants) -> Result<Size, Stop> {
+        let place = self.library.as_ref().map(|(_, instance)| *instance);
+        let place = place.unwrap_or_else(|| repeated.end.span());
+        let size = self.iterations(repeated, constants);
+        size.map_err(|stop| match stop {
+            Stop::Scopes(inner) => Stop::Scopes(inner.or(Some(place))),
+            stop => stop,
+        })
+    }
+
+    /// All iterations at once where they are alike; otherwise one after the other, as far as the limit.
+    fn iterations(&mut self, repeated: &Loop, constants: &Constants) -> Result<Size, Stop> {
         let range = match constants.range(repeated) {
             Ok(range) => range,
             Err(_) if self.probing => return Err(Stop::Unknown),

@@ -743,3 +743,56 @@ fn a_whole_exponent_beyond_what_is_multiplied_out_is_told_as_a_power() {
     }
     assert_eq!(told(&law("pow(q, 100)")), "");
 }
+
+#[test]
+fn a_name_that_is_missing_is_told_as_that() {
+    for (slip, written) in [
+        ("input: N;", "input name: N;"),
+        ("output: m = 1.0;", "output name: m = 1.0;"),
+        ("let: m = 2.0;", "let name: m = 2.0;"),
+    ] {
+        assert_eq!(typed(&arm(slip)), [written]);
+    }
+    insta::assert_snapshot!(told(&arm("param: kg = 2.0;")), @"
+    3:6 expected a name after `param`, found `:` [MBG0101]
+      help: write `param name: kg = 2.0;`
+    ");
+}
+
+#[test]
+fn one_slip_is_one_mistake() {
+    let mass = |junction: &str, statement: &str| {
+        told(&format!(
+            "model M {{ input u; 1 v {{ I m {{ inertia: 1.0 }} {junction} }}\n{statement} }}"
+        ))
+    };
+    insta::assert_snapshot!(mass("Se s { effort: u }", "integral way: m = v.f initial: 1.0; output y = way;"), @"
+    2:23 expected `,` after `f`, found `initial` [MBG0101]
+      help: write `, initial: …`
+    ");
+    insta::assert_snapshot!(mass("hinge: Revolute { axis: 2 } (a, b); Se s { effort: u }", ""), @"
+    1:47 expected an element, found `hinge` [MBG0101]
+      help: instances stand outside the junction's braces, each in a statement of its own: `hinge: Revolute { axis: 2 } (a, b);`
+    ");
+    insta::assert_snapshot!(mass("Se drive { flow: u }", ""), @"
+    1:58 `Se` does not know `flow` [MBG0207]
+      help: a source of flow is written `Sf drive { flow: u }`
+      help: its words are `effort`
+    ");
+    insta::assert_snapshot!(mass("Se s { effort: u }", "output y[2]: m [v.f, v.f];"), @"
+    2:16 expected `=` after `m`, found `[` [MBG0101]
+      help: write `= [v.f, v.f]`
+    ");
+    insta::assert_snapshot!(mass("Se s { effort: static }", ""), @"
+    1:62 expected an expression, found the keyword `static` [MBG0101]
+      help: write another name, such as `static_`
+    ");
+    insta::assert_snapshot!(mass("Se s { effort: u }", "output w = let;"), @"
+    2:12 expected an expression, found the keyword `let` [MBG0101]
+      help: write another name, such as `let_`
+    ");
+    insta::assert_snapshot!(mass("Se s { effort: m.p as f64 }", ""), @"
+    1:66 `as` changes a type, and every value is a number [MBG0213]
+      help: write `m.p`
+    ");
+}

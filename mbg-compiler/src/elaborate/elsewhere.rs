@@ -10,7 +10,7 @@ use crate::graph::ElementKind;
 use crate::symbolic::LARGEST_POWER;
 use crate::syntax::ast::Element;
 use crate::syntax::dump;
-use crate::syntax::words::JUMPING_INPUT;
+use crate::syntax::words::{ELEMENTS, JUMPING_INPUT, law_words};
 
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
@@ -169,6 +169,29 @@ pub(super) fn law(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Opti
         return by_converter(law, &word.to_string(), value);
     }
     here(COEFFICIENTS, kind, word, value)
+}
+
+/// Whether some element has a law behind this word.
+pub(super) fn is_law(word: &Ident) -> bool {
+    let mut laws = ELEMENTS.iter().flat_map(|(_, kind)| law_words(*kind));
+    laws.any(|law| word == law)
+}
+
+/// What to type for a source that is given what the other kind gives.
+pub(super) fn other_source(
+    element: &Element,
+    word: &Ident,
+    value: Option<&Expr>,
+) -> Option<String> {
+    let (other, what) = match element.kind {
+        ElementKind::Se if word == "flow" => ("Sf", "flow"),
+        ElementKind::Sf if word == "effort" => ("Se", "effort"),
+        _ => return None,
+    };
+    let (name, value) = (&element.name, value_text(value));
+    Some(format!(
+        "a source of {what} is written `{other} {name} {{ {what}: {value} }}`"
+    ))
 }
 
 /// What to type for the start of a storage that stands behind a word of another name.

@@ -203,6 +203,12 @@ impl<N: Names> Evaluator<'_, N> {
             Expr::Array(array) => self.array(array),
             Expr::If(choice) => self.choice(choice),
             Expr::Block(block) => self.branch(&block.block),
+            Expr::Cast(cast) => {
+                let message = "`as` changes a type, and every value is a number";
+                let report = error(codes::EXPRESSION, cast.as_token.span, message);
+                let value = dump::expression(&cast.expr);
+                Err(Box::new(report.help(format!("write `{value}`"))))
+            }
             _ => fail(
                 expression.span(),
                 "expected a law: numbers, names, + - * /, functions, vectors or `if`",

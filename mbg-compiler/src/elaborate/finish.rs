@@ -295,6 +295,7 @@ impl<'a> Builder<'a> {
             let (kind, word, value) = (element.kind, &field.name, field.value.as_ref());
             let here = elsewhere::law(kind, word, value);
             let here = here.or_else(|| elsewhere::start(kind, word, value));
+            let here = here.or_else(|| elsewhere::other_source(element, word, value));
             let report = match here.or_else(|| elsewhere::effort_at_start(element, word, value)) {
                 Some(help) => report.help(help),
                 None => report.did_you_mean(&field.name.to_string(), &words),
@@ -312,6 +313,8 @@ impl<'a> Builder<'a> {
             let found = || element.fields.iter().map(|field| &field.name);
             let mut laws = law_words(element.kind).iter();
             let is_other = found().any(|it| elsewhere::law(element.kind, it, None).is_some());
+            let is_other = is_other
+                || found().any(|it| elsewhere::is_law(it) && !words.iter().any(|word| it == word));
             if is_other || laws.any(|law| is_misspelt(law, found(), &words)) {
                 self.missing = Some(Missing::Broken);
             }

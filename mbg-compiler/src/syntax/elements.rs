@@ -197,7 +197,8 @@ fn next_element(cursor: &mut Cursor, start: usize) {
         }
         let brace = cursor.group(0, Delimiter::Brace).is_some();
         cursor.advance(1);
-        if brace {
+        // The junctions of an instance belong to it.
+        if brace && cursor.group(0, Delimiter::Parenthesis).is_none() {
             return;
         }
     }

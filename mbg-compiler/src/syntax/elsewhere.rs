@@ -164,6 +164,14 @@ pub(super) fn unit_in_brackets(cursor: &Cursor, word: &str, name: &Ident) -> Opt
     ))
 }
 
+/// What to type for `input: N;`, which lacks a name.
+pub(super) fn unnamed(cursor: &Cursor, word: &Ident) -> Option<String> {
+    let mut named = ["param", "input", "output", "integral", "let"].iter();
+    let is_unnamed = cursor.punct(0, ':') && named.any(|named| word == named);
+    let rest = || dump::tokens(until_end(cursor, 0));
+    is_unnamed.then(|| format!("write `{word} name{};`", rest()))
+}
+
 /// What to type for a declaration with a type, which was read as its name.
 pub(super) fn without_type(cursor: &Cursor, word: &str, name: &Ident) -> Option<String> {
     let is_type = TYPES.iter().any(|known| name == known) && cursor.ident(0).is_some();

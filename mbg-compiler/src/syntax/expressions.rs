@@ -9,7 +9,7 @@ use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
 use super::recovery::opens;
 use super::ternaries::ternary;
-use super::{dump, raw, slips};
+use super::{dump, raw, slips, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 
@@ -106,6 +106,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
             return report;
         }
         let slip = slips::remainder(&law).or_else(|| slips::side_by_side(&law));
+        let slip = slip.or_else(|| keyword(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })
 }
@@ -123,6 +124,25 @@ fn ends(cursor: &Cursor, offset: usize) -> bool {
     cursor.punct(offset, ',') || cursor.punct(offset, ';') || field || statement
 }
 
+/// A keyword of Rust in a law that cannot be read, where a name was probably meant.
+fn keyword(law: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    law.iter().find_map(|token| match token {
+        TokenTree::Group(group) => {
+            let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+            keyword(&inside)
+        }
+        TokenTree::Ident(word) => {
+            let text = word.to_string();
+            let is_known = ["_", "if", "else", "true", "false"].contains(&text.as_str());
+            let message = format!("expected an expression, found the keyword `{text}`");
+            let report = || error(codes::SYNTAX, word.span(), message);
+            (words::is_reserved(&text) && !is_known)
+                .then(|| Box::new(report().help(words::another_name(&text))))
+        }
+        _ => None,
+    })
+}
+
 /// Tells in our words, and at a token of the law, what `syn` could not read.
 fn translated(cursor: &Cursor, failure: &syn::Error, ended: bool) -> Box<Diagnostic> {
     const END: &str = "unexpected end of input";
@@ -134,7 +154,7 @@ fn translated(cursor: &Cursor, failure: &syn::Error, ended: bool) -> Box<Diagnos
         .trim_end_matches('.');
     let cut = text.starts_with(END);
     let wanted = text.trim_start_matches(END).trim_start_matches(", ");
-    let wanted = if wanted.is_empty() {
+    let wanted = if wanted.is_empty() || wanted.starts_with("expected one of") {
         "expected an expression"
     } else {
         wanted

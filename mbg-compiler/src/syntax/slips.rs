@@ -92,6 +92,11 @@ pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
              {{ junction -> R name {{ … }}; }}`"
         ));
     }
+    if let Some(written) = instance(cursor) {
+        return Some(format!(
+            "instances stand outside the junction's braces, each in a statement of its own: `{written}`"
+        ));
+    }
     let kind = cursor.punct(1, ':') && elements::kind(cursor, 2).is_some();
     kind.then(|| {
         format!(
@@ -99,6 +104,23 @@ pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
             dump::tokens(cursor.peek(2).cloned().into_iter().collect())
         )
     })
+}
+
+/// The instance that stands here, as it is written.
+fn instance(cursor: &Cursor) -> Option<String> {
+    let (name, component, behind) = match cursor.punct(1, ':') {
+        true => (cursor.ident(0)?, cursor.ident(2)?, 3),
+        false => (cursor.ident(1)?, cursor.ident(0)?, 2),
+    };
+    let groups = [behind, behind + 1].map(|at| cursor.group(at, Delimiter::Parenthesis));
+    let ports = groups.into_iter().flatten().next()?;
+    let parameters = cursor.group(behind, Delimiter::Brace);
+    Some(statement(
+        &name.to_string(),
+        &component.to_string(),
+        parameters,
+        ports,
+    ))
 }
 
 /// The digit of a junction by its name in words, as in `One v { … }` or `J1 v { … }`.
@@ -126,12 +148,19 @@ pub(super) fn written(
     braces: Option<&Group>,
     parentheses: &Group,
 ) -> String {
+    format!(
+        "an instance is written `{}`",
+        statement(name, component, braces, parentheses)
+    )
+}
+
+fn statement(name: &str, component: &str, braces: Option<&Group>, parentheses: &Group) -> String {
     let ports = dump::tokens(parentheses.stream());
     let parameters = match braces.map(|group| dump::tokens(group.stream())) {
         Some(words) if !words.is_empty() => format!(" {{ {words} }}"),
         _ => String::new(),
     };
-    format!("an instance is written `{name}: {component}{parameters} ({ports});`")
+    format!("{name}: {component}{parameters} ({ports});")
 }
 
 /// Words that stand between values in other languages.

@@ -1,6 +1,6 @@
 //! The statements of a model or component.
 
-use proc_macro2::{Delimiter, Group, Ident};
+use proc_macro2::{Delimiter, Group, Ident, TokenTree};
 use syn::Expr;
 
 use super::ast::{
@@ -50,7 +50,7 @@ pub(super) fn body(group: &Group, sink: &mut Sink<'_>) -> Vec<Statement> {
 }
 
 /// One broken statement for each name that the tokens would have declared, or one without a name.
-fn broken(tokens: &[proc_macro2::TokenTree], sink: &mut Sink<'_>) -> Vec<Statement> {
+fn broken(tokens: &[TokenTree], sink: &mut Sink<'_>) -> Vec<Statement> {
     sink.lose(tokens);
     let names = sink.lost();
     if names.is_empty() {
@@ -114,9 +114,11 @@ fn statement(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
 
 /// A keyword as the name of an instance or as the label of a loop.
 fn keyword(cursor: &Cursor, word: &str) -> Option<Box<Diagnostic>> {
-    let is_keyword =
-        words::is_reserved(word) || words::STATEMENTS.contains(&word) || word == words::INCLUDE;
-    if !is_keyword || !cursor.punct(1, ':') {
+    let is_declaration = words::STATEMENTS.contains(&word);
+    let is_keyword = words::is_reserved(word) || is_declaration || word == words::INCLUDE;
+    let is_named = matches!(cursor.peek(3), Some(TokenTree::Group(_)))
+        || cursor.ident(2).is_some_and(|word| word == "for");
+    if !is_keyword || !cursor.punct(1, ':') || is_declaration && !is_named {
         return None;
     }
     let what = match cursor.ident(2)?.to_string().as_str() {
@@ -182,7 +184,7 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
 
 /// The digit of a junction that has grown together with its name, as in `1body`.
 fn glued(cursor: &Cursor) -> Option<char> {
-    let Some(proc_macro2::TokenTree::Literal(literal)) = cursor.peek(0) else {
+    let Some(TokenTree::Literal(literal)) = cursor.peek(0) else {
         return None;
     };
     literal
@@ -200,6 +202,11 @@ fn declaration(
     sink: &mut Sink<'_>,
 ) -> Parsed<Statement> {
     cursor.advance(1);
+    if let Some(help) = elsewhere::unnamed(cursor, &word) {
+        return Err(Box::new(
+            (*cursor.expected(&format!("a name after `{word}`"))).help(help),
+        ));
+    }
     match word.to_string().as_str() {
         "param" if choice_follows(cursor) => {
             choice(cursor, attributes, sink).map(Statement::Choice)
@@ -232,7 +239,7 @@ fn closure(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Clos
         }
         cursor.advance(1);
     }
-    let displacement = trailing(cursor, "displacement", expression)?;
+    let displacement = trailing(cursor, "displacement", expression, sink)?;
     finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
     Ok(Closure {
         name,
@@ -397,7 +404,7 @@ fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     let unit = unit(cursor, sink);
     equals(cursor, dimension.is_some(), unit.is_some())?;
     let rate = expression(cursor, &format!("the rate of `{name}` after `=`"))?;
-    let initial = trailing(cursor, "initial", expression)?;
+    let initial = trailing(cursor, "initial", expression, sink)?;
     finish(cursor, sink, &ending(cursor, initial.is_some()))?;
     let dimension = dimension.unwrap_or(1);
     Ok(Integral {
@@ -434,7 +441,7 @@ fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
     if !inner.ended() {
         return Err(inner.expected("`)` after the angular velocity"));
     }
-    let initial = trailing(cursor, "initial", expression)?;
+    let initial = trailing(cursor, "initial", expression, sink)?;
     finish(cursor, sink, &ending(cursor, initial.is_some()))?;
     Ok(Attitude {
         documentation: attributes.documentation,
@@ -490,7 +497,11 @@ fn equals(cursor: &mut Cursor, dimension: bool, unit: bool) -> Parsed<()> {
         (true, false) => "`:` or `=`",
         (false, false) => "`[`, `:` or `=`",
     };
-    Err(cursor.expected(&format!("{wanted} after {}", cursor.previous())))
+    let mut report = cursor.expected(&format!("{wanted} after {}", cursor.previous()));
+    let value = cursor.group(0, Delimiter::Bracket);
+    let help = value.map(|value| format!("write `= [{}]`", dump::tokens(value.stream())));
+    report.helps.extend(help);
+    Err(report)
 }
 
 /// Reads `, initial: value` or its like, the value by `read`.
@@ -498,11 +509,17 @@ fn trailing(
     cursor: &mut Cursor,
     wanted: &str,
     read: fn(&mut Cursor, &str) -> Parsed<Expr>,
+    sink: &mut Sink<'_>,
 ) -> Parsed<Option<Expr>> {
+    let word = |cursor: &Cursor| cursor.ident(0).map(ToString::to_string).unwrap_or_default();
     if !cursor.take_punct(',') {
-        return Ok(None);
+        if word(cursor) != wanted || !cursor.punct(1, ':') {
+            return Ok(None);
+        }
+        let report = *cursor.expected(&format!("`,` after {}", cursor.previous()));
+        sink.report(Box::new(report.help(format!("write `, {wanted}: …`"))));
     }
-    let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    let word = word(cursor);
     if word != wanted {
         let mut error = *cursor.expected(&format!("`{wanted}: value` after `,`"));
         if words::nearest(&word, &[wanted]).is_some() {
@@ -578,7 +595,7 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         }
     }
     let initial_flow = if coordinate {
-        trailing(cursor, "initial_flow", condition)?
+        trailing(cursor, "initial_flow", condition, sink)?
     } else {
         None
     };

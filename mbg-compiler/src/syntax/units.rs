@@ -40,7 +40,7 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
         factors: Vec::new(),
     };
     let parsed = product(cursor, &mut unit, 1, DEPTH).and_then(|()| {
-        if cursor.position() < end {
+        if cursor.position() < end && !value_follows(cursor) {
             return Err(cursor.expected_with(codes::UNIT, "`*`, `/`, `^` or the end of the unit"));
         }
         Ok(())
@@ -56,6 +56,12 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
             None
         }
     }
+}
+
+/// Whether a value stands here, for which the `=` is missing.
+fn value_follows(cursor: &Cursor) -> bool {
+    let is_number = matches!(cursor.peek(0), Some(TokenTree::Literal(_)));
+    is_number || cursor.group(0, Delimiter::Bracket).is_some()
 }
 
 /// What to type for a unit with dots or nothing between its factors, or with `**` before its exponents.

@@ -31,7 +31,7 @@ pub(super) const THEN: &str = "then";
 pub(super) const ITEMS: &[&str] = &["model", "component"];
 
 /// The elements by name.
-pub(super) const ELEMENTS: &[(&str, ElementKind)] = &[
+pub(crate) const ELEMENTS: &[(&str, ElementKind)] = &[
     ("Se", ElementKind::Se),
     ("Sf", ElementKind::Sf),
     ("I", ElementKind::I),

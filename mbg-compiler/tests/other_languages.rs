@@ -477,3 +477,19 @@ fn functions_without_parentheses_and_products_are_told_before_prefixes() {
     assert_eq!(told(&resistor("effort: 2 * f")), "");
     assert_eq!(typed(&resistor("resistance: 2 k")), ["2e3", "2 * k"]);
 }
+
+#[test]
+fn attributes_of_rust_are_told_with_where_they_stand() {
+    let text = "#[derive(Default)] #[cfg(unix)] #[serde(default)]
+        model M { #[allow(dead_code)] param x = 1.0; 1 v { I m { inertia: x } } }";
+    insta::assert_snapshot!(told(text), @"
+    1:3 expected `derivative` or a documentation comment, found `derive` [MBG0101]
+      help: the types of a model are `Clone`, `Copy`, `Debug` and `PartialEq`; other traits are written behind the call: `impl Trait for Model { … }`
+    1:22 expected `derivative` or a documentation comment, found `cfg` [MBG0101]
+      help: what is there only then has a call of its own: `#[cfg(unix)] mbg! { … }`
+    1:35 expected `derivative` or a documentation comment, found `serde` [MBG0101]
+      help: attributes of Rust are not handed on; what a type is to have besides is written behind the call: `impl Trait for Model { … }`
+    2:21 expected `derivative` or a documentation comment, found `allow` [MBG0101]
+      help: it stands on a module around the call: `#[allow(dead_code)] mod models { … mbg! { … } }`
+    ");
+}

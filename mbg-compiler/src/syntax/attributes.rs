@@ -1,12 +1,12 @@
 //! `#[derivative]` and documentation comments.
 
-use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::Attribute;
 use syn::parse::Parser;
 
 use super::cursor::{Cursor, Parsed};
 use super::recovery::Sink;
-use super::words;
+use super::{dump, words};
 use crate::codes;
 
 /// What stands before an item, a statement or an element.
@@ -87,11 +87,29 @@ impl Attributes {
             }
             _ => {
                 let mut error = *inner.expected("`derivative` or a documentation comment");
-                if let Some(near) = words::nearest(&word, &["derivative"]) {
-                    error = error.help(format!("did you mean `{near}`?"));
-                }
+                error = match words::nearest(&word, &["derivative"]) {
+                    Some(near) => error.help(format!("did you mean `{near}`?")),
+                    None => error.help(of_rust(&word, group)),
+                };
                 sink.report(Box::new(error));
             }
         }
+    }
+}
+
+/// What to type instead of an attribute of Rust.
+fn of_rust(word: &str, group: &Group) -> String {
+    let attribute = format!("#[{}]", dump::tokens(group.stream()));
+    match word {
+        "cfg" => format!("what is there only then has a call of its own: `{attribute} mbg! {{ … }}`"),
+        "allow" | "expect" | "warn" | "deny" | "forbid" | "cfg_attr" | "deprecated" => {
+            format!("it stands on a module around the call: `{attribute} mod models {{ … mbg! {{ … }} }}`")
+        }
+        "derive" => "the types of a model are `Clone`, `Copy`, `Debug` and `PartialEq`; other traits are written behind the call: \
+                     `impl Trait for Model { … }`"
+            .to_owned(),
+        _ => "attributes of Rust are not handed on; what a type is to have besides is written behind the call: \
+              `impl Trait for Model { … }`"
+            .to_owned(),
     }
 }

@@ -179,6 +179,28 @@ fn times_that_cannot_be_stepped_through_are_refused() {
     assert!((found - 1.0).abs() < 1e-12);
 }
 
+#[test]
+fn times_of_samples_are_told_as_that() {
+    let solver = Adaptive::new(Tsit5, 1e-6, 1e-6);
+    let refused = |times: &[f64]| {
+        let start = SVector::from([1.0, 0.0]);
+        let run = solver.sample(&Written(Oscillator), &(), 1.0, start, times, |_, _| {});
+        run.unwrap_err().to_string()
+    };
+    assert_eq!(
+        refused(&[1.5, f64::NAN]),
+        "stopped at t = 1: the times of the start and of samples must be finite, and so must their distance"
+    );
+    assert_eq!(
+        refused(&[0.5]),
+        "stopped at t = 0.5: no sample may be before the start"
+    );
+    assert_eq!(
+        refused(&[2.0, 1.5]),
+        "stopped at t = 1.5: the times of samples must ascend"
+    );
+}
+
 /// Nobody tells of this pulse: no step may be longer than half of it.
 #[test]
 fn the_longest_step_of_an_automatic_choice_sees_a_short_pulse() {

@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::dense::{Direction, Step};
 use super::problem::Problem;
-use super::{Cause, Statistics, Stopped, check_finite, check_times, less, piece_end};
+use super::{Cause, Statistics, Stopped, check_finite, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
 
 /// Where and when a run until an event has ended.
@@ -280,6 +280,23 @@ pub trait Integrator<const N: usize> {
     }
 }
 
+/// Refuses a sample whose time is not finite, before the start or before the last sample.
+fn check_sample<T: Real>(time: T, (t0, last): (T, T)) -> Result<(), Stopped> {
+    let refused = |at: T, what| Err(Stopped::new(at, Cause::Argument(what)));
+    if !seen(time - t0).is_finite() {
+        let what =
+            "the times of the start and of samples must be finite, and so must their distance";
+        return refused(t0, what);
+    }
+    if less(time, t0) {
+        return refused(time, "no sample may be before the start");
+    }
+    if less(time, last) {
+        return refused(time, "the times of samples must ascend");
+    }
+    Ok(())
+}
+
 /// Runs over the last of the times and gives the state at each, with what the run remembers of nonlinear loops.
 fn sample<D, T, S, I, const N: usize, const M: usize, const P: usize>(
     integrator: &D,
@@ -297,11 +314,7 @@ where
 {
     let mut last = t0;
     for &time in times {
-        check_times(t0, time)?;
-        if less(time, last) {
-            let what = "the times of samples must ascend";
-            return Err(Stopped::new(time, Cause::Argument(what)));
-        }
+        check_sample(time, (t0, last))?;
         last = time;
     }
     let (mut problem, x) = begin(integrator, system, input, (t0, last), x0)?;

@@ -13,6 +13,16 @@
 //! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 //!
+//! A crate with models depends on this one, and on `nalgebra`, whose vectors and matrices models take and give:
+//!
+//! ```toml
+//! [dependencies]
+//! mbg-runtime = "0.1"
+//! nalgebra = "0.35"
+//! ```
+//!
+//! `nalgebra` must have that version; what this crate uses is at [`nalgebra`](mod@nalgebra), too, without a line of its own.
+//!
 //! Cargo does not optimise macros, in release builds neither. Where a large model takes long to expand, let it, in `Cargo.toml`:
 //!
 //! ```toml
@@ -41,13 +51,13 @@ mod input;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 mod linearised;
-#[cfg(feature = "macros")]
+#[cfg(any(feature = "macros", all(doc, not(doctest))))]
 #[doc = include_str!("language.md")]
 pub mod language {}
-#[cfg(feature = "macros")]
+#[cfg(any(feature = "macros", all(doc, not(doctest))))]
 #[doc = include_str!("joints.md")]
 pub mod joints {}
-#[cfg(feature = "macros")]
+#[cfg(any(feature = "macros", all(doc, not(doctest))))]
 #[doc = include_str!("library.md")]
 pub mod library {}
 mod meta;
@@ -72,6 +82,7 @@ pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use sparsity::{Elimination, Sparsity};
 #[cfg(feature = "numeris")]
+pub use nalgebra;
 pub use step::Verner9;
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,

@@ -404,5 +404,7 @@ mod tests {
         };
         let error: Box<dyn core::error::Error> = singular.into();
         assert!(error.downcast_ref::<Trouble>() == Some(&singular));
+        let cause: Box<dyn core::error::Error> = crate::Cause::Guard.into();
+        assert!(cause.is::<crate::Cause>());
     }
 }

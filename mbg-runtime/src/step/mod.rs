@@ -143,6 +143,8 @@ impl fmt::Display for Cause {
 
 impl core::error::Error for Stopped {}
 
+impl core::error::Error for Cause {}
+
 impl Stopped {
     fn new<T: Real>(time: T, cause: Cause) -> Self {
         Self {

@@ -24,6 +24,11 @@ pub use sampled::{SampleError, Sampled};
 /// | [`Sampled`] | values at times, held or joined by lines |
 /// | [`Sum`] | two inputs added |
 /// | `&I` | what `I` is |
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not an input of {M} numbers for this scalar",
+    note = "a closure becomes an input by `Smooth(|t| SVector::from([…]))`, numbers that stay by `Constant(SVector::from([…]))`",
+    note = "it has as many numbers as the model has inputs; a model without any takes `()`"
+)]
 pub trait Input<T: Real, const M: usize> {
     /// The value at `t` on the piece that begins at, or covers, the time `since`.
     ///

@@ -78,11 +78,11 @@ pub use four::Four;
 pub use input::{Constant, Differentiable, Input, Pulse, SampleError, Sampled, Smooth, Sum};
 pub use linearised::Linearised;
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
+pub use nalgebra;
 pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use sparsity::{Elimination, Sparsity};
 #[cfg(feature = "numeris")]
-pub use nalgebra;
 pub use step::Verner9;
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,

@@ -34,11 +34,9 @@ pub fn rotation(pool: &mut Pool, matrix: [[f64; 3]; 3]) -> Product {
     let turns = planes(&matrix).map(|(first, second)| {
         let turn = Turn::towards((first, second), rest[first][first], rest[second][first]);
         let (cosine, sine) = (turn.cosine.value, turn.sine.value);
-        for column in 0..3 {
-            let [along, across] = [first, second].map(|row| rest[row][column]);
-            rest[first][column] = cosine * along + sine * across;
-            rest[second][column] = cosine * across - sine * along;
-        }
+        let [along, across] = [first, second].map(|row| rest[row]);
+        rest[first] = [0, 1, 2].map(|k| cosine * along[k] + sine * across[k]);
+        rest[second] = [0, 1, 2].map(|k| cosine * across[k] - sine * along[k]);
         turn
     });
     let made = turns.iter().filter(|turn| !turn.is_nothing());

@@ -1,7 +1,7 @@
 //! Random trees of rigid bodies on hinges and slides, of components of the library, against Kane's equations in the
-//! axes of the world, and the efforts in them against Newton's and Euler's: on the ground, or on a body that flies. Joints at right angles and at zero are as
-//! frequent as any: nothing that is divided by may vanish. Masses and lengths are often round numbers: what is equal by
-//! chance must not be taken for the same.
+//! axes of the world, and the efforts in them against Newton's and Euler's: on the ground, or on a body that flies. Joints
+//! at right angles and at zero are as frequent as any: nothing that is divided by may vanish. Masses and lengths are often
+//! round numbers: what is equal by chance must not be taken for the same.
 
 #[path = "../../tests/references/dense.rs"]
 #[allow(clippy::unwrap_used)]

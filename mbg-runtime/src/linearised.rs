@@ -71,8 +71,9 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// # Ok::<(), mbg_runtime::ParameterError>(())
 /// ```
 ///
-/// What a state must fulfil besides is a row of its own there, since no rate tells of it: `q · q − 1` for each quaternion, whose
-/// numbers could all be small, and the gaps of closed loops. [`System::close`] leaves a state in which all of that holds as it is.
+/// What a state must fulfil besides is a row of its own there, since no rate tells of it: `q · q − 1` for each quaternion,
+/// whose numbers could all be small, and the gaps of closed loops. A state in which all of that holds [`System::close`] leaves
+/// as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearised<T, const N: usize, const M: usize, const P: usize> {
     /// The state matrix `A = ∂f/∂x`.

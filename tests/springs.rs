@@ -8,13 +8,14 @@ use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
 use nalgebra::{Matrix3, Rotation3, SVector, UnitQuaternion, Vector3};
 
 mbg! {
-    component Held(port 1 hub[6]) {
+    component Held() {
         param orientation: quaternion | matrix;
         param stiffness: N*m/rad;
-        param initial[3]: rad = [0.5, 1.6, -0.4];
+        1 hub[6];
         1 blade[6];
+        Sf fixed[6] { flow: 0.0 } -> hub;
         joint: Spherical {
-            orientation: orientation, stiffness: stiffness, rest: [0.3, -0.2, 0.1], initial: initial,
+            orientation: orientation, stiffness: stiffness, rest: [0.3, -0.2, 0.1], initial: [0.5, 1.6, -0.4],
             initial_rate: [4.0, -7.0, 9.0]
         } (hub, blade);
         body: Body { mass: 2.0, inertia: diag(1.0, 2.0, 2.5) } (blade);
@@ -23,11 +24,8 @@ mbg! {
     #[derivative]
     pub model ByQuaternion {
         causality componentwise;
-        1 hub[6];
-        Sf fixed[6] { flow: 0.0 } -> hub;
-        bearing: Held {
-            orientation: quaternion, stiffness: [[100.0, 30.0, -20.0], [30.0, 400.0, 50.0], [-20.0, 50.0, 900.0]]
-        } (hub);
+        let rigid = [[100.0, 30.0, -20.0], [30.0, 400.0, 50.0], [-20.0, 50.0, 900.0]];
+        bearing: Held { orientation: quaternion, stiffness: rigid } ();
         output torque[3]: N*m = bearing.joint.rotation.spring.e;
         output quaternion[4] = bearing.joint.quaternion;
     }
@@ -35,21 +33,14 @@ mbg! {
     #[derivative]
     pub model ByMatrix {
         causality componentwise;
-        1 hub[6];
-        Sf fixed[6] { flow: 0.0 } -> hub;
-        bearing: Held {
-            orientation: matrix, stiffness: [[100.0, 30.0, -20.0], [30.0, 400.0, 50.0], [-20.0, 50.0, 900.0]]
-        } (hub);
-        output torque[3]: N*m = bearing.joint.rotation.spring.e;
-        output quaternion[4] = bearing.joint.quaternion;
+        let rigid = [[100.0, 30.0, -20.0], [30.0, 400.0, 50.0], [-20.0, 50.0, 900.0]];
+        bearing: Held { orientation: matrix, stiffness: rigid } ();
     }
 
     #[derivative]
     pub model ByNumber {
         causality componentwise;
-        1 hub[6];
-        Sf fixed[6] { flow: 0.0 } -> hub;
-        bearing: Held { orientation: quaternion, stiffness: 400.0 } (hub);
+        bearing: Held { orientation: quaternion, stiffness: 400.0 } ();
         output torque[3]: N*m = bearing.joint.rotation.spring.e;
     }
 }

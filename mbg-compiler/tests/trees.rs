@@ -33,6 +33,8 @@ struct Body {
     turn: Matrix3<f64>,
     /// A force on the frame's origin, in its axes.
     push: Vector3<f64>,
+    /// Whether it is on the centre of mass instead.
+    is_central: bool,
     mass: f64,
     inertia: Matrix3<f64>,
     centre: Vector3<f64>,
@@ -89,11 +91,13 @@ fn text(base: &str, tree: &[Body]) -> String {
         )
         .expect("a string grows");
         if body.push != Vector3::zeros() {
-            writeln!(
-                text,
-                "    Se push{k} {{ effort: {push} }} -> frame{k}[3..6];"
-            )
-            .expect("a string grows");
+            let place = if body.is_central {
+                format!("body{k}.velocity")
+            } else {
+                format!("frame{k}[3..6]")
+            };
+            writeln!(text, "    Se push{k} {{ effort: {push} }} -> {place};")
+                .expect("a string grows");
         }
         if let Some(acceleration) = body.servo {
             let rate = body.rate;
@@ -177,7 +181,7 @@ impl Frame {
 struct Load {
     centre: Frame,
     inertia: Matrix3<f64>,
-    /// On its centre, and what of it comes from the joint.
+    /// On its centre from the frame, and what of it comes from the joint.
     force: Vector3<f64>,
     held: Vector3<f64>,
     /// About the centre, from the joint.
@@ -194,6 +198,7 @@ impl Body {
             by: Vector3::zeros(),
             turn: Matrix3::identity(),
             push: Vector3::zeros(),
+            is_central: false,
             mass: 1.3,
             inertia: Matrix3::new(0.9, 0.05, -0.02, 0.05, 0.7, 0.0, -0.02, 0.0, 1.1),
             centre: Vector3::new(0.1, 0.0, -0.2),
@@ -211,9 +216,14 @@ impl Load {
         let push = frame.axes * body.push;
         let force = body.mass * (centre.acceleration - GRAVITY);
         let torque = inertia * centre.alpha + centre.omega.cross(&(inertia * centre.omega));
+        let held = force - push;
+        let (force, arm) = match body.is_central {
+            true => (held, Vector3::zeros()),
+            false => (force, frame.place - centre.place),
+        };
         Self {
-            held: force - push,
-            held_torque: torque - (frame.place - centre.place).cross(&push),
+            held,
+            held_torque: torque - arm.cross(&push),
             force,
             centre,
             inertia,
@@ -384,7 +394,7 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
         any::<usize>(),
         prop::bool::weighted(slides),
         0..3_usize,
-        (place(), axes(), force),
+        (place(), axes(), force, any::<bool>()),
     );
     let positive = || prop_oneof![prop::sample::select(&[1.0, 2.0, 0.5][..]), 0.2..2.0_f64];
     let moments = prop_oneof![
@@ -409,7 +419,7 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
                 |(
                     k,
                     (
-                        (parent, slides, axis, (by, turn, push)),
+                        (parent, slides, axis, (by, turn, push, is_central)),
                         (mass, inertia, centre),
                         (position, rate, servo),
                     ),
@@ -422,6 +432,7 @@ fn tree(sizes: Range<usize>, slides: f64, servos: f64) -> impl Strategy<Value = 
                         by,
                         turn,
                         push,
+                        is_central,
                         mass,
                         inertia,
                         centre,

@@ -79,11 +79,13 @@ pub(super) fn number(value: f64) -> TokenStream {
         FRAC_PI_8,
         FRAC_2_SQRT_PI,
     ];
+    // Clippy takes 3.14 and 6.28, the shortest that it knows, for constants.
+    const NEAR: f64 = 1e-3;
     // A power of two, by which nothing is rounded, and above those that lead from one constant to another.
     const SCALE: f64 = 32.0;
     if NAMED
         .iter()
-        .any(|named| (value.abs() - named).abs() < 1e-2 * named)
+        .any(|named| (value.abs() - named).abs() < NEAR * named)
     {
         let [scaled, scale] = [SCALE * value, SCALE].map(Literal::f64_suffixed);
         quote!(#scaled / #scale)

@@ -39,6 +39,10 @@ pub(super) struct Inertia {
     pub(super) law: Option<Given>,
     /// What is left in the balance.
     pub(super) left: Expression,
+    /// Coefficient of the rate in the balance.
+    coefficient: Image,
+    /// Value of the rate at which the known efforts vanish.
+    value: Image,
 }
 
 /// A component of a vector to which an arm adds.
@@ -82,17 +86,6 @@ impl Arm {
     }
 }
 
-/// A component of a mass that may be taken.
-struct Component {
-    rate: usize,
-    balance: usize,
-    law: Option<Given>,
-    /// Of the rate, in the balance.
-    coefficient: Image,
-    /// Value at which the known efforts vanish.
-    value: Image,
-}
-
 struct Carrier<'a> {
     system: &'a System,
     tree: &'a Tree,
@@ -106,10 +99,10 @@ struct Carrier<'a> {
     /// Value that each rate is counted from.
     values: BTreeMap<usize, Image>,
     left: BTreeMap<usize, Expression>,
-    inertias: Vec<Inertia>,
 }
 
 impl Carried {
+    /// Those of a block; none if rows besides need what rates are counted from.
     pub(super) fn of(
         pool: &mut Pool,
         system: &System,
@@ -128,112 +121,94 @@ impl Carried {
             path: Vec::new(),
             values: BTreeMap::new(),
             left: BTreeMap::new(),
-            inertias: Vec::new(),
         };
         // A moment of inertia about its principal axes has laws as a mass has, and is none.
         let turns = |vector: &Triple| frames.iter().any(|frame| frame.omega == *vector);
         let masses = vectors.iter().filter(|vector| !turns(vector));
         let masses = masses.filter_map(|vector| Some((*vector, carrier.mass(pool, vector)?)));
-        let mut open: Vec<(Triple, [Component; 3])> = masses.collect();
+        let mut open: Vec<(Triple, [Inertia; 3])> = masses.collect();
+        let mut inertias = Vec::new();
         // Where a force is known beside gravity, the value at the base is found by another mass.
-        let mut count = usize::MAX;
-        while open.len() < count {
-            count = open.len();
-            open.retain(|(vector, mass)| carrier.take(pool, *vector, mass).is_none());
+        loop {
+            let fits = |(vector, mass): &mut _| carrier.take(pool, *vector, mass).is_some();
+            let taken: Vec<(Triple, [Inertia; 3])> = open.extract_if(.., fits).collect();
+            if taken.is_empty() {
+                break;
+            }
+            inertias.extend(taken.into_iter().flat_map(|(_, mass)| mass));
         }
-        if carrier.moves_more() {
+        if carrier.moves_more(&inertias) {
             return Self::default();
         }
         Self {
             ends: carrier.path.iter().flat_map(ends).collect(),
             left: carrier.left,
-            inertias: carrier.inertias,
+            inertias,
         }
     }
 }
 
 impl Carrier<'_> {
     /// The components of the mass that moves with a vector.
-    fn mass(&self, pool: &Pool, vector: &Triple) -> Option<[Component; 3]> {
-        let component = |rate: usize| {
-            let others = self.system.rows_with(rate);
-            let inertia = only(others.filter(|row| self.tree.given_by(*row).is_none()))?;
-            let own = pool.image(self.system.entry(inertia, rate));
-            let others = self.system.row(inertia);
-            let mut efforts = others.filter(|(column, _)| *column != rate);
-            let Some((effort, _)) = efforts.next() else {
-                return self.component(pool, rate, inertia, None, own);
-            };
-            let law = Given::of(self.system, inertia, effort)?;
-            let balance = only(self.system.rows_with(effort).filter(|row| *row != inertia))?;
-            let [(_, amount)] = *law.terms else {
-                return None;
-            };
-            let own = pool.image(self.system.entry(balance, effort));
-            let coefficient = own.times(pool.image(amount));
-            (law.constant == Expression::ZERO)
-                .then(|| self.component(pool, rate, balance, Some(law), coefficient))?
-        };
-        let [x, y, z] = vector.map(component);
+    fn mass(&self, pool: &Pool, vector: &Triple) -> Option<[Inertia; 3]> {
+        let [x, y, z] = vector.map(|rate| self.inertia(pool, rate));
         Some([x?, y?, z?])
     }
 
-    fn component(
-        &self,
-        pool: &Pool,
-        rate: usize,
-        balance: usize,
-        law: Option<Given>,
-        coefficient: Image,
-    ) -> Option<Component> {
-        let known = pool.image(self.system.right(balance));
-        Some(Component {
+    /// The inertia that a rate moves alone.
+    fn inertia(&self, pool: &Pool, rate: usize) -> Option<Inertia> {
+        let rows = self.system.rows_with(rate);
+        let row = only(rows.filter(|row| self.tree.given_by(*row).is_none()))?;
+        let mut others = self.system.row(row).filter(|(column, _)| *column != rate);
+        let (balance, law, coefficient) = match others.next() {
+            None => (row, None, pool.image(self.system.entry(row, rate))),
+            Some((effort, _)) => {
+                let law = Given::of(self.system, row, effort)?;
+                let balance = only(self.system.rows_with(effort).filter(|it| *it != row))?;
+                let [(_, amount)] = *law.terms else {
+                    return None;
+                };
+                (law.constant == Expression::ZERO).then_some(())?;
+                let own = pool.image(self.system.entry(balance, effort));
+                (balance, Some(law), own.times(pool.image(amount)))
+            }
+        };
+        let known = self.system.right(balance);
+        Some(Inertia {
             rate,
             balance,
             law,
+            left: known,
             coefficient,
-            value: known.times(coefficient.inverted()?).negated(),
+            value: pool.image(known).times(coefficient.inverted()?).negated(),
         })
     }
 
-    /// Takes a mass that moves with a vector; none, and nothing is done, if it does not fit to those that are taken.
-    fn take(&mut self, pool: &mut Pool, vector: Triple, mass: &[Component; 3]) -> Option<()> {
+    /// Takes a mass that moves with a vector; none if it does not fit to those that are taken.
+    fn take(&mut self, pool: &mut Pool, vector: Triple, mass: &mut [Inertia; 3]) -> Option<()> {
         let branch = self.branch(pool, vector)?;
         let own = [0, 1, 2].map(|k| mass[k].value);
         let passed = self.pass(pool, &branch, own)?;
-        let value = |rate: &usize| match passed.get(rate) {
-            Some((value, _)) => *value,
-            None => self.values[rate],
-        };
-        let left = |component: &Component| {
-            let known = pool.image(self.system.right(component.balance));
-            let value = value(&component.rate);
-            pool.find(known.plus(component.coefficient.times(value)))
-        };
-        let inertia = |component: &Component| {
-            Some(Inertia {
-                rate: component.rate,
-                balance: component.balance,
-                law: component.law.clone(),
-                left: left(component)?,
-            })
-        };
-        let inertias: Vec<Inertia> = mass.iter().map(inertia).collect::<Option<_>>()?;
+        for inertia in &mut *mass {
+            let passed = passed.get(&inertia.rate).map(|(value, _)| value);
+            let value = *passed.or_else(|| self.values.get(&inertia.rate))?;
+            let known = pool.image(self.system.right(inertia.balance));
+            inertia.left = pool.find(known.plus(inertia.coefficient.times(value)))?;
+        }
         for (rate, (value, left)) in passed {
             self.values.insert(rate, value);
             self.left.insert(rate, left);
         }
         self.path.extend(branch);
-        self.inertias.extend(inertias);
         Some(())
     }
 
     /// Whether other rows hold rates that are counted anew: what they are counted from, which nothing computes, is known in
     /// the rows of the path and in the balances of the masses alone.
-    fn moves_more(&self) -> bool {
-        let efforts = self.inertias.iter().filter_map(|it| it.law.as_ref());
+    fn moves_more(&self, inertias: &[Inertia]) -> bool {
+        let efforts = inertias.iter().filter_map(|it| it.law.as_ref());
         let efforts: BTreeSet<usize> = efforts.map(|law| law.unknown).collect();
-        let balances: BTreeSet<usize> = self.inertias.iter().map(|it| it.balance).collect();
+        let balances: BTreeSet<usize> = inertias.iter().map(|it| it.balance).collect();
         let is_mass = |row: usize| {
             let mut columns = self.system.row(row).map(|(column, _)| column);
             balances.contains(&row) || columns.any(|column| efforts.contains(&column))
@@ -365,8 +340,8 @@ impl Carrier<'_> {
             for k in 0..3 {
                 let new = (values[k], left[k]);
                 let before = self.values.get(&vector[k]);
-                let before = before.map_or(values[k], |value| *value);
-                if before != values[k] || passed.insert(vector[k], new).is_some_and(|it| it != new)
+                if before.is_some_and(|before| *before != values[k])
+                    || passed.insert(vector[k], new).is_some_and(|it| it != new)
                 {
                     return None;
                 }

@@ -22,7 +22,6 @@ pub(super) struct Shift {
 }
 
 /// `unknown = Σ coefficient · other + constant`.
-#[derive(Clone)]
 pub(super) struct Given {
     pub(super) unknown: usize,
     pub(super) terms: Vec<(usize, Expression)>,

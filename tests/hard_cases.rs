@@ -62,4 +62,5 @@ cases! {
     steps_too_long = "steps too long";
     steps_too_short = "steps too short";
     gust = "gust";
+    pulses = "pulses";
 }

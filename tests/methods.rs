@@ -29,5 +29,7 @@ mod stability;
 mod starts;
 #[path = "methods/stops.rs"]
 mod stops;
+#[path = "methods/thresholds.rs"]
+mod thresholds;
 #[path = "methods/times.rs"]
 mod times;

@@ -57,6 +57,8 @@ pub struct Compiled {
     pub strokes: Vec<bool>,
     /// Where the Jacobian by the states can differ from zero.
     pub pattern: Pattern,
+    /// How many thresholds each argument of choices has; none has an angle of waves.
+    pub thresholds: Vec<usize>,
     /// Things worth knowing.
     pub notes: Vec<String>,
 }
@@ -111,6 +113,7 @@ impl Routines {
     pub const CLOSED_FLOWS: usize = 10;
     pub const DERIVATIVE_TIME: usize = 11;
     pub const CHANGES: usize = 12;
+    pub const THRESHOLDS: usize = 13;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -197,8 +200,9 @@ fn finish(
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
-    let changes = changes::of(&mut pool, rates);
-    let requests: [Request; 13] = [
+    let changes = changes::times(&mut pool, rates);
+    let arguments = changes::arguments(&mut pool, rates);
+    let requests: [Request; 14] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -212,6 +216,7 @@ fn finish(
         flows.evaluated().into(),
         jacobian(&mut pool, rates, &[Symbol::Time]).entries.into(),
         changes.into(),
+        changes::listed(&arguments).into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);
@@ -242,6 +247,7 @@ fn finish(
         dependent: verdict.dependent,
         strokes: verdict.strokes,
         pattern,
+        thresholds: arguments.iter().map(|it| it.thresholds.len()).collect(),
         notes,
         states: answers.states,
         model,

@@ -68,6 +68,29 @@ pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
     next.is_finite().then(|| T::from_f64(next))
 }
 
+/// How many of these thresholds are below an argument.
+#[inline]
+pub fn below<T: Real>(argument: T, thresholds: &[T]) -> i32 {
+    let is_below = |it: &&T| crate::step::less(**it, argument);
+    thresholds.iter().filter(is_below).count() as i32
+}
+
+/// Twice the number of half turns of an angle: a wave over it turns at least once between two of them.
+#[inline]
+pub fn half_turns<T: Real>(angle: T) -> i32 {
+    let turns = crate::step::seen(angle) / core::f64::consts::PI;
+    let whole = turns as i32;
+    let below = i32::from(f64::from(whole) > turns);
+    whole.saturating_sub(below).saturating_mul(2)
+}
+
+/// The largest difference of two counts.
+#[inline]
+pub fn most_between<const G: usize>(from: [i32; G], to: [i32; G]) -> u32 {
+    let between = from.into_iter().zip(to).map(|(from, to)| from.abs_diff(to));
+    between.max().unwrap_or(0)
+}
+
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.
 #[inline]
 pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(

@@ -185,6 +185,23 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
+    /// How many thresholds lie between two points, each a time, a state and an input: the most of one argument of choices in
+    /// the laws, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's points over `q`.
+    ///
+    /// [`Adaptive`](crate::Adaptive) looks into a step with any, of which its estimate of the error may be small by chance, and
+    /// between them where there are several, since something may be there that neither ends nor stages of the step meet.
+    /// Generated models give it, for arguments that the state has a part in. Waves over time or one state, such as `cos(q) > 0.9`,
+    /// go back over their thresholds, so half turns of their angles are counted as well, twice each. Zero unless it is given.
+    #[must_use]
+    fn passed(
+        &self,
+        _from: (T, &SVector<T, N>, &SVector<T, M>),
+        _to: (T, &SVector<T, N>, &SVector<T, M>),
+        _memory: &mut Self::Memory,
+    ) -> u32 {
+        0
+    }
+
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero. One whose size is that of inertias is divided by the largest
     /// that it has at some other orientations of joints, all else at its start. One that is solved with numbers has the

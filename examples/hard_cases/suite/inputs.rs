@@ -1,4 +1,4 @@
-//! The gust of the paper, told of and not told of.
+//! What is short beside the steps over rest: the gust of the paper, told of and not told of, and laws that pulse.
 
 use mbg_runtime::{
     Adaptive, Dop853, Estimating, Input, Integrator, Radau5, Smooth, Stopped, System, Tsit5,
@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::ins::gust as declared;
 use super::ins_reference::PULSE;
+use super::models::{Cam, CamParameters, Slide, SlideParameters};
 use super::stiffness::ins_model;
 use super::{Expected, Found, Line, apart};
 
@@ -56,5 +57,58 @@ pub(crate) fn gust() -> Vec<Line> {
     both(Tsit5, &mut lines);
     both(Dop853, &mut lines);
     both(Radau5, &mut lines);
+    lines
+}
+
+/// A slide that is held back at three places of its way, 30 s at rest otherwise.
+fn slide(solver: &impl Integrator<2>) -> Result<Found, Stopped> {
+    #[allow(clippy::expect_used, reason = "its own constants suit it")]
+    let model = Slide::<f64>::new(SlideParameters::default()).expect("a width above zero");
+    let mut last = model.initial_state();
+    let statistics = solver.integrate(&model, &(), 0.0, 30.0, last, |step| last = *step.state())?;
+    // Its energy falls by the work of a range, a triangle and another one.
+    let energy = 8.0 - 10.0 * 0.2 - 20.0 * 0.1 - 10.0 * 0.15;
+    Ok(Found::new(
+        (last[0] - f64::sqrt(2.0 * energy)).abs(),
+        statistics,
+    ))
+}
+
+/// A shaft that a cam holds back for 1 % of each round.
+fn cam(solver: &impl Integrator<2>) -> Result<Found, Stopped> {
+    #[allow(clippy::expect_used, reason = "it has no parameter")]
+    let model = Cam::<f64>::new(CamParameters::default()).expect("no parameter");
+    let mut last = model.initial_state();
+    let statistics = solver.integrate(&model, &(), 0.0, 10.0, last, |step| last = *step.state())?;
+    let [rate, angle] = [last[0], last[1]];
+    // It begins on the top of the cam, and ends between two.
+    let rounds = (angle / core::f64::consts::TAU).floor();
+    let way = f64::acos(0.999) * (1.0 + 2.0 * rounds);
+    Ok(Found::new(
+        (rate - (400.0 - 2.0 * way).sqrt()).abs(),
+        statistics,
+    ))
+}
+
+fn pulsing<S: Estimating>(method: S, lines: &mut Vec<Line>) {
+    let solver = Adaptive::new(method, 1e-8, 1e-8);
+    lines.push(Line::run(
+        ("short ranges of a long way", S::NAME, "the work of forces"),
+        Expected::Within(1e-5),
+        || slide(&solver),
+    ));
+    lines.push(Line::run(
+        ("a cam on a free shaft", S::NAME, "the work of torques"),
+        Expected::Within(1e-4),
+        || cam(&solver),
+    ));
+}
+
+/// Laws that pulse over a state, while nothing else moves.
+pub(crate) fn pulses() -> Vec<Line> {
+    let mut lines = Vec::new();
+    pulsing(Tsit5, &mut lines);
+    pulsing(Dop853, &mut lines);
+    pulsing(Radau5, &mut lines);
     lines
 }

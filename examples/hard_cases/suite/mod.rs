@@ -48,6 +48,7 @@ pub(crate) const CASES: &[Case] = &[
     ("steps too long", steps::too_long),
     ("steps too short", steps::too_short),
     ("gust", inputs::gust),
+    ("pulses", inputs::pulses),
 ];
 
 /// What must come of a run.

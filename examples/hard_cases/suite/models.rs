@@ -7,6 +7,7 @@ mbg! {
     include "examples/gallery/top.mbg";
     include "tests/models/mechanisms/parallelogram.mbg";
     include "tests/models/mechanisms/two_four_bars.mbg";
+    include "tests/models/pulses.mbg";
 
     /// A body whose orientation is held in three angles, turned by a torque.
     pub(crate) model PulledAngles {

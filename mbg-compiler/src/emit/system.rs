@@ -133,6 +133,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let [cold_energy, cold_conditioning] = [Routines::ENERGY, Routines::CONDITIONING]
         .map(|routine| cold_memory(compiled, routine, &quote!(Self::Memory)));
     let next_change = next_change(compiled);
+    let passed = passed(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
@@ -178,6 +179,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
             #next_change
+            #passed
             #close
             #sparsity
         }
@@ -197,6 +199,38 @@ fn next_change(compiled: &Compiled) -> Option<TokenStream> {
     (!is_empty).then(|| {
         quote! {
             fn next_change(&self, t: T) -> ::core::option::Option<T> { #body }
+        }
+    })
+}
+
+/// How many thresholds lie between two points; none where no step can pass more than it finds.
+fn passed(compiled: &Compiled) -> Option<TokenStream> {
+    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
+    let memory = memory(compiled);
+    let groups = Literal::usize_suffixed(compiled.thresholds.len());
+    let counted = body(compiled, Routines::THRESHOLDS, &|results| {
+        let mut rest = results;
+        let counts = compiled.thresholds.iter().map(|size| {
+            let (group, others) = rest.split_at(1 + size);
+            rest = others;
+            let (argument, thresholds) = (&group[0], &group[1..]);
+            if thresholds.is_empty() {
+                quote!(::mbg_runtime::__private::half_turns(#argument))
+            } else {
+                quote!(::mbg_runtime::__private::below(#argument, &[#(#thresholds),*]))
+            }
+        });
+        quote!([#(#counts),*])
+    });
+    let point = quote! {
+        (T, &::mbg_runtime::__private::SVector<T, #n>, &::mbg_runtime::__private::SVector<T, #m>)
+    };
+    (!compiled.thresholds.is_empty()).then(|| {
+        quote! {
+            fn passed(&self, from: #point, to: #point, memory: &mut #memory) -> ::core::primitive::u32 {
+                let mut below = |(t, x, u): #point| -> [::core::primitive::i32; #groups] { #counted };
+                ::mbg_runtime::__private::most_between(below(from), below(to))
+            }
         }
     })
 }

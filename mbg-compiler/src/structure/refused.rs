@@ -125,7 +125,7 @@ pub(super) fn warn_of_jumps(
         };
         Evaluation::new(&symbol).value(pool, expression)
     };
-    for time in changes::of(pool, &[law]) {
+    for time in changes::times(pool, &[law]) {
         let time = value(pool, time, 0.0);
         let difference = |aside: f64| {
             let aside = aside * (1.0 + time.abs());

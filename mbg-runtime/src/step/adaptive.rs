@@ -40,9 +40,11 @@ use crate::{Input, Real, System};
 /// longer is seen, once or again and again. Where next to nothing moves at the start, the first step is a 24th of the run at
 /// most. At steps of much the same length there are none after a while. Checked at three points is each step behind a refused
 /// one of a driven model, and of any model each whose estimate of the error has grown by more than its length explains: an
-/// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance. A pulse over a state
-/// of a model that nothing drives, such as a bump over the way of what rolls at rest, may be stepped over as a whole:
-/// [`Adaptive::longest`] is the remedy there, too.
+/// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance. So are steps behind whose
+/// ends a choice in the laws is another one ([`System::passed`]); between two such thresholds of one argument, such as the ends of
+/// a bump over the way of what rolls at rest, each step is looked into that passes both, for what lasts longer than its ten
+/// millionth part. What comes near and goes away within one step, such as a place passed by at some distance, may be
+/// missed: [`Adaptive::longest`] is the remedy there, too.
 ///
 /// # Example
 ///

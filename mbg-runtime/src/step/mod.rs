@@ -19,6 +19,7 @@ mod probes;
 mod problem;
 mod radau;
 mod rosenbrock;
+mod thresholds;
 mod tolerance;
 #[cfg(test)]
 mod trees;

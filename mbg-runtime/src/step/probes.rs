@@ -1,11 +1,14 @@
 //! What a model does between the stages of a step.
 
+use nalgebra::SVector;
+
 use super::dense::Polynomial;
 use super::elimination::Shifted;
-use super::method::{Family, Span, Start, Trial};
+use super::method::{Family, Start, Trial};
 use super::problem::Problem;
 use super::seen;
-use super::tolerance::{Measure, Tolerance};
+use super::thresholds::{Known, Point, SEVERAL};
+use super::tolerance::Tolerance;
 use crate::{Input, Real, System};
 
 /// Looks into steps for what their stages may miss: a pulse of a source, within a step over rest.
@@ -119,14 +122,29 @@ where
         if (is_driven && start.again) || self.probes.is_sudden(length, trial.coarse) {
             parts = parts.max(FEW);
         }
+        let ends = [
+            (start.span.start, start.x),
+            (start.span.end, start.x + trial.change),
+        ];
+        let passed = self.passed(&ends[0], &ends[1]);
+        if passed > 0 {
+            parts = parts.max(FEW);
+        }
         if parts == 1 {
             None
         } else {
-            self.clear_parts::<A>(start, trial, tolerance, polynomial, parts)
+            self.clear_parts::<A>(
+                start,
+                trial,
+                tolerance,
+                polynomial,
+                (parts, passed >= SEVERAL),
+            )
         }
     }
 
-    /// The same of a step that is looked into between so many parts, apart from a loop that seldom comes here.
+    /// The same of a step that is looked into between so many parts, and between thresholds if it passes several, apart from a
+    /// loop that seldom comes here.
     #[inline(never)]
     fn clear_parts<A: Family>(
         &mut self,
@@ -134,39 +152,46 @@ where
         trial: &Trial<T, N>,
         tolerance: &Tolerance<N>,
         polynomial: impl FnOnce(&mut Self) -> Polynomial<T, N>,
-        parts: u32,
+        (parts, passes_several): (u32, bool),
     ) -> Option<f64> {
         let (time, length) = (seen(start.span.start), seen(start.span.length));
         let memory = self.memory;
         let polynomial = polynomial(self);
-        let measure = tolerance.between(&start.x, &trial.change);
+        let known = Known {
+            span: &start.span,
+            measure: &tolerance.between(&start.x, &trial.change),
+            polynomial: &polynomial,
+        };
         let part = length / f64::from(parts);
         let missed = (1..parts).find(|probe| {
             let fraction = T::from_f64(f64::from(*probe) / f64::from(parts));
-            self.misses::<A>(&start.span, &measure, &polynomial, fraction)
+            let (point, defect) = self.defect(&known, fraction);
+            self.is_large::<A>(&known, &defect, &point)
         });
-        self.memory = memory;
-        missed.map(|probe| {
-            let clear = part * f64::from(probe.max(2) - 1);
+        let mut clear = missed.map(|probe| part * f64::from(probe.max(2) - 1));
+        if let Some(clear) = clear {
             // What follows is looked into twice as closely.
             self.probes.begin(time, part, clear);
-            clear
-        })
+        } else if passes_several {
+            clear = self
+                .clear_fraction::<A>(&known)
+                .map(|fraction| fraction * length);
+        }
+        self.memory = memory;
+        clear
     }
 
-    /// Whether the slopes of model and dense output differ by much after a fraction of a step.
-    fn misses<A: Family>(
+    /// The point after a fraction of a step, and by what the slopes of model and dense output differ there, over a whole step.
+    pub(super) fn defect(
         &mut self,
-        span: &Span<T>,
-        measure: &Measure<N>,
-        polynomial: &Polynomial<T, N>,
+        known: &Known<'_, T, N>,
         fraction: T,
-    ) -> bool {
-        let t = span.at(fraction);
-        let (x, change) = polynomial.with_slope(fraction);
+    ) -> (Point<T, N>, SVector<T, N>) {
+        let t = known.span.at(fraction);
+        let (x, change) = known.polynomial.with_slope(fraction);
         let slope = self.slope(t, &x);
         let defect = slope.zip_zip_map(&change, &x, |slope, change, x| {
-            let expected = span.length * slope;
+            let expected = known.span.length * slope;
             let rounding = ROUNDING * T::EPSILON * (x.magnitude() + expected.magnitude());
             let defect = expected - change;
             if defect.magnitude() <= rounding {
@@ -175,9 +200,20 @@ where
                 defect
             }
         });
+        ((t, x), defect)
+    }
+
+    /// Whether such a difference is large, in a model that is as stiff as at a point.
+    pub(super) fn is_large<A: Family>(
+        &mut self,
+        known: &Known<'_, T, N>,
+        defect: &SVector<T, N>,
+        (t, x): &Point<T, N>,
+    ) -> bool {
+        let (measure, length) = (known.measure, known.span.length);
         // NaN is not small.
         let is_small = |size: f64, most: f64| size <= most;
-        let size = measure.norm(&defect);
+        let size = measure.norm(defect);
         if is_small(size, LARGE) {
             return false;
         }
@@ -185,13 +221,14 @@ where
         if !A::IMPLICIT {
             // By the derivative along the defect, which leads to a state as far away as the tolerance.
             let by = T::from_f64(1.0 / size);
-            let beside = self.slope(t, &x.zip_map(&defect, |x, defect| x + by * defect));
-            let moved = beside.zip_map(&slope, |beside, slope| span.length * (beside - slope));
+            let slope = self.slope(*t, x);
+            let beside = self.slope(*t, &x.zip_map(defect, |x, defect| x + by * defect));
+            let moved = beside.zip_map(&slope, |beside, slope| length * (beside - slope));
             return !is_small(size, LARGE * (1.0 + measure.norm(&moved)));
         }
         let mut factors = Shifted::empty();
-        self.factorise((t, &x), span.length, &mut factors);
-        !is_small(measure.norm(&factors.solved::<S, M, P>(&defect)), LARGE)
+        self.factorise((*t, x), length, &mut factors);
+        !is_small(measure.norm(&factors.solved::<S, M, P>(defect)), LARGE)
     }
 }
 

@@ -1,0 +1,85 @@
+//! What a model does between the thresholds of a choice that a step passes.
+
+use nalgebra::SVector;
+
+use super::dense::Polynomial;
+use super::method::{Family, Span};
+use super::problem::Problem;
+use super::tolerance::Measure;
+use crate::{Input, Real, System};
+
+/// So many thresholds of one argument have something between them; what is behind a single one is at the end of the step, too.
+pub(super) const SEVERAL: u32 = 2;
+
+/// What lasts a smaller part of a step is not found.
+const SMALLEST: f64 = 1e-7;
+/// So often a step is divided to parts that small.
+const DIVISIONS: usize = 25;
+/// Where a part of it is: thresholds may be at halves.
+const DIVIDED: f64 = 0.487;
+
+/// A time and the state there.
+pub(super) type Point<T, const N: usize> = (T, SVector<T, N>);
+
+/// A step with what is known of it: its dense output, and how its errors are measured.
+pub(super) struct Known<'a, T: Real, const N: usize> {
+    pub(super) span: &'a Span<T>,
+    pub(super) measure: &'a Measure<N>,
+    pub(super) polynomial: &'a Polynomial<T, N>,
+}
+
+impl<T: Real, const N: usize> Known<'_, T, N> {
+    fn point(&self, fraction: f64) -> Point<T, N> {
+        let fraction = T::from_f64(fraction);
+        (self.span.at(fraction), self.polynomial.at(fraction))
+    }
+}
+
+impl<T, S, I, const N: usize, const M: usize, const P: usize> Problem<'_, T, S, I, N, M, P>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M>,
+{
+    /// How many thresholds lie between two points.
+    #[inline]
+    pub(super) fn passed(&self, (ta, xa): &Point<T, N>, (tb, xb): &Point<T, N>) -> u32 {
+        let [ua, ub] = [*ta, *tb].map(|t| self.input.value(t, self.since));
+        let mut memory = self.memory;
+        self.system
+            .passed((*ta, xa, &ua), (*tb, xb, &ub), &mut memory)
+    }
+
+    /// Up to which fraction of a step nothing is missed, where something is.
+    ///
+    /// Parts that pass several thresholds are divided, the first first, and the model is looked at behind each that passes one.
+    pub(super) fn clear_fraction<A: Family>(&mut self, known: &Known<'_, T, N>) -> Option<f64> {
+        let mut ends = [1.0; 1 + DIVISIONS];
+        let (mut open, mut a) = (1, 0.0);
+        let start = known.point(a);
+        let mut from = start;
+        while let Some(b) = ends[..open].last().copied() {
+            let to = known.point(b);
+            let passed = self.passed(&from, &to);
+            if passed >= SEVERAL && b - a > SMALLEST && open < ends.len() {
+                ends[open] = a + DIVIDED * (b - a);
+                open += 1;
+                continue;
+            }
+            open -= 1;
+            let is_between = passed > 0
+                && ends[..open]
+                    .last()
+                    .is_some_and(|end| self.passed(&to, &known.point(*end)) > 0);
+            if is_between {
+                let (_, defect) = self.defect(known, T::from_f64(b));
+                // What is stiff between thresholds alone moves the state all the same.
+                if self.is_large::<A>(known, &defect, &start) {
+                    return Some(if a > 0.0 { a } else { b });
+                }
+            }
+            (a, from) = (b, to);
+        }
+        None
+    }
+}

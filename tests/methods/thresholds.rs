@@ -1,0 +1,125 @@
+//! Laws that pulse over a state, or by a wave, while nothing else moves: no step goes over all of it.
+
+use mbg_runtime::{
+    Adaptive, Auto, Dop853, Integrator, Pirk8, Pirk16, Radau5, Radau9, Real, Rodas4, Rodas5P, Ros2,
+    System, Tsit5, Verner9, mbg,
+};
+use nalgebra::SVector;
+
+mbg! {
+    include "tests/models/pulses.mbg";
+}
+
+fn at_end<T: Real, const N: usize>(
+    model: &impl System<T, N, 0, 1>,
+    end: f64,
+    solver: &impl Integrator<N>,
+) -> SVector<T, N> {
+    let mut last = model.initial_state();
+    let (begin, end) = (T::from_f64(0.0), T::from_f64(end));
+    solver
+        .integrate(model, &(), begin, end, last, |step| {
+            last = *step.state();
+        })
+        .unwrap();
+    last
+}
+
+/// The last state by all methods, with their names.
+fn by_all<const N: usize>(
+    model: &impl System<f64, N, 0, 1>,
+    end: f64,
+    tolerance: f64,
+) -> Vec<(&'static str, SVector<f64, N>)> {
+    macro_rules! by {
+        ($($method:ident),*) => {
+            vec![
+                $((stringify!($method), at_end(model, end, &Adaptive::new($method, tolerance, tolerance))),)*
+                ("Auto", at_end(model, end, &Auto::new(tolerance, tolerance))),
+            ]
+        };
+    }
+    by!(
+        Tsit5, Dop853, Verner9, Pirk8, Pirk16, Ros2, Rodas4, Rodas5P, Radau5, Radau9
+    )
+}
+
+#[test]
+fn ranges_hats_and_curves_over_a_state_are_met() {
+    let model = Slide::new(SlideParameters::default()).unwrap();
+    // Half of the square of the speed is lost by the work: a range, a triangle and another one.
+    let expected = (16.0_f64 - 2.0 * (10.0 * 0.2 + 20.0 * 0.1 + 10.0 * 0.15)).sqrt();
+    // Stepped over, one alone would leave 0.6 m/s more.
+    for (tolerance, error) in [(1e-3, 0.3), (1e-6, 1e-3), (1e-9, 1e-6)] {
+        for (method, last) in by_all(&model, 30.0, tolerance) {
+            assert!(
+                (last[0] - expected).abs() < error,
+                "{method} to {tolerance:e}: {} instead of {expected}",
+                last[0]
+            );
+        }
+    }
+    let model = Slide::new(SlideParameters::default()).unwrap();
+    let last = at_end::<f32, 2>(&model, 30.0, &Adaptive::new(Dop853, 1e-5, 1e-5));
+    assert!((f64::from(last[0]) - expected).abs() < 1e-2, "{}", last[0]);
+}
+
+#[test]
+fn a_cam_is_met_in_each_round() {
+    let model = Cam::new(CamParameters::default()).unwrap();
+    for (method, last) in by_all(&model, 10.0, 1e-9) {
+        let [rate, angle] = [last[0], last[1]];
+        let half = f64::acos(0.999);
+        let rounds = (angle / std::f64::consts::TAU).floor();
+        // It starts on the cam's top, and ends between two of them.
+        let way = half * (1.0 + 2.0 * rounds);
+        let expected = (20.0_f64.powi(2) - 2.0 * way).sqrt();
+        assert!(
+            rounds > 20.0
+                && (half..std::f64::consts::TAU - half).contains(&(angle % std::f64::consts::TAU)),
+            "{angle}"
+        );
+        assert!(
+            (rate - expected).abs() < 1e-4,
+            "{method}: {rate} instead of {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_wave_of_time_is_met_at_each_top() {
+    let model = Pushed::new(PushedParameters::default()).unwrap();
+    let lasting = 2.0 * f64::acos(0.9984) / (4.0 * std::f64::consts::PI);
+    for (method, last) in by_all(&model, 10.0, 1e-7) {
+        let expected = 20.0 * lasting;
+        assert!(
+            (last[0] - expected).abs() < 1e-5,
+            "{method}: {} instead of {expected}",
+            last[0]
+        );
+    }
+}
+
+#[test]
+fn thresholds_between_two_points_are_counted() {
+    let model = Slide::<f64>::new(SlideParameters::default()).unwrap();
+    let none = SVector::from([]);
+    let passed = |from: f64, to: f64| {
+        let [from, to] = [from, to].map(|gone| SVector::from([4.0, gone]));
+        model.passed((0.0, &from, &none), (1.0, &to, &none), &mut ())
+    };
+    // Two of the range, three of the hat and of the curve.
+    assert_eq!(passed(0.0, 100.0), 8);
+    assert_eq!(passed(21.0, 39.0), 0);
+    assert_eq!(passed(39.95, 20.1), 2);
+    let model = Cam::<f64>::new(CamParameters::default()).unwrap();
+    let passed = |from: f64, to: f64| {
+        let [from, to] = [from, to].map(|angle| SVector::from([20.0, angle]));
+        model.passed((0.0, &from, &none), (1.0, &to, &none), &mut ())
+    };
+    // Half turns count twice.
+    assert_eq!(
+        [passed(0.5, 3.0), passed(0.5, 4.0), passed(0.5, 7.0)],
+        [0, 2, 4]
+    );
+}

@@ -68,6 +68,7 @@ pub mod solve;
 mod sparsity;
 mod step;
 mod system;
+mod trim;
 #[cfg(test)]
 mod twofold;
 
@@ -90,6 +91,7 @@ pub use step::{
     Rodas4, Rodas5P, Ros2, Statistics, Step, Stopped, Tsit5,
 };
 pub use system::{ParameterError, Power, System, Trouble};
+pub use trim::{Trim, Trimmed, Untrimmed};
 
 /// Compiles multibond graphs into flat, allocation-free state-space code, as [`language`] tells.
 #[cfg(feature = "macros")]

@@ -13,6 +13,7 @@ mod least_norm;
 mod memory;
 mod newton;
 mod project;
+mod rows;
 mod symmetric;
 
 pub use dense::Regular;
@@ -21,6 +22,7 @@ pub use memory::{LoopMemory, Memory, Outcome};
 pub use newton::{ITERATIONS, Solved, newton};
 pub use project::{Projected, project, project_velocity};
 pub(crate) use project::{project_of_rank, ranks};
+pub(crate) use rows::{Row, Rows};
 pub use symmetric::Symmetric;
 
 use crate::Real;

@@ -1,0 +1,277 @@
+//! Linear systems whose unknowns are states and inputs, with any rank.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::Real;
+
+/// Passes over all pairs of rows at most: each squares what is left of the angles between them.
+const PASSES: usize = 30;
+/// Passes that bring the entries of rows and columns to the size of one.
+const BALANCES: usize = 3;
+/// Rows that are so much smaller than the largest one, when all are at right angles, tell nothing.
+const RANK: f64 = 1e-8;
+
+/// An equation `a · x + b · u = right`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<const N: usize, const M: usize> {
+    by_state: SVector<f64, N>,
+    by_input: SVector<f64, M>,
+    right: f64,
+    /// What it was multiplied by.
+    weight: f64,
+}
+
+impl<const N: usize, const M: usize> Row<N, M> {
+    pub(crate) fn new(by_state: SVector<f64, N>, by_input: SVector<f64, M>, right: f64) -> Self {
+        Self {
+            by_state,
+            by_input,
+            right,
+            weight: 1.0,
+        }
+    }
+
+    /// An equation that says nothing.
+    pub(crate) fn empty() -> Self {
+        Self::new(SVector::zeros(), SVector::zeros(), 0.0)
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.largest() == 0.0
+    }
+
+    /// What is left of it, its right side, beside the terms that it is made of where unknowns have these sizes.
+    pub(crate) fn part_left(&self, states: &SVector<f64, N>, inputs: &SVector<f64, M>) -> f64 {
+        if self.right == 0.0 {
+            return 0.0;
+        }
+        let terms = self.by_state.abs().dot(states) + self.by_input.abs().dot(inputs);
+        self.right.abs() / terms
+    }
+
+    fn largest(&self) -> f64 {
+        let entries = self.by_state.iter().chain(self.by_input.iter());
+        entries.fold(0.0, |largest, entry| largest.max(entry.abs()))
+    }
+
+    fn dot(&self, other: &Self) -> f64 {
+        self.by_state.dot(&other.by_state) + self.by_input.dot(&other.by_input)
+    }
+
+    fn times(mut self, factor: f64) -> Self {
+        self.by_state *= factor;
+        self.by_input *= factor;
+        self.right *= factor;
+        self.weight *= factor;
+        self
+    }
+
+    fn plus(mut self, other: &Self) -> Self {
+        self.by_state += other.by_state;
+        self.by_input += other.by_input;
+        self.right += other.right;
+        self
+    }
+}
+
+/// `N` equations and `P` more for `N` states and `M` inputs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows<const N: usize, const M: usize, const P: usize> {
+    rates: [Row<N, M>; N],
+    outputs: [Row<N, M>; P],
+    /// What unknowns are measured in.
+    units: (SVector<f64, N>, SVector<f64, M>),
+}
+
+impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
+    pub(crate) fn new(rates: [Row<N, M>; N], outputs: [Row<N, M>; P]) -> Self {
+        let units = (SVector::repeat(1.0), SVector::repeat(1.0));
+        Self {
+            rates,
+            outputs,
+            units,
+        }
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Row<N, M>> {
+        self.rates.iter().chain(&self.outputs)
+    }
+
+    fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<N, M>> {
+        self.rates.iter_mut().chain(&mut self.outputs)
+    }
+
+    /// Takes away the influence of what does not change.
+    #[inline(never)]
+    pub(crate) fn hold(&mut self, (states, inputs): &([bool; N], [bool; M])) {
+        let held = |slope: &mut f64, is_held| *slope = if is_held { 0.0 } else { *slope };
+        for row in self.iter_mut() {
+            row.by_state.zip_apply(&SVector::from(*states), held);
+            row.by_input.zip_apply(&SVector::from(*inputs), held);
+        }
+    }
+
+    /// What equations were multiplied by.
+    pub(crate) fn weights(&self) -> (SVector<f64, N>, SVector<f64, P>) {
+        (
+            SVector::from(self.rates.map(|row| row.weight)),
+            SVector::from(self.outputs.map(|row| row.weight)),
+        )
+    }
+
+    /// The least-squares solution that is least in the units of unknowns, with changes of the state along `tangents`.
+    #[inline(never)]
+    pub(crate) fn solution(
+        &mut self,
+        tangents: &SMatrix<f64, N, N>,
+    ) -> (SVector<f64, N>, SVector<f64, M>) {
+        let units = SMatrix::from_diagonal(&self.units.0);
+        let along = tangents * units;
+        let inverse = self.units.0.map(|unit| 1.0 / unit);
+        for row in self.iter_mut() {
+            row.by_state = along.tr_mul(&row.by_state.component_mul(&inverse));
+        }
+        self.straighten();
+        let largest = self.iter().map(|row| row.dot(row)).fold(0.0, f64::max);
+        let mut sum = Row::empty();
+        for row in self.iter() {
+            let square = row.dot(row);
+            if square > RANK * RANK * largest {
+                sum = sum.plus(&row.times(row.right / square));
+            }
+        }
+        (
+            along * sum.by_state,
+            sum.by_input.component_mul(&self.units.1),
+        )
+    }
+
+    /// Brings the largest entries of rows and columns to the size of one: the scaling of Ruiz.
+    #[inline(never)]
+    pub(crate) fn balance(&mut self) {
+        for _ in 0..BALANCES {
+            let mut by_state = SVector::<f64, N>::zeros();
+            let mut by_input = SVector::<f64, M>::zeros();
+            for row in self.iter_mut() {
+                *row = row.times(inverse_root(row.largest()));
+                by_state.zip_apply(&row.by_state, larger);
+                by_input.zip_apply(&row.by_input, larger);
+            }
+            let (by_state, by_input) = (by_state.map(inverse_root), by_input.map(inverse_root));
+            for row in self.iter_mut() {
+                row.by_state.component_mul_assign(&by_state);
+                row.by_input.component_mul_assign(&by_input);
+            }
+            self.units.0.component_mul_assign(&by_state);
+            self.units.1.component_mul_assign(&by_input);
+        }
+    }
+
+    /// Turns pairs of rows into each other until all are at right angles: the singular values by Hestenes' rotations from one
+    /// side, which say how large the parts of the system are whatever its rank.
+    fn straighten(&mut self) {
+        for _ in 0..PASSES {
+            let mut turned = false;
+            for second in 1..N + P {
+                for first in 0..second {
+                    turned |= self.turn(first, second);
+                }
+            }
+            if !turned {
+                break;
+            }
+        }
+    }
+
+    /// Turns two rows to right angles; whether they were not.
+    #[inline(never)]
+    fn turn(&mut self, first: usize, second: usize) -> bool {
+        let (a, b) = (*self.at(first), *self.at(second));
+        let [size, other, common] = [a.dot(&a), b.dot(&b), a.dot(&b)];
+        if common == 0.0 || common.abs() <= f64::EPSILON * Real::sqrt(size * other) {
+            return false;
+        }
+        let half = (other - size) / (2.0 * common);
+        let tangent = Real::sign(half) / (half.abs() + Real::sqrt(1.0 + half * half));
+        let tangent = if half == 0.0 { 1.0 } else { tangent };
+        let cosine = 1.0 / Real::sqrt(1.0 + tangent * tangent);
+        let sine = cosine * tangent;
+        *self.at(first) = a.times(cosine).plus(&b.times(-sine));
+        *self.at(second) = a.times(sine).plus(&b.times(cosine));
+        true
+    }
+
+    fn at(&mut self, row: usize) -> &mut Row<N, M> {
+        if row < N {
+            &mut self.rates[row]
+        } else {
+            &mut self.outputs[row - N]
+        }
+    }
+}
+
+fn larger(largest: &mut f64, entry: f64) {
+    *largest = largest.max(entry.abs());
+}
+
+/// Of nothing, one.
+fn inverse_root(size: f64) -> f64 {
+    if size > 0.0 {
+        1.0 / Real::sqrt(size)
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(by_state: [f64; 2], by_input: [f64; 2], right: f64) -> Row<2, 2> {
+        Row::new(SVector::from(by_state), SVector::from(by_input), right)
+    }
+
+    fn balanced<const P: usize>(mut rows: Rows<2, 2, P>) -> (SVector<f64, 2>, SVector<f64, 2>) {
+        rows.balance();
+        rows.solution(&SMatrix::identity())
+    }
+
+    /// Solutions of what is solved exactly, whatever the units.
+    #[test]
+    fn what_is_asked_holds() {
+        let rates = [
+            row([1e8, 2.0], [0.0, 3e-6], 1e8),
+            row([0.0, 1e-7], [1e-9, 0.0], 2e-7),
+        ];
+        let outputs = [row([1.0, 1.0], [1.0, 1.0], 4.0)];
+        let rows = Rows::new(rates, outputs);
+        let (x, u) = balanced(rows);
+        for row in rows.iter() {
+            let left = row.by_state.dot(&x) + row.by_input.dot(&u) - row.right;
+            assert!(left.abs() < 1e-12 * row.right, "{left:e}");
+        }
+    }
+
+    #[test]
+    fn what_is_told_twice_is_told_once_and_effort_is_shared() {
+        let told = row([0.0, 0.0], [1.0, 1.0], 2.0);
+        let rows = Rows::new([told, told.times(1e3)], [told]);
+        let (x, u) = balanced(rows);
+        assert!(x.norm() < 1e-15 && (u - SVector::from([1.0, 1.0])).norm() < 1e-14);
+    }
+
+    #[test]
+    fn states_change_along_tangents_alone() {
+        let rows = Rows::new(
+            [
+                row([1.0, 0.0], [0.0, 0.0], 1.0),
+                row([0.0; 2], [0.0; 2], 0.0),
+            ],
+            [],
+        );
+        let tangents = SMatrix::from([[0.5, 0.5], [0.5, 0.5]]);
+        rows.balance();
+        let (x, _) = rows.solution(&tangents);
+        assert!((x - SVector::from([1.0, 1.0])).norm() < 1e-14, "{x}");
+    }
+}

@@ -1,0 +1,409 @@
+//! States and inputs at which a model does what is wanted of it: rests, hovers, turns steadily.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::solve::{Row, Rows};
+use crate::{Convertible, Linearised, Trouble};
+
+/// Points at which the model is linearised at most.
+const ITERATIONS: usize = 60;
+/// Dampings of one correction at most; the last one is below 1e-7.
+const DAMPINGS: usize = 24;
+/// How far beside a state its neighbours are closed, in units of the state: the cube root of the precision.
+const ASIDE: f64 = 6e-6;
+/// What may be left of a condition beside its terms.
+const LEFT: f64 = 1e-11;
+/// Nothing counts as smaller, where terms are zero.
+const TINY: f64 = 1e-9;
+
+/// A state and an input at which rates and outputs have wanted values: an operating point, to rest at, to start from, and
+/// to linearise at.
+///
+/// Every rate is to be zero unless something else is said of it: a position in flight is [`free`](Trim::free) to change, and in a
+/// steady turn a rate has a [value](Trim::rate). Every state and input may be chosen unless it is [held](Trim::hold). Each
+/// [`output`](Trim::output) with a wanted value fixes one of them. States, inputs and outputs go by their names, and several at
+/// once by what their names begin with: `"free.position"` is all of `free.position.x` to `.z`.
+///
+/// The point is found by the method of Gauss and Newton with the model's own Jacobians, damped until what is left of the conditions
+/// falls. Where more may be chosen than is asked, as with four rotors for three torques, each correction is the one of least norm
+/// in units of what states and inputs do. Corrections lead along closed loops and attitudes, on which the
+/// state stays ([`System::close`](crate::System::close)). The guess decides which point is found of several: a pendulum may hang or stand.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Linearised, System, Trim, mbg};
+///
+/// mbg! {
+///     /// A pendulum pushed by a torque.
+///     model Pendulum {
+///         input torque: N*m;
+///         1 joint {
+///             I rod { inertia: 0.5 }
+///             C weight { effort: 20.0 * sin(q), initial: 0.5 }
+///             R bearing { resistance: 0.2 }
+///             Se push { effort: torque }
+///         }
+///         output angle: rad = weight.q;
+///     }
+/// }
+///
+/// let pendulum = Pendulum::<f64>::new(PendulumParameters::default())?;
+/// // The torque that holds it where it starts.
+/// let held = Trim::new(&pendulum).hold("weight.q").solve()?;
+/// assert!((held.input[0] - 20.0 * f64::sin(0.5)).abs() < 1e-12);
+/// // The angle at which 10 N*m hold it.
+/// let pushed = Trim::new(&pendulum).input(&[10.0]).hold("torque").solve()?;
+/// assert!((pushed.state[1] - f64::asin(0.5)).abs() < 1e-12);
+/// // Without a torque it rests where it hangs.
+/// let linear = Linearised::of(&pendulum, 0.0, &pushed.state, &pushed.input)?;
+/// assert!((linear.state[(0, 1)] + 20.0 * f64::cos(pushed.state[1])).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Trim<'a, S, const N: usize, const M: usize, const P: usize> {
+    system: &'a S,
+    time: f64,
+    start: Trimmed<N, M>,
+    held: ([bool; N], [bool; M]),
+    rates: [Option<f64>; N],
+    outputs: [Option<f64>; P],
+    unknown: Option<Untrimmed>,
+}
+
+/// An operating point: see [`Trim`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trimmed<const N: usize, const M: usize> {
+    /// The state.
+    pub state: SVector<f64, N>,
+    /// The input.
+    pub input: SVector<f64, M>,
+}
+
+/// Why there is no operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Untrimmed {
+    /// A name that is none of the model's.
+    Unknown {
+        /// Of what it should be the name.
+        kind: &'static str,
+        /// The name.
+        name: &'static str,
+    },
+    /// Conditions that cannot be met from the guess.
+    Missed {
+        /// The state whose rate, or the output, that is farthest from what is wanted beside the terms it is made of.
+        name: &'static str,
+        /// Whether it is an output.
+        is_output: bool,
+        /// What is wanted.
+        wanted: f64,
+        /// What was reached.
+        reached: f64,
+        /// Whether nothing that may be chosen has an influence on it.
+        is_fixed: bool,
+    },
+    /// The model is in trouble there.
+    Trouble(Trouble),
+}
+
+impl core::fmt::Display for Untrimmed {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match *self {
+            Self::Unknown { kind, name } => write!(formatter, "the model has no {kind} `{name}`"),
+            Self::Missed {
+                name,
+                is_output,
+                wanted,
+                reached,
+                is_fixed,
+            } => {
+                let of = if is_output { "" } else { "the rate of " };
+                write!(
+                    formatter,
+                    "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
+                )?;
+                formatter.write_str(if is_fixed {
+                    "nothing that may be chosen has an influence on it"
+                } else {
+                    "no choice was found that does better: begin elsewhere, or let more be chosen"
+                })
+            }
+            Self::Trouble(trouble) => trouble.fmt(formatter),
+        }
+    }
+}
+
+impl core::error::Error for Untrimmed {}
+
+impl<'a, S, const N: usize, const M: usize, const P: usize> Trim<'a, S, N, M, P>
+where
+    S: Convertible<f64, N, M, P>,
+{
+    /// From the model's initial state with inputs of zero, at time zero: every rate is to be zero, and everything may be chosen.
+    #[must_use]
+    pub fn new(system: &'a S) -> Self {
+        Self {
+            system,
+            time: 0.0,
+            start: Trimmed {
+                state: system.initial_state(),
+                input: SVector::zeros(),
+            },
+            held: ([false; N], [false; M]),
+            rates: [Some(0.0); N],
+            outputs: [None; P],
+            unknown: None,
+        }
+    }
+
+    /// At another time.
+    #[must_use]
+    pub const fn time(mut self, time: f64) -> Self {
+        self.time = time;
+        self
+    }
+
+    /// From another state.
+    #[must_use]
+    pub fn state(mut self, state: &SVector<f64, N>) -> Self {
+        self.start.state = *state;
+        self
+    }
+
+    /// From another input.
+    #[must_use]
+    pub fn input(mut self, input: &[f64; M]) -> Self {
+        self.start.input = SVector::from(*input);
+        self
+    }
+
+    /// States or inputs that stay as they are in the guess.
+    #[inline(never)]
+    #[must_use]
+    pub fn hold(mut self, name: &'static str) -> Self {
+        let mut found = false;
+        let meta = S::META;
+        let names = meta.states.iter().chain(meta.inputs);
+        for (held, variable) in self.held.0.iter_mut().chain(&mut self.held.1).zip(names) {
+            let is_named = is_named(variable.name, name);
+            (*held, found) = (*held || is_named, found || is_named);
+        }
+        self.known(found, "state or input", name)
+    }
+
+    /// States whose rates do not matter, such as positions in flight.
+    #[must_use]
+    pub fn free(self, name: &'static str) -> Self {
+        self.with_rate(name, None)
+    }
+
+    /// States with another rate than zero, in units of the state per second.
+    #[must_use]
+    pub fn rate(self, name: &'static str, rate: f64) -> Self {
+        self.with_rate(name, Some(rate))
+    }
+
+    /// Outputs with a wanted value.
+    #[inline(never)]
+    #[must_use]
+    pub fn output(mut self, name: &'static str, value: f64) -> Self {
+        let mut found = false;
+        for (output, variable) in self.outputs.iter_mut().zip(S::META.outputs) {
+            if is_named(variable.name, name) {
+                (*output, found) = (Some(value), true);
+            }
+        }
+        self.known(found, "output", name)
+    }
+
+    #[inline(never)]
+    fn with_rate(mut self, name: &'static str, wanted: Option<f64>) -> Self {
+        let mut found = false;
+        for (rate, variable) in self.rates.iter_mut().zip(S::META.states) {
+            if is_named(variable.name, name) {
+                (*rate, found) = (wanted, true);
+            }
+        }
+        self.known(found, "state", name)
+    }
+
+    /// Keeps the first name that is not found.
+    fn known(mut self, found: bool, kind: &'static str, name: &'static str) -> Self {
+        if !found && self.unknown.is_none() {
+            self.unknown = Some(Untrimmed::Unknown { kind, name });
+        }
+        self
+    }
+
+    /// Finds the point.
+    ///
+    /// # Errors
+    ///
+    /// A name that the model has not, conditions that cannot be met from the guess, and what [`System::close`](crate::System::close) and
+    /// [`System::trouble`](crate::System::trouble) say of a state.
+    pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
+        if let Some(unknown) = self.unknown {
+            return Err(unknown);
+        }
+        let mut point = self.closed(self.start)?;
+        let mut sizes = point;
+        let larger = |size: &mut f64, number: f64| *size = size.abs().max(number.abs()).max(TINY);
+        for _ in 0..ITERATIONS {
+            sizes.state.zip_apply(&point.state, larger);
+            sizes.input.zip_apply(&point.input, larger);
+            let mut rows = self.rows(&point)?;
+            match self.descend(&point, &mut rows) {
+                Some(next) => point = next,
+                None => break,
+            }
+        }
+        let mut rows = self.rows(&point)?;
+        let parts = rows
+            .iter()
+            .map(|row| row.part_left(&sizes.state, &sizes.input));
+        let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        match worst {
+            Some((row, left)) if left > LEFT => Err(self.missed(&point, row, &mut rows)),
+            _ => Ok(point),
+        }
+    }
+
+    /// Why a condition cannot be met.
+    fn missed(&self, point: &Trimmed<N, M>, row: usize, rows: &mut Rows<N, M, P>) -> Untrimmed {
+        let (rates, outputs) = self.left(point);
+        rows.hold(&self.held);
+        let is_output = row >= N;
+        let (variables, lefts, wanted, place) = if is_output {
+            (
+                S::META.outputs,
+                outputs.as_slice(),
+                &self.outputs[..],
+                row - N,
+            )
+        } else {
+            (S::META.states, rates.as_slice(), &self.rates[..], row)
+        };
+        let wanted = wanted.get(place).copied().flatten().unwrap_or(0.0);
+        Untrimmed::Missed {
+            name: variables.get(place).map_or("", |it| it.name),
+            is_output,
+            wanted,
+            reached: wanted + lefts.get(place).unwrap_or(&0.0),
+            is_fixed: rows.iter().nth(row).is_some_and(Row::is_empty),
+        }
+    }
+
+    /// The point with its state on closed loops and attitudes.
+    #[inline(never)]
+    fn closed(&self, point: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
+        let states = &self.held.0;
+        // One of them stands for each state that is not held.
+        let any = states.iter().position(|is_held| *is_held);
+        let all = core::array::from_fn::<_, N, _>(|state| match states[state] {
+            true => state,
+            false => any.unwrap_or(state),
+        });
+        let held = if any.is_some() { &all[..] } else { &[] };
+        let Trimmed { state, input } = point;
+        match self.system.close(self.time, state, &input, held) {
+            Ok(state) => Ok(Trimmed { state, input }),
+            Err(trouble) => Err(Untrimmed::Trouble(trouble)),
+        }
+    }
+
+    /// How the conditions change beside a point, and by how much they fail there.
+    #[inline(never)]
+    fn rows(&self, point: &Trimmed<N, M>) -> Result<Rows<N, M, P>, Untrimmed> {
+        let linear = Linearised::of(self.system, self.time, &point.state, &point.input)
+            .map_err(Untrimmed::Trouble)?;
+        let (rates, outputs) = self.left(point);
+        let rates = core::array::from_fn(|row| match self.rates[row] {
+            Some(_) => Row::new(
+                linear.state.row(row).transpose(),
+                linear.input.row(row).transpose(),
+                rates[row],
+            ),
+            None => Row::empty(),
+        });
+        let outputs = core::array::from_fn(|row| match self.outputs[row] {
+            Some(_) => Row::new(
+                linear.output.row(row).transpose(),
+                linear.feedthrough.row(row).transpose(),
+                outputs[row],
+            ),
+            None => Row::empty(),
+        });
+        Ok(Rows::new(rates, outputs))
+    }
+
+    /// What is left of the conditions.
+    #[inline(never)]
+    fn left(&self, point: &Trimmed<N, M>) -> (SVector<f64, N>, SVector<f64, P>) {
+        let Trimmed { state, input } = point;
+        let mut memory = S::Memory::default();
+        let rates = self.system.derivative(self.time, state, input, &mut memory);
+        let outputs = self.system.output(self.time, state, input, &mut memory);
+        let left = |value, wanted: Option<f64>| wanted.map_or(0.0, |wanted| value - wanted);
+        (
+            rates.zip_map(&SVector::from(self.rates), left),
+            outputs.zip_map(&SVector::from(self.outputs), left),
+        )
+    }
+
+    /// A point at which less is left of the conditions, if there is one.
+    fn descend(&self, point: &Trimmed<N, M>, rows: &mut Rows<N, M, P>) -> Option<Trimmed<N, M>> {
+        rows.hold(&self.held);
+        rows.balance();
+        let weights = rows.weights();
+        let size = |point: &Trimmed<N, M>| {
+            let (rates, outputs) = self.left(point);
+            rates.component_mul(&weights.0).norm_squared()
+                + outputs.component_mul(&weights.1).norm_squared()
+        };
+        let before = size(point);
+        let (by_state, by_input) = rows.solution(&self.tangents(point));
+        let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
+        dampings.take(DAMPINGS).find_map(|damping| {
+            // Where a step too long leads to what the model does not reach a shorter one may do.
+            let next = self.closed(Trimmed {
+                state: point.state - damping * by_state,
+                input: point.input - damping * by_input,
+            });
+            next.ok()
+                .filter(|next| size(next) < (1.0 - 0.5 * damping) * before)
+        })
+    }
+
+    /// How a state that is closed again changes with each of its numbers.
+    #[inline(never)]
+    fn tangents(&self, point: &Trimmed<N, M>) -> SMatrix<f64, N, N> {
+        let mut tangents = SMatrix::<f64, N, N>::identity();
+        for (number, mut tangent) in tangents.column_iter_mut().enumerate() {
+            if self.held.0[number] {
+                tangent.fill(0.0);
+                continue;
+            }
+            let aside = ASIDE * point.state[number].abs().max(1.0);
+            let beside = |aside: f64| {
+                let mut moved = *point;
+                moved.state[number] += aside;
+                let closed = self.closed(moved).ok()?.state;
+                Some((closed, closed == moved.state))
+            };
+            if let (Some((ahead, stays)), Some((behind, stayed))) = (beside(aside), beside(-aside))
+                && !(stays && stayed)
+            {
+                tangent.copy_from(&((ahead - behind) / (2.0 * aside)));
+            }
+        }
+        tangents
+    }
+}
+
+/// Whether a name is this one, or begins with it and a part of its own.
+#[inline(never)]
+fn is_named(whole: &str, name: &str) -> bool {
+    let rest = whole.strip_prefix(name);
+    !name.is_empty() && rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}

@@ -53,4 +53,5 @@ mod models {
     mod stages;
     #[allow(deprecated, reason = "a warning of the macro, which is meant there")]
     mod starts;
+    mod trims;
 }

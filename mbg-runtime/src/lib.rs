@@ -8,6 +8,7 @@
 //! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; or [`Auto`], which picks them; [`Input`] |
 //! | stop it at an event, change its state and go on | [events](language#events), [`Integrator::until`] |
 //! | drive it by a recorded log | [`Sampled`] |
+//! | find where it rests, hovers or turns steadily | [`Trim`] |
 //! | design a controller for it | [`Linearised`]: its matrices and frequency response |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | run batches on any processor | `batch` with the feature `dispatch` |

@@ -51,29 +51,11 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// let response = linear.response(f64::sqrt(40.0)).unwrap()[(0, 0)];
 /// assert!((response.modulus() - 1.0 / (0.2 * f64::sqrt(40.0))).abs() < 1e-12);
 /// assert!((response.argument() + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-///
-/// // Trim: states and inputs at which nothing changes, next to a guess and with the angle held at 0.5, by
-/// // `solve::project`. The column of what is held is zero.
-/// use mbg_runtime::solve::project;
-/// use nalgebra::SMatrix;
-/// let [momentum, angle, torque] = [0, 1, 2];
-/// let trim = project(SVector::from([0.0, 0.5, 0.0]), 1e-12, |z: &SVector<f64, 3>| {
-///     let (x, u) = (z.fixed_rows::<2>(0).into_owned(), SVector::from([z[torque]]));
-///     let by_state = pendulum.jacobian_state(0.0, &x, &u, &mut ());
-///     let by_input = pendulum.jacobian_input(0.0, &x, &u, &mut ());
-///     let mut slopes = SMatrix::<f64, 2, 3>::zeros();
-///     slopes.set_column(momentum, &by_state.column(0));
-///     slopes.set_column(torque, &by_input.column(0));
-///     (pendulum.derivative(0.0, &x, &u, &mut ()), slopes)
-/// });
-/// assert!(trim.converged && trim.point[angle] == 0.5);
-/// assert!((trim.point[torque] - 20.0 * f64::sin(0.5)).abs() < 1e-12);
 /// # Ok::<(), mbg_runtime::ParameterError>(())
 /// ```
 ///
-/// What a state must fulfil besides is a row of its own there, since no rate tells of it: `q · q − 1` for each quaternion,
-/// whose numbers could all be small, and the gaps of closed loops. A state in which all of that holds [`System::close`] leaves
-/// as it is.
+/// States and inputs to linearise at, such as those of a hover or of a steady turn, are found by [`Trim`](crate::Trim). A state
+/// from elsewhere must be on closed loops, with quaternions of length one: [`System::close`] leaves it as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearised<T, const N: usize, const M: usize, const P: usize> {
     /// The state matrix `A = ∂f/∂x`.

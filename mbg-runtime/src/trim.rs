@@ -9,6 +9,8 @@ use crate::{Convertible, Linearised, Trouble};
 const ITERATIONS: usize = 60;
 /// Dampings of one correction at most; the last one is below 1e-7.
 const DAMPINGS: usize = 24;
+/// What is left out of a correction, in units of what matters most: first what may be an error of tangents.
+const PARTS: [f64; 4] = [1e-4, 1e-6, 1e-9, 1e-12];
 /// How far beside a state its neighbours are closed, in units of the state: the cube root of the precision.
 const ASIDE: f64 = 6e-6;
 /// What may be left of a condition beside its terms.
@@ -362,9 +364,13 @@ where
                 + outputs.component_mul(&weights.1).norm_squared()
         };
         let before = size(point);
-        let (by_state, by_input) = rows.solution(&self.tangents(point));
+        rows.straighten(&self.tangents(point));
         let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
-        dampings.take(DAMPINGS).find_map(|damping| {
+        let mut tried = dampings
+            .take(DAMPINGS)
+            .flat_map(|damping| PARTS.map(|part| (damping, part)));
+        tried.find_map(|(damping, part)| {
+            let (by_state, by_input) = rows.solution(part);
             // Where a step too long leads to what the model does not reach a shorter one may do.
             let next = self.closed(Trimmed {
                 state: point.state - damping * by_state,

@@ -8,9 +8,6 @@ use crate::Real;
 const PASSES: usize = 30;
 /// Passes that bring the entries of rows and columns to the size of one.
 const BALANCES: usize = 3;
-/// Rows that are so much smaller than the largest one, when all are at right angles, tell nothing.
-const RANK: f64 = 1e-8;
-
 /// An equation `a · x + b · u = right`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const N: usize, const M: usize> {
@@ -75,12 +72,17 @@ impl<const N: usize, const M: usize> Row<N, M> {
 }
 
 /// `N` equations and `P` more for `N` states and `M` inputs.
+///
+/// They are brought to the size of one, then turned into each other until all are at right angles, by Hestenes' rotations from one
+/// side: then their lengths are the singular values, and each says its part of the solution for itself, whatever the rank.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rows<const N: usize, const M: usize, const P: usize> {
     rates: [Row<N, M>; N],
     outputs: [Row<N, M>; P],
     /// What unknowns are measured in.
     units: (SVector<f64, N>, SVector<f64, M>),
+    /// How the state changes by each of them.
+    along: SMatrix<f64, N, N>,
 }
 
 impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
@@ -90,6 +92,7 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             rates,
             outputs,
             units,
+            along: SMatrix::identity(),
         }
     }
 
@@ -119,29 +122,43 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
         )
     }
 
-    /// The least-squares solution that is least in the units of unknowns, with changes of the state along `tangents`.
+    /// Turns the equations to right angles, with changes of the state along `tangents`.
     #[inline(never)]
-    pub(crate) fn solution(
-        &mut self,
-        tangents: &SMatrix<f64, N, N>,
-    ) -> (SVector<f64, N>, SVector<f64, M>) {
-        let units = SMatrix::from_diagonal(&self.units.0);
-        let along = tangents * units;
-        let inverse = self.units.0.map(|unit| 1.0 / unit);
+    pub(crate) fn straighten(&mut self, tangents: &SMatrix<f64, N, N>) {
+        let units = self.units.0;
+        self.along = tangents * SMatrix::from_diagonal(&units);
+        let inverse = units.map(|unit| 1.0 / unit);
+        let along = self.along;
         for row in self.iter_mut() {
             row.by_state = along.tr_mul(&row.by_state.component_mul(&inverse));
         }
-        self.straighten();
+        for _ in 0..PASSES {
+            let mut turned = false;
+            for second in 1..N + P {
+                for first in 0..second {
+                    turned |= self.turn(first, second);
+                }
+            }
+            if !turned {
+                break;
+            }
+        }
+    }
+
+    /// The least-squares solution that is least in units of unknowns, of equations at right angles, by those that are not smaller
+    /// than a part of the largest one.
+    #[inline(never)]
+    pub(crate) fn solution(&self, part: f64) -> (SVector<f64, N>, SVector<f64, M>) {
         let largest = self.iter().map(|row| row.dot(row)).fold(0.0, f64::max);
         let mut sum = Row::empty();
         for row in self.iter() {
             let square = row.dot(row);
-            if square > RANK * RANK * largest {
+            if square > part * part * largest {
                 sum = sum.plus(&row.times(row.right / square));
             }
         }
         (
-            along * sum.by_state,
+            self.along * sum.by_state,
             sum.by_input.component_mul(&self.units.1),
         )
     }
@@ -153,33 +170,19 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             let mut by_state = SVector::<f64, N>::zeros();
             let mut by_input = SVector::<f64, M>::zeros();
             for row in self.iter_mut() {
-                *row = row.times(inverse_root(row.largest()));
+                *row = row.times(inverse_root(row.largest(), 0.0));
                 by_state.zip_apply(&row.by_state, larger);
                 by_input.zip_apply(&row.by_input, larger);
             }
-            let (by_state, by_input) = (by_state.map(inverse_root), by_input.map(inverse_root));
+            // What no row has more of than rounding has no influence.
+            let unit = |largest| inverse_root(largest, f64::EPSILON);
+            let (by_state, by_input) = (by_state.map(unit), by_input.map(unit));
             for row in self.iter_mut() {
                 row.by_state.component_mul_assign(&by_state);
                 row.by_input.component_mul_assign(&by_input);
             }
             self.units.0.component_mul_assign(&by_state);
             self.units.1.component_mul_assign(&by_input);
-        }
-    }
-
-    /// Turns pairs of rows into each other until all are at right angles: the singular values by Hestenes' rotations from one
-    /// side, which say how large the parts of the system are whatever its rank.
-    fn straighten(&mut self) {
-        for _ in 0..PASSES {
-            let mut turned = false;
-            for second in 1..N + P {
-                for first in 0..second {
-                    turned |= self.turn(first, second);
-                }
-            }
-            if !turned {
-                break;
-            }
         }
     }
 
@@ -214,9 +217,9 @@ fn larger(largest: &mut f64, entry: f64) {
     *largest = largest.max(entry.abs());
 }
 
-/// Of nothing, one.
-fn inverse_root(size: f64) -> f64 {
-    if size > 0.0 {
+/// Of what is too small, one.
+fn inverse_root(size: f64, small: f64) -> f64 {
+    if size > small {
         1.0 / Real::sqrt(size)
     } else {
         1.0
@@ -233,7 +236,8 @@ mod tests {
 
     fn balanced<const P: usize>(mut rows: Rows<2, 2, P>) -> (SVector<f64, 2>, SVector<f64, 2>) {
         rows.balance();
-        rows.solution(&SMatrix::identity())
+        rows.straighten(&SMatrix::identity());
+        rows.solution(1e-9)
     }
 
     /// Solutions of what is solved exactly, whatever the units.
@@ -271,7 +275,8 @@ mod tests {
         );
         let tangents = SMatrix::from([[0.5, 0.5], [0.5, 0.5]]);
         rows.balance();
-        let (x, _) = rows.solution(&tangents);
+        rows.straighten(&tangents);
+        let (x, _) = rows.solution(1e-9);
         assert!((x - SVector::from([1.0, 1.0])).norm() < 1e-14, "{x}");
     }
 }

@@ -1,0 +1,192 @@
+//! Operating points, against closed forms and runs that begin there.
+
+use mbg_runtime::{
+    Adaptive, Constant, Convertible, Dop853, Integrator, Linearised, Trim, Trimmed, Untrimmed, mbg,
+};
+use nalgebra::SVector;
+
+mbg! {
+    /// A craft with four rotors at the ends of a cross, in air that holds it back.
+    model Quadrotor {
+        param mass: kg = 1.2;
+        param drag: N*s/m = 0.4;
+        gravity [0.0, 0.0, -9.81];
+        input thrust[4]: N;
+        1 ground[6] { Sf held { flow: 0.0 } }
+        1 craft[6];
+        1 sky[6];
+        free: Free { orientation: quaternion } (ground, craft);
+        hull: Body { mass: mass, inertia: diag(0.01, 0.012, 0.02) } (craft);
+        rotors: Load {
+            force: [0.0, 0.0, thrust[0] + thrust[1] + thrust[2] + thrust[3]],
+            moment: [0.2 * (thrust[1] - thrust[3]), 0.2 * (thrust[2] - thrust[0]),
+                0.016 * (thrust[0] - thrust[1] + thrust[2] - thrust[3])]
+        } (craft);
+        straight: Turn { by: transpose(free.orientation_b) } (craft, sky);
+        Se air[3] { effort: -drag * sky.f[3..6] } -> sky[3..6];
+        output speed[3]: m/s = sky.f[3..6];
+        output place[3]: m = free.position;
+    }
+
+    /// A four-bar held by a torque at its first crank, which multipliers close.
+    #[derivative]
+    model Crank {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        input torque: N*m;
+        1 ground[3]; 1 left[3]; 1 a[3]; 1 right[3]; 1 b[3]; 1 coupler[3]; 1 end[3]; 1 foot[3]; 1 centre[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        first: PlanarRevolute { initial: 1.2, torque: torque } (ground, left);
+        left_body: PlanarBody { mass: 1.0, inertia: 0.1 } (left);
+        left_arm: PlanarOffset { x: 0.5 } (left, a);
+        base: PlanarOffset { x: 1.0 } (ground, foot);
+        second: PlanarRevolute { initial: 1.2 } (foot, right);
+        right_body: PlanarBody { mass: 1.0, inertia: 0.1 } (right);
+        right_arm: PlanarOffset { x: 0.5 } (right, b);
+        third: PlanarRevolute { initial: -1.2 } (a, coupler);
+        half: PlanarOffset { x: 0.5 } (coupler, centre);
+        body: PlanarBody { mass: 3.0, inertia: 0.1 } (centre);
+        arm: PlanarOffset { x: 1.0 } (coupler, end);
+        cut: PlanarCut (end, b);
+        output angles[2]: rad = [first.angle, second.angle];
+    }
+
+    /// Cylinders on one hose: nothing tells how their pistons share the oil.
+    model Shared {
+        input pull: N;
+        1 block { I mass { inertia: 2.0 } C soft { stiffness: 300.0 } C hard { effort: 50.0 * q + 4000.0 * q * q * q } }
+        Se hand { effort: pull } -> block;
+        output way: m = soft.q;
+    }
+}
+
+fn settled<S, const N: usize, const M: usize, const P: usize>(
+    model: &S,
+    point: &Trimmed<N, M>,
+) -> SVector<f64, N>
+where
+    S: Convertible<f64, N, M, P>,
+{
+    let mut last = point.state;
+    Adaptive::new(Dop853, 1e-10, 1e-10)
+        .integrate(model, &Constant(point.input), 0.0, 0.5, last, |step| {
+            last = *step.state();
+        })
+        .unwrap();
+    last
+}
+
+#[test]
+fn a_craft_hovers_with_equal_thrusts() {
+    let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
+    let hover = Trim::new(&craft).hold("free.position").solve().unwrap();
+    // Whatever the heading, torques and thrust fix all four.
+    for thrust in hover.input.iter() {
+        assert!((thrust - 1.2 * 9.81 / 4.0).abs() < 1e-12, "{thrust}");
+    }
+    let last = settled(&craft, &hover);
+    assert!((last - hover.state).norm() < 1e-10);
+    Linearised::of(&craft, 0.0, &hover.state, &hover.input).unwrap();
+}
+
+#[test]
+fn a_craft_leans_against_its_drag() {
+    let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
+    let flight = Trim::new(&craft)
+        .hold("free.position")
+        .free("free.position")
+        .output("speed.x", 6.0)
+        .output("speed.y", -2.0)
+        .output("speed.z", 1.0)
+        .solve()
+        .unwrap();
+    // Thrust is opposite to weight and drag, in size and direction.
+    let force = SVector::<f64, 3>::from([0.4 * 6.0, -0.4 * 2.0, 1.2 * 9.81 + 0.4]);
+    assert!((flight.input.sum() - force.norm()).abs() < 1e-10);
+    let last = settled(&craft, &flight);
+    let place = |state: &SVector<f64, 13>, name: &str| {
+        let states = <Quadrotor<f64> as mbg_runtime::System<f64, 13, 4, 6>>::META.states;
+        states
+            .iter()
+            .zip(state.iter())
+            .filter(|(it, _)| it.name.starts_with(name))
+            .map(|it| *it.1)
+            .collect::<Vec<_>>()
+    };
+    let (before, behind) = (
+        place(&flight.state, "free.position"),
+        place(&last, "free.position"),
+    );
+    for ((before, behind), speed) in before.iter().zip(behind).zip([6.0, -2.0, 1.0]) {
+        assert!((behind - before - 0.5 * speed).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_closed_loop_is_held() {
+    let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();
+    let held = Trim::new(&crank).hold("first").solve().unwrap();
+    // The coupler alone has weight that a turn lifts: 3 kg at the end of a crank of half a metre.
+    let expected = 3.0 * 9.81 * 0.5 * f64::cos(1.2);
+    assert!(
+        (held.input[0] - expected).abs() < 1e-10,
+        "{}",
+        held.input[0]
+    );
+    assert!((settled(&crank, &held) - held.state).norm() < 1e-8);
+    // With this torque it comes to rest at the same angle, from another one.
+    let begun = Trim::new(&crank).hold("first").solve().unwrap();
+    let mut guess = begun.state;
+    guess.iter_mut().for_each(|state| *state *= 1.1);
+    let found = Trim::new(&crank)
+        .state(&guess)
+        .input(&[expected])
+        .hold("torque")
+        .solve()
+        .unwrap();
+    assert!((found.state - held.state).norm() < 1e-9);
+}
+
+#[test]
+fn what_is_left_open_stays_as_guessed() {
+    let shared = Shared::<f64>::new(SharedParameters::default()).unwrap();
+    let found = Trim::new(&shared).output("way", 0.3).solve().unwrap();
+    let [soft, hard] = [found.state[1], found.state[2]];
+    let force = 300.0 * soft + 50.0 * hard + 4000.0 * hard.powi(3);
+    assert!((soft - 0.3).abs() < 1e-12 && (found.input[0] - force).abs() < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_is_told() {
+    let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
+    let told = |trim: Trim<'_, _, 13, 4, 6>| trim.solve().unwrap_err().to_string();
+    assert_eq!(
+        told(Trim::new(&craft).hold("free.positon").hold("thrusts")),
+        "the model has no state or input `free.positon`"
+    );
+    assert_eq!(
+        told(Trim::new(&craft).rate("x", 1.0)),
+        "the model has no state `x`"
+    );
+    assert_eq!(
+        told(Trim::new(&craft).output("spee", 1.0)),
+        "the model has no output `spee`"
+    );
+    let fixed = Trim::new(&craft)
+        .hold("free.position")
+        .output("place.z", 3.0);
+    assert_eq!(
+        told(fixed),
+        "`place.z` is 0e0 instead of 3e0, and nothing that may be chosen has an influence on it"
+    );
+    let Err(Untrimmed::Missed {
+        name,
+        wanted,
+        is_fixed: false,
+        ..
+    }) = Trim::new(&craft).hold("thrust").solve()
+    else {
+        panic!("nothing carries it");
+    };
+    assert_eq!((name, wanted), ("hull.body.p.z", 0.0));
+}

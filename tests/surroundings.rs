@@ -91,6 +91,42 @@ pub mod renamed {
     }
 }
 
+/// A scope without a prelude.
+#[no_implicit_prelude]
+pub mod bare {
+    use ::core::default::Default as _;
+    use ::mbg_runtime::{System as _, mbg};
+
+    /// What models of one name start with, which a function and a block of it call so.
+    pub fn starts() -> [f64; 2] {
+        mbg! {
+            model Wheel { 1 rate { I rotor { inertia: 2.0, initial_flow: 3.0 } } }
+        }
+        mbg! {
+            model Pulley { 1 rate { I rotor { inertia: 1.0 } } }
+        }
+        let inner = {
+            mbg! {
+                model Wheel { 1 rate { I rotor { inertia: 4.0, initial_flow: 3.0 } } }
+            }
+            let wheel = Wheel::<f64>::new(WheelParameters::default());
+            wheel.map_or(0.0, |wheel| wheel.initial_state()[0])
+        };
+        let pulley = Pulley::<f64>::new(PulleyParameters::default());
+        let pulley = pulley.map_or(1.0, |pulley| pulley.initial_state()[0]);
+        let wheel = Wheel::<f64>::new(WheelParameters::default());
+        [
+            inner,
+            wheel.map_or(0.0, |wheel| wheel.initial_state()[0] + pulley),
+        ]
+    }
+}
+
+#[test]
+fn models_stand_in_functions() {
+    assert_eq!(bare::starts(), [12.0, 6.0]);
+}
+
 #[test]
 fn parameters_show_what_they_have() {
     let bare = models::BareParameters::<f64>::default();

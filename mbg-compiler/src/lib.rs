@@ -53,15 +53,16 @@ pub mod units;
 use proc_macro2::TokenStream;
 
 use diagnostics::Diagnostics;
+use emit::Items;
 use inclusion::{Inclusion, Read};
 use syntax::ast::Item;
 
 /// Compiles the tokens between the braces of `mbg! { … }`: items, or located errors and the shells of the models.
-/// What they include is read by `read`, such as [`inclusion::crate_file`].
+/// What they include is read by `read`, such as [`inclusion::crate_file`]; `runtime` is the path of the crate `mbg_runtime`.
 #[must_use]
-pub fn expand(tokens: TokenStream, read: &Read<'_>) -> TokenStream {
+pub fn expand(tokens: TokenStream, runtime: &TokenStream, read: &Read<'_>) -> TokenStream {
     let mut diagnostics = Diagnostics::new();
-    let mut output = expansion(tokens, read, &mut diagnostics);
+    let mut output = expansion(tokens, runtime, read, &mut diagnostics);
     output.extend(diagnostics.to_tokens());
     output
 }
@@ -69,10 +70,12 @@ pub fn expand(tokens: TokenStream, read: &Read<'_>) -> TokenStream {
 /// As [`expand`], with the errors apart.
 pub fn expansion(
     tokens: TokenStream,
+    runtime: &TokenStream,
     read: &Read<'_>,
     diagnostics: &mut Diagnostics,
 ) -> TokenStream {
-    let (mut output, inclusion) = located(tokens, read, diagnostics, &items);
+    let (items, inclusion) = located(tokens, read, diagnostics, &items);
+    let mut output = items.stream(runtime);
     output.extend(inclusion.dependencies());
     output
 }
@@ -103,12 +106,12 @@ fn located<R>(
 }
 
 /// As [`expansion`], of tokens that include nothing.
-pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream {
+pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Items {
     let source = syntax::parse(tokens, diagnostics);
     let sound = !diagnostics.any();
     let components = elaborate::component_table(&source);
     elaborate::warn(&source, diagnostics);
-    let (mut output, mut mistakes) = (TokenStream::new(), None);
+    let (mut items, mut mistakes) = (Items::default(), None);
     for item in &source.items {
         let Item::Model(model) = item else { continue };
         let compiled = if sound {
@@ -116,7 +119,7 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
         } else {
             None
         };
-        output.extend(match &compiled {
+        items.extend(match &compiled {
             Some(compiled) => emit::model(compiled),
             None => {
                 let mistakes = mistakes.get_or_insert_with(|| emit::mistakes(model));
@@ -131,5 +134,5 @@ pub fn items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> TokenStream 
         }
     }
     diagnostics.tell_in(mistakes);
-    output
+    items
 }

@@ -5,6 +5,7 @@ use std::process::Command;
 
 use mbg_compiler::inclusion::no_file;
 use mbg_compiler::{expand, explain::explain};
+use quote::quote;
 
 /// Names the file that a process started by the test writes.
 const TARGET: &str = "MBG_WRITE_EXPANSIONS_TO";
@@ -23,7 +24,7 @@ fn expansions() -> String {
     let texts = TEXTS.into_iter().chain([rejected.as_str()]);
     let both = texts.map(|text| {
         let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
-        let expanded = expand(tokens.clone(), &no_file);
+        let expanded = expand(tokens.clone(), &quote!(::mbg_runtime), &no_file);
         let explained = explain(tokens, &no_file, &|_| String::new());
         format!("{expanded}\n{}\n", explained.unwrap_or_else(|text| text))
     });

@@ -26,7 +26,12 @@ fn reported(text: &str, files: &[(&str, &str)]) -> Vec<String> {
         None => Err(io::Error::from(io::ErrorKind::NotFound)),
     };
     let mut diagnostics = Diagnostics::new();
-    let expansion = expansion(text.parse().unwrap(), &read, &mut diagnostics);
+    let expansion = expansion(
+        text.parse().unwrap(),
+        &quote!(::mbg_runtime),
+        &read,
+        &mut diagnostics,
+    );
     syn::parse2::<syn::File>(expansion).unwrap();
     for report in diagnostics.list() {
         assert!(
@@ -53,9 +58,9 @@ fn an_included_component_is_as_one_that_is_written_out() {
         assert_eq!(path, "brake.mbg");
         Ok(BRAKE.to_owned())
     };
-    let found = expand(CART.parse().unwrap(), &read).to_string();
+    let found = expand(CART.parse().unwrap(), &quote!(::mbg_runtime), &read).to_string();
     let written = CART.replace("include \"brake.mbg\";", BRAKE);
-    let written = expand(written.parse().unwrap(), &no_file).to_string();
+    let written = expand(written.parse().unwrap(), &quote!(::mbg_runtime), &no_file).to_string();
     let dependency = "const _ : & [:: core :: primitive :: u8] = :: core :: include_bytes ! (:: core :: concat ! (:: core :: env ! (\"CARGO_MANIFEST_DIR\") , \"/brake.mbg\")) ;";
     assert_eq!(found, format!("{written} {dependency}"));
 }
@@ -135,7 +140,12 @@ fn warnings_in_files_are_told_at_their_place() {
     let brake = BRAKE.replace("a ->", "param grip = 1.0;\n    param wear = 2.0; a ->");
     let mut diagnostics = Diagnostics::new();
     let read = |_: &str| Ok(brake.clone());
-    expansion(CART.parse().unwrap(), &read, &mut diagnostics);
+    expansion(
+        CART.parse().unwrap(),
+        &quote!(::mbg_runtime),
+        &read,
+        &mut diagnostics,
+    );
     assert!(!diagnostics.any(), "{:?}", diagnostics.list());
     let texts = diagnostics.warnings().iter().map(|it| it.text());
     insta::assert_snapshot!(texts.collect::<Vec<_>>().join("\n"), @"

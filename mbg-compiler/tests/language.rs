@@ -350,8 +350,9 @@ fn names_may_be_of_any_length() {
     let name = "a".repeat(70_000);
     let text = format!("model M {{ 1 {name} {{ I m {{ inertia: 1.0 }} }} 1 b; {name} -> b; }}");
     let mut diagnostics = Diagnostics::new();
-    let code = items(text.parse().unwrap(), &mut diagnostics).to_string();
+    let code = items(text.parse().unwrap(), &mut diagnostics);
     assert!(!diagnostics.any(), "{:?}", diagnostics.list());
+    let code = code.behaviour.to_string();
     assert!(code.contains(&format!("\\n{name} ")));
 }
 

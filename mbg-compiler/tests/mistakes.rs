@@ -437,7 +437,7 @@ fn a_source_that_asks_for_an_inverse_can_act_through_a_storage() {
 /// Names of the types that a text becomes. Each is declared at that of its model, where Rust tells of another one.
 fn types(text: &str) -> Vec<String> {
     let expansion = items(text.parse().unwrap(), &mut Diagnostics::new());
-    let file: syn::File = syn::parse2(expansion).unwrap();
+    let file: syn::File = syn::parse2(expansion.types).unwrap();
     let names = file.items.iter().filter_map(|item| match item {
         syn::Item::Struct(it) => {
             let places = [it.struct_token.span, it.ident.span()].map(|span| span.start());
@@ -478,8 +478,9 @@ fn names_are_taken_once_and_leave_no_types_that_rust_refuses() {
     // The type of the parameters has each name once.
     let twice = beside_a_mass("param mass = 1.0; param mass = 2.0;");
     assert_eq!(found(&twice), ["MBG0202"]);
-    let expansion = items(twice.parse().unwrap(), &mut Diagnostics::new()).to_string();
-    assert_eq!(expansion.matches("pub mass :").count(), 1);
+    let expansion = items(twice.parse().unwrap(), &mut Diagnostics::new());
+    let types = expansion.types.to_string();
+    assert_eq!(types.matches("pub mass :").count(), 1);
 }
 
 #[test]

@@ -21,6 +21,7 @@ use mbg_compiler::{elaborate, items, syntax};
 use proc_macro2::TokenStream;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use quote::quote;
 
 use corpus::{Text, corpus};
 use mutation::{mutated, mutation};
@@ -55,7 +56,7 @@ fn answered(words: &[String]) -> Result<Vec<String>, String> {
     };
     let mut diagnostics = Diagnostics::new();
     let expansion = items(tokens.clone(), &mut diagnostics);
-    if let Err(error) = syn::parse2::<syn::File>(expansion) {
+    if let Err(error) = syn::parse2::<syn::File>(expansion.stream(&quote!(::mbg_runtime))) {
         return Err(format!("the expansion is no Rust, {error}: {text}"));
     }
     let mut list = diagnostics.list().iter();

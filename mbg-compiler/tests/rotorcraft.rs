@@ -359,9 +359,9 @@ fn each_blade_costs_the_same() {
     for blades in 2..=6 {
         let start = Instant::now();
         let scene = Scene::of(&flying(blades, "drive: free"));
-        let tokens = mbg_compiler::emit::model(&scene.model);
+        let items = mbg_compiler::emit::model(&scene.model);
         let seconds = start.elapsed().as_secs_f64();
-        assert!(!tokens.is_empty());
+        assert!(!items.behaviour.is_empty());
         let count = |routine: usize| scene.model.program.routines[routine].operations();
         let [derivative, both, energy] = [
             Routines::DERIVATIVE,

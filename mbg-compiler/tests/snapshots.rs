@@ -2,6 +2,7 @@
 
 use mbg_compiler::inclusion::no_file;
 use mbg_compiler::{expand, explain::explain};
+use quote::quote;
 
 const OSCILLATOR: &str = include_str!("syntax/oscillator.mbg");
 const ROTOR: &str = include_str!("stages/rotor.mbg");
@@ -10,7 +11,11 @@ const CARRIAGE: &str = include_str!("stages/slide.mbg");
 
 /// The expansion as a person would have written it.
 fn formatted(text: &str) -> String {
-    let expansion = expand(text.parse().expect("tokens"), &no_file);
+    let expansion = expand(
+        text.parse().expect("tokens"),
+        &quote!(::mbg_runtime),
+        &no_file,
+    );
     prettyplease::unparse(&syn::parse2(expansion).expect("the expansion is Rust"))
 }
 

@@ -1,4 +1,4 @@
-//! What generated code refers to by absolute path. No part of the public interface.
+//! What generated code refers to by whole paths. No part of the public interface.
 
 use ::core::cell::Cell;
 

@@ -17,7 +17,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     let memory = quote!(Self::Memory);
     let positions = (!compiled.closed[0].is_empty()).then(|| {
         let rank = rank(compiled, 0);
-        let evaluated = quote!(|x: &::mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, held));
+        let evaluated = quote!(|x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, held));
         projection(&compiled.closed[0], &quote!(Positions), &rank, &evaluated)
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
@@ -28,17 +28,17 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
         } else {
             full(compiled.closed[1].len())
         };
-        let evaluated = quote!(|x: &::mbg_runtime::__private::SVector<T, #n>| { #body });
+        let evaluated = quote!(|x: &mbg_runtime::__private::SVector<T, #n>| { #body });
         projection(&compiled.closed[1], &quote!(Flows), &rank, &evaluated)
     });
     Some(quote! {
         fn close(
             &self,
             t: T,
-            x: ::mbg_runtime::__private::SVector<T, #n>,
-            u: &::mbg_runtime::__private::SVector<T, #m>,
+            x: mbg_runtime::__private::SVector<T, #n>,
+            u: &mbg_runtime::__private::SVector<T, #m>,
             held: &[::core::primitive::usize],
-        ) -> ::core::result::Result<::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::Trouble> {
+        ) -> ::core::result::Result<mbg_runtime::__private::SVector<T, #n>, mbg_runtime::Trouble> {
             #positions
             #flows
             #(#attitudes)*
@@ -53,7 +53,7 @@ fn attitude(rows: &[Vec<usize>]) -> TokenStream {
         let places = row.iter().copied().map(Literal::usize_suffixed);
         quote!([#(#places),*])
     });
-    quote!(let x = ::mbg_runtime::__private::orthonormal(x, &[#(#rows),*], held);)
+    quote!(let x = mbg_runtime::__private::orthonormal(x, &[#(#rows),*], held);)
 }
 
 /// Projects onto residuals, which are those of the closures given.
@@ -65,8 +65,8 @@ fn projection(
 ) -> TokenStream {
     let closures = closed.iter().copied().map(Literal::usize_suffixed);
     quote! {
-        let x = ::mbg_runtime::__private::close(
-            Self::META, &[#(#closures),*], x, held, (::mbg_runtime::__private::Level::#level, #rank), #evaluated,
+        let x = mbg_runtime::__private::close(
+            Self::META, &[#(#closures),*], x, held, (mbg_runtime::__private::Level::#level, #rank), #evaluated,
         )?;
     }
 }
@@ -91,8 +91,8 @@ fn residuals(
         #memory
         #steps
         (
-            ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
-            ::mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
+            mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
+            mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
         )
     }
 }
@@ -111,19 +111,19 @@ pub(super) fn positions(compiled: &Compiled) -> Option<TokenStream> {
     ]
     .map(Literal::usize_suffixed);
     let attitudes: Vec<TokenStream> = compiled.attitudes.iter().map(|it| attitude(it)).collect();
-    let memory = quote!(<Self as ::mbg_runtime::System<T, #n, #m, #p>>::Memory);
+    let memory = quote!(<Self as mbg_runtime::System<T, #n, #m, #p>>::Memory);
     let body = residuals(compiled, &attitudes, Routines::CLOSED_POSITIONS, &memory);
     Some(quote! {
         #[inline]
         fn closed_positions(
             &self,
             t: T,
-            x: &::mbg_runtime::__private::SVector<T, #n>,
-            u: &::mbg_runtime::__private::SVector<T, #m>,
+            x: &mbg_runtime::__private::SVector<T, #n>,
+            u: &mbg_runtime::__private::SVector<T, #m>,
             held: &[::core::primitive::usize],
         ) -> (
-            ::mbg_runtime::__private::SVector<T, #size>,
-            ::mbg_runtime::__private::SMatrix<T, #size, #n>,
+            mbg_runtime::__private::SVector<T, #size>,
+            mbg_runtime::__private::SMatrix<T, #size, #n>,
         ) {
             #body
         }
@@ -149,9 +149,9 @@ pub(super) fn ranks(compiled: &Compiled) -> Option<TokenStream> {
         quote!(&[#(#rows),*][..])
     });
     Some(quote! {
-        let u = ::mbg_runtime::__private::SVector::<T, #m>::from_element(T::from_f64(0.0));
-        let ranks = ::mbg_runtime::__private::ranks(
-            <Self as ::mbg_runtime::System<T, #n, #m, #p>>::initial_state(&model),
+        let u = mbg_runtime::__private::SVector::<T, #m>::from_element(T::from_f64(0.0));
+        let ranks = mbg_runtime::__private::ranks(
+            <Self as mbg_runtime::System<T, #n, #m, #p>>::initial_state(&model),
             [#(#groups),*],
             |x| model.closed_positions(T::from_f64(0.0), x, &u, &[]),
         );

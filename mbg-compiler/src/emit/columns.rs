@@ -26,14 +26,14 @@ fn group(writer: &Writer, columns: &Columns) -> TokenStream {
     let directions: Vec<_> = directions.collect();
     let steps = steps.into_iter().map(Literal::usize_suffixed);
     let mut body = quote! {
-        use ::mbg_runtime::Real as _;
-        let whole = |value: T| <T::Columns as ::mbg_runtime::Columns<T>>::whole(value);
+        use mbg_runtime::Real as _;
+        let whole = |value: T| <T::Columns as mbg_runtime::Columns<T>>::whole(value);
     };
     body.extend([lines, quote!([#(#slopes),*])]);
     let body = block(body);
     quote! {
         #(#constant)*
-        ::mbg_runtime::__private::columns(jacobian, &[#(#directions),*], &[#(#steps),*], &|changing, slopes| #body);
+        mbg_runtime::__private::columns(jacobian, &[#(#directions),*], &[#(#steps),*], &|changing, slopes| #body);
     }
 }
 

@@ -22,29 +22,29 @@ pub(super) fn methods(
     let [n, m] = [states, inputs].map(Literal::usize_suffixed);
     quote! {
         #[inline]
-        fn jacobian_state(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #n> {
-            ::mbg_runtime::System::derivative_and_jacobian(self, t, x, u, memory).1
+        fn jacobian_state(&self, #arguments, memory: &mut #memory) -> mbg_runtime::__private::SMatrix<T, #n, #n> {
+            mbg_runtime::System::derivative_and_jacobian(self, t, x, u, memory).1
         }
         #[inline]
         fn derivative_and_jacobian(
             &self, #arguments, memory: &mut #memory,
-        ) -> (::mbg_runtime::__private::SVector<T, #n>, ::mbg_runtime::__private::SMatrix<T, #n, #n>) {
+        ) -> (mbg_runtime::__private::SVector<T, #n>, mbg_runtime::__private::SMatrix<T, #n, #n>) {
             let mut both = (
-                ::mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0)),
-                ::mbg_runtime::__private::SMatrix::<T, #n, #n>::from_element(T::from_f64(0.0)),
+                mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0)),
+                mbg_runtime::__private::SMatrix::<T, #n, #n>::from_element(T::from_f64(0.0)),
             );
-            ::mbg_runtime::System::derivative_and_jacobian_into(self, t, x, u, memory, &mut both.0, &mut both.1);
+            mbg_runtime::System::derivative_and_jacobian_into(self, t, x, u, memory, &mut both.0, &mut both.1);
             both
         }
         #[inline]
         fn derivative_and_jacobian_into(
             &self, #arguments, memory: &mut #memory,
-            derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
-            jacobian: &mut ::mbg_runtime::__private::SMatrix<T, #n, #n>,
+            derivative: &mut mbg_runtime::__private::SVector<T, #n>,
+            jacobian: &mut mbg_runtime::__private::SMatrix<T, #n, #n>,
         ) #derivative_and_jacobian
         #[inline]
-        fn jacobian_input(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SMatrix<T, #n, #m> {
-            let mut input = ::mbg_runtime::__private::SMatrix::<T, #n, #m>::from_element(T::from_f64(0.0));
+        fn jacobian_input(&self, #arguments, memory: &mut #memory) -> mbg_runtime::__private::SMatrix<T, #n, #m> {
+            let mut input = mbg_runtime::__private::SMatrix::<T, #n, #m>::from_element(T::from_f64(0.0));
             let jacobian = &mut input;
             #jacobian_input
             input

@@ -98,7 +98,7 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
     let model = &compiled.model;
     let name = model.name.to_string();
     let variable =
-        |name: &str, unit: &str| quote!(::mbg_runtime::Variable { name: #name, unit: #unit });
+        |name: &str, unit: &str| quote!(mbg_runtime::Variable { name: #name, unit: #unit });
     let variables = |list: &[&Variable]| -> Vec<TokenStream> {
         list.iter()
             .map(|entry| variable(&entry.name, &entry.unit))
@@ -128,14 +128,14 @@ pub(super) fn constant(compiled: &Compiled) -> TokenStream {
         (&compiled.dependent, &compiled.conditioning, &compiled.notes);
     let assumptions = assumptions(compiled);
     let loops = loops(compiled);
-    let eliminated = compiled.eliminated.iter().map(|(state, relation)| {
-        quote!(::mbg_runtime::Eliminated { state: #state, relation: #relation })
-    });
+    let eliminated = compiled.eliminated.iter().map(
+        |(state, relation)| quote!(mbg_runtime::Eliminated { state: #state, relation: #relation }),
+    );
     let closures = model.graph.closures.iter().map(|closure| &closure.name);
     let operations = operations(compiled);
     let diagram = drawing::diagram(&model.graph, &compiled.strokes);
     quote! {
-        &::mbg_runtime::Meta {
+        &mbg_runtime::Meta {
             name: #name,
             parameters: &[#(#parameters),*],
             states: &[#(#states),*],
@@ -167,12 +167,12 @@ fn loops(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
             0 => quote!(Linear),
             unknowns => {
                 let unknowns = Literal::usize_suffixed(unknowns);
-                quote!(Newton { unknowns: #unknowns, iterations: ::mbg_runtime::__private::ITERATIONS })
+                quote!(Newton { unknowns: #unknowns, iterations: mbg_runtime::__private::ITERATIONS })
             }
         };
         quote! {
-            ::mbg_runtime::Loop {
-                through: &[#(#through),*], class: ::mbg_runtime::LoopClass::#class, variables: #variables, solver: ::mbg_runtime::Solver::#solver,
+            mbg_runtime::Loop {
+                through: &[#(#through),*], class: mbg_runtime::LoopClass::#class, variables: #variables, solver: mbg_runtime::Solver::#solver,
             }
         }
     })
@@ -198,7 +198,7 @@ fn operations(compiled: &Compiled) -> TokenStream {
     .map(count);
     let angles = Literal::usize_suffixed(compiled.program.routines[Routines::DERIVATIVE].angles());
     quote! {
-        ::mbg_runtime::Operations {
+        mbg_runtime::Operations {
             derivative: #derivative, output: #output, derivative_and_jacobian: #derivative_and_jacobian,
             jacobian_input: #jacobian_input, energy: #energy, power: #power, angles: #angles,
         }
@@ -215,12 +215,12 @@ fn bonds(compiled: &Compiled) -> Vec<TokenStream> {
             let (from, to) = (graph.end_name(&bond.from), graph.end_name(&bond.to));
             let dimension = Literal::usize_suffixed(bond.dimension);
             let strokes = compiled.strokes.get(index).map(|at_to| {
-                let stroke = if *at_to { quote!(::mbg_runtime::Stroke::To) } else { quote!(::mbg_runtime::Stroke::From) };
+                let stroke = if *at_to { quote!(mbg_runtime::Stroke::To) } else { quote!(mbg_runtime::Stroke::From) };
                 vec![stroke; bond.dimension]
             });
             let strokes = strokes.into_iter().flatten();
             quote! {
-                ::mbg_runtime::Bond { from: #from, to: #to, dimension: #dimension, strokes: &[#(#strokes),*] }
+                mbg_runtime::Bond { from: #from, to: #to, dimension: #dimension, strokes: &[#(#strokes),*] }
             }
         })
         .collect()

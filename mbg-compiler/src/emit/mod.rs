@@ -1,7 +1,7 @@
 //! Stage 7, emission: programs to Rust.
 //!
 //! Input: a [`Compiled`] model. Output: tokens: the type of the parameters, the model's type, and its `System`. The
-//! code is flat, generic over the scalar, refers to everything by absolute path, and is the same for the same input.
+//! code is flat, generic over the scalar, refers to everything by whole paths, and is the same for the same input.
 
 mod close;
 mod columns;
@@ -17,21 +17,54 @@ mod tokens;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
+use tokens::block;
+
 use crate::compile::Compiled;
 use crate::syntax::ast;
 
+/// What models become.
+#[derive(Default)]
+pub struct Items {
+    /// Types, which users name.
+    pub types: TokenStream,
+    /// What these do.
+    pub behaviour: TokenStream,
+}
+
+impl Items {
+    /// Adds other items.
+    pub fn extend(&mut self, other: Self) {
+        self.types.extend(other.types);
+        self.behaviour.extend(other.behaviour);
+    }
+
+    /// All items as they stand in the scope of the user, where `runtime` is the path of the crate `mbg_runtime`. A block keeps
+    /// what only generated code is to see.
+    #[must_use]
+    pub fn stream(self, runtime: &TokenStream) -> TokenStream {
+        let Self { types, behaviour } = self;
+        if behaviour.is_empty() {
+            return types;
+        }
+        let mut inner = quote!(use #runtime as mbg_runtime;);
+        inner.extend(behaviour);
+        let block = block(inner);
+        quote!(#types const _: () = #block;)
+    }
+}
+
 /// All items of a model.
 #[must_use]
-pub fn model(compiled: &Compiled) -> TokenStream {
-    let parameters = parameters::items(compiled);
-    let system = system::items(compiled);
-    quote!(#parameters #system)
+pub fn model(compiled: &Compiled) -> Items {
+    let mut items = parameters::items(compiled);
+    items.extend(system::items(compiled));
+    items
 }
 
 /// What is left of a model with a mistake: its types and their methods, so that whatever uses them still resolves. Its sizes
 /// are the constant in which the mistakes are told, see [`mistakes`].
 #[must_use]
-pub fn shell(model: &ast::Model, mistakes: &Ident) -> TokenStream {
+pub fn shell(model: &ast::Model, mistakes: &Ident) -> Items {
     shell::items(model, mistakes)
 }
 

@@ -3,6 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::Items;
 use super::meta::spaced;
 use super::tokens::{self, structure};
 use crate::compile::Compiled;
@@ -10,7 +11,7 @@ use crate::elaborate::Parameter;
 use crate::symbolic::print;
 
 /// `NameParameters` with its `Default`.
-pub(super) fn items(compiled: &Compiled) -> TokenStream {
+pub(super) fn items(compiled: &Compiled) -> Items {
     let model = &compiled.model;
     let (visibility, name) = (&model.visibility, format_ident!("{}Parameters", model.name));
     let declared = fields(&model.parameters).map(|field| {
@@ -60,17 +61,20 @@ pub(super) fn items(compiled: &Compiled) -> TokenStream {
         (quote!(Debug, PartialEq), None)
     };
     let declared = structure(visibility, &name, quote!(#(#declared,)* #field));
-    quote! {
+    let types = quote! {
         #[doc = #documentation]
         #[derive(Clone, Copy, #derived)]
         #declared
+    };
+    let behaviour = quote! {
         #written
 
         #[automatically_derived]
-        impl<T: ::mbg_runtime::Real> ::core::default::Default for #name<T> {
+        impl<T: mbg_runtime::Real> ::core::default::Default for #name<T> {
             fn default() -> Self { Self { #(#defaults,)* #default } }
         }
-    }
+    };
+    Items { types, behaviour }
 }
 
 /// Traits of parameters without any, whose only field is nobody's business. Derived, clippy would have `Eq` beside them.

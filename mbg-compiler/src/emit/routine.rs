@@ -415,13 +415,13 @@ impl<'a> Writer<'a> {
         let (residuals, jacobian) = solve.results.split_at(solve.size);
         let (residuals, jacobian) = (operands(residuals), operands(jacobian));
         quote! {
-            let #unknowns = ::mbg_runtime::LoopMemory::solve(
+            let #unknowns = mbg_runtime::LoopMemory::solve(
                 memory, #number, #first,
-                |#unknowns: &::mbg_runtime::__private::SVector<T, #size>| {
+                |#unknowns: &mbg_runtime::__private::SVector<T, #size>| {
                     #body
                     (
-                        ::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#residuals),*]),
-                        ::mbg_runtime::__private::SMatrix::<T, #size, #size>::from_row_slice(&[#(#jacobian),*]),
+                        mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#residuals),*]),
+                        mbg_runtime::__private::SMatrix::<T, #size, #size>::from_row_slice(&[#(#jacobian),*]),
                     )
                 },
             );
@@ -454,8 +454,8 @@ impl<'a> Writer<'a> {
             None => (quote!(new), None),
         };
         quote! {
-            let #factors = ::mbg_runtime::solve::#factorised::<T, #size>::#new(
-                ::mbg_runtime::__private::#matrix(&[#(#entries),*]), #rank
+            let #factors = mbg_runtime::solve::#factorised::<T, #size>::#new(
+                mbg_runtime::__private::#matrix(&[#(#entries),*]), #rank
             );
             let #unknowns = #factors.solution(&#right);
         }
@@ -467,7 +467,7 @@ impl<'a> Writer<'a> {
         if self.columns.is_some() {
             let right = solve.results.iter().map(|operand| self.operand(*operand));
             return quote! {
-                let #unknowns = ::mbg_runtime::__private::by_lane(&[#(#right),*], |right| #factors.solution(right));
+                let #unknowns = mbg_runtime::__private::by_lane(&[#(#right),*], |right| #factors.solution(right));
             };
         }
         let right = self.column(&solve.results);
@@ -477,7 +477,7 @@ impl<'a> Writer<'a> {
     fn column(&self, operands: &[Operand]) -> TokenStream {
         let size = Literal::usize_suffixed(operands.len());
         let operands = operands.iter().map(|operand| self.operand(*operand));
-        quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#operands),*]))
+        quote!(mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#operands),*]))
     }
 
     fn call(&self, name: Option<&Ident>, function: &str, arguments: &[Operand]) -> TokenStream {

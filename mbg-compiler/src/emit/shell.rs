@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
+use super::Items;
 use super::tokens::structure;
 use crate::syntax::ast::{self, Statement};
 
@@ -17,45 +18,51 @@ pub(super) fn constant(model: &ast::Model) -> Ident {
     format_ident!("{}Mistakes", model.name, span = Span::call_site())
 }
 
-pub(super) fn items(model: &ast::Model, size: &Ident) -> TokenStream {
+pub(super) fn items(model: &ast::Model, size: &Ident) -> Items {
     let (visibility, name) = (&model.visibility, &model.name);
     let names = format_ident!("{}Parameters", name);
-    let parameters = parameters(model, &names, size);
+    let mut items = parameters(model, &names, size);
     let behaviour = behaviour(name, size);
     let scalar = quote!(scalar: ::core::marker::PhantomData<T>);
     let declared = structure(visibility, name, scalar);
-    quote! {
+    items.types.extend(quote! {
         /// Stands in for a model with a mistake.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #declared
-        #parameters
-        impl<T: ::mbg_runtime::Real> #name<T> {
+    });
+    items.behaviour.extend(quote! {
+        impl<T: mbg_runtime::Real> #name<T> {
             /// As that of the model.
-            pub fn new(_: #names<T>) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> {
+            pub fn new(_: #names<T>) -> ::core::result::Result<Self, mbg_runtime::ParameterError> {
                 loop {}
             }
             /// As those of the model.
             pub fn parameters(&self) -> &#names<T> { loop {} }
         }
-        impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #size, #size, #size> for #name<T> { #behaviour }
-        impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #size, #size, #size> for #name<T> {
-            type With<L: ::mbg_runtime::Real> = #name<L>;
+        impl<T: mbg_runtime::Real> mbg_runtime::System<T, #size, #size, #size> for #name<T> { #behaviour }
+        impl<T: mbg_runtime::Real> mbg_runtime::Convertible<T, #size, #size, #size> for #name<T> {
+            type With<L: mbg_runtime::Real> = #name<L>;
             const STRAIGHT: ::core::primitive::bool = true;
-            fn converted<L: ::mbg_runtime::Real>(&self, _: impl ::core::ops::Fn(T) -> L) -> #name<L> { loop {} }
+            fn converted<L: mbg_runtime::Real>(&self, _: impl ::core::ops::Fn(T) -> L) -> #name<L> { loop {} }
         }
-    }
+    });
+    items
 }
 
 /// The type of the parameters. An array of no known size is no iterator, and what it would iterate over is to Rust whatever
 /// type is asked for: that of each field, and that of all parameters where a statement that was not read may have been one.
-fn parameters(model: &ast::Model, name: &Ident, size: &Ident) -> TokenStream {
+fn parameters(model: &ast::Model, name: &Ident, size: &Ident) -> Items {
     let visibility = &model.visibility;
     let whatever = quote!(<[T; #size] as ::core::iter::Iterator>::Item);
     let statements = || model.statements.iter();
     if statements().any(|statement| matches!(statement, Statement::Broken(_))) {
-        return quote! {
+        let types = quote! {
             /// Stands in for the parameters of a model with a mistake.
             #visibility type #name<T = ::core::primitive::f64> = #whatever;
+        };
+        return Items {
+            types,
+            ..Items::default()
         };
     }
     // A name given twice is the mistake that has been told.
@@ -75,27 +82,30 @@ fn parameters(model: &ast::Model, name: &Ident, size: &Ident) -> TokenStream {
         }
     });
     let declared = structure(visibility, name, quote!(#(#fields)* #scalar));
-    quote! {
+    let types = quote! {
         /// Stands in for the parameters of a model with a mistake.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #declared
+    };
+    let behaviour = quote! {
         impl<T> ::core::default::Default for #name<T> {
             fn default() -> Self { loop {} }
         }
-    }
+    };
+    Items { types, behaviour }
 }
 
 /// The methods of `System`, as they are declared.
 fn behaviour(name: &Ident, size: &Ident) -> TokenStream {
-    let vector = quote!(::mbg_runtime::__private::SVector<T, #size>);
-    let matrix = quote!(::mbg_runtime::__private::SMatrix<T, #size, #size>);
+    let vector = quote!(mbg_runtime::__private::SVector<T, #size>);
+    let matrix = quote!(mbg_runtime::__private::SMatrix<T, #size, #size>);
     let memory = quote!([(); #size]);
     let name = name.to_string();
     quote! {
-        const META: &'static ::mbg_runtime::Meta = &::mbg_runtime::Meta {
+        const META: &'static mbg_runtime::Meta = &mbg_runtime::Meta {
             name: #name, parameters: &[], states: &[], inputs: &[], outputs: &[], bonds: &[], dependent: &[],
             conditioning: &[], eliminated: &[], closures: &[], loops: &[], assumptions: &[], notes: &[], diagram: "",
-            operations: ::mbg_runtime::Operations {
+            operations: mbg_runtime::Operations {
                 derivative: 0, output: 0, derivative_and_jacobian: 0, jacobian_input: 0, energy: 0, power: 0, angles: 0,
             },
         };
@@ -107,7 +117,7 @@ fn behaviour(name: &Ident, size: &Ident) -> TokenStream {
         fn jacobian_state(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #matrix { loop {} }
         fn jacobian_input(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #matrix { loop {} }
         fn energy(&self, _: T, _: &#vector) -> T { loop {} }
-        fn power(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> ::mbg_runtime::Power<T> { loop {} }
+        fn power(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> mbg_runtime::Power<T> { loop {} }
         fn conditioning(&self, _: T, _: &#vector, _: &#vector) -> [T; #size] { loop {} }
     }
 }

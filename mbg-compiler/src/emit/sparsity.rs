@@ -28,7 +28,7 @@ pub(super) fn items(pattern: &Pattern) -> TokenStream {
     let short = plan.filter(|plan| plan.operations() <= UNROLLED);
     let unrolled = short.map(|plan| unrolled(pattern, &plan));
     quote! {
-        const SPARSITY: ::core::option::Option<&'static ::mbg_runtime::Sparsity> = #constant;
+        const SPARSITY: ::core::option::Option<&'static mbg_runtime::Sparsity> = #constant;
         #unrolled
     }
 }
@@ -41,7 +41,7 @@ fn constant(pattern: &Pattern, plan: Option<&Elimination>) -> TokenStream {
         let [lower, upper] = [&plan.lower, &plan.upper].map(|rows| nested(rows));
         let order = numbers(&plan.order);
         quote! {
-            ::core::option::Option::Some(::mbg_runtime::Elimination {
+            ::core::option::Option::Some(mbg_runtime::Elimination {
                 order: #order, lower: #lower, upper: #upper,
             })
         }
@@ -50,7 +50,7 @@ fn constant(pattern: &Pattern, plan: Option<&Elimination>) -> TokenStream {
     };
     let rows = nested(pattern);
     quote! {
-        ::core::option::Option::Some(&::mbg_runtime::Sparsity { rows: #rows, elimination: #elimination })
+        ::core::option::Option::Some(&mbg_runtime::Sparsity { rows: #rows, elimination: #elimination })
     }
 }
 
@@ -90,7 +90,7 @@ fn unrolled(pattern: &Pattern, plan: &Elimination) -> TokenStream {
     quote! {
         const UNROLLED: ::core::primitive::bool = true;
         #[inline]
-        fn eliminate<E: ::mbg_runtime::__private::Element>(
+        fn eliminate<E: mbg_runtime::__private::Element>(
             entry: impl ::core::ops::Fn(::core::primitive::usize, ::core::primitive::usize) -> E,
             rows: &mut [[E; #size]; #size],
         ) -> ::core::primitive::bool {
@@ -99,7 +99,7 @@ fn unrolled(pattern: &Pattern, plan: &Elimination) -> TokenStream {
             holds
         }
         #[inline]
-        fn substitute<E: ::mbg_runtime::__private::Element>(rows: &[[E; #size]; #size], x: &mut [E; #size]) {
+        fn substitute<E: mbg_runtime::__private::Element>(rows: &[[E; #size]; #size], x: &mut [E; #size]) {
             #substituted
         }
     }
@@ -125,13 +125,13 @@ fn eliminated(pattern: &Pattern, plan: &Elimination) -> TokenStream {
                 code.extend(quote!(let #name = E::zero();));
             }
         }
-        code.extend(quote!(let #own = ::mbg_runtime::__private::largest([#(#entries),*]);));
+        code.extend(quote!(let #own = mbg_runtime::__private::largest([#(#entries),*]);));
         for pivot in plan.lower[row].iter().copied() {
             let (factor, above) = (element(row, pivot), element(pivot, pivot));
             let scale = size(pivot);
             code.extend(quote! {
                 let #factor = #factor * #above;
-                holds &= ::mbg_runtime::__private::holds(#factor, #scale, #own);
+                holds &= mbg_runtime::__private::holds(#factor, #scale, #own);
             });
             for column in plan.upper[pivot].iter().copied() {
                 let (value, above) = (element(row, column), element(pivot, column));

@@ -6,19 +6,21 @@ use quote::{format_ident, quote};
 use super::close::{self, close};
 use super::routine::{Setting, Writer, lines, written_lines};
 use super::tokens::block;
-use super::{jacobians, meta, parameters, sparsity, tokens};
+use super::{Items, jacobians, meta, parameters, sparsity, tokens};
 use crate::compile::{Compiled, Routines};
 use crate::elaborate::Condition;
 use crate::program::Step;
 use crate::symbolic::Symbol;
 
 /// The type, its constructor and its behaviour.
-pub(super) fn items(compiled: &Compiled) -> TokenStream {
-    let structure = structure(compiled);
+pub(super) fn items(compiled: &Compiled) -> Items {
     let constructor = constructor(compiled);
     let system = system(compiled);
     let convertible = convertible(compiled);
-    quote!(#structure #constructor #system #convertible)
+    Items {
+        types: structure(compiled),
+        behaviour: quote!(#constructor #system #convertible),
+    }
 }
 
 fn structure(compiled: &Compiled) -> TokenStream {
@@ -46,8 +48,8 @@ fn constructor(compiled: &Compiled) -> TokenStream {
         let value = parameters::read(parameter);
         let text = &parameter.variable.name;
         quote! {
-            ::mbg_runtime::__private::check(
-                #text, #value, ::mbg_runtime::__private::Condition::Finite, "it must be a finite number",
+            mbg_runtime::__private::check(
+                #text, #value, mbg_runtime::__private::Condition::Finite, "it must be a finite number",
             )?;
         }
     });
@@ -64,8 +66,8 @@ fn constructor(compiled: &Compiled) -> TokenStream {
         };
         let (text, reason) = (&check.name, format!("it must {must}: {}", check.reason));
         quote! {
-            ::mbg_runtime::__private::check(
-                #text, #value, ::mbg_runtime::__private::Condition::#condition, #reason,
+            mbg_runtime::__private::check(
+                #text, #value, mbg_runtime::__private::Condition::#condition, #reason,
             )?;
         }
     });
@@ -81,14 +83,14 @@ fn constructor(compiled: &Compiled) -> TokenStream {
     };
     quote! {
         #[automatically_derived]
-        impl<T: ::mbg_runtime::Real> #name<T> {
+        impl<T: mbg_runtime::Real> #name<T> {
             /// Checks the parameters and works out whatever depends on them alone.
             ///
             /// # Errors
             /// A parameter that is no finite number, or that breaks an assumption listed above.
             pub fn new(
                 parameters: #parameters<T>,
-            ) -> ::core::result::Result<Self, ::mbg_runtime::ParameterError> {
+            ) -> ::core::result::Result<Self, mbg_runtime::ParameterError> {
                 #(#finite)*
                 #folding
                 let folded = [#(#folded),*];
@@ -127,7 +129,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let energy = body(Routines::ENERGY, &|results| quote!(#(#results)*));
     let power = body(Routines::POWER, &|results| {
         let (supplied, dissipated) = (&results[0], &results[1]);
-        quote!(::mbg_runtime::Power { supplied: #supplied, dissipated: #dissipated })
+        quote!(mbg_runtime::Power { supplied: #supplied, dissipated: #dissipated })
     });
     let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
     let [cold_energy, cold_conditioning] = [Routines::ENERGY, Routines::CONDITIONING]
@@ -139,43 +141,43 @@ fn system(compiled: &Compiled) -> TokenStream {
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
     let arguments = quote! {
         t: T,
-        x: &::mbg_runtime::__private::SVector<T, #n>,
-        u: &::mbg_runtime::__private::SVector<T, #m>
+        x: &mbg_runtime::__private::SVector<T, #n>,
+        u: &mbg_runtime::__private::SVector<T, #m>
     };
     let jacobians = jacobians::methods(compiled, &arguments, &memory);
     quote! {
         #[automatically_derived]
-        impl<T: ::mbg_runtime::Real> ::mbg_runtime::System<T, #n, #m, #p> for #name<T> {
-            const META: &'static ::mbg_runtime::Meta = #meta;
+        impl<T: mbg_runtime::Real> mbg_runtime::System<T, #n, #m, #p> for #name<T> {
+            const META: &'static mbg_runtime::Meta = #meta;
             const AUTONOMOUS: ::core::primitive::bool = #autonomous;
             type Memory = #memory;
             type Conditioning = [T; #k];
 
             #[inline]
-            fn initial_state(&self) -> ::mbg_runtime::__private::SVector<T, #n> { #initial }
+            fn initial_state(&self) -> mbg_runtime::__private::SVector<T, #n> { #initial }
             #[inline]
-            fn derivative(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #n> {
-                let mut derivative = ::mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0));
-                ::mbg_runtime::System::derivative_into(self, t, x, u, memory, &mut derivative);
+            fn derivative(&self, #arguments, memory: &mut #memory) -> mbg_runtime::__private::SVector<T, #n> {
+                let mut derivative = mbg_runtime::__private::SVector::<T, #n>::from_element(T::from_f64(0.0));
+                mbg_runtime::System::derivative_into(self, t, x, u, memory, &mut derivative);
                 derivative
             }
             #[inline(always)]
             fn derivative_into(
                 &self, #arguments, memory: &mut #memory,
-                derivative: &mut ::mbg_runtime::__private::SVector<T, #n>,
+                derivative: &mut mbg_runtime::__private::SVector<T, #n>,
             ) #derivative
             #derivatives
             #[inline]
-            fn output(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::__private::SVector<T, #p> { #output }
+            fn output(&self, #arguments, memory: &mut #memory) -> mbg_runtime::__private::SVector<T, #p> { #output }
             #jacobians
             #[inline]
-            fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> ::mbg_runtime::__private::SVector<T, #n> {
+            fn derivative_time(&self, #arguments, memory: &mut #memory, ahead: T) -> mbg_runtime::__private::SVector<T, #n> {
                 #derivative_time
             }
             #[inline]
-            fn energy(&self, t: T, x: &::mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }
+            fn energy(&self, t: T, x: &mbg_runtime::__private::SVector<T, #n>) -> T { #cold_energy #energy }
             #[inline]
-            fn power(&self, #arguments, memory: &mut #memory) -> ::mbg_runtime::Power<T> { #power }
+            fn power(&self, #arguments, memory: &mut #memory) -> mbg_runtime::Power<T> { #power }
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
             #next_change
@@ -194,7 +196,7 @@ fn next_change(compiled: &Compiled) -> Option<TokenStream> {
     let body = body(
         compiled,
         Routines::CHANGES,
-        &|times| quote!(::mbg_runtime::__private::next_of(t, &[#(#times),*])),
+        &|times| quote!(mbg_runtime::__private::next_of(t, &[#(#times),*])),
     );
     (!is_empty).then(|| {
         quote! {
@@ -244,13 +246,13 @@ fn derivatives(compiled: &Compiled) -> Option<TokenStream> {
             fn derivatives(
                 &self,
                 t: T::Stages,
-                x: &::mbg_runtime::__private::SVector<T::Stages, #n>,
-                u: &::mbg_runtime::__private::SVector<T::Stages, #m>,
+                x: &mbg_runtime::__private::SVector<T::Stages, #n>,
+                u: &mbg_runtime::__private::SVector<T::Stages, #m>,
                 memory: &mut (),
-            ) -> ::mbg_runtime::__private::SVector<T::Stages, #n> {
-                let whole = |value: T| <T::Stages as ::mbg_runtime::Columns<T>>::whole(value);
-                let stages = ::mbg_runtime::Convertible::converted(self, whole);
-                ::mbg_runtime::System::derivative(&stages, t, x, u, memory)
+            ) -> mbg_runtime::__private::SVector<T::Stages, #n> {
+                let whole = |value: T| <T::Stages as mbg_runtime::Columns<T>>::whole(value);
+                let stages = mbg_runtime::Convertible::converted(self, whole);
+                mbg_runtime::System::derivative(&stages, t, x, u, memory)
             }
         }
     })
@@ -281,11 +283,11 @@ fn convertible(compiled: &Compiled) -> TokenStream {
     let straight = !steps.iter().any(|step| matches!(step, Step::Solve(_)));
     quote! {
         #[automatically_derived]
-        impl<T: ::mbg_runtime::Real> ::mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
-            type With<L: ::mbg_runtime::Real> = #name<L>;
+        impl<T: mbg_runtime::Real> mbg_runtime::Convertible<T, #n, #m, #p> for #name<T> {
+            type With<L: mbg_runtime::Real> = #name<L>;
             const STRAIGHT: ::core::primitive::bool = #straight;
             #[inline]
-            fn converted<L: ::mbg_runtime::Real>(
+            fn converted<L: mbg_runtime::Real>(
                 &self,
                 convert: impl ::core::ops::Fn(T) -> L,
             ) -> #name<L> {
@@ -314,7 +316,7 @@ fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
 /// A vector of results.
 fn vector(results: &[TokenStream]) -> TokenStream {
     let size = Literal::usize_suffixed(results.len());
-    quote!(::mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
+    quote!(mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#results),*]))
 }
 
 /// The lines that write each entry of the derivative.
@@ -332,7 +334,7 @@ fn memory(compiled: &Compiled) -> TokenStream {
         return quote!(());
     }
     let [loops, unknowns] = [sizes.len(), sizes.iter().sum()].map(Literal::usize_suffixed);
-    quote!(::mbg_runtime::LoopMemory<T, #loops, #unknowns>)
+    quote!(mbg_runtime::LoopMemory<T, #loops, #unknowns>)
 }
 
 /// What is asked without a memory begins at zero, if it needs an iteration at all.

@@ -52,9 +52,9 @@ pub mod models {
     }
 }
 
-/// A scope in which types of Rust are others.
+/// A scope in which types of Rust are others, and what generated code binds has values.
 pub mod renamed {
-    #![allow(non_camel_case_types)]
+    #![allow(non_camel_case_types, non_upper_case_globals)]
 
     /// No number.
     pub struct f64;
@@ -62,6 +62,24 @@ pub mod renamed {
     pub struct usize;
     /// No truth.
     pub struct bool;
+    /// No time.
+    pub const t: i32 = 1;
+    /// No state.
+    pub static x: i32 = 2;
+    /// No input.
+    pub struct u;
+    /// No memory.
+    pub const memory: i32 = 3;
+    /// No rows that a state holds.
+    pub static held: i32 = 4;
+    /// No first value.
+    pub const v0: i32 = 5;
+    /// No first unknown.
+    pub const z0: i32 = 6;
+    /// No factors.
+    pub const s0: i32 = 7;
+    /// No element.
+    pub const a0_0: i32 = 8;
 
     mbg_runtime::mbg! {
         /// A loop that is closed.

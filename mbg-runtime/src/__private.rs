@@ -1,5 +1,7 @@
 //! What generated code refers to by whole paths. No part of the public interface.
 
+pub mod locals;
+
 use ::core::cell::Cell;
 
 pub use core;

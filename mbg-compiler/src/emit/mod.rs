@@ -2,6 +2,9 @@
 //!
 //! Input: a [`Compiled`] model. Output: tokens: the type of the parameters, the model's type, and its `System`. The
 //! code is flat, generic over the scalar, refers to everything by whole paths, and is the same for the same input.
+//!
+//! It stands among items of the user, where a constant `t` would be what each binding `t` is compared with. Words that it
+//! binds are therefore in the list of `mbg_runtime::__private::locals`, and names with numbers end in `_`.
 
 mod close;
 mod columns;
@@ -46,7 +49,9 @@ impl Items {
         if behaviour.is_empty() {
             return types;
         }
-        let mut inner = quote!(use #runtime as mbg_runtime;);
+        let mut inner = quote!(
+            use #runtime::{self as mbg_runtime, __private::locals::*};
+        );
         inner.extend(behaviour);
         let block = block(inner);
         quote!(#types const _: () = #block;)

@@ -8,7 +8,7 @@ use quote::{ToTokens, format_ident, quote};
 use rustc_hash::FxHashMap;
 
 use super::parameters;
-use super::tokens::{Tokens, Words, block};
+use super::tokens::{Tokens, Words, block, numbered};
 use crate::compile::Compiled;
 use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step, angles};
 use crate::symbolic::{Kind, Symbol};
@@ -131,7 +131,7 @@ fn names(routine: &Routine) -> Vec<Ident> {
         .enumerate()
         .map(|(value, name)| {
             if name.is_empty() {
-                return Ident::new(&format!("v{value}"), Span::mixed_site());
+                return numbered("v", value);
             }
             let word: String = name
                 .chars()
@@ -143,10 +143,12 @@ fn names(routine: &Routine) -> Vec<Ident> {
                     }
                 })
                 .collect();
-            let word = format!("v_{word}");
-            let is_new = taken.insert(word.clone());
-            let name = if is_new { word } else { format!("v{value}") };
-            Ident::new(&name, Span::mixed_site())
+            let word = format!("v_{word}_");
+            if taken.insert(word.clone()) {
+                Ident::new(&word, Span::mixed_site())
+            } else {
+                numbered("v", value)
+            }
         })
         .collect()
 }
@@ -595,12 +597,12 @@ impl ToTokens for Term<'_> {
 
 /// What holds the unknowns of an iteration.
 fn unknowns(number: usize) -> Ident {
-    format_ident!("z{}", number, span = Span::mixed_site())
+    numbered("z", number)
 }
 
 /// What holds the factors of the matrix that gives the unknowns.
 fn factors(number: usize) -> Ident {
-    format_ident!("s{}", number, span = Span::mixed_site())
+    numbered("s", number)
 }
 
 fn element(tokens: &mut Tokens, array: &Ident, index: usize) {

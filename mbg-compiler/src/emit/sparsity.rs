@@ -7,6 +7,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::tokens::numbered;
 use crate::sparsity::{Elimination, Pattern};
 
 /// Products of a factorisation up to which it is written out; beyond, a loop runs over the plan, so that code stays small.
@@ -107,8 +108,8 @@ fn unrolled(pattern: &Pattern, plan: &Elimination) -> TokenStream {
 
 /// Row by row: what the matrix holds there, less what the rows above contribute.
 fn eliminated(pattern: &Pattern, plan: &Elimination) -> TokenStream {
-    let element = |row: usize, column: usize| format_ident!("a{}_{}", row, column);
-    let size = |row: usize| format_ident!("size{}", row);
+    let element = |row: usize, column: usize| format_ident!("a{}_{}_", row, column);
+    let size = |row: usize| numbered("size", row);
     let mut code = TokenStream::new();
     for row in plan.order.iter().copied() {
         let filled = || plan.lower[row].iter().chain([&row]).chain(&plan.upper[row]);
@@ -151,7 +152,7 @@ fn eliminated(pattern: &Pattern, plan: &Elimination) -> TokenStream {
 
 /// Forward and backward substitution.
 fn substituted(plan: &Elimination) -> TokenStream {
-    let name = |row: usize| format_ident!("x{}", row);
+    let name = |row: usize| numbered("x", row);
     let mut code = TokenStream::new();
     let less = |row: usize, columns: &[usize]| {
         let x = name(row);

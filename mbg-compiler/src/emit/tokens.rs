@@ -50,6 +50,11 @@ impl Tokens {
     }
 }
 
+/// A local name with a number.
+pub(super) fn numbered(word: &str, number: usize) -> Ident {
+    Ident::new(&format!("{word}{number}_"), Span::mixed_site())
+}
+
 /// `{ tokens }`.
 pub(super) fn block(tokens: TokenStream) -> Group {
     Group::new(Delimiter::Brace, tokens)

@@ -1,0 +1,16 @@
+//! Functions of the names that generated code binds. A constant of such a name, among the items of a user, would be what a
+//! binding is compared with; a nearer function hides it, and bindings hide functions.
+
+macro_rules! functions {
+    ($($name:ident)*) => {
+        $(
+            /// Gives way to a binding.
+            pub fn $name() {}
+        )*
+    };
+}
+
+functions! {
+    ahead both changing convert derivative entry folded formatter held holds input jacobian kept memory model parameters
+    ranks right rows slopes stages t u value whole x zero
+}

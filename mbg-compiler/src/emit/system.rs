@@ -217,21 +217,21 @@ fn passed(compiled: &Compiled) -> Option<TokenStream> {
             rest = others;
             let (argument, thresholds) = (&group[0], &group[1..]);
             if thresholds.is_empty() {
-                quote!(::mbg_runtime::__private::half_turns(#argument))
+                quote!(mbg_runtime::__private::half_turns(#argument))
             } else {
-                quote!(::mbg_runtime::__private::below(#argument, &[#(#thresholds),*]))
+                quote!(mbg_runtime::__private::below(#argument, &[#(#thresholds),*]))
             }
         });
         quote!([#(#counts),*])
     });
     let point = quote! {
-        (T, &::mbg_runtime::__private::SVector<T, #n>, &::mbg_runtime::__private::SVector<T, #m>)
+        (T, &mbg_runtime::__private::SVector<T, #n>, &mbg_runtime::__private::SVector<T, #m>)
     };
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
             fn passed(&self, from: #point, to: #point, memory: &mut #memory) -> ::core::primitive::u32 {
                 let mut below = |(t, x, u): #point| -> [::core::primitive::i32; #groups] { #counted };
-                ::mbg_runtime::__private::most_between(below(from), below(to))
+                mbg_runtime::__private::most_between(below(from), below(to))
             }
         }
     })

@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn states_change_along_tangents_alone() {
-        let rows = Rows::new(
+        let mut rows = Rows::new(
             [
                 row([1.0, 0.0], [0.0, 0.0], 1.0),
                 row([0.0; 2], [0.0; 2], 0.0),

@@ -1,5 +1,7 @@
 //! States and inputs at which a model does what is wanted of it: rests, hovers, turns steadily.
 
+use core::cmp::Ordering;
+
 use nalgebra::{SMatrix, SVector};
 
 use crate::solve::{Row, Rows};
@@ -181,7 +183,6 @@ where
     }
 
     /// States or inputs that stay as they are in the guess.
-    #[inline(never)]
     #[must_use]
     pub fn hold(mut self, name: &'static str) -> Self {
         let mut found = false;
@@ -207,7 +208,6 @@ where
     }
 
     /// Outputs with a wanted value.
-    #[inline(never)]
     #[must_use]
     pub fn output(mut self, name: &'static str, value: f64) -> Self {
         let mut found = false;
@@ -219,7 +219,6 @@ where
         self.known(found, "output", name)
     }
 
-    #[inline(never)]
     fn with_rate(mut self, name: &'static str, wanted: Option<f64>) -> Self {
         let mut found = false;
         for (rate, variable) in self.rates.iter_mut().zip(S::META.states) {
@@ -242,8 +241,8 @@ where
     ///
     /// # Errors
     ///
-    /// A name that the model has not, conditions that cannot be met from the guess, and what [`System::close`](crate::System::close) and
-    /// [`System::trouble`](crate::System::trouble) say of a state.
+    /// A name that the model has not, conditions that cannot be met from the guess, and what
+    /// [`System::close`](crate::System::close) and [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
         if let Some(unknown) = self.unknown {
             return Err(unknown);
@@ -266,7 +265,10 @@ where
             .map(|row| row.part_left(&sizes.state, &sizes.input));
         let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         match worst {
-            Some((row, left)) if left > LEFT => Err(self.missed(&point, row, &mut rows)),
+            // NaN is not small.
+            Some((row, left)) if !matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) => {
+                Err(self.missed(&point, row, &mut rows))
+            }
             _ => Ok(point),
         }
     }
@@ -300,7 +302,7 @@ where
     #[inline(never)]
     fn closed(&self, point: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
         let states = &self.held.0;
-        // One of them stands for each state that is not held.
+        // One of them stands for each state that is not held: where they are counted, LLVM takes minutes over the count.
         let any = states.iter().position(|is_held| *is_held);
         let all = core::array::from_fn::<_, N, _>(|state| match states[state] {
             true => state,
@@ -408,7 +410,6 @@ where
 }
 
 /// Whether a name is this one, or begins with it and a part of its own.
-#[inline(never)]
 fn is_named(whole: &str, name: &str) -> bool {
     let rest = whole.strip_prefix(name);
     !name.is_empty() && rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))

@@ -179,6 +179,8 @@ fn what_cannot_be_is_told() {
         told(fixed),
         "`place.z` is 0e0 instead of 3e0, and nothing that may be chosen has an influence on it"
     );
+    let nowhere = SVector::from_element(f64::NAN);
+    assert!(Trim::new(&craft).state(&nowhere).solve().is_err());
     let Err(Untrimmed::Missed {
         name,
         wanted,

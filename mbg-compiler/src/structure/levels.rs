@@ -67,6 +67,38 @@ fn join_turns(place: &mut Option<Turn>, other: Option<Turn>) {
     };
 }
 
+/// The sets of unknowns, where a frame in space follows from a rate as a whole: of a trunk that flies, the velocity carries a
+/// hinge, though no spin about the hinge's axis follows from it. In a plane, nothing tells a frame from another vector.
+fn wholes(scalars: &Scalars, place: &BTreeMap<usize, usize>, sets: &[(Bits, usize)]) -> Vec<Bits> {
+    let mut wholes: Vec<Bits> = sets.iter().map(|(set, _)| set.clone()).collect();
+    for frame in scalars.common.iter().filter(|flows| flows.len() == 6) {
+        let places = || frame.iter().filter_map(|unknown| place.get(unknown));
+        let mut whole = Bits::default();
+        places().for_each(|place| whole.join(&sets[*place].0));
+        places().for_each(|place| wholes[*place].join(&whole));
+    }
+    wholes
+}
+
+/// For each independent rate, those that the storage follows from that it moves with the fewest others: all are nearer to the
+/// base.
+fn company<'a>(
+    storages: impl Iterator<Item = &'a Bits>,
+    independent: usize,
+) -> Vec<BTreeSet<usize>> {
+    let mut company: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); independent];
+    for storage in storages {
+        let together: BTreeSet<usize> = storage.iter().collect();
+        for k in &together {
+            let fewest = &mut company[*k];
+            if fewest.is_empty() || together.len() < fewest.len() {
+                fewest.clone_from(&together);
+            }
+        }
+    }
+    company
+}
+
 /// Independent rates from the leaves to the base: each before those of its company, unless they are of each other's, and of
 /// the others that which moves least.
 fn farthest_first(company: &[BTreeSet<usize>], weight: &[usize]) -> Vec<usize> {
@@ -140,18 +172,9 @@ impl Dependence {
         for (set, _) in &sets {
             set.iter().for_each(|k| weight[k] += 1);
         }
-        // The rates that the storage follows from that a rate moves with the fewest others: all are nearer to the base.
-        let mut company: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); independent];
-        let places = moved.iter().filter_map(|unknown| place.get(unknown));
-        for (set, _) in places.map(|place| &sets[*place]) {
-            let together: BTreeSet<usize> = set.iter().collect();
-            for k in &together {
-                let fewest = &mut company[*k];
-                if fewest.is_empty() || together.len() < fewest.len() {
-                    fewest.clone_from(&together);
-                }
-            }
-        }
+        let wholes = wholes(scalars, &place, &sets);
+        let storages = moved.iter().filter_map(|unknown| place.get(unknown));
+        let company = company(storages.map(|place| &wholes[*place]), independent);
         let order = farthest_first(&company, &weight);
         let mut rank = vec![0; independent];
         for (level, k) in order.into_iter().enumerate() {

@@ -204,6 +204,9 @@ impl Solver<'_> {
                 delayed.extend(wait);
                 self.carry(&mut system, &tree, &level.rows, now)?;
             }
+            if let Some(column) = level.last {
+                self.gather(&mut system, &tree, &passed, column)?;
+            }
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &passed, column)
                 && self.moves(number, equations[row])
@@ -242,6 +245,26 @@ impl Solver<'_> {
             shift.undo(self.pool, &mut values);
         }
         self.store(unknowns, values);
+        Ok(())
+    }
+
+    /// Eliminates what is fixed to other rates, from the leaves on, in the balance on an independent rate among the rows given.
+    fn gather(
+        &mut self,
+        system: &mut System,
+        tree: &Tree,
+        rows: &Columns,
+        rate: usize,
+    ) -> Result<(), Failure> {
+        let all: Columns = (0..system.size()).collect();
+        let mut open = system.open().len() + 1;
+        // Ends where no pivot was found, so that each round but the last leaves fewer rows.
+        while system.open().len() < open
+            && let Some(fixed) = tree.fixed(self.pool, system, rows, rate)
+        {
+            open = system.open().len();
+            self.carry(system, tree, &all, fixed)?;
+        }
         Ok(())
     }
 

@@ -235,6 +235,11 @@ impl Tree {
         rates.copied().filter(move |rate| *rate != column)
     }
 
+    /// Whether nothing is left that follows from a rate.
+    fn is_leaf(&self, system: &System, rate: usize) -> bool {
+        self.followers(system, rate).next().is_none()
+    }
+
     /// All open rates that follow from a rate.
     pub(super) fn moved(&self, system: &System, rate: usize) -> Columns {
         let mut found = Columns::new();
@@ -273,14 +278,13 @@ impl Tree {
             .filter(|row| rows.contains(row))
             .filter(|row| system.row(*row).all(|(column, _)| is_rate(column)));
         let row = balances.next()?;
-        let is_only = balances.next().is_none() && self.followers(system, rate).next().is_none();
+        let is_only = balances.next().is_none() && self.is_leaf(system, rate);
         is_only.then_some(row)
     }
 
     /// Turned rates in a row, and those that are turned together with them, from which nothing follows any more; and
     /// the efforts that come with them.
     pub(super) fn frame(&self, pool: &Pool, system: &System, row: usize) -> Columns {
-        let is_leaf = |rate: &usize| self.followers(system, *rate).next().is_none();
         let together = |rate: usize| {
             let turn = self.turns.get(&rate).copied();
             let open = |other: &usize| system.rows_with(*other).next().is_some();
@@ -290,18 +294,49 @@ impl Tree {
         let mut frame = Columns::new();
         for (rate, _) in system.row(row) {
             let turns = self.conjugates.contains_key(&rate) && self.is_turned(pool, system, rate);
-            if !turns || !together(rate).all(|other| is_leaf(&other)) {
+            if !turns || !together(rate).all(|other| self.is_leaf(system, other)) {
                 continue;
             }
             let causes = self.causes(system, rate);
             frame.extend(together(rate).filter(|other| self.causes(system, *other) == causes));
         }
-        let efforts = frame.iter().filter_map(|rate| self.conjugates[rate].effort);
-        let efforts: Vec<usize> = efforts.collect();
-        frame.extend(efforts);
-        frame
+        self.with_efforts(frame)
     }
 
+    /// Rates in the balance on an independent rate that are fixed to others, that is, follow from them by what does not vary,
+    /// and from which nothing follows any more; and the efforts that come with them. They go before the independent rate,
+    /// which fills in an entry for every two rates in its balance. None if the others, which take their place, are more than
+    /// half as many.
+    pub(super) fn fixed(
+        &self,
+        pool: &Pool,
+        system: &System,
+        rows: &BTreeSet<usize>,
+        rate: usize,
+    ) -> Option<Columns> {
+        let row = self.balance(system, rows, rate)?;
+        let is_fixed = |rate: &usize| {
+            self.is_given(*rate)
+                && !self.is_turned(pool, system, *rate)
+                && self.is_leaf(system, *rate)
+        };
+        let columns = system.row(row).map(|(column, _)| column);
+        let fixed: Columns = columns.filter(is_fixed).collect();
+        let causes = fixed.iter().flat_map(|rate| self.causes(system, *rate));
+        let causes: Columns = causes.collect();
+        let is_worth = !fixed.is_empty() && 2 * causes.len() <= fixed.len();
+        is_worth.then(|| self.with_efforts(fixed))
+    }
+
+    /// Rates, and the efforts that come with them.
+    fn with_efforts(&self, mut rates: Columns) -> Columns {
+        let efforts = rates.iter().filter_map(|rate| self.conjugates[rate].effort);
+        let efforts: Vec<usize> = efforts.collect();
+        rates.extend(efforts);
+        rates
+    }
+
+    /// The rates from which a rate follows.
     fn causes(&self, system: &System, rate: usize) -> Vec<usize> {
         let row = system.row(self.conjugates[&rate].row);
         row.map(|(column, _)| column)

@@ -322,21 +322,22 @@ where
         let linear = Linearised::of(self.system, self.time, &point.state, &point.input)
             .map_err(Untrimmed::Trouble)?;
         let (rates, outputs) = self.left(point);
-        let rates = core::array::from_fn(|row| match self.rates[row] {
-            Some(_) => Row::new(
-                linear.state.row(row).transpose(),
-                linear.input.row(row).transpose(),
-                rates[row],
-            ),
+        let wanted = |wanted: Option<f64>, row| match wanted {
+            Some(_) => row,
             None => Row::empty(),
+        };
+        let rates = core::array::from_fn(|row| {
+            let by_state = linear.state.row(row).transpose();
+            let by_input = linear.input.row(row).transpose();
+            wanted(self.rates[row], Row::new(by_state, by_input, rates[row]))
         });
-        let outputs = core::array::from_fn(|row| match self.outputs[row] {
-            Some(_) => Row::new(
-                linear.output.row(row).transpose(),
-                linear.feedthrough.row(row).transpose(),
-                outputs[row],
-            ),
-            None => Row::empty(),
+        let outputs = core::array::from_fn(|row| {
+            let by_state = linear.output.row(row).transpose();
+            let by_input = linear.feedthrough.row(row).transpose();
+            wanted(
+                self.outputs[row],
+                Row::new(by_state, by_input, outputs[row]),
+            )
         });
         Ok(Rows::new(rates, outputs))
     }

@@ -29,9 +29,9 @@ const TINY: f64 = 1e-9;
 /// once by what their names begin with: `"free.position"` is all of `free.position.x` to `.z`.
 ///
 /// The point is found by the method of Gauss and Newton with the model's own Jacobians, damped until what is left of the conditions
-/// falls. Where more may be chosen than is asked, as with four rotors for three torques, each correction is the one of least norm
-/// in units of what states and inputs do. Corrections lead along closed loops and attitudes, on which the
-/// state stays ([`System::close`](crate::System::close)). The guess decides which point is found of several: a pendulum may hang or stand.
+/// falls. Where more may be chosen than is asked, as with an elevator and a canard for one moment, each correction is the one of
+/// least norm in units of what states and inputs do. Corrections lead along closed loops and attitudes, on which the state stays
+/// ([`System::close`](crate::System::close)). The guess decides which point is found of several: a pendulum may hang or stand.
 ///
 /// # Example
 ///
@@ -59,7 +59,7 @@ const TINY: f64 = 1e-9;
 /// // The angle at which 10 N*m hold it.
 /// let pushed = Trim::new(&pendulum).input(&[10.0]).hold("torque").solve()?;
 /// assert!((pushed.state[1] - f64::asin(0.5)).abs() < 1e-12);
-/// // Without a torque it rests where it hangs.
+/// // What its weight does for a small angle more, next to that.
 /// let linear = Linearised::of(&pendulum, 0.0, &pushed.state, &pushed.input)?;
 /// assert!((linear.state[(0, 1)] + 20.0 * f64::cos(pushed.state[1])).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -8,6 +8,7 @@ use crate::Real;
 const PASSES: usize = 30;
 /// Passes that bring the entries of rows and columns to the size of one.
 const BALANCES: usize = 3;
+
 /// An equation `a · x + b · u = right`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const N: usize, const M: usize> {

@@ -1,10 +1,11 @@
 //! Stage 5e, changes: where choices in the laws change, as in `if t < start { 0.0 } else { 2.0 }` at the time `start`.
 
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 use crate::symbolic::choices::choice_of;
-use crate::symbolic::substitute::{replace, symbols, visit};
-use crate::symbolic::{Expression, Operation, Pool, Rate, Symbol, affine};
+use crate::symbolic::substitute::{operations, replace, symbols, visit};
+use crate::symbolic::{Differentiator, Expression, Operation, Pool, Rate, Symbol, affine};
 
 /// Most branches of choices within a condition that are tried.
 const MOST: usize = 64;
@@ -13,6 +14,8 @@ const MOST: usize = 64;
 pub struct Argument {
     /// Varying, without what parameters alone add to it or multiply it by.
     pub value: Expression,
+    /// How it changes with time and states, in terms of their [`Symbol::Slope`]s; zero for what is long to work out.
+    pub rate: Expression,
     /// In terms of parameters, each once.
     pub thresholds: Vec<Expression>,
 }
@@ -38,7 +41,9 @@ pub fn times(pool: &mut Pool, rates: &[Expression]) -> Vec<Expression> {
 
 /// What a step may pass more of than it finds: arguments of the state, and waves, which go back over each threshold, with their
 /// angles.
-pub fn arguments(pool: &mut Pool, rates: &[Expression]) -> Vec<Argument> {
+///
+/// `states` are those of the rates.
+pub fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Argument> {
     let mut arguments: Vec<Argument> = Vec::new();
     for difference in differences(pool, rates) {
         for branch in branches(pool, difference) {
@@ -49,6 +54,7 @@ pub fn arguments(pool: &mut Pool, rates: &[Expression]) -> Vec<Argument> {
                 Some(known) => add_new(&mut known.thresholds, vec![threshold]),
                 None => arguments.push(Argument {
                     value,
+                    rate: Expression::ZERO,
                     thresholds: vec![threshold],
                 }),
             }
@@ -61,11 +67,27 @@ pub fn arguments(pool: &mut Pool, rates: &[Expression]) -> Vec<Argument> {
         add_new(&mut turning, angles);
         is_wave || is_of_state(pool, argument.value)
     });
+    let mut along = Differentiator::along(slopes(pool, states));
+    for argument in &mut arguments {
+        let rate = along.derivative(pool, argument.value);
+        // A step is not to take longer for it than for an evaluation of the model.
+        if operations(pool, &[rate]) <= operations(pool, rates) {
+            argument.rate = rate;
+        }
+    }
     arguments.extend(turning.into_iter().map(|value| Argument {
         value,
+        rate: Expression::ZERO,
         thresholds: Vec::new(),
     }));
     arguments
+}
+
+/// How time and states change with time.
+fn slopes(pool: &mut Pool, states: &[Symbol]) -> BTreeMap<Symbol, Expression> {
+    let states = states.iter().enumerate();
+    let states = states.map(|(place, state)| (*state, pool.symbol(Symbol::Slope(place))));
+    states.chain([(Symbol::Time, Expression::ONE)]).collect()
 }
 
 fn is_of_state(pool: &Pool, value: Expression) -> bool {
@@ -95,9 +117,9 @@ fn angles(pool: &mut Pool, value: Expression) -> Vec<Expression> {
     waves.into_iter().map(turned).collect()
 }
 
-/// Each argument, followed by its thresholds.
+/// Each argument with its rate, followed by its thresholds.
 pub fn listed(arguments: &[Argument]) -> Vec<Expression> {
-    let listed = |it: &Argument| [&[it.value][..], &it.thresholds].concat();
+    let listed = |it: &Argument| [&[it.value, it.rate][..], &it.thresholds].concat();
     arguments.iter().flat_map(listed).collect()
 }
 

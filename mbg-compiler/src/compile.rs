@@ -201,7 +201,7 @@ fn finish(
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let changes = changes::times(&mut pool, rates);
-    let arguments = changes::arguments(&mut pool, rates);
+    let arguments = changes::arguments(&mut pool, rates, &by_state);
     let requests: [Request; 14] = [
         rates.clone().into(),
         answers.outputs.clone().into(),

@@ -70,27 +70,48 @@ pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
     next.is_finite().then(|| T::from_f64(next))
 }
 
-/// How many of these thresholds are below an argument.
+/// An argument of choices at two points so long apart, with its rate at each.
+pub type Course<T> = [[T; 2]; 2];
+
+/// How many thresholds an argument goes over between two points, those twice that it goes over and back. One without thresholds
+/// is an angle of a wave: its half turns count twice, since the wave over it turns at least once in each.
 #[inline]
-pub fn below<T: Real>(argument: T, thresholds: &[T]) -> i32 {
-    let is_below = |it: &&T| crate::step::less(**it, argument);
-    thresholds.iter().filter(is_below).count() as i32
+pub fn passed<T: Real>(lasting: T, course: Course<T>, thresholds: &[T]) -> u32 {
+    let [from, to] = course.map(|point| point.map(crate::step::seen));
+    if thresholds.is_empty() {
+        return 2 * half_turns(from[0]).abs_diff(half_turns(to[0]));
+    }
+    let below = |argument: f64| {
+        let is_below = |it: &&T| crate::step::seen(**it) < argument;
+        thresholds.iter().filter(is_below).count()
+    };
+    let farthest = farthest(crate::step::seen(lasting), from, to);
+    let [first, turning, last] = [from[0], farthest, to[0]].map(below);
+    (first.abs_diff(turning) + turning.abs_diff(last)) as u32
 }
 
-/// Twice the number of half turns of an angle: a wave over it turns at least once between two of them.
+/// The largest of some counts.
 #[inline]
-pub fn half_turns<T: Real>(angle: T) -> i32 {
-    let turns = crate::step::seen(angle) / core::f64::consts::PI;
+pub fn most<const G: usize>(counts: [u32; G]) -> u32 {
+    counts.into_iter().max().unwrap_or(0)
+}
+
+/// What an argument does not go beyond between two points, given with their rates: where it turns, the place at which the
+/// tangents meet, else an end. It holds for what is convex, as a distance from a place is along a line.
+fn farthest(lasting: f64, [a, rate_a]: [f64; 2], [b, rate_b]: [f64; 2]) -> f64 {
+    if rate_a * rate_b < 0.0 {
+        let time = (b - a - rate_b * lasting) / (rate_a - rate_b);
+        a + rate_a * time.max(0.0).min(lasting)
+    } else {
+        b
+    }
+}
+
+/// The number of half turns of an angle.
+fn half_turns(angle: f64) -> i32 {
+    let turns = angle / core::f64::consts::PI;
     let whole = turns as i32;
-    let below = i32::from(f64::from(whole) > turns);
-    whole.saturating_sub(below).saturating_mul(2)
-}
-
-/// The largest difference of two counts.
-#[inline]
-pub fn most_between<const G: usize>(from: [i32; G], to: [i32; G]) -> u32 {
-    let between = from.into_iter().zip(to).map(|(from, to)| from.abs_diff(to));
-    between.max().unwrap_or(0)
+    whole.saturating_sub(i32::from(f64::from(whole) > turns))
 }
 
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.

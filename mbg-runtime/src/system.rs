@@ -185,18 +185,20 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
-    /// How many thresholds lie between two points, each a time, a state and an input: the most of one argument of choices in
-    /// the laws, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's points over `q`.
+    /// How many thresholds are passed between two points, each a time, a state, its derivative and an input: the most by one
+    /// argument of choices in the laws, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's
+    /// points over `q`. Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
+    /// that it may go over and back: those on this side of where its tangents at both points meet.
     ///
     /// [`Adaptive`](crate::Adaptive) looks into a step with any, of which its estimate of the error may be small by chance, and
     /// between them where there are several, since something may be there that neither ends nor stages of the step meet.
     /// Generated models give it, for arguments that the state has a part in. Waves over time or one state, such as `cos(q) > 0.9`,
-    /// go back over their thresholds, so half turns of their angles are counted as well, twice each. Zero unless it is given.
+    /// turn often, so half turns of their angles are counted as well, twice each. Zero unless it is given.
     #[must_use]
     fn passed(
         &self,
-        _from: (T, &SVector<T, N>, &SVector<T, M>),
-        _to: (T, &SVector<T, N>, &SVector<T, M>),
+        _from: (T, &SVector<T, N>, &SVector<T, N>, &SVector<T, M>),
+        _to: (T, &SVector<T, N>, &SVector<T, N>, &SVector<T, M>),
         _memory: &mut Self::Memory,
     ) -> u32 {
         0

@@ -101,12 +101,48 @@ fn a_wave_of_time_is_met_at_each_top() {
 }
 
 #[test]
+fn places_passed_by_are_met() {
+    let model = Sledge::new(SledgeParameters::default()).unwrap();
+    // The chords of two circles.
+    let expected = (16.0_f64 - 2.0 * (5.0 * 0.8 + 8.0 * 0.3)).sqrt();
+    for (tolerance, error) in [(1e-3, 0.3), (1e-6, 1e-3), (1e-9, 1e-6)] {
+        for (method, last) in by_all(&model, 30.0, tolerance) {
+            assert!(
+                (last[0] - expected).abs() < error,
+                "{method} to {tolerance:e}: {} instead of {expected}",
+                last[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_touched_at_the_top_of_the_way_is_met() {
+    let model = Swing::new(SwingParameters::default()).unwrap();
+    let reference = Adaptive {
+        longest: 1e-3,
+        ..Adaptive::new(Dop853, 1e-12, 1e-12)
+    };
+    let expected: SVector<f64, 2> = at_end(&model, 60.0, &reference);
+    for (tolerance, error) in [(1e-3, 0.1), (1e-6, 2e-4), (1e-9, 3e-7)] {
+        for (method, last) in by_all(&model, 60.0, tolerance) {
+            assert!(
+                (last - expected).norm() < error,
+                "{method} to {tolerance:e}: {last} instead of {expected}"
+            );
+        }
+    }
+}
+
+#[test]
 fn thresholds_between_two_points_are_counted() {
     let model = Slide::<f64>::new(SlideParameters::default()).unwrap();
     let none = SVector::from([]);
     let passed = |from: f64, to: f64| {
         let [from, to] = [from, to].map(|gone| SVector::from([4.0, gone]));
-        model.passed((0.0, &from, &none), (1.0, &to, &none), &mut ())
+        let slope = SVector::from([0.0, to[1] - from[1]]);
+        let points = [&from, &to].map(|x| (x[1], x, &slope, &none));
+        model.passed(points[0], points[1], &mut ())
     };
     // Two of the range, three of the hat and of the curve.
     assert_eq!(passed(0.0, 100.0), 8);
@@ -115,7 +151,12 @@ fn thresholds_between_two_points_are_counted() {
     let model = Cam::<f64>::new(CamParameters::default()).unwrap();
     let passed = |from: f64, to: f64| {
         let [from, to] = [from, to].map(|angle| SVector::from([20.0, angle]));
-        model.passed((0.0, &from, &none), (1.0, &to, &none), &mut ())
+        let slope = SVector::from([0.0, 20.0]);
+        model.passed(
+            (0.0, &from, &slope, &none),
+            (1.0, &to, &slope, &none),
+            &mut (),
+        )
     };
     // Half turns count twice.
     assert_eq!(

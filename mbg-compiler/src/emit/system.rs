@@ -210,28 +210,34 @@ fn passed(compiled: &Compiled) -> Option<TokenStream> {
     let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
     let memory = memory(compiled);
     let groups = Literal::usize_suffixed(compiled.thresholds.len());
-    let counted = body(compiled, Routines::THRESHOLDS, &|results| {
-        let mut rest = results;
-        let counts = compiled.thresholds.iter().map(|size| {
-            let (group, others) = rest.split_at(1 + size);
-            rest = others;
-            let (argument, thresholds) = (&group[0], &group[1..]);
-            if thresholds.is_empty() {
-                quote!(mbg_runtime::__private::half_turns(#argument))
-            } else {
-                quote!(mbg_runtime::__private::below(#argument, &[#(#thresholds),*]))
-            }
+    let routine = &compiled.program.routines[Routines::THRESHOLDS];
+    let (steps, results) = lines(compiled, routine, Setting::Method);
+    let mut rest = &results[..];
+    let mut arguments = Vec::new();
+    let mut counts = Vec::new();
+    for (group, size) in compiled.thresholds.iter().enumerate() {
+        let (own, others) = rest.split_at(2 + size);
+        rest = others;
+        let (argument, thresholds) = own.split_at(2);
+        let group = Literal::usize_suffixed(group);
+        arguments.push(quote!([#(#argument),*]));
+        counts.push(quote! {
+            mbg_runtime::__private::passed(lasting, [from[#group], to[#group]], &[#(#thresholds),*])
         });
-        quote!([#(#counts),*])
-    });
-    let point = quote! {
-        (T, &mbg_runtime::__private::SVector<T, #n>, &mbg_runtime::__private::SVector<T, #m>)
-    };
+    }
+    let vector = |size| quote!(&mbg_runtime::__private::SVector<T, #size>);
+    let [state, input] = [&n, &m].map(vector);
+    let point = quote!((T, #state, #state, #input));
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
             fn passed(&self, from: #point, to: #point, memory: &mut #memory) -> ::core::primitive::u32 {
-                let mut below = |(t, x, u): #point| -> [::core::primitive::i32; #groups] { #counted };
-                mbg_runtime::__private::most_between(below(from), below(to))
+                let lasting = to.0 - from.0;
+                let mut arguments = |(t, x, slopes, u): #point| -> [[T; 2]; #groups] {
+                    #steps
+                    [#(#arguments),*]
+                };
+                let (from, to) = (arguments(from), arguments(to));
+                mbg_runtime::__private::most([#(#counts),*])
             }
         }
     })

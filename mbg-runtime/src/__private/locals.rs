@@ -11,6 +11,6 @@ macro_rules! functions {
 }
 
 functions! {
-    ahead below both changing convert derivative entry folded formatter from held holds input jacobian kept memory model
-    parameters ranks right rows slopes stages t to u value whole x zero
+    ahead arguments both changing convert derivative entry folded formatter from held holds input jacobian kept lasting memory
+    model parameters ranks right rows slopes stages t to u value whole x zero
 }

@@ -43,8 +43,7 @@ use crate::{Input, Real, System};
 /// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance. So are steps behind whose
 /// ends a choice in the laws is another one ([`System::passed`]); between two such thresholds of one argument, such as the ends of
 /// a bump over the way of what rolls at rest, each step is looked into that passes both, for what lasts longer than its ten
-/// millionth part. What comes near and goes away within one step, such as a place passed by at some distance, may be
-/// missed: [`Adaptive::longest`] is the remedy there, too.
+/// millionth part, and each in which the argument may come to one and go back, as the distance from a place does that is passed by.
 ///
 /// # Example
 ///
@@ -183,7 +182,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                     .unwrap_or_else(|| problem.slope(span.end, &known));
                 let dense =
                     |problem: &mut _| steps.polynomial(problem, &from, (&known, Some(ahead)));
-                match problem.clear_length::<Scheme>(&from, &trial, tolerance, dense) {
+                match problem.clear_length::<Scheme>(&from, (&trial, &ahead), tolerance, dense) {
                     None => Some((known, ahead)),
                     Some(clear) => {
                         control.shorten(clear);

@@ -102,12 +102,13 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M>,
 {
-    /// Where a step has missed something: the length up to which it has not. `polynomial` is its dense output.
+    /// Where a step has missed something: the length up to which it has not. `ahead` is the derivative at its end, and
+    /// `polynomial` its dense output.
     #[inline]
     pub(super) fn clear_length<A: Family>(
         &mut self,
         start: &Start<T, N>,
-        trial: &Trial<T, N>,
+        (trial, ahead): (&Trial<T, N>, &SVector<T, N>),
         tolerance: &Tolerance<N>,
         polynomial: impl FnOnce(&mut Self) -> Polynomial<T, N>,
     ) -> Option<f64> {
@@ -122,11 +123,17 @@ where
         if (is_driven && start.again) || self.probes.is_sudden(length, trial.coarse) {
             parts = parts.max(FEW);
         }
-        let ends = [
-            (start.span.start, start.x),
-            (start.span.end, start.x + trial.change),
-        ];
-        let passed = self.passed(&ends[0], &ends[1]);
+        let from = Point {
+            time: start.span.start,
+            state: start.x,
+            slope: start.slope,
+        };
+        let to = Point {
+            time: start.span.end,
+            state: start.x + trial.change,
+            slope: *ahead,
+        };
+        let passed = self.passed(&from, &to);
         if passed > 0 {
             parts = parts.max(FEW);
         }
@@ -165,8 +172,8 @@ where
         let part = length / f64::from(parts);
         let missed = (1..parts).find(|probe| {
             let fraction = T::from_f64(f64::from(*probe) / f64::from(parts));
-            let (point, defect) = self.defect(&known, fraction);
-            self.is_large::<A>(&known, &defect, &point)
+            let ((t, x), defect) = self.defect(&known, fraction);
+            self.is_large::<A>(&known, &defect, (t, &x))
         });
         let mut clear = missed.map(|probe| part * f64::from(probe.max(2) - 1));
         if let Some(clear) = clear {
@@ -186,7 +193,7 @@ where
         &mut self,
         known: &Known<'_, T, N>,
         fraction: T,
-    ) -> (Point<T, N>, SVector<T, N>) {
+    ) -> ((T, SVector<T, N>), SVector<T, N>) {
         let t = known.span.at(fraction);
         let (x, change) = known.polynomial.with_slope(fraction);
         let slope = self.slope(t, &x);
@@ -208,7 +215,7 @@ where
         &mut self,
         known: &Known<'_, T, N>,
         defect: &SVector<T, N>,
-        (t, x): &Point<T, N>,
+        (t, x): (T, &SVector<T, N>),
     ) -> bool {
         let (measure, length) = (known.measure, known.span.length);
         // NaN is not small.
@@ -221,13 +228,13 @@ where
         if !A::IMPLICIT {
             // By the derivative along the defect, which leads to a state as far away as the tolerance.
             let by = T::from_f64(1.0 / size);
-            let slope = self.slope(*t, x);
-            let beside = self.slope(*t, &x.zip_map(defect, |x, defect| x + by * defect));
+            let slope = self.slope(t, x);
+            let beside = self.slope(t, &x.zip_map(defect, |x, defect| x + by * defect));
             let moved = beside.zip_map(&slope, |beside, slope| length * (beside - slope));
             return !is_small(size, LARGE * (1.0 + measure.norm(&moved)));
         }
         let mut factors = Shifted::empty();
-        self.factorise((*t, x), length, &mut factors);
+        self.factorise((t, x), length, &mut factors);
         !is_small(measure.norm(&factors.solved::<S, M, P>(defect)), LARGE)
     }
 }

@@ -18,8 +18,14 @@ const DIVISIONS: usize = 25;
 /// Where a part of it is: thresholds may be at halves.
 const DIVIDED: f64 = 0.487;
 
-/// A time and the state there.
-pub(super) type Point<T, const N: usize> = (T, SVector<T, N>);
+/// A state on its way.
+#[derive(Clone, Copy)]
+pub(super) struct Point<T, const N: usize> {
+    pub(super) time: T,
+    pub(super) state: SVector<T, N>,
+    /// The derivative of the state there.
+    pub(super) slope: SVector<T, N>,
+}
 
 /// A step with what is known of it: its dense output, and how its errors are measured.
 pub(super) struct Known<'a, T: Real, const N: usize> {
@@ -31,7 +37,12 @@ pub(super) struct Known<'a, T: Real, const N: usize> {
 impl<T: Real, const N: usize> Known<'_, T, N> {
     fn point(&self, fraction: f64) -> Point<T, N> {
         let fraction = T::from_f64(fraction);
-        (self.span.at(fraction), self.polynomial.at(fraction))
+        let (state, change) = self.polynomial.with_slope(fraction);
+        Point {
+            time: self.span.at(fraction),
+            state,
+            slope: change.map(|change| change / self.span.length),
+        }
     }
 }
 
@@ -41,13 +52,16 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M>,
 {
-    /// How many thresholds lie between two points.
+    /// How many thresholds are passed between two points.
     #[inline]
-    pub(super) fn passed(&self, (ta, xa): &Point<T, N>, (tb, xb): &Point<T, N>) -> u32 {
-        let [ua, ub] = [*ta, *tb].map(|t| self.input.value(t, self.since));
+    pub(super) fn passed(&self, from: &Point<T, N>, to: &Point<T, N>) -> u32 {
+        let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
         let mut memory = self.memory;
-        self.system
-            .passed((*ta, xa, &ua), (*tb, xb, &ub), &mut memory)
+        self.system.passed(
+            (from.time, &from.state, &from.slope, &inputs[0]),
+            (to.time, &to.state, &to.slope, &inputs[1]),
+            &mut memory,
+        )
     }
 
     /// Up to which fraction of a step nothing is missed, where something is.
@@ -74,7 +88,7 @@ where
             if is_between {
                 let (_, defect) = self.defect(known, T::from_f64(b));
                 // What is stiff between thresholds alone moves the state all the same.
-                if self.is_large::<A>(known, &defect, &start) {
+                if self.is_large::<A>(known, &defect, (start.time, &start.state)) {
                     return Some(if a > 0.0 { a } else { b });
                 }
             }

@@ -42,6 +42,7 @@ mod models {
     mod gimbals;
     mod lagrange;
     mod linearised;
+    mod lines;
     mod loops;
     #[allow(dead_code, reason = "the example prints more of it")]
     mod mechanisms;

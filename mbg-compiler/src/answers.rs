@@ -6,6 +6,7 @@
 use crate::closures;
 use crate::codes;
 use crate::diagnostics::Diagnostics;
+use crate::displacements;
 use crate::elaborate::{Elaborated, StateRate, Variable};
 use crate::equations::Scalars;
 use crate::graph::{ElementId, ElementKind, Law};
@@ -42,7 +43,7 @@ impl Answers {
         diagnostics: &mut Diagnostics,
     ) -> Option<Self> {
         let (scalars, solution) = (&solved.scalars, &solved.solution);
-        let mut substitution = substitution(solved, pool)?;
+        let mut substitution = substitution(model, solved, pool)?;
         let mut replaced = |pool: &mut Pool, expression, variable: &Variable, span| {
             let value = substitution.apply(pool, expression);
             if value.is_none() {
@@ -79,6 +80,7 @@ impl Answers {
             pool,
             diagnostics,
         );
+        displacements::check(model, (scalars, solution), &all, pool, diagnostics);
         if diagnostics.any() {
             return None;
         }
@@ -88,7 +90,9 @@ impl Answers {
         told.extend(&outputs);
         told.extend(displacements.iter().map(|(_, _, value)| *value));
         told.extend(solution.conditioning.iter().map(|it| it.normalised));
-        let lost = |state: &usize| solved.momenta.contains_key(state);
+        let lost = |state: &usize| {
+            solved.momenta.contains_key(state) || displacements::is_told(model, *state)
+        };
         let states = kept(model, pool, &all, &told, &lost);
         let rates = states.iter().map(|state| all[*state]).collect();
         Some(Self {
@@ -99,18 +103,16 @@ impl Answers {
             supplied,
             dissipated,
             displacements,
-            eliminated: solved
-                .momenta
-                .keys()
-                .filter_map(|state| Some((*state, substitution.get(Symbol::State(*state))?)))
+            eliminated: (0..model.states.len())
+                .filter_map(|state| Some((state, substitution.get(Symbol::State(state))?)))
                 .collect(),
         })
     }
 }
 
 /// What signals and lost states are, in terms of the states that are left.
-fn substitution(solved: &Solved, pool: &mut Pool) -> Option<Substitution> {
-    let mut substitution = Substitution::new();
+fn substitution(model: &Elaborated, solved: &Solved, pool: &mut Pool) -> Option<Substitution> {
+    let mut substitution = displacements::substitution(model);
     for (signal, value) in structure::signal_values(&solved.scalars, &solved.solution) {
         substitution.set(Symbol::Signal(signal), value);
     }
@@ -126,7 +128,7 @@ fn substitution(solved: &Solved, pool: &mut Pool) -> Option<Substitution> {
 }
 
 /// `ṗ = e` or `q̇ = f`, with power into the storage.
-fn storage_rate(
+pub fn storage_rate(
     model: &Elaborated,
     scalars: &Scalars,
     solution: &Solution,

@@ -71,22 +71,33 @@ pub fn check(
     let mut reported = None;
     for (number, component, displacement) in displacements {
         let [from, to] = scalars.closures[*number].flows[*component];
-        let mut terms = vec![solution.values[to], solution.values[from].negated()];
-        for symbol in symbols(pool, &[*displacement]) {
-            let rate = match symbol {
-                Symbol::State(state) => rates[state],
-                Symbol::Time => Expression::ONE,
-                _ => continue,
-            };
-            let slope = Differentiator::new(symbol).derivative(pool, *displacement);
-            terms.push(pool.multiply(slope, rate));
-        }
-        let proven = pool.sum(&terms) == Expression::ZERO;
-        if !proven && reported != Some(number) && !is_rounding(model, &terms, pool) {
+        let flows = [solution.values[from], solution.values[to].negated()];
+        if reported != Some(number) && !changes_by(model, *displacement, &flows, rates, pool) {
             reported = Some(number);
             report(model, *number, *component, diagnostics);
         }
     }
+}
+
+/// Whether a displacement changes as some flows together do, whatever the states. `rates` are those of all candidate states.
+pub fn changes_by(
+    model: &Elaborated,
+    displacement: Expression,
+    flows: &[Expression],
+    rates: &[Expression],
+    pool: &mut Pool,
+) -> bool {
+    let mut terms: Vec<Expression> = flows.iter().map(|flow| flow.negated()).collect();
+    for symbol in symbols(pool, &[displacement]) {
+        let rate = match symbol {
+            Symbol::State(state) => rates[state],
+            Symbol::Time => Expression::ONE,
+            _ => continue,
+        };
+        let slope = Differentiator::new(symbol).derivative(pool, displacement);
+        terms.push(pool.multiply(slope, rate));
+    }
+    pool.sum(&terms) == Expression::ZERO || is_rounding(model, &terms, pool)
 }
 
 /// Whether a sum is zero but for rounding, at some states and with parameters beside their defaults, of which many are zero.

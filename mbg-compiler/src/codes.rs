@@ -48,7 +48,7 @@ codes! {
     RECTANGULAR_INVERSE = "MBG0305", "a rectangular transformer or gyrator that would need its inverse";
     ORDER_LOST = "MBG0306", "storages that depend on each other by the physics";
     FIXED_RESISTOR = "MBG0307", "a resistor law that fits one causality only, and not the one required";
-    DISPLACEMENT = "MBG0309", "a displacement whose rate is not the difference of the flows";
+    DISPLACEMENT = "MBG0309", "a displacement whose rate is not that of the flows";
     SINGULAR_JUNCTIONS = "MBG0401", "a junction structure that leaves variables undetermined";
     NONLINEAR_LOOP = "MBG0402", "a nonlinear algebraic loop that does not determine its variables";
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";

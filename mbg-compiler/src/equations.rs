@@ -7,11 +7,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::displacements;
 use crate::elaborate::{Elaborated, Place, Quantity};
 use crate::graph::{ElementId, ElementKind, JunctionId, JunctionKind, Law};
 use crate::network::{Network, OnePort, Wire};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Matrix, Pool, Symbol, affine};
+use crate::symbolic::{Expression, Matrix, Pool, Substitution, Symbol, affine};
 
 /// Who states an equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,6 +91,18 @@ pub struct Turn {
     pub level: usize,
     /// How many equations lie between the states and the unknown.
     pub depth: usize,
+}
+
+impl Equation {
+    /// Replaces symbols in its numbers, but where that would divide by zero.
+    pub fn replace(&mut self, substitution: &mut Substitution, pool: &mut Pool) {
+        let numbers = self.terms.values_mut().chain([&mut self.constant]);
+        for number in numbers {
+            if let Some(replaced) = substitution.apply(pool, *number) {
+                *number = replaced;
+            }
+        }
+    }
 }
 
 /// An independent rate of a reduced system.
@@ -463,7 +476,9 @@ impl Former<'_> {
             .map(|s| self.signal(*s, &ports))
             .collect();
         let mut equations = std::mem::take(&mut self.equations);
+        let mut told = displacements::substitution(self.model);
         for equation in &mut equations {
+            equation.replace(&mut told, self.pool);
             linearise(self.pool, equation, &signals);
         }
         let common = self.common(&ports);

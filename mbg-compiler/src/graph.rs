@@ -231,6 +231,8 @@ pub struct Storage {
     pub energy: Expression,
     /// How the energy is found.
     pub integral: Integral,
+    /// Its states, where they are told in terms of others: a candidate that is none.
+    pub displacement: Option<Vec<Expression>>,
 }
 
 /// How the energy of a storage is found from its law.
@@ -274,6 +276,18 @@ pub fn declaration(kind: JunctionKind, name: &str, dimension: usize) -> String {
 }
 
 impl Element {
+    /// Whether it is a storage with states of its own.
+    #[must_use]
+    pub const fn has_states(&self) -> bool {
+        matches!(
+            self.law,
+            Law::Storage(Storage {
+                displacement: None,
+                ..
+            })
+        )
+    }
+
     /// Path of the component in use that it belongs to, if it is not written in the model itself.
     #[must_use]
     pub fn instance(&self) -> Option<&str> {

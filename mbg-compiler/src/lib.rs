@@ -27,6 +27,7 @@ pub mod closures;
 pub mod codes;
 pub mod compile;
 pub mod diagnostics;
+pub mod displacements;
 mod divisors;
 pub mod drawing;
 pub mod elaborate;

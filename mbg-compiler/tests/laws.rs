@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod models;
+mod told;
 
 use mbg_compiler::compile::Routines;
 use mbg_compiler::graph::Law;
@@ -9,6 +10,7 @@ use mbg_compiler::program::{self, Arguments};
 use mbg_compiler::symbolic::Symbol;
 use mbg_compiler::symbolic::print::Printer;
 use models::{attempted, compiled, elaborated, flat, mistake};
+use told::told;
 
 #[test]
 fn a_start_that_is_no_number_is_told_at_its_value() {
@@ -524,4 +526,39 @@ fn what_is_divided_by_has_a_short_name() {
 #[test]
 fn an_infinite_law_without_an_infinite_rate_is_told_by_nothing() {
     compiled("model M { 0 node { C amount { effort: ln(q) } R decay { flow: exp(e) } } }");
+}
+
+/// A displacement that is told follows from states, and changes as its storage flows.
+#[test]
+fn displacements_that_are_told_wrongly_are_refused() {
+    let of = |words: &str| {
+        let element = format!("C c {{ stiffness: 2.0, {words} }}");
+        told(&format!(
+            "model M {{ input u: m; integral way: m = v.f; 1 v {{ I b {{ inertia: 1.0 }} {element} }} }}"
+        ))
+    };
+    assert_eq!(of("displacement: way - 0.3"), "");
+    insta::assert_snapshot!(of("displacement: 2.0 * way"), @"
+    1:75 the displacement of `c` does not change as `c` flows [MBG0309]
+      it has another rate than the flow into `c`
+      help: bond it where the flow is the rate of what is told
+      help: or leave `displacement` out: then it is a state
+    ");
+    insta::assert_snapshot!(of("displacement: way - u"), @"
+    1:75 the displacement of `c` reads the input `u`, whose rate nothing knows [MBG0309]
+      help: tell it in terms of states, of positions that components tell, or of `t`
+    ");
+    insta::assert_snapshot!(of("displacement: way + v.f"), @"
+    1:75 the displacement of `c` reads an effort or a flow, whose rate nothing knows [MBG0309]
+      help: tell it in terms of states, of positions that components tell, or of `t`
+    ");
+    insta::assert_snapshot!(of("displacement: 0.5 * (way + q)"), @"1:75 the displacement `c.q` is told by itself [MBG0218]");
+    insta::assert_snapshot!(of("displacement: way, initial: 0.3"), @"
+    1:114 `c` is given both a displacement and where that starts [MBG0104]
+      help: remove `initial` or `displacement`: one follows from the other
+    ");
+    insta::assert_snapshot!(of("displacement"), @"1:95 expected `displacement: value` [MBG0213]");
+    insta::assert_snapshot!(of("displacement: [way, way]"), @"1:109 expected a number, found a vector of 2 [MBG0204]");
+    insta::assert_snapshot!(of("displacement: way * way"), @"1:41 the rate must be `m/s` here, and this is `m^2/s` [MBG0501]");
+    insta::assert_snapshot!(of("displacement: way / 0.0"), @"1:113 this divides by zero, whatever the state [MBG0216]");
 }

@@ -39,7 +39,7 @@ pub(super) fn words_of(kind: ElementKind) -> Vec<&'static str> {
 fn other_words(kind: ElementKind) -> &'static [&'static str] {
     match kind {
         ElementKind::I => &["initial", "initial_flow", "gyroscopic"],
-        ElementKind::C => &["initial"],
+        ElementKind::C => &["initial", "displacement"],
         _ => &[],
     }
 }
@@ -348,10 +348,12 @@ impl Reader<'_, '_, '_> {
                 (coenergy, energy)
             }
         };
-        let rule = if self.element.kind == ElementKind::I {
-            Rule::PreferFlowOut
-        } else {
-            Rule::PreferEffortOut
+        let displacement = self.displacement()?;
+        let rule = match (self.element.kind, &displacement) {
+            (ElementKind::I, _) => Rule::PreferFlowOut,
+            (_, None) => Rule::PreferEffortOut,
+            // What follows from other states is not given by an effort.
+            (_, Some(_)) => Rule::EffortOut,
         };
         let initial = self.initial(&coenergy)?;
         let law = Law::Storage(Storage {
@@ -359,6 +361,7 @@ impl Reader<'_, '_, '_> {
             coenergy,
             energy,
             integral,
+            displacement,
         });
         Ok(Reading {
             law,
@@ -366,6 +369,30 @@ impl Reader<'_, '_, '_> {
             initial,
             assumptions,
         })
+    }
+
+    /// The displacement, where it is told.
+    fn displacement(&mut self) -> Result<Option<Vec<Expression>>> {
+        let find = |word: &str| self.element.fields.iter().find(|field| field.name == word);
+        let Some(field) = find("displacement") else {
+            return Ok(None);
+        };
+        if let Some(initial) = find("initial") {
+            let message = format!(
+                "`{}` is given both a displacement and where that starts",
+                self.element.name
+            );
+            let report = error(codes::FIELD_REPEATED, initial.name.span(), message);
+            return Err(Box::new(report.help(
+                "remove `initial` or `displacement`: one follows from the other",
+            )));
+        }
+        let Some(value) = &field.value else {
+            let message = "expected `displacement: value`";
+            let report = error(codes::EXPRESSION, field.name.span(), message);
+            return Err(Box::new(report));
+        };
+        self.vector(value).map(Some)
     }
 
     fn changes_with_its_state(&self, matrix: &Matrix) -> bool {

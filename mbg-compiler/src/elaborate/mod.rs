@@ -67,6 +67,7 @@ use self::rings::Meeting;
 use self::scope::{Entity, GRAVITY, Scope, Scopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
+use crate::displacements;
 use crate::graph::{BondGraph, Causality, ElementId, JunctionId, Origins};
 use crate::symbolic::{Expression, Pool};
 use crate::syntax::ast::{self, Statement};
@@ -88,7 +89,11 @@ pub fn elaborate(
     builder.read_defaults(&model.statements);
     builder.resolve_laws();
     builder.check(model.name.span());
-    (builder.diagnostics.list().len() == builder.before).then(|| builder.finish(model))
+    let before = builder.before;
+    let sound = |diagnostics: &Diagnostics| diagnostics.list().len() == before;
+    let mut elaborated = sound(builder.diagnostics).then(|| builder.finish(model))?;
+    displacements::express(&mut elaborated, pool, diagnostics);
+    sound(diagnostics).then_some(elaborated)
 }
 
 /// A law or value that is read once all names are known.

@@ -245,15 +245,7 @@ impl Reducer<'_> {
             substitution.set(Symbol::State(*state), *momentum);
         }
         for equation in &mut self.scalars.equations {
-            let mut replace = |pool: &mut Pool, expression: &mut Expression| {
-                if let Some(replaced) = substitution.apply(pool, *expression) {
-                    *expression = replaced;
-                }
-            };
-            replace(self.pool, &mut equation.constant);
-            for coefficient in equation.terms.values_mut() {
-                replace(self.pool, coefficient);
-            }
+            equation.replace(&mut substitution, self.pool);
             linearise(self.pool, equation, &self.scalars.signals);
         }
     }

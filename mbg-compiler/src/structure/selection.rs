@@ -154,9 +154,7 @@ fn coordinate_row((junction, component, flow): (JunctionId, usize, usize)) -> Eq
 
 fn storage(model: &Elaborated, owner: Owner) -> Option<ElementId> {
     match owner {
-        Owner::Element(id, _) if matches!(model.graph.elements[id.0].law, Law::Storage(_)) => {
-            Some(id)
-        }
+        Owner::Element(id, _) => model.graph.elements[id.0].has_states().then_some(id),
         _ => None,
     }
 }
@@ -199,8 +197,8 @@ impl<'a> Selector<'a> {
         };
         let element = &self.model.graph.elements[id.0];
         match element.law {
-            Law::Storage(_) => STORAGES + usize::from(element.derivative),
-            Law::Source(_) => 1,
+            Law::Storage(_) if element.has_states() => STORAGES + usize::from(element.derivative),
+            Law::Storage(_) | Law::Source(_) => 1,
             _ => 0,
         }
     }

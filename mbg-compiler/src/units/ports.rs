@@ -146,7 +146,7 @@ impl Ports {
             "energy" if count == 1 => return inner.iter().map(stored).collect(),
             "energy" => stored(&inner[row]),
             "initial" if kind == ElementKind::I => momentum,
-            "initial" => displacement,
+            "initial" | "displacement" => displacement,
             "effort" => effort.clone(),
             _ => flow.clone(),
         }]

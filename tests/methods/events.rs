@@ -2,8 +2,8 @@
 
 use mbg_runtime::{
     Adaptive, Cause, Constant, Direction, Dop853, Dual, Estimating, Fixed, Gauss6, Integrator,
-    Pirk8, Pirk16, Pulse, Radau5, Real, Rk4, Rodas4, Rodas5P, Ros2, Step, System, Tsit5, Variable,
-    Verner9, mbg,
+    Pirk8, Pirk16, Pulse, Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Step, System, Tsit5,
+    Variable, Verner9, mbg,
 };
 use nalgebra::SVector;
 
@@ -88,7 +88,10 @@ fn the_search_is_bounded() {
             })
             .unwrap();
         assert!((arrival.time - std::f64::consts::FRAC_PI_3).abs() < 1e-6);
-        assert!(asked <= 9 * (steps + 1) + 64, "{asked} in {steps} steps");
+        assert!(
+            asked <= (9 + 24) * (steps + 1) + 64,
+            "{asked} in {steps} steps"
+        );
     }
     // A guard of signs alone leaves bisection.
     let sign = |_t: f64, x: &State| if x[0] > 0.5 { 1.0 } else { -1.0 };
@@ -310,5 +313,71 @@ fn an_event_of_a_closed_model_is_found_once() {
                 .map(|(a, b)| (a - b).abs())
                 .all(|error| error < 300.0 * tolerance)
         );
+    }
+}
+
+/// The top of the way is 1 at 2π k: a level just below it is passed upwards and downwards within a small part of a step.
+#[test]
+fn crossings_that_are_close_to_each_other_are_found() {
+    fn tops(solver: impl Integrator<2>) {
+        for below in [1e-2, 1e-4, 1e-6] {
+            let apart = f64::acos(1.0 - below);
+            for (direction, expected) in [(Direction::Rising, -apart), (Direction::Falling, apart)]
+            {
+                let guard = |_t: f64, x: &State| x[0] - (1.0 - below);
+                let start = SVector::from([0.0, -1.0]);
+                let event = (direction, guard);
+                let arrival = solver
+                    .until(&Written(Oscillator), &(), 0.0, 6.0, start, event, |_| ())
+                    .unwrap();
+                // It starts a quarter of a period before the bottom.
+                let expected = 1.5 * std::f64::consts::PI + expected;
+                assert!(arrival.found, "{below:e} {direction:?}");
+                assert!(
+                    (arrival.time - expected).abs() < 1e-8 / apart,
+                    "{below:e} {direction:?}: {} instead of {expected}",
+                    arrival.time
+                );
+            }
+        }
+    }
+    tops(Adaptive::new(Tsit5, 1e-12, 1e-12));
+    tops(Adaptive::new(Dop853, 1e-12, 1e-12));
+    tops(Adaptive::new(Pirk16, 1e-12, 1e-12));
+    tops(Adaptive::new(Radau9::default(), 1e-12, 1e-12));
+    tops(Fixed::new(Gauss6::default(), 0.05));
+}
+
+/// Each flight is 0.9 times as long as the one before; the last ones are a small part of the first step.
+#[test]
+fn flights_may_be_far_shorter_than_a_step() {
+    let input = Constant(SVector::from([-9.81]));
+    let floor = |_t: f64, x: &State| x[0];
+    let solver = Adaptive::new(Dop853, 1e-9, 1e-9);
+    let (mut time, mut state) = (0.0, SVector::from([0.0, 5.0]));
+    let mut expected = 0.0;
+    for bounce in 0..100 {
+        let speed = 5.0 * f64::powi(0.9, bounce);
+        let event = (Direction::Falling, floor);
+        let arrival = solver
+            .until(
+                &Written(Falling),
+                &input,
+                time,
+                time + 2.0,
+                state,
+                event,
+                |_| (),
+            )
+            .unwrap();
+        expected += 2.0 * speed / 9.81;
+        assert!(arrival.found, "after {bounce} bounces");
+        assert!(
+            (arrival.time - expected).abs() < 1e-9,
+            "{} instead of {expected} after {bounce} bounces",
+            arrival.time
+        );
+        (time, state) = (arrival.time, arrival.state);
+        state[1] *= -0.9;
     }
 }

@@ -3,7 +3,6 @@
 use nalgebra::SVector;
 
 use super::method::Span;
-use super::{less, seen};
 use crate::Real;
 
 /// The highest degree of a polynomial over a step.
@@ -120,9 +119,9 @@ const fn remainder_at_start(polynomial: &mut [f64; DEGREE], count: usize) -> f64
 
 /// A step with its dense output, and with the memory of a model that has nonlinear loops.
 pub struct Step<'a, T, const N: usize, Memory = ()> {
-    span: Span<T>,
-    first: SVector<T, N>,
-    state: SVector<T, N>,
+    pub(super) span: Span<T>,
+    pub(super) first: SVector<T, N>,
+    pub(super) state: SVector<T, N>,
     memory: Memory,
     polynomial: Option<Polynomial<T, N>>,
     source: &'a mut dyn FnMut() -> Polynomial<T, N>,
@@ -205,126 +204,10 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
         polynomial.at((t - self.span.start) / self.span.length)
     }
 
-    /// The first time in the step, not counting its start, at which `guard` goes through zero in this direction.
-    ///
-    /// `guard` is asked at the ends of eight equal parts of the step, so that a pair of crossings closer than that may
-    /// be missed. Within a part the time is found by the Illinois method, and bisection where that is slow or the guard stays
-    /// zero, in at most [`Step::SEARCH`] evaluations, to the last bits. Lanes share their time: the first decides. On
-    /// [`Dual`](crate::Dual) numbers the time has the slope of the zero, and so has the state there.
-    ///
-    /// Nothing is found either where the guard is not a number before it goes through zero.
-    #[must_use]
-    pub fn crossing(
-        &mut self,
-        direction: Direction,
-        guard: impl FnMut(T, &SVector<T, N>) -> T,
-    ) -> Option<T> {
-        self.search(direction, guard).ok().flatten()
-    }
-
-    /// The same, or the first time at which the guard was asked and was not a number.
-    pub(super) fn search(
-        &mut self,
-        direction: Direction,
-        mut guard: impl FnMut(T, &SVector<T, N>) -> T,
-    ) -> Result<Option<T>, T> {
-        let (start, end) = (self.span.start, self.span.end);
-        let mut before = (start, number(start, guard(start, &self.first))?);
-        for part in 1..=8 {
-            let after = if part == 8 {
-                (end, number(end, guard(end, &self.state))?)
-            } else {
-                let t = start + T::from_f64(f64::from(part) / 8.0) * (end - start);
-                let x = self.at(t);
-                (t, number(t, guard(t, &x))?)
-            };
-            if direction.crosses(before.1, after.1) {
-                return self.locate(before, after, guard).map(Some);
-            }
-            before = after;
-        }
-        Ok(None)
-    }
-
     /// Leaves the part of the step up to a time in it, with the state there. Its length stays that of the polynomial, which is
     /// over the whole step.
     pub(super) fn cut(&mut self, end: T, state: SVector<T, N>) {
         self.state = state;
         self.span.end = end;
-    }
-
-    /// Most evaluations of a guard in the search for its zero.
-    pub const SEARCH: usize = 64;
-
-    /// The time behind a change of sign; at it, the guard has the sign of the far side or is zero, and before it neither.
-    fn locate(
-        &mut self,
-        (mut before, mut low): (T, f64),
-        (mut after, mut high): (T, f64),
-        mut guard: impl FnMut(T, &SVector<T, N>) -> T,
-    ) -> Result<T, T> {
-        let positive = low > 0.0;
-        let mut advanced = None;
-        // Next to a zero the guard is asked once more: a limiter, or a number of whole steps, stays at it.
-        let mut stays = false;
-        for round in 0..Self::SEARCH {
-            let width = seen(after - before);
-            let resolution = 2.0 * T::EPSILON * seen(after.abs()).max(seen(before.abs()));
-            if width <= resolution {
-                break;
-            }
-            let secant = low / (low - high);
-            let halves = stays || round % 3 == 2 && high != 0.0;
-            let fraction = if halves { 0.5 } else { secant };
-            let inner = (fraction * width).max(0.5 * resolution);
-            let t = before + T::from_f64(inner.min(width - 0.5 * resolution));
-            if !less(before, t) || !less(t, after) {
-                break;
-            }
-            let x = self.at(t);
-            let value = number(t, guard(t, &x))?;
-            let advances = value != 0.0 && (value > 0.0) == positive;
-            stays |= value == 0.0 && high == 0.0;
-            // The end that stays for the second time counts half.
-            let half = if advanced == Some(advances) { 0.5 } else { 1.0 };
-            advanced = Some(advances);
-            if advances {
-                (before, low, high) = (t, value, half * high);
-            } else {
-                (after, high, low) = (t, value, half * low);
-            }
-        }
-        Ok(after.root_of(|t| {
-            let x = self.at(t);
-            guard(t, &x)
-        }))
-    }
-}
-
-/// What a guard is at a time, or that time where it is not a number.
-fn number<T: Real>(t: T, guard: T) -> Result<f64, T> {
-    Some(seen(guard)).filter(|it| !it.is_nan()).ok_or(t)
-}
-
-/// How a guard goes through zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// From positive to zero or negative.
-    Falling,
-    /// From negative to zero or positive.
-    Rising,
-    /// Either.
-    Either,
-}
-
-impl Direction {
-    fn crosses(self, before: f64, after: f64) -> bool {
-        let falls = before > 0.0 && after <= 0.0;
-        let rises = before < 0.0 && after >= 0.0;
-        match self {
-            Self::Falling => falls,
-            Self::Rising => rises,
-            Self::Either => falls || rises,
-        }
     }
 }

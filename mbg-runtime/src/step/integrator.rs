@@ -4,7 +4,8 @@ use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
-use super::dense::{Direction, Step};
+use super::dense::Step;
+use super::event::Direction;
 use super::problem::Problem;
 use super::{Cause, Statistics, Stopped, check_finite, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
@@ -198,8 +199,8 @@ pub trait Integrator<const N: usize> {
     /// The time of the event is found as [`Step::crossing`] tells, in a bounded number of evaluations of the guard. To
     /// go on, change the state and run again from there: a guard that is zero, or on the far side by rounding, at
     /// the start counts when it comes back.
-    /// One that is back before an eighth of the first step is missed, with all that follows: a ball that bounces falls through
-    /// the floor when its flights have become that short. Let it rest before.
+    /// One that is back before a hundred thousandth of the first step is missed, with all that follows: a ball that bounces falls
+    /// through the floor when its flights have become that short. Let it rest before.
     ///
     /// A guard that reads a nonlinear loop with several solutions begins with [`Step::memory`] of the step before, which the
     /// observer leaves in a [`Cell`](core::cell::Cell) for it.

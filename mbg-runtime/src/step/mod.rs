@@ -6,6 +6,7 @@ mod control;
 mod crossing;
 mod dense;
 mod elimination;
+mod event;
 mod explicit;
 mod fixed;
 mod gauss;
@@ -33,8 +34,9 @@ use crate::{Input, Real, System, Trouble};
 
 pub use adaptive::Adaptive;
 pub use auto::{Auto, Choice, Picked, Reason};
-pub use dense::{Direction, Step};
+pub use dense::Step;
 pub use elimination::{Shifted, holds, largest};
+pub use event::Direction;
 #[cfg(feature = "numeris")]
 pub use explicit::Verner9;
 pub use explicit::{Dop853, Rk4, Tsit5};

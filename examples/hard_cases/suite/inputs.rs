@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::ins::gust as declared;
 use super::ins_reference::PULSE;
-use super::models::{Cam, CamParameters, Slide, SlideParameters};
+use super::models::{Cam, CamParameters, Sledge, SledgeParameters, Slide, SlideParameters};
 use super::stiffness::ins_model;
 use super::{Expected, Found, Line, apart};
 
@@ -90,12 +90,31 @@ fn cam(solver: &impl Integrator<2>) -> Result<Found, Stopped> {
     ))
 }
 
+/// A sledge that is held back near two posts beside its way, 30 s at rest otherwise.
+fn sledge(solver: &impl Integrator<4>) -> Result<Found, Stopped> {
+    #[allow(clippy::expect_used, reason = "its own constants suit it")]
+    let model = Sledge::<f64>::new(SledgeParameters::default()).expect("a width above zero");
+    let mut last = model.initial_state();
+    let statistics = solver.integrate(&model, &(), 0.0, 30.0, last, |step| last = *step.state())?;
+    // Its energy falls by the work along two chords.
+    let energy = 8.0 - 5.0 * 0.8 - 8.0 * 0.3;
+    Ok(Found::new(
+        (last[0] - f64::sqrt(2.0 * energy)).abs(),
+        statistics,
+    ))
+}
+
 fn pulsing<S: Estimating>(method: S, lines: &mut Vec<Line>) {
     let solver = Adaptive::new(method, 1e-8, 1e-8);
     lines.push(Line::run(
         ("short ranges of a long way", S::NAME, "the work of forces"),
         Expected::Within(1e-5),
         || slide(&solver),
+    ));
+    lines.push(Line::run(
+        ("posts beside a long way", S::NAME, "the work of forces"),
+        Expected::Within(1e-5),
+        || sledge(&solver),
     ));
     lines.push(Line::run(
         ("a cam on a free shaft", S::NAME, "the work of torques"),

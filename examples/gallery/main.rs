@@ -6,6 +6,7 @@ mod amplifier;
 mod arm;
 mod bricard;
 mod chain;
+mod container;
 mod curve;
 mod double_pendulum;
 mod draw;
@@ -40,7 +41,7 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 21] = [
+const SCENES: [(&str, Draw); 22] = [
     ("gimbal_lock", gimbal_lock::draw),
     ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
@@ -55,6 +56,7 @@ const SCENES: [(&str, Draw); 21] = [
     ("governor", governor::draw),
     ("arm", arm::draw),
     ("walker", walker::draw),
+    ("container", container::draw),
     ("quarter_car", quarter_car::draw),
     ("ride", ride::draw),
     ("motor", motor::draw),

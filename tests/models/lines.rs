@@ -8,6 +8,7 @@ use crate::references::noise::noise;
 
 mbg! {
     include "tests/models/lines.mbg";
+    include "examples/gallery/container.mbg";
 }
 
 const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
@@ -194,6 +195,7 @@ fn what_is_stored_is_in_the_balance_and_jacobians_are_right() {
     sound!(Hung, HungParameters);
     sound!(Springy, SpringyParameters);
     sound!(Wound, WoundParameters);
+    sound!(Container, ContainerParameters);
 }
 
 #[test]

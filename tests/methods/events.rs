@@ -344,7 +344,7 @@ fn crossings_that_are_close_to_each_other_are_found() {
     tops(Adaptive::new(Tsit5, 1e-12, 1e-12));
     tops(Adaptive::new(Dop853, 1e-12, 1e-12));
     tops(Adaptive::new(Pirk16, 1e-12, 1e-12));
-    tops(Adaptive::new(Radau9::default(), 1e-12, 1e-12));
+    tops(Adaptive::new(Radau9, 1e-12, 1e-12));
     tops(Fixed::new(Gauss6::default(), 0.05));
 }
 

@@ -162,6 +162,8 @@ impl Carrier<'_> {
         let mut others = self.system.row(row).filter(|(column, _)| *column != rate);
         let (balance, law, coefficient) = match others.next() {
             None => (row, None, pool.image(self.system.entry(row, rate))),
+            // Where a loop is closed, a row may hold a rate of either end.
+            Some((rate, _)) if self.tree.is_rate(rate) => return None,
             Some((effort, _)) => {
                 let law = Given::of(self.system, row, effort)?;
                 let balance = only(self.system.rows_with(effort).filter(|it| *it != row))?;

@@ -1,0 +1,161 @@
+//! Loops that multipliers close: at any state the rates of both ends are equal, whatever the joints, the base and the weight.
+#![allow(clippy::unwrap_used)]
+
+mod models;
+
+use std::collections::BTreeMap;
+
+use mbg_compiler::compile::{Compiled, Routines};
+use mbg_compiler::program::{self, Arguments};
+use mbg_runtime::Dual;
+use models::compiled;
+use models::dual::{Point, evaluate};
+
+/// A base with a limb, held together with a point of the ground's limb.
+fn model(base: &str, limb: &[&str], cut: &str, gravity: f64) -> String {
+    let body = |name: &str, at: &str| {
+        format!(
+            "{name}: Body {{ mass: 1.5, inertia: diag(0.02, 0.03, 0.04), centre: [0.1, -0.2, 0.3] }} ({at});"
+        )
+    };
+    let mut text = format!(
+        "#[derivative] model M {{
+            causality componentwise;
+            gravity [0.0, 0.0, {gravity:?}];
+            1 ground[6]; 1 plate[6]; 1 eye[6]; 1 frame0[6];
+            Sf fixed[6] {{ flow: 0.0 }} -> ground;
+            base: {base} (ground, plate);
+            {}
+            to_eye: Offset {{ by: [0.3, 0.1, -0.2] }} (plate, eye);
+            foot: Offset {{ by: [0.5, 0.0, 0.0] }} (ground, frame0);",
+        body("plate_body", "plate")
+    );
+    for (number, joint) in limb.iter().enumerate() {
+        let next = number + 1;
+        text += &format!(
+            "1 frame{next}[6]; joint{next}: {joint} (frame{number}, frame{next}); {}",
+            body(&format!("body{next}"), &format!("frame{next}"))
+        );
+    }
+    let last = limb.len();
+    text + &format!("cut: Cut {{ joint: {cut} }} (frame{last}, eye); }}")
+}
+
+/// A state by names, with attitudes of length one.
+fn state(model: &Compiled) -> BTreeMap<&str, f64> {
+    let states = model.states.iter().enumerate();
+    let mut state: Vec<(&str, f64)> = states
+        .map(|(place, state)| {
+            let name = model.model.states[*state].variable.name.as_str();
+            (name, 0.7 * (1.3 * place as f64 + 0.4).sin())
+        })
+        .collect();
+    for row in model.attitudes.iter().flatten() {
+        let length = row.iter().map(|place| state[*place].1.powi(2)).sum::<f64>();
+        row.iter()
+            .for_each(|place| state[*place].1 /= length.sqrt());
+    }
+    state.into_iter().collect()
+}
+
+/// Of what the states of a model are.
+fn of<T: Copy>(model: &Compiled, values: &BTreeMap<&str, T>) -> Vec<T> {
+    let name = |state: &usize| model.model.states[*state].variable.name.as_str();
+    model
+        .states
+        .iter()
+        .map(|state| values[name(state)])
+        .collect()
+}
+
+fn rates(model: &Compiled, state: &[f64]) -> Vec<f64> {
+    let arguments = Arguments {
+        parameters: &[],
+        time: 0.0,
+        state,
+        input: &[],
+    };
+    program::evaluate(&model.program, Routines::DERIVATIVE, &arguments)
+}
+
+fn size(rates: &[f64]) -> f64 {
+    rates.iter().fold(0.0, |size, rate| size.max(rate.abs()))
+}
+
+/// By how much the flows of the ends move apart, over the size of the rates.
+fn apart(model: &Compiled, state: &[f64], rates: &[f64]) -> f64 {
+    let along = state.iter().zip(rates);
+    let along: Vec<Dual<f64>> = along
+        .map(|(value, slope)| Dual {
+            value: *value,
+            slope: *slope,
+        })
+        .collect();
+    let point = Point {
+        parameters: &[],
+        time: Dual::constant(0.0),
+        state: &along,
+        input: &[],
+    };
+    let flows = evaluate(&model.program, Routines::CLOSED_FLOWS, &point);
+    let flows = &flows[..model.closed[1].len()];
+    let slopes: Vec<f64> = flows.iter().map(|flow| flow.slope).collect();
+    size(&slopes) / size(rates)
+}
+
+/// Whether the ends of a loop do, with and without a weight.
+fn stays_together(base: &str, limb: &[&str], cut: &str) {
+    let case = format!("{base} {limb:?} {cut}");
+    // A weight of next to nothing changes how rates are found, and which angles are told, and nothing else.
+    let [light, heavy] = [0.0, -1e-14].map(|gravity| compiled(&model(base, limb, cut, gravity)));
+    let state = state(&heavy);
+    let [found, expected] = [&light, &heavy].map(|model| {
+        let state = of(model, &state);
+        let rates = rates(model, &state);
+        let apart = apart(model, &state, &rates);
+        assert!(apart < 1e-12, "{case}: by {apart:e}");
+        rates
+    });
+    let names = heavy.states.iter();
+    let names = names.map(|it| heavy.model.states[*it].variable.name.as_str());
+    let expected = of(&light, &names.zip(expected).collect());
+    let differences: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
+    let other = size(&differences) / size(&found);
+    assert!(other < 1e-10, "{case}: by {other:e}");
+}
+
+#[test]
+fn ends_of_loops_stay_together_on_any_base() {
+    // With so few freedoms, nothing else is held than the ends.
+    for base in ["Spherical", "Planar { axis: 2 }"] {
+        let limb = [
+            "Revolute { axis: 2 }",
+            "Revolute { axis: 1, offset: [0.2, 0.0, 0.1] }",
+            "Spherical",
+        ];
+        for cut in ["spherical", "universal"] {
+            stays_together(base, &limb, cut);
+        }
+    }
+    let bases = ["Free", "Free { orientation: quaternion }"];
+    let limbs: [&[&str]; 4] = [
+        &[],
+        &["Spherical"],
+        &[
+            "Universal { first: 0, second: 1 }",
+            "Prismatic { axis: 2, initial: 0.7 }",
+        ],
+        &[
+            "Revolute { axis: 2 }",
+            "Revolute { axis: 1, offset: [0.2, 0.0, 0.1] }",
+            "Spherical",
+        ],
+    ];
+    for base in bases {
+        for limb in limbs {
+            for cut in ["spherical", "universal", "revolute"] {
+                stays_together(base, limb, cut);
+            }
+        }
+    }
+}

@@ -137,27 +137,20 @@ fn leading(
 /// Rings of joints that are open at the start, with default parameters and without inputs: where, and the way out.
 fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
     let start = Start::of(model, pool);
-    let mut told = BTreeSet::new();
+    let mut told_of = BTreeSet::new();
     let open = |ring: &Ring| {
-        let place = |by: &Vec<Expression>| by.iter().map(|it| start.value(pool, *it)).collect();
-        let [one, other]: [Vec<f64>; 2] = ring.positions.each_ref().map(place);
-        let far = one
-            .iter()
-            .chain(&other)
-            .fold(0.0, |far, it| it.abs().max(far));
-        let gap: Vec<f64> = other.iter().zip(&one).map(|(b, a)| b - a).collect();
-        let is_open = gap.iter().any(|it| it.abs() > CLOSED * far);
-        if !is_open || !told.insert(ring.frame.clone()) {
+        let value = |by: &Vec<Expression>| by.iter().map(|it| start.value(pool, *it)).collect();
+        let told: [Vec<f64>; 2] = ring.told.each_ref().map(value);
+        let between = match ring.is_turned {
+            true => turned(&told)?,
+            false => gap(&told)?,
+        };
+        if !told_of.insert(ring.frame.clone()) {
             return None;
         }
-        // Three digits of the distance, however small the machine.
-        let digits = (3.0 - far.log10().floor()).clamp(0.0, 12.0) as usize;
-        let gap: Vec<String> = gap.iter().map(|it| format!("{it:.digits$}")).collect();
         let ([first, second], frame) = (&ring.components, &ring.frame);
-        let note = format!(
-            "`{first}` and `{second}` do not meet at `{frame}` at the start: [{}] m are between them, which stay",
-            gap.join(", ")
-        );
+        let note =
+            format!("`{first}` and `{second}` do not meet at `{frame}` at the start: {between}");
         let help = format!(
             "give the joints of the ring `initial` values that close it, or put a `{}` in the place of one of them, which \
              is closed at the start and after each step",
@@ -166,6 +159,29 @@ fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
         Some((ring.span, note, help))
     };
     model.rings.iter().filter_map(open).collect()
+}
+
+/// What is between two places, if they are apart.
+fn gap([one, other]: &[Vec<f64>; 2]) -> Option<String> {
+    let all = one.iter().chain(other);
+    let far = all.fold(0.0, |far, it| it.abs().max(far));
+    let gap: Vec<f64> = other.iter().zip(one).map(|(b, a)| b - a).collect();
+    let is_open = gap.iter().any(|it| it.abs() > CLOSED * far);
+    // Three digits of the distance, however small the machine.
+    let digits = (3.0 - far.log10().floor()).clamp(0.0, 12.0) as usize;
+    let gap: Vec<String> = gap.iter().map(|it| format!("{it:.digits$}")).collect();
+    is_open.then(|| format!("[{}] m are between them, which stay", gap.join(", ")))
+}
+
+/// By how much axes are turned against each other, if they are.
+fn turned([one, other]: &[Vec<f64>; 2]) -> Option<String> {
+    let trace: f64 = one.iter().zip(other).map(|(a, b)| a * b).sum();
+    let angle = (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos();
+    (angle > CLOSED).then(|| {
+        format!(
+            "by one its axes are turned by {angle:.3} rad against those by the other, which stays"
+        )
+    })
 }
 
 /// Storages whose energy changes with more than their own states; where that is a state it should have a port for it, of which

@@ -198,6 +198,30 @@ fn a_small_ring_in_space_that_is_open_is_told() {
     ");
 }
 
+/// Velocities are turned by what joints say of axes: where these differ, the motion is another one.
+#[test]
+fn a_ring_whose_axes_differ_at_the_start_is_told() {
+    let ring = |ball: &str| {
+        let body = "Body { mass: 1.0, inertia: 0.1 }";
+        warned(&format!(
+            "#[derivative] model M {{
+                causality componentwise;
+                1 ground[6]; 1 arm[6]; 1 end[6]; 1 plate[6];
+                Sf fixed[6] {{ flow: 0.0 }} -> ground;
+                free: Free {{ initial_position: [0.0, -0.29552, 0.955336] }} (ground, plate); a: {body} (plate);
+                foot: Universal {{ first: 0, second: 1, initial: [0.3, 0.0] }} (ground, arm); b: {body} (arm);
+                rod: Offset {{ by: [0.0, 0.0, 1.0] }} (arm, end);
+                ball: Spherical {{ {ball} }} (end, plate);
+            }}"
+        ))
+    };
+    insta::assert_snapshot!(ring(""), @"
+    8:17 `free` and `ball` do not meet at `plate` at the start: by one its axes are turned by 0.300 rad against those by the other, which stays [MBG0406]
+      help: give the joints of the ring `initial` values that close it, or put a `Cut` in the place of one of them, which is closed at the start and after each step
+    ");
+    assert_eq!(ring("initial: [-0.3, 0.0, 0.0]"), "");
+}
+
 #[test]
 fn a_ring_that_no_strokes_fit_is_told_how_to_be_closed() {
     let ring = |last: &str, causality: &str| {

@@ -1,20 +1,23 @@
 //! Rings of joints: components that lead to one frame from two sides.
 //!
 //! Without a cut, the coordinates of a ring are integrals of rates that agree, and nothing closes what their start leaves
-//! open. So what each way tells of the place of the frame is compared.
+//! open. So what each way tells of the frame is compared: its place, and in space its axes, by which velocities are turned.
 
 use proc_macro2::Span;
 
 use super::Builder;
 use super::definitions::{Definition, Progress};
+use super::expressions::Value;
 use super::frames::IN_SPACE;
 use super::spread::{Place, Spread};
 use crate::diagnostics::Diagnostics;
 use crate::graph::{instance_of, outermost_instance};
-use crate::symbolic::Expression;
+use crate::symbolic::{Expression, Matrix};
 
 /// What tells where a frame is.
 const POSITION: &str = "position";
+/// What tells how a frame in space stands.
+const ORIENTATION: &str = "orientation";
 
 /// Two components that lead to one frame.
 #[derive(Clone)]
@@ -25,8 +28,10 @@ pub struct Ring {
     pub frame: String,
     /// Components of the velocity of the frame.
     pub dimension: usize,
-    /// Where the frame is by the first, then by the second.
-    pub positions: [Vec<Expression>; 2],
+    /// What is told of the frame by the first, then by the second: its place, or its axes as the rows of a rotation matrix.
+    pub told: [Vec<Expression>; 2],
+    /// Whether that is its axes.
+    pub is_turned: bool,
     /// The second component.
     pub span: Span,
 }
@@ -41,20 +46,26 @@ impl Ring {
     }
 }
 
-/// Two scopes and what they tell of one place.
+/// Two scopes and what they tell of one frame.
 pub(super) struct Meeting {
     tellers: [(usize, usize); 2],
     place: Place,
+    is_turned: bool,
 }
 
 impl Builder<'_> {
     /// Notes where ways from places that sources hold meet.
     pub(super) fn note_meetings(&mut self, quantity: &str, spread: &Spread) {
-        if quantity == POSITION {
-            let meetings = spread.meetings();
-            let meeting = |(place, tellers)| Meeting { tellers, place };
-            self.meetings.extend(meetings.map(meeting));
+        if ![POSITION, ORIENTATION].contains(&quantity) {
+            return;
         }
+        let is_turned = quantity == ORIENTATION;
+        let meeting = |(place, tellers)| Meeting {
+            tellers,
+            place,
+            is_turned,
+        };
+        self.meetings.extend(spread.meetings().map(meeting));
     }
 
     /// The rings, once all that is needed is known: what only they need may have no value.
@@ -62,7 +73,10 @@ impl Builder<'_> {
         let told = std::mem::replace(self.diagnostics, Diagnostics::new());
         let signals = self.signals.clone();
         let meetings = std::mem::take(&mut self.meetings);
-        let rings = meetings.iter().filter_map(|it| self.ring(it)).collect();
+        let rings = meetings.iter().filter_map(|it| self.ring(it));
+        let mut rings: Vec<Ring> = rings.collect();
+        // Of a frame whose place is open, no more is told.
+        rings.sort_by_key(|ring| ring.is_turned);
         self.signals = signals;
         *self.diagnostics = told;
         rings
@@ -86,15 +100,20 @@ impl Builder<'_> {
             components,
             frame,
             dimension: size,
-            positions: [
-                self.position(first.1, size)?,
-                self.position(second.1, size)?,
+            told: [
+                self.told(first.1, (size, meeting.is_turned))?,
+                self.told(second.1, (size, meeting.is_turned))?,
             ],
+            is_turned: meeting.is_turned,
             span: self.place(second.0, span),
         })
     }
 
-    fn position(&mut self, definition: usize, size: usize) -> Option<Vec<Expression>> {
+    fn told(
+        &mut self,
+        definition: usize,
+        (size, is_turned): (usize, bool),
+    ) -> Option<Vec<Expression>> {
         if !self.define(definition) {
             return None;
         }
@@ -103,6 +122,13 @@ impl Builder<'_> {
             return None;
         };
         let value = value.clone();
+        if is_turned {
+            return match value {
+                Value::Matrix(product) => Some(product.to_matrix(self.pool).entries),
+                // One, for axes of the world.
+                Value::Scalar(_) => Some(Matrix::diagonal(&[Expression::ONE; 3]).entries),
+            };
+        }
         let dimension = if size == IN_SPACE { 3 } else { 2 };
         self.entries(&value, dimension, name).ok()
     }

@@ -88,9 +88,8 @@ where
 {
     let mut x = model.initial_state();
     for (axis, value) in ["x", "y", "z"].into_iter().zip(values) {
-        let name = format!("{stem}.{axis}");
-        let place = S::META.states.iter().position(|state| state.name == name);
-        x[place.unwrap()] = value;
+        let place = S::META.state(&format!("{stem}.{axis}")).unwrap();
+        x[place] = value;
     }
     x
 }
@@ -337,8 +336,7 @@ fn closing_a_loop_leaves_a_quaternion_at_length_one() {
     let places: Vec<usize> = (0..4)
         .map(|part| {
             let name = format!("plate.ball.rotation.quaternion.{part}");
-            let states = HungQuaternion::<f64>::META.states;
-            states.iter().position(|state| state.name == name).unwrap()
+            HungQuaternion::<f64>::META.state(&name).unwrap()
         })
         .collect();
     for (part, place) in places.iter().enumerate() {

@@ -26,8 +26,7 @@ where
 {
     let mut places = [0; 4];
     for (place, name) in places.iter_mut().zip(STATES) {
-        let found = S::META.states.iter().position(|state| state.name == name);
-        *place = found.ok_or("a state has another name")?;
+        *place = S::META.state(name).ok_or("a state has another name")?;
     }
     Ok(places)
 }

@@ -110,8 +110,7 @@ fn families() -> Result<Vec<Vec<usize>>, Box<dyn Error>> {
 }
 
 fn place(name: &str) -> Result<usize, Box<dyn Error>> {
-    let mut states = Sliding::<f64>::META.states.iter();
-    let place = states.position(|state| state.name == name);
+    let place = Sliding::<f64>::META.state(name);
     place.ok_or_else(|| format!("no state `{name}`").into())
 }
 

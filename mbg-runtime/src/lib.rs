@@ -9,7 +9,7 @@
 //! | stop it at an event, change its state and go on | [events](language#events), [`Integrator::until`] |
 //! | drive it by a recorded log | [`Sampled`] |
 //! | find where it rests, hovers or turns steadily | [`Trim`] |
-//! | design a controller for it | [`Linearised`]: its matrices and frequency response |
+//! | design a controller for it | [`Linearised`]: its matrices, poles and frequency response |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
@@ -62,6 +62,7 @@ pub mod joints {}
 #[doc = include_str!("library.md")]
 pub mod library {}
 mod meta;
+mod poles;
 mod real;
 mod scalar;
 mod sine;

@@ -7,8 +7,8 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 
 /// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
 ///
-/// Poles are the eigenvalues of `A`, `linearised.state.complex_eigenvalues()` with `nalgebra`. The four numbers of an
-/// attitude count as states, and so do all coordinates of loops that multipliers close: some poles are no motion of such a
+/// Poles are given by [`Linearised::poles`]; `complex_eigenvalues()` of `nalgebra` does not end on chains of integrators, such as those
+/// of what flies freely. The four numbers of an attitude count as states, and so do all coordinates of loops that multipliers close: some poles are no motion of such a
 /// model. Nor is a pole at zero that two displacements at one junction make, such as that of a spring beside a field of two ports:
 /// their difference stays what it was, whatever is done. No feedback moves such a pole, and an iteration of Riccati's equation
 /// over all states does not end. The rows of both are the same in `A` and in `B`: leave one state out, and add its columns of `A`

@@ -35,6 +35,69 @@ pub struct Meta {
     pub diagram: &'static str,
 }
 
+impl Meta {
+    /// The place of a state in `x`, by its name.
+    ///
+    /// It is found while compiling where it stands in a constant, and a name that the model has not is an error there:
+    ///
+    /// ```
+    /// use mbg_runtime::{System, mbg};
+    ///
+    /// mbg! {
+    ///     /// A mass on a spring.
+    ///     model Swing {
+    ///         input push: N;
+    ///         1 way { I mass { inertia: 2.0 } C spring { stiffness: 200.0, initial: 0.1 } Se hand { effort: push } }
+    ///         output way: m = spring.q;
+    ///     }
+    /// }
+    ///
+    /// const WAY: usize = Swing::<f64>::META.state("spring.q").unwrap();
+    /// const PUSH: usize = Swing::<f64>::META.input("push").unwrap();
+    ///
+    /// let swing = Swing::<f64>::new(SwingParameters::default())?;
+    /// assert_eq!(swing.initial_state()[WAY], 0.1);
+    /// assert_eq!((PUSH, Swing::<f64>::META.output("speed")), (0, None));
+    /// # Ok::<(), mbg_runtime::ParameterError>(())
+    /// ```
+    #[must_use]
+    pub const fn state(&self, name: &str) -> Option<usize> {
+        place(self.states, name)
+    }
+
+    /// The place of an input in `u`, by its name, as [`Meta::state`].
+    #[must_use]
+    pub const fn input(&self, name: &str) -> Option<usize> {
+        place(self.inputs, name)
+    }
+
+    /// The place of an output in `y`, by its name, as [`Meta::state`].
+    #[must_use]
+    pub const fn output(&self, name: &str) -> Option<usize> {
+        place(self.outputs, name)
+    }
+}
+
+/// The place of a name.
+const fn place(variables: &[Variable], name: &str) -> Option<usize> {
+    let mut place = 0;
+    while place < variables.len() {
+        if is_same(variables[place].name.as_bytes(), name.as_bytes()) {
+            return Some(place);
+        }
+        place += 1;
+    }
+    None
+}
+
+const fn is_same(one: &[u8], other: &[u8]) -> bool {
+    let mut byte = 0;
+    while byte < one.len() && byte < other.len() && one[byte] == other[byte] {
+        byte += 1;
+    }
+    byte == one.len() && byte == other.len()
+}
+
 /// A scalar with a name and a unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variable {

@@ -154,11 +154,7 @@ mbg! {
 
 /// The state with the crank where the model puts it, and everything else where it must be.
 fn start(model: &FourBar) -> SVector<f64, 6> {
-    let crank = FourBar::<f64>::META
-        .states
-        .iter()
-        .position(|state| state.name == "crank.hinge.angle")
-        .unwrap();
+    let crank = FourBar::<f64>::META.state("crank.hinge.angle").unwrap();
     let guess = model.initial_state();
     let start = model
         .close(0.0, guess, &SVector::from([]), &[crank])

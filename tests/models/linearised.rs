@@ -169,7 +169,7 @@ fn there_is_no_response_at_a_pole() {
     assert_eq!(linear.response(2.0), None);
     let near = linear.response(1.0).unwrap()[(0, 0)];
     assert_eq!([near.re, near.im], [0.0, 1.0 / 6.0]);
-    let poles = linear.state.complex_eigenvalues();
+    let poles = linear.poles().unwrap();
     assert!(
         poles
             .iter()

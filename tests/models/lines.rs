@@ -19,8 +19,7 @@ fn hung() -> Hung<f64> {
 
 /// The place of a state, by its name.
 fn place(name: &str) -> usize {
-    let mut states = Hung::<f64>::META.states.iter();
-    states.position(|state| state.name == name).unwrap()
+    Hung::<f64>::META.state(name).unwrap()
 }
 
 /// A vector of the state, by the name of its first component without `x`.

@@ -76,6 +76,26 @@ where
     last
 }
 
+/// Its place, attitude and rates are integrals one behind the other, which no sweep over all of them finds.
+#[test]
+fn the_poles_of_a_hover_are_those_of_its_drag() {
+    let model = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
+    let hover = Trim::new(&model).hold("free.position").solve().unwrap();
+    let next = Linearised::of(&model, 0.0, &hover.state, &hover.input).unwrap();
+    let poles = next.poles().unwrap();
+    let near = |to: f64, error: f64| {
+        let near = poles
+            .iter()
+            .filter(|pole| (pole.re - to).hypot(pole.im) < error);
+        near.count()
+    };
+    assert_eq!(
+        (near(-0.4 / 1.2, 1e-9), near(0.0, 1e-9)),
+        (3, 10),
+        "{poles:?}"
+    );
+}
+
 #[test]
 fn a_craft_hovers_with_equal_thrusts() {
     let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();

@@ -45,11 +45,12 @@ use crate::{Input, Real, System};
 /// | [`Radau9`] | 8 | 10 MB |
 /// | `Auto` while a model is not stiff | 3 | 3.8 MB |
 ///
-/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes two more.
+/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes two more. [`Linearised::of`](crate::Linearised::of)
+/// takes 4, [`Linearised::held`](crate::Linearised::held) 10, and [`Trim::solve`](crate::Trim::solve) 13.
 ///
-/// The main thread has 8 MB on most systems and others have 2 MB. A larger model overflows it, and the process is aborted: run it in a
+/// The main thread has 8 MB on most systems and others, such as those of tests, have 2 MB. A larger model overflows it, and the process is aborted: run it in a
 /// thread of its own, by `std::thread::Builder::new().stack_size(256 << 20).spawn(…)`. Without optimisation more is copied, which
-/// takes about twice as much.
+/// takes three to four times as much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Auto<'a> {
     /// Tolerance in units of the state.

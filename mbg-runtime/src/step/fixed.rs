@@ -239,7 +239,8 @@ fn summed<T: Real, const N: usize>(
 impl Rk4 {
     /// Runs from `t0` to `t1` in steps of `h`: [`Fixed`] with [`Rk4`], with states alone for an observer.
     ///
-    /// `observer` is given the start and the end of each step.
+    /// `observer` is given the start and the end of each step. A loop with a clock of its own takes [`Rk4::step`]: in single precision
+    /// times that are summed up step by step drift away, and after half an hour a millisecond is lost in their rounding.
     ///
     /// # Errors
     ///
@@ -284,10 +285,31 @@ impl Rk4 {
     }
 
     /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock, with the least code
-    /// and stack. The same bits as those of [`Fixed`] over a way, `t1 - t0`, that is `n · h` to the last bit, where
-    /// [`FUSED`](crate::FUSED) does not hold.
+    /// and stack. Of a model without attitudes and closed loops, the same bits as those of [`Fixed`] over a way, `t1 - t0`, that is
+    /// `n · h` to the last bit, where [`FUSED`](crate::FUSED) does not hold.
     ///
-    /// Nothing is checked: ask [`System::trouble`] and look at the state where it matters.
+    /// Nothing is closed and nothing is checked: attitudes become longer or shorter and closed loops open, unless each step is
+    /// followed by [`System::close`]. Ask [`System::trouble`], and look at the state where it matters.
+    ///
+    /// ```
+    /// use mbg_runtime::{Rk4, System, Trouble};
+    /// use nalgebra::SVector;
+    ///
+    /// /// What a loop does at each tick of its clock.
+    /// fn tick<S, const N: usize, const M: usize, const P: usize>(
+    ///     model: &S,
+    ///     (t, x): (f32, &SVector<f32, N>),
+    ///     u: &SVector<f32, M>,
+    ///     memory: &mut S::Memory,
+    /// ) -> Result<SVector<f32, N>, Trouble>
+    /// where
+    ///     S: System<f32, N, M, P>,
+    /// {
+    ///     let h = 1e-3;
+    ///     let next = model.close(t + h, Rk4::step(model, t, x, u, h, memory), u, &[])?;
+    ///     model.trouble(t + h, &next, u, memory).map_or(Ok(next), Err)
+    /// }
+    /// ```
     #[must_use]
     #[inline]
     pub fn step<T, S, const N: usize, const M: usize, const P: usize>(

@@ -11,8 +11,8 @@ use mbg_runtime::Dual;
 use models::compiled;
 use models::dual::{Point, evaluate};
 
-/// A base with a limb, held together with a point of the ground's limb.
-fn model(base: &str, limb: &[&str], cut: &str, gravity: f64) -> String {
+/// A base and a limb that stands on the ground, whose ends are held together.
+fn model(base: &str, limb: &[&str], joint: &str, gravity: f64) -> String {
     let body = |name: &str, at: &str| {
         format!(
             "{name}: Body {{ mass: 1.5, inertia: diag(0.02, 0.03, 0.04), centre: [0.1, -0.2, 0.3] }} ({at});"
@@ -38,7 +38,7 @@ fn model(base: &str, limb: &[&str], cut: &str, gravity: f64) -> String {
         );
     }
     let last = limb.len();
-    text + &format!("cut: Cut {{ joint: {cut} }} (frame{last}, eye); }}")
+    text + &format!("last: {joint} (frame{last}, eye); }}")
 }
 
 /// A state by names, with attitudes of length one.
@@ -103,24 +103,34 @@ fn apart(model: &Compiled, state: &[f64], rates: &[f64]) -> f64 {
     size(&slopes) / size(rates)
 }
 
-/// Whether the ends of a loop do, with and without a weight.
-fn stays_together(base: &str, limb: &[&str], cut: &str) {
-    let case = format!("{base} {limb:?} {cut}");
-    // A weight of next to nothing changes how rates are found, and which angles are told, and nothing else.
-    let [light, heavy] = [0.0, -1e-14].map(|gravity| compiled(&model(base, limb, cut, gravity)));
+/// By how much rates differ, over their size, with a weight of next to nothing and without: that changes how they are found, and which
+/// angles are told, and nothing else. `inspect` is given both models with their states and rates.
+fn weighed(
+    (base, limb, joint): (&str, &[&str], &str),
+    inspect: impl Fn(&Compiled, &[f64], &[f64]),
+) -> f64 {
+    let [light, heavy] = [0.0, -1e-14].map(|gravity| compiled(&model(base, limb, joint, gravity)));
     let state = state(&heavy);
     let [found, expected] = [&light, &heavy].map(|model| {
         let state = of(model, &state);
         let rates = rates(model, &state);
-        let apart = apart(model, &state, &rates);
-        assert!(apart < 1e-12, "{case}: by {apart:e}");
+        inspect(model, &state, &rates);
         rates
     });
     let names = heavy.states.iter();
     let names = names.map(|it| heavy.model.states[*it].variable.name.as_str());
     let expected = of(&light, &names.zip(expected).collect());
     let differences: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
-    let other = size(&differences) / size(&found);
+    size(&differences) / size(&found)
+}
+
+fn stays_together(base: &str, limb: &[&str], cut: &str) {
+    let case = format!("{base} {limb:?} {cut}");
+    let cut = format!("Cut {{ joint: {cut} }}");
+    let other = weighed((base, limb, &cut), |model, state, rates| {
+        let apart = apart(model, state, rates);
+        assert!(apart < 1e-12, "{case}: by {apart:e}");
+    });
     assert!(other < 1e-10, "{case}: by {other:e}");
 }
 
@@ -156,6 +166,26 @@ fn ends_of_loops_stay_together_on_any_base() {
             for cut in ["spherical", "universal", "revolute"] {
                 stays_together(base, limb, cut);
             }
+        }
+    }
+}
+
+/// The same of rings without a cut, in which rates follow from each other.
+#[test]
+fn rings_move_alike_with_and_without_a_weight() {
+    let leg = [
+        "Universal { first: 0, second: 1 }",
+        "Prismatic { axis: 2, initial: 0.7 }",
+    ];
+    let arm = [
+        "Revolute { axis: 2 }",
+        "Revolute { axis: 1, offset: [0.2, 0.0, 0.1] }",
+        "Universal { first: 0, second: 1 }",
+    ];
+    for base in ["Spherical", "Free", "Free { orientation: quaternion }"] {
+        for limb in [&leg[..], &arm] {
+            let other = weighed((base, limb, "Spherical"), |_, _, _| ());
+            assert!(other < 1e-9, "{base} {limb:?}: by {other:e}");
         }
     }
 }

@@ -96,7 +96,7 @@ pub mod renamed {
             joint: PlanarRevolute { initial: -1.0 } (pin, rod);
             wheel: PlanarBody { mass: 1.0, inertia: 2.0 } (crank);
             bar: PlanarBody { mass: 1.0, inertia: 2.0 } (rod);
-            back: PlanarCut { joint: slot } (rod, ground);
+            _back: PlanarCut { joint: slot } (rod, ground);
         }
         /// What is eliminated row by row.
         pub model Row {

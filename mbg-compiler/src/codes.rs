@@ -54,7 +54,7 @@ codes! {
     ORDER_LOST_UNSUPPORTED = "MBG0403", "a true loss of order, which is accepted but not supported yet";
     SINGULAR_START = "MBG0404", "a model that starts where something it divides by is zero";
     UNUSED_START = "MBG0405", "a value for the start that is not kept";
-    OPEN_RING = "MBG0406", "joints of a ring that do not meet at the start";
+    OPEN_RING = "MBG0406", "joints of a ring that do not meet, or a loop that is open, at the start";
     MISSING_PORT = "MBG0407", "a storage that a motion changes, and which does no work on it";
     NO_BODY = "MBG0408", "an inertia that no body has";
     LOST_IMPULSE = "MBG0409", "a law of time that jumps, and which storages follow";

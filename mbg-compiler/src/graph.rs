@@ -84,6 +84,8 @@ pub struct BondGraph {
 pub struct Closure {
     /// `a -> b`, for people.
     pub name: String,
+    /// The path of the component in use that closes it; empty where the model itself does.
+    pub instance: String,
     /// The bond that leaves `from` and the one that arrives at `to`. Both end at the border, and their efforts are one.
     pub bonds: [BondId; 2],
     /// How far apart both ends are, if it was given.

@@ -13,12 +13,16 @@ use crate::graph::{Element, ElementId, ElementKind, Integral, Law, Storage};
 use crate::start::Start;
 use crate::structure::Solved;
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Pool, Symbol};
+use crate::symbolic::{Expression, Operation, Pool, Symbol};
 
 /// A value at the start is another one if it differs by more than this part of it.
 const MET: f64 = 1e-9;
 /// A ring is open if the gap is more than this part of its distance from the origin: initial values have a few digits.
 const CLOSED: f64 = 1e-3;
+/// The same for loops that are put together before the first step.
+const GUESSED: f64 = 0.05;
+/// Nothing counts as nearer to the origin: what is rounding.
+const SMALLEST: f64 = 1e-8;
 /// A moment of inertia may be larger than the sum of the others by this part of them: that of a plate, in few digits.
 const PLATE: f64 = 1e-2;
 
@@ -38,6 +42,11 @@ pub(crate) fn of(
         notes.push(note);
     }
     for (span, note, help) in open_rings(model, pool) {
+        diagnostics.warn(error(codes::OPEN_RING, span, note.clone()).help(help));
+        notes.push(note);
+    }
+    for (span, note) in open_closures(model, answers, pool) {
+        let help = "give its joints `initial` values that close it: else they are moved by least norm before the first step";
         diagnostics.warn(error(codes::OPEN_RING, span, note.clone()).help(help));
         notes.push(note);
     }
@@ -159,6 +168,44 @@ fn open_rings(model: &Elaborated, pool: &Pool) -> Vec<(Span, String, String)> {
         Some((ring.span, note, help))
     };
     model.rings.iter().filter_map(open).collect()
+}
+
+/// Loops closed by multipliers that are open at the start by more than a guess, with default parameters and without inputs.
+fn open_closures(model: &Elaborated, answers: &Answers, pool: &Pool) -> Vec<(Span, String)> {
+    let start = Start::of(model, pool);
+    let mut told = BTreeSet::new();
+    let open = |(number, _, displacement): &(usize, usize, Expression)| {
+        let closure = &model.graph.closures[*number];
+        let name = match closure.instance.as_str() {
+            "" => &closure.name,
+            instance => instance,
+        };
+        let own = name.rsplit('.').next().unwrap_or(name);
+        let gap = start.value(pool, *displacement);
+        let terms = terms(pool, *displacement);
+        let far = terms.map(|term| start.value(pool, term).abs());
+        let is_open = gap.abs() > GUESSED * far.fold(SMALLEST, f64::max);
+        if !is_open || own.starts_with('_') || !told.insert(name.to_owned()) {
+            return None;
+        }
+        let note = format!("`{name}` is open at the start, by {gap:.3}");
+        Some((model.graph.origins.span(closure.origin), note))
+    };
+    answers.displacements.iter().filter_map(open).collect()
+}
+
+/// The terms of a sum.
+fn terms(pool: &Pool, sum: Expression) -> impl Iterator<Item = Expression> {
+    let mut open = vec![sum];
+    std::iter::from_fn(move || {
+        loop {
+            let term = open.pop()?;
+            match *pool.operation(term) {
+                Operation::Add(a, b) => open.extend([a, b]),
+                _ => return Some(term),
+            }
+        }
+    })
 }
 
 /// What is between two places, if they are apart.

@@ -470,3 +470,29 @@ fn a_start_of_what_follows_is_told_where_it_follows_from() {
     ");
     assert_eq!(warned(&gear(", initial: 1.0", second)), "");
 }
+
+/// A loop that is far from closed is one of wrong frames or starts; one that is nearly is put together before the first step.
+#[test]
+fn a_loop_that_is_open_at_the_start_is_told() {
+    let four_bar = |last: &str, initial: f64| {
+        let link = "mass: 1.0, inertia: 0.1, centre: 0.0";
+        warned(&format!(
+            "#[derivative] model M {{
+                causality componentwise;
+                1 ground[3]; 1 pin[3]; 1 end[3]; 1 far[3]; 1 side[3];
+                Sf fixed[3] {{ flow: 0.0 }} -> ground;
+                crank: PlanarLink {{ {link}, end: [1.0, 0.0], initial: 1.5707963 }} (ground, pin);
+                rod: PlanarLink {{ {link}, end: [2.0, 0.0], initial: -1.5707963 }} (pin, end);
+                base: PlanarOffset {{ x: 2.0 }} (ground, side);
+                rocker: PlanarLink {{ {link}, end: [1.0, 0.0], initial: {initial:?} }} (side, far);
+                {last}: PlanarCut (far, end);
+            }}"
+        ))
+    };
+    insta::assert_snapshot!(four_bar("cut", 1.2), @"
+    9:17 `cut` is open at the start, by 0.362 [MBG0406]
+      help: give its joints `initial` values that close it: else they are moved by least norm before the first step
+    ");
+    assert_eq!(four_bar("_cut", 1.2), "");
+    assert_eq!(four_bar("cut", 1.55), "");
+}

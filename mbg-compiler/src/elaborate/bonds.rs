@@ -232,8 +232,10 @@ impl<'a> Builder<'a> {
         self.bond(scope, from, End::Border, size, span);
         self.bond(scope, End::Border, to, size, span);
         let number = self.graph.closures.len();
+        let instance = self.name_of(scope).to_owned();
         self.graph.closures.push(Closure {
             name,
+            instance,
             bonds: [first, BondId(first.0 + 1)],
             displacement: None,
             origin,

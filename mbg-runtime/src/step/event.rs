@@ -22,9 +22,10 @@ impl<T: Real, const N: usize, Memory: Copy> Step<'_, T, N, Memory> {
     /// `guard` is asked at the ends of eight equal parts of the step. A part in which it may come to zero and go back, by the
     /// parabola through three of these, is narrowed to where it turns; of a guard that is zero at the start, the first part is
     /// halved to where it may have come back: in at most 24 evaluations more. Crossings are missed that are closer to each other
-    /// than some hundred thousandth of the step, or of a guard that turns more than once in a part. The time is found by the Illinois method, and bisection
-    /// where that is slow or the guard stays zero, in at most [`Step::SEARCH`] evaluations, to the last bits. Lanes share their
-    /// time: the first decides. On [`Dual`](crate::Dual) numbers the time has the slope of the zero, and so has the state there.
+    /// than some hundred thousandth of the step, or of a guard that turns more than once in a part. The time is found by the
+    /// Illinois method, and bisection where that is slow or the guard stays zero, in at most [`Step::SEARCH`] evaluations, to the
+    /// last bits. Lanes share their time: the first decides. On [`Dual`](crate::Dual) numbers the time has the slope of the zero,
+    /// and so has the state there.
     ///
     /// Nothing is found either where the guard is not a number before it goes through zero.
     #[must_use]
@@ -43,28 +44,31 @@ impl<T: Real, const N: usize, Memory: Copy> Step<'_, T, N, Memory> {
         mut guard: impl FnMut(T, &SVector<T, N>) -> T,
     ) -> Result<Option<T>, T> {
         let (start, end) = (self.span.start, self.span.end);
-        let mut asked = [(start, number(start, guard(start, &self.first))?); 1 + PARTS];
-        let mut known = 1;
-        while known <= PARTS
-            && !(known > 1 && direction.between(asked[known - 2], asked[known - 1]))
-        {
-            asked[known] = if known == PARTS {
+        let first = (start, number(start, guard(start, &self.first))?);
+        let mut asked = [first; 1 + PARTS];
+        let (mut before, mut known) = (first, 1);
+        for (part, place) in asked.iter_mut().enumerate().skip(1) {
+            *place = if part == PARTS {
                 (end, number(end, guard(end, &self.state))?)
             } else {
-                let fraction = known as f64 / PARTS as f64;
+                let fraction = part as f64 / PARTS as f64;
                 self.ask(start + T::from_f64(fraction) * (end - start), &mut guard)?
             };
             known += 1;
+            if direction.between(before, *place) {
+                break;
+            }
+            before = *place;
         }
-        let asked = &asked[..known];
+        let asked = asked.get(..known).unwrap_or(&asked);
         let mut left = BESIDES;
-        for part in 0..known - 1 {
-            let [before, after] = [asked[part], asked[part + 1]];
+        for (part, pair) in asked.windows(2).enumerate() {
+            let &[before, after] = pair else { continue };
             let found = if direction.between(before, after) {
                 Some([before, after])
             } else if part == 0 && direction.may_be_back(before.1, after.1) {
                 self.back(direction, [before, after], &mut left, &mut guard)?
-            } else if may_touch(asked, part) {
+            } else if may_touch(asked, part, before.1, after.1) {
                 self.touch(direction, [before, after], &mut left, &mut guard)?
             } else {
                 None
@@ -198,18 +202,18 @@ impl<T: Real, const N: usize, Memory: Copy> Step<'_, T, N, Memory> {
 
 /// Whether a guard may come to zero and go back in a part: by twice the way that the parabola through three times goes on from
 /// the nearer end.
-fn may_touch<T>(asked: &[Asked<T>], part: usize) -> bool {
+fn may_touch<T>(asked: &[Asked<T>], part: usize, before: f64, after: f64) -> bool {
     let first = part.saturating_sub(1).min(asked.len().saturating_sub(3));
-    let [(_, a), (_, b), (_, c), ..] = asked[first..] else {
+    let Some([(_, a), (_, b), (_, c), ..]) = asked.get(first..) else {
         return false;
     };
-    let sign = if b < 0.0 { -1.0 } else { 1.0 };
+    let sign = if *b < 0.0 { -1.0 } else { 1.0 };
     let [a, b, c] = [a, b, c].map(|value| sign * value);
     // From the middle one, in parts.
     let (slope, bend) = (0.5 * (c - a), 0.5 * (a + c) - b);
     let turns = -slope / (2.0 * bend);
     let own = part as f64 - (first as f64 + 1.0);
-    let nearer = (sign * asked[part].1).min(sign * asked[part + 1].1);
+    let nearer = (sign * before).min(sign * after);
     let least = b - slope * slope / (4.0 * bend);
     bend > 0.0
         && (own - 0.25..=own + 1.25).contains(&turns)

@@ -578,6 +578,22 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// What its mass is pushed by is no part of how a carrier moves, whose frame's origin is at rest.
+    #[test]
+    fn pushed_carriers_move_as_kane_says(mut tree in tree(2..4, 0.1, 0.1), push in 0..3_usize) {
+        for body in &mut tree {
+            body.turn = Matrix3::identity();
+            body.position = 0.0;
+        }
+        tree[0].push = Vector3::ith(push, 1.0);
+        tree[0].is_central = true;
+        assert_moves(&tree)?;
+    }
+}
+
+proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]

@@ -512,7 +512,7 @@ fn only<T>(mut items: impl Iterator<Item = T>) -> Option<T> {
     items.next().is_none().then_some(item)
 }
 
-fn dot(a: &[Image; 3], b: &[Image; 3]) -> Image {
+pub(super) fn dot(a: &[Image; 3], b: &[Image; 3]) -> Image {
     (0..3).fold(Image::ZERO, |sum, k| sum.plus(a[k].times(b[k])))
 }
 

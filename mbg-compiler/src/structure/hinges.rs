@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, Mass};
-use super::carried::{Triple, is_orthonormal, length};
+use super::carried::{Triple, dot, is_orthonormal, length};
 use super::inertia::Distribution;
-use super::shift::Given;
+use super::shift::{Given, Motion};
 use super::tensor::Vector;
 use crate::symbolic::field::Image;
 use crate::symbolic::{Expression, Pool, Rate};
@@ -21,6 +21,10 @@ pub(super) struct Hinge {
     axis: Option<(usize, Vector)>,
     /// From the carrier's origin to the joint.
     arm: Vector,
+    /// The rates of the joint's velocity.
+    place: Triple,
+    /// From the carrier's axes to those in which they are.
+    turn: [Vector; 3],
 }
 
 impl Hinge {
@@ -42,6 +46,19 @@ impl Hinge {
         let here = Distribution::rod(pool, &unit, own.mass, first, across);
         let there = Distribution::rod(pool, &direction, own.mass, first, across);
         (own.minus(pool, &here), there.moved(pool, &self.arm))
+    }
+
+    /// Whether rates of both bodies are counted from one motion. Where a frame's origin is at rest, those of its mass may be
+    /// counted from one that a force on the mass belongs to.
+    pub(super) fn is_of_one(&self, pool: &mut Pool, motion: &Motion, carrier: &Body) -> bool {
+        let base = carrier.base(pool, motion);
+        let tensor = motion.tensor(&carrier.mass.omega);
+        let there = [0, 1, 2].map(|k| {
+            let more = tensor.acceleration(pool, k, &self.arm);
+            pool.image(base[k]).plus(pool.image(more))
+        });
+        let rate = |k: usize| pool.image(motion.rate(self.place[k]));
+        (0..3).all(|k| dot(&self.turn[k].map(|it| pool.image(it)), &there) == rate(k))
     }
 }
 
@@ -94,6 +111,8 @@ impl<'a> Paths<'a> {
             carrier,
             axis,
             arm: length(&lever)?,
+            place: seat.origin,
+            turn,
         })
     }
 

@@ -33,7 +33,9 @@ pub(super) fn regroup(
     let paths = Paths::of(rates);
     let mut changed = BTreeSet::new();
     for number in 0..bodies.len() {
-        if let Some(hinge) = paths.hinge(pool, &bodies, number) {
+        if let Some(hinge) = paths.hinge(pool, &bodies, number)
+            && hinge.is_of_one(pool, motion, &bodies[hinge.carrier])
+        {
             let (own, carrier) = (bodies[number].inertia, bodies[hinge.carrier].inertia);
             let (kept, handed) = hinge.split(pool, &own);
             let carried = carrier.plus(pool, &handed);
@@ -96,7 +98,7 @@ impl Body {
     }
 
     /// The acceleration of the frame's origin in the motion that rates are counted from.
-    fn base(&self, pool: &mut Pool, motion: &Motion) -> Vector {
+    pub(super) fn base(&self, pool: &mut Pool, motion: &Motion) -> Vector {
         let Mass {
             omega, origin, arm, ..
         } = &self.mass;

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::symbolic::linear::{Elimination, back_substitute};
 use crate::symbolic::{Expression, Matrix, Pool, Rate, Substitution};
 
-/// A constant that is smaller than this beside others is no pivot.
-const SMALL: f64 = 1e-3;
+/// A constant that is smaller than this beside others is no pivot: rounding errors may grow by the square of the ratio.
+const SMALL: f64 = 0.1;
 
 /// Linear equations by rows, which shrink as unknowns are eliminated.
 pub(super) struct System {

@@ -8,7 +8,10 @@ use std::fmt::Write;
 use mbg_compiler::compile::{Compiled, compile};
 use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::elaborate::{self, Elaborated};
+use mbg_compiler::equations;
 use mbg_compiler::graph::BondId;
+use mbg_compiler::network::Network;
+use mbg_compiler::structure::{self, Formulation, Solved};
 use mbg_compiler::symbolic::print::Printer;
 use mbg_compiler::symbolic::{Pool, Symbol};
 use mbg_compiler::syntax::ast::{Item, Model, Source};
@@ -22,6 +25,21 @@ pub(crate) fn elaborated(text: &str) -> Result<(Elaborated, Pool), String> {
         elaborate::elaborate(model, &components, &mut pool, diagnostics)
     })?;
     Ok((model, pool))
+}
+
+/// The equations of the last model of a text with their solution.
+pub(crate) fn solved(text: &str) -> Result<(Elaborated, Solved, Pool), String> {
+    let mut pool = Pool::new();
+    let (model, solved) = stage(text, |model, source, diagnostics| {
+        let components = elaborate::component_table(source);
+        let mut model = elaborate::elaborate(model, &components, &mut pool, diagnostics)?;
+        let network = Network::of(&model.graph, &mut pool);
+        let scalars = equations::form(&model, &network, &mut pool);
+        let first = structure::solve(&scalars, Formulation::Articulated, &mut pool);
+        let solved = structure::resolve(&mut model, scalars, first, &mut pool, diagnostics)?;
+        Some((model, solved))
+    })?;
+    Ok((model, solved, pool))
 }
 
 /// The last model of a text after all stages; it has no mistakes.

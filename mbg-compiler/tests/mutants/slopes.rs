@@ -23,6 +23,9 @@ const CANCELLATION: f64 = 1e-9;
 /// Larger states, rates and powers are not looked at.
 const MODERATE: f64 = 1e8;
 
+/// When a model is looked at.
+const TIME: f64 = 0.3;
+
 /// Deviations from the state at the start, of each state's size. Far from there diodes conduct nothing finite; just there
 /// laws may have their kinks.
 const DEVIATIONS: [f64; 3] = [0.0, 1e-4, 0.2];
@@ -98,13 +101,13 @@ fn largest(values: &[f64]) -> f64 {
 
 impl Place<'_> {
     fn run(&self, routine: usize) -> Vec<f64> {
-        self.run_at(routine, &self.state)
+        self.run_at(routine, TIME, &self.state)
     }
 
-    fn run_at(&self, routine: usize, state: &[f64]) -> Vec<f64> {
+    fn run_at(&self, routine: usize, time: f64, state: &[f64]) -> Vec<f64> {
         let arguments = Arguments {
             parameters: self.parameters,
-            time: 0.3,
+            time,
             state,
             input: self.input,
         };
@@ -141,7 +144,7 @@ impl Place<'_> {
         let factor = largest(&along) / largest(rates);
         let told = (power[0] - power[1]) * factor;
         let size = largest(&power) * factor;
-        let [found] = &self.quotients(Routines::ENERGY, &along)[..] else {
+        let [found] = &self.quotients(Routines::ENERGY, &along, factor)[..] else {
             return Some("there is no energy".to_owned());
         };
         let wrong = differs(
@@ -181,7 +184,7 @@ impl Place<'_> {
         directions
             .filter_map(|direction| self.scaled(&direction))
             .find_map(|along| {
-                let found = self.quotients(Routines::DERIVATIVE, &along);
+                let found = self.quotients(Routines::DERIVATIVE, &along, 0.0);
                 let told = jacobian.chunks(count).map(|row| {
                     // An entry beside the direction may be infinite.
                     let terms = row.iter().zip(&along).filter(|(_, part)| **part != 0.0);
@@ -208,12 +211,12 @@ impl Place<'_> {
         (largest > 0.0).then(|| direction.iter().map(|part| part / largest).collect())
     }
 
-    /// Slopes of what a routine returns along a direction, each by all steps that resolve it.
-    fn quotients(&self, routine: usize, along: &[f64]) -> Vec<Vec<Quotient>> {
+    /// Slopes of what a routine returns along a direction, in which time passes as well, each by all steps that resolve it.
+    fn quotients(&self, routine: usize, along: &[f64], passing: f64) -> Vec<Vec<Quotient>> {
         let at = |step: f64| {
             let moved = self.state.iter().zip(along);
             let moved: Vec<f64> = moved.map(|(value, part)| value + step * part).collect();
-            self.run_at(routine, &moved)
+            self.run_at(routine, TIME + step * passing, &moved)
         };
         let here = at(0.0);
         let size = largest(&here);

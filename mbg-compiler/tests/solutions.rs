@@ -2,18 +2,27 @@
 //!
 //! How these are solved counts rates from a motion, hands on inertia and divides by what is proven; the equations are those
 //! of junctions, joints and laws, one by one.
+//!
+//! `PROPTEST_CASES=20000 PROPTEST_RNG_SEED=7 cargo test --release -p mbg-compiler --test solutions` tries many others. Of
+//! thousands a loop may come so near to where its divisors vanish that its rounding shows.
 
 mod models;
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use mbg_compiler::elaborate::Elaborated;
 use mbg_compiler::structure::Solved;
-use mbg_compiler::symbolic::{Evaluation, Pool, Symbol};
+use mbg_compiler::symbolic::{Evaluation, Expression, Kind, Method, Pool, Symbol};
+use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// A residual may be so large beside the terms of its equation and the largest value.
 const ROUNDING: f64 = 1e-10;
+
+/// Normalised determinants that are smaller are nearly zero.
+const NEAR: f64 = 1e-3;
 
 /// What is between a frame and the one that carries it.
 const JOINTS: [&str; 9] = [
@@ -53,12 +62,16 @@ struct Part {
     load: &'static str,
 }
 
-/// What joins the last frame to another besides.
+/// What joins the last frame to something besides: it always leaves a motion, so that no cut holds one twice.
 const LINES: [&str; 3] = [
     "",
     "line: LineForce { stiffness: 3.0, rest: 0.5, damping: 0.1, orientation_a: joint#.orientation_b,
         position_a: joint#.position_b + joint#.orientation_b * [0.1, 0.2, 0.3], position_b: [3.0, 2.0, 1.0] } (frame#, far);",
-    "cut: Cut { orientation_a: joint#.orientation_b, position_a: joint#.position_b } (frame#, ground);",
+    "1 stone[6]; float: Free { orientation: quaternion, initial_position: [0.5, 0.2, 0.1] } (ground, stone);
+        rock: Body { mass: 0.8, inertia: diag(0.1, 0.2, 0.25), gravity_at: float.gravity_b } (stone);
+        1 eye[6]; arm: Offset { by: [0.3, 0.1, 0.2] } (stone, eye);
+        cut: Cut { orientation_a: joint#.orientation_b, position_a: joint#.position_b, orientation_b: float.orientation_b,
+            position_b: float.position_b + float.orientation_b * [0.3, 0.1, 0.2] } (frame#, eye);",
 ];
 
 fn text(parts: &[Part], line: &str, gravity: bool) -> String {
@@ -176,58 +189,94 @@ fn states(model: &Elaborated, pool: &Pool, parameters: &[f64], seed: u64) -> Vec
         .collect()
 }
 
-/// The equation that is fulfilled worst, with what is left of it; none if values are not finite.
+/// What is left of the equation that is fulfilled worst, beside its terms and the largest value; not a number where a value
+/// is none. Nothing near a zero of a divisor, which is told.
 fn residual(model: &Elaborated, solved: &Solved, pool: &Pool, seed: u64) -> Option<f64> {
     let parameters: Vec<f64> = model.parameters.iter().map(|it| it.default).collect();
     let states = states(model, pool, &parameters, seed);
-    let value = |symbol: Symbol, signals: &[f64]| match symbol {
+    let symbol = |symbol: Symbol, multipliers: &BTreeMap<usize, f64>, signals: &[f64]| match symbol
+    {
         Symbol::Parameter(number) => parameters[number],
         Symbol::State(number) => states[number],
-        Symbol::Input(number) => 0.3 + number as f64,
-        Symbol::Time => 0.4,
+        Symbol::Unknown(number) => multipliers.get(&number).copied().unwrap_or(f64::NAN),
         Symbol::Signal(number) => signals.get(number).copied().unwrap_or(f64::NAN),
-        Symbol::Slope(_) | Symbol::Unknown(_) => f64::NAN,
+        Symbol::Input(_) | Symbol::Time | Symbol::Slope(_) => f64::NAN,
     };
-    let bare = |symbol| value(symbol, &[]);
-    let mut evaluation = Evaluation::new(&bare);
+    let multipliers = multipliers(pool, &|it| symbol(it, &BTreeMap::new(), &[]));
+    let before = |it| symbol(it, &multipliers, &[]);
+    let mut evaluation = Evaluation::new(&before);
+    let mut divisors = solved.solution.conditioning.iter();
+    let is_near = |divisor: f64| divisor.abs() < NEAR;
+    if divisors.any(|it| is_near(evaluation.value(pool, it.normalised))) {
+        return None;
+    }
     let values = solved.solution.values.iter();
     let values: Vec<f64> = values.map(|it| evaluation.value(pool, *it)).collect();
     let signals = solved.scalars.signals.iter();
     let signals: Vec<f64> = signals
         .map(|(unknown, reversed)| values[*unknown] * if *reversed { -1.0 } else { 1.0 })
         .collect();
-    let with_signals = |symbol| value(symbol, &signals);
-    let mut evaluation = Evaluation::new(&with_signals);
+    let after = |it| symbol(it, &multipliers, &signals);
+    let mut evaluation = Evaluation::new(&after);
     let largest = values.iter().fold(1.0_f64, |size, it| size.max(it.abs()));
-    let mut worst = 0.0_f64;
-    for equation in &solved.scalars.equations {
-        let mut sum = evaluation.value(pool, equation.constant);
-        let mut size = largest;
-        for (unknown, coefficient) in &equation.terms {
-            let term = evaluation.value(pool, *coefficient) * values[*unknown];
-            sum += term;
-            size = size.max(term.abs());
-        }
-        if !sum.is_finite() {
-            return None;
-        }
-        worst = worst.max(sum.abs() / size);
+    let residuals = solved.scalars.equations.iter().map(|equation| {
+        let terms = equation.terms.iter();
+        let terms = terms
+            .map(|(unknown, coefficient)| evaluation.value(pool, *coefficient) * values[*unknown]);
+        let terms: Vec<f64> = terms.collect();
+        let sum = terms.iter().sum::<f64>() + evaluation.value(pool, equation.constant);
+        sum.abs() / terms.iter().fold(largest, |size, it| size.max(it.abs()))
+    });
+    // Unlike `max`, this keeps what is not a number.
+    Some(residuals.fold(0.0, |worst, it| if it <= worst { worst } else { it }))
+}
+
+/// The multipliers of loops, by the numbers of their symbols.
+fn multipliers(pool: &Pool, symbol: &dyn Fn(Symbol) -> f64) -> BTreeMap<usize, f64> {
+    let mut evaluation = Evaluation::new(symbol);
+    let mut found = BTreeMap::new();
+    for implicit in pool.implicit() {
+        let Method::Linear {
+            matrix,
+            right,
+            kind: Kind::Semidefinite,
+        } = &implicit.method
+        else {
+            continue;
+        };
+        let mut values = |of: &[Expression]| {
+            let values = of.iter().map(|it| evaluation.value(pool, *it));
+            values.collect::<Vec<f64>>()
+        };
+        let count = right.len();
+        let matrix = DMatrix::from_row_slice(count, count, &values(&matrix.entries));
+        let right = DVector::from_vec(values(right));
+        let solved = matrix.lu().solve(&right);
+        let solved = solved.unwrap_or_else(|| DVector::from_element(count, f64::NAN));
+        found.extend(
+            implicit
+                .unknowns
+                .iter()
+                .copied()
+                .zip(solved.iter().copied()),
+        );
     }
-    Some(worst)
+    found
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 400,
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn solutions_fulfil_their_equations(text in mechanism(), seed in 0..1000_u64) {
-        // What closes a loop may hold a motion twice, which is refused.
-        if let Ok((model, solved, pool)) = models::solved(&text) {
-            let residual = residual(&model, &solved, &pool, seed);
-            let holds = residual.map_or(text.contains("cut:"), |it| it < ROUNDING);
-            prop_assert!(holds, "{residual:?}\n{text}");
-        } else {
-            prop_assert!(text.contains("cut:"), "{:?}\n{text}", models::solved(&text).err());
-        }
+        let (model, solved, pool) = models::solved(&text).unwrap_or_else(|told| panic!("{told}\n{text}"));
+        let residual = residual(&model, &solved, &pool, seed);
+        prop_assume!(residual.is_some());
+        prop_assert!(residual.is_some_and(|it| it < ROUNDING), "{residual:?}\n{text}");
     }
 }

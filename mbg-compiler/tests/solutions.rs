@@ -51,6 +51,7 @@ const LOADS: [&str; 7] = [
 /// A frame with its body.
 #[derive(Clone, Debug)]
 struct Part {
+    /// One more than the number of the frame that carries it; zero where that is the ground.
     parent: usize,
     joint: &'static str,
     offset: [f64; 3],

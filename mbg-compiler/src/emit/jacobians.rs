@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::columns;
-use super::routine::{Writer, written_lines};
+use super::routine::{Place, Writer, written_lines};
 use super::tokens::block;
 use crate::compile::{Compiled, Routines};
 use crate::program::Source;
@@ -61,12 +61,12 @@ fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
     } else {
         0
     };
-    let rates = (0..routine.results.len() - entries).map(Literal::usize_suffixed);
-    let rates = rates.map(|row| Some(quote!(derivative[#row])));
+    let rates = 0..routine.results.len() - entries;
+    let rates = rates.map(|row| Some(Place::Derivative(row)));
     let entries = routine.results[rates.len()..].iter().enumerate();
     let entries = entries.map(|(entry, result)| {
-        let [row, column] = [entry / columns, entry % columns].map(Literal::usize_suffixed);
-        (result.source != Source::Constant(0.0)).then(|| quote!(jacobian[(#row, #column)]))
+        let place = Place::Jacobian(entry / columns, entry % columns);
+        (result.source != Source::Constant(0.0)).then_some(place)
     });
     let places: Vec<_> = rates.chain(entries).collect();
     let writer = Writer::of(compiled, routine);

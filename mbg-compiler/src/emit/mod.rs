@@ -11,6 +11,7 @@ mod columns;
 mod jacobians;
 mod meta;
 mod parameters;
+mod repeats;
 mod routine;
 mod shell;
 mod sparsity;

@@ -1,6 +1,7 @@
 //! Steps as `let` bindings.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::rc::Rc;
 
 use proc_macro2::{Delimiter, Ident, Literal, Span, TokenStream};
@@ -8,9 +9,10 @@ use quote::{ToTokens, format_ident, quote};
 use rustc_hash::FxHashMap;
 
 use super::parameters;
-use super::tokens::{Tokens, Words, block, numbered};
+use super::repeats::Left;
+use super::tokens::{Tokens, Words, block, element, numbered};
 use crate::compile::Compiled;
-use crate::program::{Columns, Operand, Routine, Solve, Solver, Source, Step, angles};
+use crate::program::{Columns, Operand, Repeat, Routine, Solve, Solver, Source, Step, angles};
 use crate::symbolic::{Kind, Symbol};
 
 /// Where a routine finds what it reads.
@@ -32,9 +34,10 @@ pub(super) fn lines(
 ) -> (TokenStream, Vec<TokenStream>) {
     let writer = Writer {
         setting,
+        left: Left::of(routine, &[]).into(),
         ..Writer::of(compiled, routine)
     };
-    let body = writer.lines(&routine.steps, 0, &Made::read(&routine.results));
+    let body = writer.parts(&parts(routine), 0, &Made::read(&routine.results));
     let results = routine
         .results
         .iter()
@@ -43,26 +46,54 @@ pub(super) fn lines(
     (body, results)
 }
 
-/// The bindings of a method, with each result written to its place, the left side of an assignment, as soon as it is known;
-/// what has no place is not written.
+/// Where a result goes.
+#[derive(Clone, Copy)]
+pub(super) enum Place {
+    /// A row of the derivative.
+    Derivative(usize),
+    /// A row and a column of a Jacobian.
+    Jacobian(usize, usize),
+}
+
+impl ToTokens for Place {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        let number = Literal::usize_suffixed;
+        tokens.extend(match *self {
+            Self::Derivative(row) => {
+                let row = number(row);
+                quote!(derivative[#row])
+            }
+            Self::Jacobian(row, column) => {
+                let (row, column) = (number(row), number(column));
+                quote!(jacobian[(#row, #column)])
+            }
+        });
+    }
+}
+
+/// The bindings of a method, with each result written to its place as soon as it is known; what has no place is not written.
 pub(super) fn written_lines(
     writer: &Writer,
     routine: &Routine,
-    places: &[Option<TokenStream>],
+    places: &[Option<Place>],
 ) -> TokenStream {
     let mut writer = writer.clone();
+    writer.left = Left::of(routine, places).into();
     for (value, place) in &*writer.kept {
         let (name, place) = (&writer.names[*value], Literal::usize_suffixed(*place));
         writer.written.insert(*value, quote!(kept[#place] = #name;));
     }
-    let (mut known, mut solved) = (TokenStream::new(), TokenStream::new());
+    let (mut known, mut late) = (TokenStream::new(), TokenStream::new());
     for (result, place) in routine.results.iter().zip(places) {
-        let Some(place) = place else { continue };
+        let Some(place) = place.filter(|_| !writer.left.writes(*result)) else {
+            continue;
+        };
         let value = writer.operand(*result);
         let line = quote!(#place = #value;);
         match result.source {
+            Source::Solved(_) => late.extend(line),
+            Source::Value(_) if writer.left.home_of(*result).is_some() => late.extend(line),
             Source::Value(value) => writer.written.entry(value).or_default().extend(line),
-            Source::Solved(_) => solved.extend(line),
             _ => known.extend(line),
         }
     }
@@ -71,11 +102,11 @@ pub(super) fn written_lines(
     // Values that columns read are kept, and those that are returned are written at once.
     let read = Made::read(&routine.read_behind()).into_iter();
     behind.extend(read.filter(|made| matches!(made, Made::Solved(_))));
-    let lines = writer.lines(&routine.steps, 0, &behind);
+    let lines = writer.parts(&parts(routine), 0, &behind);
     let kept = Literal::usize_suffixed(writer.kept.len());
     let kept = (!writer.kept.is_empty()).then(|| quote!(let mut kept = [T::from_f64(0.0); #kept];));
     let mut all = kept.unwrap_or_default();
-    all.extend([known, lines, solved]);
+    all.extend([known, lines, late]);
     all
 }
 
@@ -95,14 +126,32 @@ pub(super) fn column_lines(
         ..writer.clone()
     };
     let behind = Made::read(&columns.results);
-    let body = writer.parts(&parts(columns), columns.first, &behind);
+    let body = writer.parts(&by_stretches(columns), columns.first, &behind);
     let results = rows.iter().map(|row| writer.operand(columns.results[*row]));
     let results = results.map(|result| result.into_token_stream());
     (body, results.collect())
 }
 
+/// The steps of a routine: straight ones, and repeats.
+fn parts(routine: &Routine) -> Vec<Part<'_>> {
+    let mut parts = Vec::new();
+    let mut begin = 0;
+    for repeat in &routine.repeats {
+        let Range { start, end } = repeat.steps;
+        parts.extend(Part::straight(&routine.steps[begin..start], None));
+        parts.push(Part {
+            steps: &routine.steps[start..end],
+            changes: None,
+            repeat: Some(repeat),
+        });
+        begin = end;
+    }
+    parts.extend(Part::straight(&routine.steps[begin..], None));
+    parts
+}
+
 /// The steps of columns by stretches. What changes in all directions is never left out.
-fn parts(columns: &Columns) -> Vec<Part<'_>> {
+fn by_stretches(columns: &Columns) -> Vec<Part<'_>> {
     let mut rest = &columns.steps[..];
     let stretches = columns.stretches().into_iter();
     let parts = stretches.flat_map(|stretch| {
@@ -110,7 +159,7 @@ fn parts(columns: &Columns) -> Vec<Part<'_>> {
         rest = behind;
         let some = stretch.directions.len() < columns.directions.len();
         let changes = some.then(|| stretch.mask());
-        steps.chunks(PART).map(move |steps| Part { steps, changes })
+        Part::straight(steps, changes)
     });
     parts.collect()
 }
@@ -125,12 +174,14 @@ fn kept(routine: &Routine) -> BTreeMap<usize, usize> {
 /// A local name for each value: its variable's, where it has one that no other value has.
 fn names(routine: &Routine) -> Vec<Ident> {
     let mut taken = BTreeSet::new();
+    // A line of a loop is about no variable in particular.
+    let in_turn = |value: usize| routine.repeats.iter().any(|it| it.place(value).is_some());
     routine
         .names
         .iter()
         .enumerate()
         .map(|(value, name)| {
-            if name.is_empty() {
+            if name.is_empty() || in_turn(value) {
                 return numbered("v", value);
             }
             let word: String = name
@@ -159,7 +210,7 @@ const PART: usize = 256;
 
 /// What a step makes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-enum Made {
+pub(super) enum Made {
     Value(usize),
     Solved(usize),
     Factors(usize),
@@ -210,6 +261,18 @@ struct Part<'a> {
     steps: &'a [Step],
     /// The directions of which one must be worked out, else all of it is zero.
     changes: Option<u64>,
+    /// Whether they are written as a loop.
+    repeat: Option<&'a Repeat>,
+}
+
+impl<'a> Part<'a> {
+    fn straight(steps: &'a [Step], changes: Option<u64>) -> impl Iterator<Item = Self> {
+        steps.chunks(PART).map(move |steps| Self {
+            steps,
+            changes,
+            repeat: None,
+        })
+    }
 }
 
 /// The last part that reads what is made, some of which is read behind all parts.
@@ -260,12 +323,16 @@ fn bound(mut lines: Tokens, live: &[Ident], changes: Option<u64>) -> TokenStream
 pub(super) struct Writer<'a> {
     compiled: &'a Compiled,
     words: Rc<Words>,
-    names: Rc<[Ident]>,
+    pub(super) names: Rc<[Ident]>,
     setting: Setting,
     /// The place of each value that is kept for columns of a Jacobian.
     kept: Rc<BTreeMap<usize, usize>>,
     /// What is written as soon as a value is there.
     written: BTreeMap<usize, TokenStream>,
+    /// What loops leave behind.
+    pub(super) left: Rc<Left>,
+    /// In a loop, the values that have a name there.
+    named: Range<usize>,
     /// In columns of a Jacobian, the first value that is theirs, and the numbers of their solves.
     columns: Option<(usize, BTreeSet<usize>)>,
 }
@@ -280,15 +347,31 @@ impl<'a> Writer<'a> {
             setting: Setting::Method,
             kept: kept(routine).into(),
             written: BTreeMap::new(),
+            left: Rc::default(),
+            named: 0..0,
             columns: None,
+        }
+    }
+
+    /// For a turn of a loop: with other names, those of these values, and what is written there.
+    pub(super) fn in_turn(
+        &self,
+        names: Vec<Ident>,
+        named: Range<usize>,
+        written: BTreeMap<usize, TokenStream>,
+    ) -> Self {
+        Self {
+            names: names.into(),
+            named,
+            written,
+            ..self.clone()
         }
     }
 
     /// Steps whose values begin with number `value`, with what is read behind them.
     fn lines(&self, steps: &[Step], value: usize, behind: &[Made]) -> TokenStream {
-        let changes = None;
-        let parts = steps.chunks(PART).map(|steps| Part { steps, changes });
-        self.parts(&parts.collect::<Vec<_>>(), value, behind)
+        let parts: Vec<Part> = Part::straight(steps, None).collect();
+        self.parts(&parts, value, behind)
     }
 
     /// The same, of steps in parts.
@@ -296,26 +379,14 @@ impl<'a> Writer<'a> {
         let last_part = last_parts(parts, behind);
         let mut body = TokenStream::new();
         for (number, part) in parts.iter().enumerate() {
+            if let Some(repeat) = part.repeat {
+                body.extend(self.repeat(repeat, part.steps));
+                value += repeat.turns * repeat.values;
+                continue;
+            }
             let mut lines = Tokens::default();
             let mut made = Vec::new();
-            let mut rest = part.steps;
-            while let Some(step) = rest.first() {
-                let angles = angles(rest, value);
-                let taken = angles.len().max(1);
-                match angles.len() {
-                    0 | 1 => self.line(step, value, &mut lines),
-                    _ => lines.extend(self.sines_cosines(&angles, value)),
-                }
-                let (now, after) = rest.split_at(taken);
-                for step in now {
-                    Made::by(step, value, &mut made);
-                    for (_, written) in self.written.range(value..value + step.results()) {
-                        lines.extend(written.clone());
-                    }
-                    value += step.results();
-                }
-                rest = after;
-            }
+            value = self.straight(part.steps, value, &mut lines, &mut made);
             if parts.len() == 1 {
                 return lines.stream();
             }
@@ -325,6 +396,35 @@ impl<'a> Writer<'a> {
             body.extend(bound(lines, &live, part.changes));
         }
         body
+    }
+
+    /// Adds steps whose values begin with number `value`, and what they make; gives the number of the next value.
+    pub(super) fn straight(
+        &self,
+        steps: &[Step],
+        mut value: usize,
+        lines: &mut Tokens,
+        made: &mut Vec<Made>,
+    ) -> usize {
+        let mut rest = steps;
+        while let Some(step) = rest.first() {
+            let angles = angles(rest, value);
+            let taken = angles.len().max(1);
+            match angles.len() {
+                0 | 1 => self.line(step, value, lines),
+                _ => lines.extend(self.sines_cosines(&angles, value)),
+            }
+            let (now, after) = rest.split_at(taken);
+            for step in now {
+                Made::by(step, value, made);
+                for (_, written) in self.written.range(value..value + step.results()) {
+                    lines.extend(written.clone());
+                }
+                value += step.results();
+            }
+            rest = after;
+        }
+        value
     }
 
     /// The name of what a step makes.
@@ -492,7 +592,7 @@ impl<'a> Writer<'a> {
         quote!(let #name = T::#function(#(#arguments),*);)
     }
 
-    fn operand(&self, operand: Operand) -> Term<'_> {
+    pub(super) fn operand(&self, operand: Operand) -> Term<'_> {
         Term {
             writer: self,
             operand,
@@ -551,7 +651,10 @@ impl<'a> Writer<'a> {
             Source::Value(index) => match self.columns.as_ref().and_then(|_| self.kept.get(&index))
             {
                 Some(place) => element(tokens, &words.kept, *place),
-                None => tokens.name(&self.names[index]),
+                None => match self.left.home(index) {
+                    Some(home) if !self.named.contains(&index) => self.left.read(home, tokens),
+                    _ => tokens.name(&self.names[index]),
+                },
             },
             Source::Constant(value) => {
                 tokens.name(&words.scalar);
@@ -582,7 +685,7 @@ impl<'a> Writer<'a> {
 }
 
 /// An operand as it is read, inside of what is written as a whole.
-struct Term<'a> {
+pub(super) struct Term<'a> {
     writer: &'a Writer<'a>,
     operand: Operand,
 }
@@ -603,11 +706,4 @@ fn unknowns(number: usize) -> Ident {
 /// What holds the factors of the matrix that gives the unknowns.
 fn factors(number: usize) -> Ident {
     numbered("s", number)
-}
-
-fn element(tokens: &mut Tokens, array: &Ident, index: usize) {
-    tokens.name(array);
-    let mut place = Tokens::default();
-    place.literal(Literal::usize_suffixed(index));
-    tokens.group(Delimiter::Bracket, place);
 }

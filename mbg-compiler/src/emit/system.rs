@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::close::{self, close};
-use super::routine::{Setting, Writer, lines, written_lines};
+use super::routine::{Place, Setting, Writer, lines, written_lines};
 use super::tokens::block;
 use super::{Items, jacobians, meta, parameters, sparsity, tokens};
 use crate::compile::{Compiled, Routines};
@@ -328,8 +328,8 @@ fn vector(results: &[TokenStream]) -> TokenStream {
 /// The lines that write each entry of the derivative.
 fn derivative(compiled: &Compiled) -> TokenStream {
     let routine = &compiled.program.routines[Routines::DERIVATIVE];
-    let rows = (0..routine.results.len()).map(Literal::usize_suffixed);
-    let places: Vec<_> = rows.map(|row| Some(quote!(derivative[#row]))).collect();
+    let rows = 0..routine.results.len();
+    let places: Vec<_> = rows.map(|row| Some(Place::Derivative(row))).collect();
     written_lines(&Writer::of(compiled, routine), routine, &places)
 }
 

@@ -55,6 +55,14 @@ pub(super) fn numbered(word: &str, number: usize) -> Ident {
     Ident::new(&format!("{word}{number}_"), Span::mixed_site())
 }
 
+/// Adds an element of an array.
+pub(super) fn element(tokens: &mut Tokens, array: &Ident, index: usize) {
+    tokens.name(array);
+    let mut place = Tokens::default();
+    place.literal(Literal::usize_suffixed(index));
+    tokens.group(Delimiter::Bracket, place);
+}
+
 /// `{ tokens }`.
 pub(super) fn block(tokens: TokenStream) -> Group {
     Group::new(Delimiter::Brace, tokens)

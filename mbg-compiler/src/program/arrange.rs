@@ -47,6 +47,7 @@ pub(super) fn arrange(routine: &Routine) -> Routine {
         columns: columns
             .map(|it| it.with(&with_numbers, &renumbered))
             .collect(),
+        repeats: Vec::new(),
     }
 }
 
@@ -307,6 +308,7 @@ mod tests {
             names: ["a", "b", "c", "d"].map(str::to_owned).to_vec(),
             results: vec![value(0), value(1), value(3)],
             columns: Vec::new(),
+            repeats: Vec::new(),
         };
         let arranged = arrange(&routine);
         assert_eq!(arranged.names, ["c", "a", "b", "d"]);

@@ -43,6 +43,7 @@ pub(super) fn contract(routine: &Routine) -> Routine {
             .iter()
             .map(|it| rewrite.columns(it))
             .collect(),
+        repeats: Vec::new(),
     }
 }
 

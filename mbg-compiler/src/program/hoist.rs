@@ -28,6 +28,7 @@ pub(super) fn hoist(routine: &Routine) -> Routine {
         steps: hoist.steps,
         names: hoist.names,
         columns,
+        repeats: Vec::new(),
     }
 }
 
@@ -117,6 +118,7 @@ mod tests {
                 .to_vec(),
             results: vec![value(0)],
             columns: vec![columns(1, first, 3), columns(4, second, 5)],
+            repeats: Vec::new(),
         };
         let found = hoist(&routine);
         assert_eq!(found.names, ["sine", "b", "d", "a", "c", "e"]);

@@ -7,7 +7,7 @@
 //! rounding and the signs of zeros: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes
 //! negatives where they save an instruction, `hoist` takes out of columns of a Jacobian what is the same in all, `arrange` puts
 //! the steps in the order in which a processor begins them, and `stretches` those of columns in an order in which some can be
-//! left out.
+//! left out. Of a long routine `repeats` finds the loops; its steps stay in their order.
 
 mod arrange;
 mod contract;
@@ -21,6 +21,7 @@ mod latency;
 #[cfg(test)]
 mod property;
 mod reorder;
+mod repeats;
 mod schedule;
 mod signs;
 mod stretches;
@@ -33,6 +34,7 @@ use crate::symbolic::{Expression, Function, Kind, Place, Symbol};
 
 pub use dump::dump;
 pub use interpret::{Arguments, evaluate};
+pub use repeats::{Reading, Repeat};
 pub use schedule::build;
 pub use stretches::Stretch;
 
@@ -135,7 +137,7 @@ impl Step {
 
     /// The same step with other operands; that of a solve holds its steps as well.
     #[must_use]
-    fn with(&self, other: &dyn Fn(Operand) -> Operand) -> Self {
+    pub fn with(&self, other: &dyn Fn(Operand) -> Operand) -> Self {
         let all = |operands: &[Operand]| operands.iter().map(|it| other(*it)).collect();
         match self {
             Self::Add(a, b) => Self::Add(other(*a), other(*b)),
@@ -184,7 +186,7 @@ const ANGLES: usize = 4;
 pub fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
     let angle = |step: &Step| match step {
         Step::SineCosine(angle) => match angle.source {
-            Source::Value(earlier) if earlier >= value => None,
+            Source::Value(earlier) if (value..value + 2 * ANGLES).contains(&earlier) => None,
             _ => Some(*angle),
         },
         _ => None,
@@ -297,6 +299,8 @@ pub struct Routine {
     pub results: Vec<Operand>,
     /// Columns of a Jacobian that is returned besides; their values go on from those of the steps.
     pub columns: Vec<Columns>,
+    /// Steps that are written as loops, in order.
+    pub repeats: Vec<Repeat>,
 }
 
 impl Routine {

@@ -182,6 +182,7 @@ fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
         names: (0..count).map(name).collect(),
         results: last(first),
         columns,
+        repeats: Vec::new(),
     }
 }
 
@@ -221,6 +222,7 @@ fn assert_kept(steps: &[Step], last: &[usize]) {
         names: vec![String::new(); values],
         results: last.iter().copied().map(value).collect(),
         columns: Vec::new(),
+        repeats: Vec::new(),
     };
     assert_eq!(results(&reorder(&before)), results(&before));
 }

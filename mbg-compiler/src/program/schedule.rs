@@ -8,6 +8,7 @@ use super::arrange::arrange;
 use super::contract::contract;
 use super::hoist::hoist;
 use super::reorder::reorder;
+use super::repeats::repeats;
 use super::signs::signs;
 use super::stretches::by_stretches;
 use super::{Columns, Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step};
@@ -218,8 +219,13 @@ impl Context<'_> {
         if folding {
             return contract(&draft.routine);
         }
-        let hoisted = hoist(&signs(&contract(&reorder(&draft.routine))));
-        by_stretches(&arrange(&hoisted))
+        let mut hoisted = hoist(&signs(&contract(&reorder(&draft.routine))));
+        hoisted.repeats = repeats(&hoisted);
+        if hoisted.repeats.is_empty() {
+            by_stretches(&arrange(&hoisted))
+        } else {
+            hoisted
+        }
     }
 
     /// Whether each node changes along a direction; operands come before what uses them.

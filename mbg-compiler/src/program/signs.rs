@@ -188,6 +188,7 @@ impl<'a> Signs<'a> {
             names: routine.names.clone(),
             results: routine.results.iter().map(|it| self.operand(*it)).collect(),
             columns: columns.collect(),
+            repeats: Vec::new(),
         }
     }
 }
@@ -229,6 +230,7 @@ mod tests {
             names: vec![String::new(); values],
             results: results.to_vec(),
             columns: Vec::new(),
+            repeats: Vec::new(),
         }
     }
 

@@ -123,7 +123,13 @@ impl Solver<'_> {
             .iter()
             .any(|unknown| scalars.turns[*unknown].is_some())
         {
-            return self.by_levels(equations, unknowns);
+            // In the order of the model and not in that of the matching, so that like parts come out alike.
+            let sorted = |numbers: &[usize]| {
+                let mut sorted = numbers.to_vec();
+                sorted.sort_unstable();
+                sorted
+            };
+            return self.by_levels(&sorted(equations), &sorted(unknowns));
         }
         let (mut matrix, mut right) = (Vec::new(), Vec::new());
         let mut norms = Vec::new();

@@ -55,6 +55,7 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
         columns,
         results: numbers.operands(&routine.results),
         names: numbers.names,
+        repeats: Vec::new(),
     }
 }
 
@@ -365,6 +366,7 @@ mod tests {
             names: vec![String::new(); values],
             results: vec![value(values - 1)],
             columns: Vec::new(),
+            repeats: Vec::new(),
         };
         reorder(&routine).steps
     }
@@ -464,6 +466,7 @@ mod tests {
             names: vec![String::new(); 5],
             results: vec![value(1), value(4)],
             columns: Vec::new(),
+            repeats: Vec::new(),
         };
         assert_eq!(reorder(&routine).steps, steps);
     }
@@ -491,6 +494,7 @@ mod tests {
             names: vec![String::new(); 7],
             results: vec![value(0)],
             columns: vec![columns(1, &first), columns(3, &second)],
+            repeats: Vec::new(),
         };
         assert_eq!(reorder(&routine).columns[1].steps, second);
     }

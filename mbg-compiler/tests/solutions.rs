@@ -24,6 +24,9 @@ const ROUNDING: f64 = 1e-10;
 /// Normalised determinants that are smaller are nearly zero.
 const NEAR: f64 = 1e-3;
 
+/// A divisor that is no larger is zero but for rounding.
+const ZERO: f64 = 1e-8;
+
 /// What is between a frame and the one that carries it.
 const JOINTS: [&str; 9] = [
     "Revolute { axis: 0, damping: 0.1 }",
@@ -63,16 +66,39 @@ struct Part {
     load: &'static str,
 }
 
+/// The joint of the last frame where a cut ties it to the ground.
+const FLYING: &str = "Free { orientation: quaternion }";
+
 /// What joins the last frame to something besides: it always leaves a motion, so that no cut holds one twice.
-const LINES: [&str; 3] = [
+const LINES: [&str; 4] = [
     "",
     "line: LineForce { stiffness: 3.0, rest: 0.5, damping: 0.1, orientation_a: joint#.orientation_b,
         position_a: joint#.position_b + joint#.orientation_b * [0.1, 0.2, 0.3], position_b: [3.0, 2.0, 1.0] } (frame#, far);",
-    "1 stone[6]; float: Free { orientation: quaternion, initial_position: [0.5, 0.2, 0.1] } (ground, stone);
-        rock: Body { mass: 0.8, inertia: diag(0.1, 0.2, 0.25), gravity_at: float.gravity_b } (stone);
+    "1 stone[6]; float: Free { orientation: quaternion, initial_position: [0.5, 0.2, 0.1], tilt: @ } (ground, stone);
+        rock: Body { mass: 0.8, inertia: diag(0.1, 0.2, 0.25), gravity_at: float.gravity_b } (stone); %
         1 eye[6]; arm: Offset { by: [0.3, 0.1, 0.2] } (stone, eye);
         cut: Cut { orientation_a: joint#.orientation_b, position_a: joint#.position_b, orientation_b: float.orientation_b,
             position_b: float.position_b + float.orientation_b * [0.3, 0.1, 0.2] } (frame#, eye);",
+    TIED,
+];
+
+/// A cut between the last frame, which flies, and the ground.
+const TIED: &str = "cut: Cut { orientation_a: joint#.orientation_b, position_a: joint#.position_b } (frame#, ground);";
+
+/// What else is fixed to the stone.
+const MORE: [&str; 2] = [
+    "",
+    "more: Body { mass: 0.6, inertia: diag(0.1, 0.2, 0.25), centre: [0.3, 0.0, 0.2], gravity_at: float.gravity_b } (stone);",
+];
+
+/// How a frame is turned from the one that carries its joint.
+const TURNS: [&str; 6] = [
+    "1.0",
+    "1.0",
+    "rot_x(0.3)",
+    "rot_y(1.5707963267948966)",
+    "rot_z(-0.7)",
+    "rot_x(0.3) * rot_z(-0.7)",
 ];
 
 fn text(parts: &[Part], line: &str, gravity: bool) -> String {
@@ -121,13 +147,6 @@ fn part(number: usize) -> impl Strategy<Value = Part> {
     let round = || prop::sample::select(&[0.0, 0.0, 1.0, -1.0, 0.5][..]);
     let place = move || prop::array::uniform3(prop_oneof![round(), -1.0..1.0_f64]);
     let positive = || prop_oneof![prop::sample::select(&[1.0, 2.0, 0.5][..]), 0.5..2.0_f64];
-    let turns = [
-        "1.0",
-        "1.0",
-        "rot_x(0.3)",
-        "rot_y(1.5707963267948966)",
-        "rot_z(-0.7)",
-    ];
     // Chains are more frequent than stars.
     let parent = prop_oneof![3 => Just(number), 1 => 0..=number];
     let moments = prop_oneof![
@@ -136,7 +155,7 @@ fn part(number: usize) -> impl Strategy<Value = Part> {
     ];
     let body = (positive(), moments, prop_oneof![Just(0.0), -0.1..0.1_f64]);
     let joint = (prop::sample::select(&JOINTS[..]), place());
-    let turn = prop::sample::select(turns.to_vec());
+    let turn = prop::sample::select(&TURNS[..]);
     let load = prop::sample::select(&LOADS[..]);
     (parent, joint, turn, body, place(), load).prop_map(
         |(parent, (joint, offset), turn, (mass, moments, product), centre, load)| Part {
@@ -155,8 +174,15 @@ fn part(number: usize) -> impl Strategy<Value = Part> {
 
 fn mechanism() -> impl Strategy<Value = String> {
     let parts = (1..5_usize).prop_flat_map(|count| (0..count).map(part).collect::<Vec<_>>());
-    let line = prop::sample::select(&LINES[..]);
-    (parts, line, any::<bool>()).prop_map(|(parts, line, gravity)| text(&parts, line, gravity))
+    let select = |of: &'static [&'static str]| prop::sample::select(of);
+    let line = (select(&LINES), select(&TURNS), select(&MORE), any::<bool>());
+    (parts, line).prop_map(|(mut parts, (line, turn, more, gravity))| {
+        if let Some(last) = parts.last_mut().filter(|_| line == TIED) {
+            last.joint = FLYING;
+        }
+        let line = line.replace('@', turn).replace('%', more);
+        text(&parts, &line, gravity)
+    })
 }
 
 /// Numbers between -1 and 1, in the order in which they are asked for.
@@ -188,6 +214,25 @@ fn states(model: &Elaborated, pool: &Pool, parameters: &[f64], seed: u64) -> Vec
             }
         })
         .collect()
+}
+
+/// The divisor that is smallest at the start, where no joint of these is singular.
+fn smallest(model: &Elaborated, solved: &Solved, pool: &Pool) -> f64 {
+    let parameter = |symbol| match symbol {
+        Symbol::Parameter(number) => model.parameters[number].default,
+        _ => f64::NAN,
+    };
+    let mut initial = Evaluation::new(&parameter);
+    let states = model.states.iter();
+    let states: Vec<f64> = states.map(|it| initial.value(pool, it.initial)).collect();
+    let symbol = |symbol| match symbol {
+        Symbol::State(number) => states[number],
+        other => parameter(other),
+    };
+    let mut start = Evaluation::new(&symbol);
+    let divisors = solved.solution.conditioning.iter();
+    let sizes = divisors.map(|it| start.value(pool, it.normalised).abs());
+    sizes.fold(1.0, |least, it| if it >= least { least } else { it })
 }
 
 /// What is left of the equation that is fulfilled worst, beside its terms and the largest value; not a number where a value
@@ -276,6 +321,8 @@ proptest! {
     #[test]
     fn solutions_fulfil_their_equations(text in mechanism(), seed in 0..1000_u64) {
         let (model, solved, pool) = models::solved(&text).unwrap_or_else(|told| panic!("{told}\n{text}"));
+        let smallest = smallest(&model, &solved, &pool);
+        prop_assert!(smallest > ZERO, "{smallest} at the start\n{text}");
         let residual = residual(&model, &solved, &pool, seed);
         prop_assume!(residual.is_some());
         prop_assert!(residual.is_some_and(|it| it < ROUNDING), "{residual:?}\n{text}");

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::symbolic::linear::{Elimination, back_substitute};
-use crate::symbolic::{Expression, Matrix, Pool, Rate, Substitution};
+use crate::symbolic::{Expression, Matrix, Pool, Rate, RestSolver, Step, Substitution};
 
 /// A constant that is smaller than this beside others is no pivot: rounding errors may grow by the square of the ratio.
 const SMALL: f64 = 0.1;
@@ -17,7 +17,7 @@ pub(super) struct System {
     /// Rows and columns that are left.
     open_rows: BTreeSet<usize>,
     open_columns: BTreeSet<usize>,
-    eliminations: Vec<Elimination>,
+    steps: Vec<Step>,
 }
 
 /// Why a pivot was not taken: it is identically zero.
@@ -50,7 +50,7 @@ impl System {
             columns,
             open_rows: (0..size).collect(),
             open_columns: (0..size).collect(),
-            eliminations: Vec::new(),
+            steps: Vec::new(),
         }
     }
 
@@ -238,14 +238,42 @@ impl System {
             factors.push((other, factor));
         }
         let others = pivot_row.into_iter().filter(|(other, _)| *other != column);
-        self.eliminations.push(Elimination {
+        self.steps.push(Step::Pivot(Elimination {
             row,
             column,
             pivot,
             others: others.collect(),
             factors,
-        });
+        }));
         Ok(())
+    }
+
+    /// Eliminates as many columns as there are rows given by the inverse of their block. What these rows have in other columns
+    /// and at the right, `solver` has solved for.
+    pub(super) fn eliminate_together(
+        &mut self,
+        pool: &mut Pool,
+        (rows, columns): (&[usize], &[usize]),
+        solver: RestSolver,
+        others: &[(usize, Vec<Expression>)],
+        right: &[Expression],
+    ) -> Result<(), Vanished> {
+        for (place, row) in rows.iter().enumerate() {
+            for column in columns {
+                self.set(*row, *column, Expression::ZERO);
+            }
+            self.set(*row, columns[place], Expression::ONE);
+            for (other, solved) in others {
+                self.set(*row, *other, solved[place]);
+            }
+            self.set_right(*row, right[place]);
+        }
+        self.steps.push(Step::Inverse {
+            rows: rows.to_vec(),
+            solver,
+        });
+        let mut pairs = rows.iter().zip(columns);
+        pairs.try_for_each(|(row, column)| self.eliminate(pool, *row, *column))
     }
 
     /// What is left, as a dense system: columns, matrix, right side.
@@ -271,7 +299,7 @@ impl System {
         for (column, value) in columns.iter().zip(values) {
             solution[*column] = *value;
         }
-        back_substitute(pool, &self.eliminations, &self.right, &mut solution).ok_or(Vanished)?;
+        back_substitute(pool, &self.steps, &self.right, &mut solution).ok_or(Vanished)?;
         Ok(solution)
     }
 
@@ -281,7 +309,7 @@ impl System {
     }
 
     /// How unknowns were eliminated.
-    pub(super) fn into_eliminations(self) -> Vec<Elimination> {
-        self.eliminations
+    pub(super) fn into_steps(self) -> Vec<Step> {
+        self.steps
     }
 }

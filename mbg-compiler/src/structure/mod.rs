@@ -4,8 +4,8 @@
 //! The equations are brought into block triangular form (Dulmage and Mendelsohn 1958; Duff and Reid 1978), which is
 //! unique, and each irreducible block is solved by itself. **A block divides by constants and parameters, by inertias, and
 //! by its own determinant**, or is solved with numbers where it is too large for that, so that the program's singular set
-//! is that of the model. Closed loops may add pivots to it, which are told like determinants. Only slopes through an
-//! iteration on more than three unknowns divide by pivots that nothing is known of. Errors: `MBG04xx`.
+//! is that of the model. Closed loops may add that of what moves with the loops open, which is told likewise. Only slopes
+//! through an iteration on more than three unknowns divide by pivots that nothing is known of. Errors: `MBG04xx`.
 
 pub mod blocks;
 mod bodies;
@@ -21,6 +21,7 @@ mod linear;
 pub mod matching;
 mod mesh;
 mod moments;
+mod multipliers;
 mod nonlinear;
 mod outlook;
 mod reduction;

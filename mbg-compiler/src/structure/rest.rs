@@ -1,10 +1,8 @@
 //! What is left of linear equations, solved as a whole: by the adjugate where it is small, else with numbers.
 
-use std::collections::BTreeSet;
-
 use super::Failure;
 use super::eliminate::System;
-use super::solve::{Solver, places};
+use super::solve::Solver;
 use super::tree::Tree;
 use crate::symbolic::dense::{ADJUGATE, dense};
 use crate::symbolic::{
@@ -67,7 +65,7 @@ impl Solver<'_> {
             self.pool.solved(Linear {
                 matrix,
                 right,
-                eliminations: system.into_eliminations(),
+                steps: system.into_steps(),
                 rest,
                 values: values.clone(),
             });
@@ -105,20 +103,12 @@ impl Solver<'_> {
         let rows: Vec<usize> = system.open().iter().copied().collect();
         let (columns, matrix, right) = system.rest();
         if rows.len() > ADJUGATE {
-            if !matrix.is_regular(self.pool) {
-                return Err(Failure::Singular);
-            }
             *divisor = Divisor {
                 last: self.distance(&matrix).ok_or(Failure::Singular)?,
                 ..Divisor::ONE
             };
             let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-            let (kind, negated) = match matrix.signs_of_symmetry() {
-                Some(signs) => (Kind::Symmetric, signs.into_iter().map(|it| !it).collect()),
-                None => (Kind::Regular, vec![true; rows.len()]),
-            };
-            let equations = (matrix, right, kind);
-            return Ok(self.by_numbers((rows, columns), numbers, equations, negated));
+            return Ok(self.regular((rows, columns), numbers, (matrix, right)));
         }
         let values = if rows.is_empty() {
             Vec::new()
@@ -148,10 +138,13 @@ impl Solver<'_> {
         self.note(noted, norms);
     }
 
-    /// How far a matrix of numbers is from a singular one: the reciprocal of the largest component of a solution, with rows
-    /// and columns scaled to a largest entry of about one. A determinant would say less: rounding errors of one by ten
-    /// rows are larger than many a regular one.
-    fn distance(&mut self, matrix: &Matrix) -> Option<Expression> {
+    /// How far a matrix of numbers is from a singular one, unless it always is one: the reciprocal of the largest component of
+    /// a solution, with rows and columns scaled to a largest entry of about one. A determinant would say less: rounding errors
+    /// of one by ten rows are larger than many a regular one.
+    pub(super) fn distance(&mut self, matrix: &Matrix) -> Option<Expression> {
+        if !matrix.is_regular(self.pool) {
+            return None;
+        }
         let size = matrix.rows;
         let mut columns = vec![Expression::ZERO; size];
         let mut right = Vec::with_capacity(size);
@@ -206,60 +199,22 @@ impl Solver<'_> {
         largest
     }
 
-    /// What is left where loops are closed: `G M⁻¹ Gᵀ λ = b`, whose matrix may be singular at any state.
-    pub(super) fn multipliers(
+    /// Leaves equations with a regular matrix to be solved with numbers: what is left, and its values.
+    pub(super) fn regular(
         &mut self,
-        system: &mut System,
-        equations: &[usize],
-        unknowns: &[usize],
-    ) -> Result<(Rest, Vec<Expression>), Failure> {
-        let place = places(unknowns);
-        let multipliers: Vec<(usize, usize)> = self
-            .scalars
-            .closures
-            .iter()
-            .flat_map(|closure| &closure.multipliers)
-            .filter_map(|unknown| {
-                let constrains = |equation: &usize| {
-                    self.scalars.equations[*equation].about == [*unknown; 2]
-                        && self.scalars.equations[*equation].level.is_none()
-                };
-                Some((equations.iter().position(constrains)?, *place.get(unknown)?))
-            })
-            .collect();
-        let rows: BTreeSet<usize> = multipliers.iter().map(|(row, _)| *row).collect();
-        let columns: BTreeSet<usize> = multipliers.iter().map(|(_, column)| *column).collect();
-        let outside = |_, column| !columns.contains(&column);
-        let pivot = |pool: &Pool, system: &System| {
-            let others = system.open().difference(&rows).copied();
-            system.pivot(pool, others, Rate::Varying, &outside)
+        places: (Vec<usize>, Vec<usize>),
+        unknowns: Vec<usize>,
+        (matrix, right): (Matrix, Vec<Expression>),
+    ) -> (Rest, Vec<Expression>) {
+        let (kind, negated) = match matrix.signs_of_symmetry() {
+            Some(signs) => (Kind::Symmetric, signs.into_iter().map(|it| !it).collect()),
+            None => (Kind::Regular, vec![true; matrix.rows]),
         };
-        while let Some((row, column)) = pivot(self.pool, system) {
-            self.note(system.entry(row, column), &[]);
-            system.eliminate(self.pool, row, column)?;
-        }
-        let mut entries = Vec::with_capacity(multipliers.len() * multipliers.len());
-        for (row, _) in &multipliers {
-            entries.extend(
-                multipliers
-                    .iter()
-                    .map(|(_, column)| system.entry(*row, *column)),
-            );
-        }
-        let matrix = Matrix::new(multipliers.len(), multipliers.len(), entries);
-        let right = multipliers
-            .iter()
-            .map(|(row, _)| system.right(*row))
-            .collect();
-        let (rows, columns): (Vec<usize>, Vec<usize>) = multipliers.into_iter().unzip();
-        let numbers = columns.iter().map(|column| unknowns[*column]).collect();
-        let negated = vec![true; rows.len()];
-        let equations = (matrix, right, Kind::Semidefinite);
-        Ok(self.by_numbers((rows, columns), numbers, equations, negated))
+        self.by_numbers(places, unknowns, (matrix, right, kind), negated)
     }
 
     /// Leaves equations, of which some get both sides negated, to be solved with numbers: what is left, and its values.
-    fn by_numbers(
+    pub(super) fn by_numbers(
         &mut self,
         (rows, columns): (Vec<usize>, Vec<usize>),
         unknowns: Vec<usize>,

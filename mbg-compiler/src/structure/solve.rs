@@ -243,7 +243,7 @@ impl Solver<'_> {
         self.pool.solved(Linear {
             matrix,
             right,
-            eliminations: system.into_eliminations(),
+            steps: system.into_steps(),
             rest,
             values: values.clone(),
         });

@@ -37,7 +37,7 @@ impl<'a> Evaluation<'a> {
             let operation = pool.operation(current);
             let linear = linear(pool, operation);
             let before = pending.len();
-            let equations = linear.map(|place| pool.implicit()[place.number].evaluated());
+            let equations = linear.map(|place| numbers(pool, place.number));
             let equations = equations.iter().flatten();
             for part in operation.operands().iter().chain(equations) {
                 if self.known[part.node()].is_none() {
@@ -69,9 +69,10 @@ impl<'a> Evaluation<'a> {
         if let Some(solved) = self.solved.get(&place.number) {
             return solved[place.row];
         }
-        let implicit = &pool.implicit()[place.number];
-        let numbers: Vec<f64> = implicit.evaluated().iter().map(|it| self.of(*it)).collect();
-        let (right, matrix) = numbers.split_at(implicit.unknowns.len());
+        let size = pool.implicit()[place.number].unknowns.len();
+        let numbers = numbers(pool, place.number);
+        let numbers: Vec<f64> = numbers.iter().map(|it| self.of(*it)).collect();
+        let (right, matrix) = numbers.split_at(size);
         let solved = regular(right, matrix);
         let value = solved[place.row];
         self.solved.insert(place.number, solved);
@@ -128,13 +129,25 @@ pub(crate) fn regular(right: &[f64], matrix: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// The right side of linear equations and the matrix by rows, which may be that of earlier ones.
+fn numbers(pool: &Pool, number: usize) -> Vec<Expression> {
+    let implicit = &pool.implicit()[number];
+    let mut numbers = implicit.evaluated();
+    if let Some(earlier) = implicit.earlier() {
+        let earlier = pool.implicit()[earlier].evaluated();
+        numbers.extend_from_slice(&earlier[implicit.unknowns.len()..]);
+    }
+    numbers
+}
+
 /// Where an operation is an unknown of regular linear equations.
 fn linear(pool: &Pool, operation: &Operation) -> Option<Place> {
     let Operation::Symbol(symbol) = operation else {
         return None;
     };
     let regular = |place: &Place| {
-        let method = &pool.implicit()[place.number].method;
+        let number = pool.implicit()[place.number].earlier();
+        let method = &pool.implicit()[number.unwrap_or(place.number)].method;
         matches!(
             method,
             Method::Linear {

@@ -12,6 +12,21 @@ use super::implicit::{Implicit, Method};
 use super::matrix::Matrix;
 use super::pool::Pool;
 
+/// What was done to equations.
+#[derive(Clone, Debug)]
+pub enum Step {
+    /// One unknown was taken out of all other equations.
+    Pivot(Elimination),
+    /// Equations were multiplied by the inverse of their matrix for as many unknowns, each of which then is in one of them
+    /// alone.
+    Inverse {
+        /// The equations, by place in the rows of the matrix.
+        rows: Vec<usize>,
+        /// How they were solved.
+        solver: RestSolver,
+    },
+}
+
 /// One unknown, taken out of all other equations.
 #[derive(Clone, Debug)]
 pub struct Elimination {
@@ -60,7 +75,7 @@ pub struct Linear {
     /// The right side.
     pub right: Vec<Expression>,
     /// In order.
-    pub eliminations: Vec<Elimination>,
+    pub steps: Vec<Step>,
     /// What is solved as a whole.
     pub rest: Rest,
     /// The solution.
@@ -70,11 +85,15 @@ pub struct Linear {
 /// All unknowns, given those that were left in `solution`.
 pub fn back_substitute(
     pool: &mut Pool,
-    eliminations: &[Elimination],
+    steps: &[Step],
     right: &[Expression],
     solution: &mut [Expression],
 ) -> Option<()> {
-    for step in eliminations.iter().rev() {
+    let pivots = steps.iter().rev().filter_map(|step| match step {
+        Step::Pivot(elimination) => Some(elimination),
+        Step::Inverse { .. } => None,
+    });
+    for step in pivots {
         let mut rest = right[step.row];
         for (other, coefficient) in &step.others {
             if solution[*other] == Expression::ZERO {
@@ -91,32 +110,48 @@ pub fn back_substitute(
 impl Linear {
     /// The solution with another right side; none if that divides by zero.
     pub fn solve(&self, pool: &mut Pool, mut right: Vec<Expression>) -> Option<Vec<Expression>> {
-        for step in &self.eliminations {
-            if right[step.row] == Expression::ZERO {
-                continue;
-            }
-            for (other, factor) in &step.factors {
-                let product = pool.multiply(*factor, right[step.row]);
-                right[*other] = pool.subtract(right[*other], product);
-            }
+        for step in &self.steps {
+            step.apply(pool, &mut right)?;
         }
-        let left: Vec<Expression> = self.rest.rows.iter().map(|row| right[*row]).collect();
-        let values = if left.iter().all(|left| *left == Expression::ZERO) {
-            left
-        } else {
-            self.rest.solver.solve(pool, left)?
-        };
+        let left = self.rest.rows.iter().map(|row| right[*row]).collect();
+        let values = self.rest.solver.solve(pool, left)?;
         let mut solution = vec![Expression::ZERO; right.len()];
         for (column, value) in self.rest.columns.iter().zip(values) {
             solution[*column] = value;
         }
-        back_substitute(pool, &self.eliminations, &right, &mut solution)?;
+        back_substitute(pool, &self.steps, &right, &mut solution)?;
         Some(solution)
     }
 }
 
+impl Step {
+    /// Does to a right side what was done to the equations.
+    fn apply(&self, pool: &mut Pool, right: &mut [Expression]) -> Option<()> {
+        match self {
+            Self::Pivot(step) if right[step.row] != Expression::ZERO => {
+                for (other, factor) in &step.factors {
+                    let product = pool.multiply(*factor, right[step.row]);
+                    right[*other] = pool.subtract(right[*other], product);
+                }
+            }
+            Self::Pivot(_) => {}
+            Self::Inverse { rows, solver } => {
+                let own = rows.iter().map(|row| right[*row]).collect();
+                for (row, value) in rows.iter().zip(solver.solve(pool, own)?) {
+                    right[*row] = value;
+                }
+            }
+        }
+        Some(())
+    }
+}
+
 impl RestSolver {
-    fn solve(&self, pool: &mut Pool, right: Vec<Expression>) -> Option<Vec<Expression>> {
+    /// The solution with another right side; none if that divides by zero.
+    pub fn solve(&self, pool: &mut Pool, right: Vec<Expression>) -> Option<Vec<Expression>> {
+        if right.iter().all(|right| *right == Expression::ZERO) {
+            return Some(right);
+        }
         match self {
             Self::Dense(matrix) => dense(pool, matrix, &right, &mut Expression::ONE.clone()),
             Self::Numbers { of, negated } => {

@@ -42,7 +42,7 @@ pub use differentiate::{Differentiator, jacobian};
 pub use evaluate::Evaluation;
 pub use expression::{Expression, Function, Operation, Rate, Symbol};
 pub use implicit::{Implicit, Kind, Method, Place};
-pub use linear::{Elimination, Linear, Rest, RestSolver};
+pub use linear::{Elimination, Linear, Rest, RestSolver, Step};
 pub use matrix::{Factor, Matrix, Product};
 pub use pool::Pool;
 pub use products::products;

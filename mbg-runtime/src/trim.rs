@@ -319,7 +319,8 @@ where
     /// How the conditions change beside a point, and by how much they fail there.
     #[inline(never)]
     fn rows(&self, point: &Trimmed<N, M>) -> Result<Rows<N, M, P>, Untrimmed> {
-        let linear = Linearised::of(self.system, self.time, &point.state, &point.input)
+        // A slope that is not finite matters where it belongs to what is wanted.
+        let linear = Linearised::unchecked(self.system, self.time, &point.state, &point.input)
             .map_err(Untrimmed::Trouble)?;
         let (rates, outputs) = self.left(point);
         let wanted = |wanted: Option<f64>, row| match wanted {

@@ -527,7 +527,7 @@ mod tests {
         assert!(
             matches!(
                 stopped.cause,
-                Cause::StepTooSmall | Cause::NotFinite { state: "growth" }
+                Cause::StepTooSmall | Cause::Trouble(Trouble::NotFinite { state: "growth" })
             ),
             "{stopped}"
         );
@@ -567,7 +567,10 @@ mod tests {
         let stopped = STRICT
             .integrate(&Oscillator, &(), 0.0, 2.0, start, |_| ())
             .unwrap_err();
-        assert_eq!(stopped.cause, Cause::NotFinite { state: "velocity" });
+        assert_eq!(
+            stopped.cause,
+            Cause::Trouble(Trouble::NotFinite { state: "velocity" })
+        );
         for times in [&[1.0, 0.5][..], &[-1.0], &[f64::NAN]] {
             let stopped = STRICT.sample(
                 &Oscillator,

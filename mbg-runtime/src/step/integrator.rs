@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use super::dense::Step;
 use super::event::Direction;
 use super::problem::Problem;
-use super::{Cause, Statistics, Stopped, check_finite, check_times, less, piece_end, seen};
+use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
 
 /// Where and when a run until an event has ended.
@@ -363,8 +363,8 @@ where
 {
     check_times(t0, t1)?;
     integrator.check_settings(t0, t1)?;
-    check_finite(system, t0, &x0)?;
     let problem = Problem::new(system, input, (t0, t1));
+    check_result(system, t0, &x0, &problem.memory)?;
     let x = problem.close(t0, x0)?;
     Ok((problem, x))
 }

@@ -138,7 +138,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let tolerances = self.tolerances();
         let tolerance = Tolerance::new(tolerances.0, tolerances.1, self.nominal);
@@ -242,7 +242,7 @@ impl<M: Estimating> Adaptive<'_, M> {
     where
         T: Real,
         S: System<T, N, K, P>,
-        I: Input<T, K>,
+        I: Input<T, K> + ?Sized,
     {
         let first = match self.first {
             Some(first) => first,
@@ -262,7 +262,7 @@ impl<M: Estimating> Adaptive<'_, M> {
     where
         T: Real,
         S: System<T, N, K, P>,
-        I: Input<T, K>,
+        I: Input<T, K> + ?Sized,
     {
         let longest = seen(end - start).min(self.longest);
         // The rule compares derivatives of different order: its unit of time is the second, or for short runs a hundred of them.

@@ -162,7 +162,7 @@ impl Auto<'_> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let end = piece_end(system, input, t0, t1)?;
@@ -180,7 +180,7 @@ impl Auto<'_> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         problem.jacobian(start, x, &mut jacobian);
@@ -250,7 +250,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let picked = self.pick(problem, ends, &x).method;
         let (system, input, since) = (problem.system, problem.input, problem.since);

@@ -101,7 +101,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let Division { count, step, last } = divide(start, end, T::from_f64(self.step));
         let mut work = Scheme::Work::<T, N>::new(&self.method);
@@ -277,7 +277,7 @@ impl Rk4 {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let fixed = Fixed::new(Self, seen(h));
         let (mut problem, x) = begin(&fixed, system, input, (t0, t1), x0)?;

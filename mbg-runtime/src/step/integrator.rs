@@ -55,7 +55,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>;
+        I: Input<T, M> + ?Sized;
 
     /// Runs from `t0` to `t1` until the observer breaks off.
     #[doc(hidden)]
@@ -70,7 +70,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut since = t0;
         while less(since, t1) {
@@ -103,7 +103,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         self.run(&mut problem, (t0, t1), x, &mut |step| {
@@ -133,7 +133,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         sample(self, system, input, (t0, times), x0, |t, x, _memory| {
             observer(t, x);
@@ -185,7 +185,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         sample(self, system, input, (t0, times), x0, |t, x, mut memory| {
             let y = system.output(t, x, &input.at(t), &mut memory);
@@ -240,7 +240,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let (mut time, mut state, mut found) = (t1, x, false);
@@ -311,7 +311,7 @@ where
     D: Integrator<N> + ?Sized,
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     let mut last = t0;
     for &time in times {
@@ -359,7 +359,7 @@ where
     D: Integrator<N> + ?Sized,
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     check_times(t0, t1)?;
     integrator.check_settings(t0, t1)?;

@@ -152,7 +152,7 @@ pub(crate) fn less<T: Real>(a: T, b: T) -> bool {
 /// Where the piece that begins at `from` ends, at most `end`: at a jump of the input or a change of the laws.
 fn piece_end<T: Real, S, const N: usize, const M: usize, const P: usize>(
     system: &S,
-    input: &impl Input<T, M>,
+    input: &(impl Input<T, M> + ?Sized),
     from: T,
     end: T,
 ) -> Result<T, Stopped>

@@ -12,6 +12,7 @@ pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
 where
     T: Real,
     S: System<T, N, M, P>,
+    I: ?Sized,
 {
     pub(super) system: &'a S,
     pub(super) input: &'a I,
@@ -34,7 +35,7 @@ impl<'a, T, S, I, const N: usize, const M: usize, const P: usize> Problem<'a, T,
 where
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     pub(super) fn new(system: &'a S, input: &'a I, (start, end): (T, T)) -> Self {
         Self {

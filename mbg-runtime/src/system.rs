@@ -302,6 +302,7 @@ pub struct Power<T> {
 
 /// Why an evaluation must not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Trouble {
     /// A state, or its derivative, is infinite or NaN.
     NotFinite {
@@ -459,6 +460,7 @@ impl core::error::Error for Trouble {}
 
 /// A parameter that breaks an assumption of the chosen causality.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterError {
     /// The parameter, or the expression of parameters.
     pub name: &'static str,

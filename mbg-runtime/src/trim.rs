@@ -86,6 +86,7 @@ pub struct Trimmed<const N: usize, const M: usize> {
 
 /// Why there is no operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Untrimmed {
     /// A name that is none of the model's.
     Unknown {

@@ -67,6 +67,7 @@ pub struct Auto<'a> {
 
 /// A method and why it was picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Choice {
     /// The method.
     pub method: Picked,
@@ -80,6 +81,7 @@ pub struct Choice {
 
 /// A method that [`Auto`] picks from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 #[allow(missing_docs, reason = "named after the methods")]
 pub enum Picked {
     Tsit5,
@@ -91,6 +93,7 @@ pub enum Picked {
 
 /// Why [`Auto`] picked a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reason {
     /// Stiff, to a tight tolerance.
     StiffTight,

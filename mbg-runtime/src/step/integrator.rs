@@ -12,6 +12,7 @@ use crate::{Input, Real, System};
 
 /// Where and when a run until an event has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Arrival<T, const N: usize> {
     /// The time of the event, or the end.
     pub time: T,

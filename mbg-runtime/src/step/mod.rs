@@ -69,6 +69,7 @@ pub struct Statistics {
 ///
 /// Whatever the observer has been given before is valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Stopped {
     /// When.
     pub time: f64,

@@ -123,14 +123,14 @@ fn half_turns(angle: f64) -> i32 {
     whole.saturating_sub(i32::from(f64::from(whole) > turns))
 }
 
-/// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.
+/// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is fixed stays as it is.
 #[inline]
 pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
     mut x: SVector<T, N>,
     places: &[[usize; C]; R],
-    held: &[usize],
+    fixed: &[usize],
 ) -> SVector<T, N> {
-    if places.iter().flatten().any(|place| held.contains(place)) {
+    if places.iter().flatten().any(|place| fixed.contains(place)) {
         return x;
     }
     let state = |place: usize| x.get(place).copied().unwrap_or(T::from_f64(f64::NAN));
@@ -195,7 +195,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     meta: &Meta,
     closures: &[usize; M],
     x: SVector<T, N>,
-    held: &[usize],
+    fixed: &[usize],
     (level, rank): (Level, T),
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Result<SVector<T, N>, Trouble> {
@@ -211,7 +211,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     let tolerance = CLOSED * rounding;
     let found = project_of_rank(x, tolerance, rank, |x| {
         let (residuals, mut jacobian) = evaluate(x);
-        for state in held.iter().filter(|state| **state < N) {
+        for state in fixed.iter().filter(|state| **state < N) {
             jacobian.column_mut(*state).fill(T::from_f64(0.0));
         }
         (residuals, jacobian)

@@ -247,9 +247,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// every attitude is a rotation: quaternions have length one, rotation matrices orthonormal rows.
     ///
     /// The correction of a loop is that of least norm in the states, by Gauss and Newton; that of an attitude is
-    /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `held` stay as they are, so that consistent
-    /// initial values are found from a part of them, and so does an attitude of which one is held. Steppers ask at the
-    /// start and after each step, with nothing held. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
+    /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `fixed` stay as they are, so that consistent
+    /// initial values are found from a part of them, and so does an attitude of which one is fixed. Steppers ask at the
+    /// start and after each step, with nothing fixed. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
     /// for which that is largest; a displacement counts as one at least, an angle being zero somewhere.
     ///
     /// # Errors
@@ -260,7 +260,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         _t: T,
         x: SVector<T, N>,
         _u: &SVector<T, M>,
-        _held: &[usize],
+        _fixed: &[usize],
     ) -> Result<SVector<T, N>, Trouble> {
         Ok(x)
     }

@@ -238,8 +238,8 @@ where
         t: T,
         x: SVector<T, N>,
         u: &SVector<T, M>,
-        held: &[usize],
+        fixed: &[usize],
     ) -> Result<SVector<T, N>, Trouble> {
-        self.0.close(t, x, u, held)
+        self.0.close(t, x, u, fixed)
     }
 }

@@ -16,7 +16,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let start = Trim::new(&container)
         .rate("rail.travel", 2.0)
         .rate("free.position.x", 2.0)
-        .hold("rail.travel")
+        .fix("rail.travel")
         .solve()?
         .state;
     let found = run(&container, &(), start, 16.0, 3200)?;

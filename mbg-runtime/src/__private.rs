@@ -21,14 +21,16 @@ pub use crate::{
 pub enum Condition {
     /// Neither infinite nor NaN.
     Finite,
-    /// Finite and not zero, where the value is divided by.
+    /// Finite and not zero, where the value is divided by; so is the reciprocal.
     NonZero,
-    /// Finite and larger than zero.
+    /// Finite and larger than zero; so is the reciprocal.
     Positive,
 }
 
 /// Why a value is refused that is infinite or NaN, whatever else is asked of it.
 const FINITE: &str = "it must be a finite number";
+/// Why one is refused that is so small that what is divided by it is infinite.
+const RECIPROCAL: &str = "its reciprocal must be a finite number";
 
 /// Checks a parameter, or an expression of parameters, in every lane.
 pub fn check<T: Real>(
@@ -37,16 +39,23 @@ pub fn check<T: Real>(
     condition: Condition,
     reason: &'static str,
 ) -> Result<(), ParameterError> {
-    let fails = |lane: f64| match condition {
-        Condition::Finite => !lane.is_finite(),
-        Condition::NonZero => !lane.is_finite() || lane == 0.0,
-        Condition::Positive => !lane.is_finite() || lane <= 0.0,
+    // In the precision of the scalar.
+    let has_reciprocal = |lane: f64| {
+        let reciprocal = T::from_f64(1.0) / T::from_f64(lane);
+        reciprocal.magnitude().is_finite()
     };
-    match value.find(fails) {
+    let broken = |lane: f64| match condition {
+        _ if !lane.is_finite() => Some(FINITE),
+        Condition::NonZero if lane == 0.0 => Some(reason),
+        Condition::Positive if lane <= 0.0 => Some(reason),
+        Condition::NonZero | Condition::Positive if !has_reciprocal(lane) => Some(RECIPROCAL),
+        _ => None,
+    };
+    match value.find(|lane| broken(lane).is_some()) {
         Some(value) => Err(ParameterError {
             name,
             value,
-            reason: if value.is_finite() { reason } else { FINITE },
+            reason: broken(value).unwrap_or(reason),
         }),
         None => Ok(()),
     }
@@ -114,14 +123,14 @@ fn half_turns(angle: f64) -> i32 {
     whole.saturating_sub(i32::from(f64::from(whole) > turns))
 }
 
-/// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is held stays as it is.
+/// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is fixed stays as it is.
 #[inline]
 pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(
     mut x: SVector<T, N>,
     places: &[[usize; C]; R],
-    held: &[usize],
+    fixed: &[usize],
 ) -> SVector<T, N> {
-    if places.iter().flatten().any(|place| held.contains(place)) {
+    if places.iter().flatten().any(|place| fixed.contains(place)) {
         return x;
     }
     let state = |place: usize| x.get(place).copied().unwrap_or(T::from_f64(f64::NAN));
@@ -186,7 +195,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     meta: &Meta,
     closures: &[usize; M],
     x: SVector<T, N>,
-    held: &[usize],
+    fixed: &[usize],
     (level, rank): (Level, T),
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Result<SVector<T, N>, Trouble> {
@@ -202,7 +211,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     let tolerance = CLOSED * rounding;
     let found = project_of_rank(x, tolerance, rank, |x| {
         let (residuals, mut jacobian) = evaluate(x);
-        for state in held.iter().filter(|state| **state < N) {
+        for state in fixed.iter().filter(|state| **state < N) {
             jacobian.column_mut(*state).fill(T::from_f64(0.0));
         }
         (residuals, jacobian)
@@ -376,6 +385,16 @@ mod tests {
         assert_eq!(passes(1.0), [true, true, true]);
         assert_eq!(passes(-1.0), [true, true, false]);
         assert_eq!(passes(0.0), [true, false, false]);
+        assert_eq!(passes(1e-308), [true, true, true]);
+        assert_eq!(passes(1e-309), [true, false, false]);
+        assert_eq!(passes(-1e-309), [true, false, false]);
+        let tiny = check(
+            "mass",
+            1e-39_f32,
+            Condition::Positive,
+            "it must be positive",
+        );
+        assert_eq!(tiny.unwrap_err().reason, RECIPROCAL);
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert_eq!(passes(value), [false, false, false]);
             let error = check("1/arm", value, Condition::NonZero, "it must not be zero");

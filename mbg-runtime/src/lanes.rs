@@ -21,6 +21,8 @@
 //! ```
 
 use nalgebra::SVector;
+// Links in their documentation lead to places of their own crate.
+#[doc(no_inline)]
 pub use wide::{f32x8, f32x16, f64x4, f64x8};
 
 use crate::exponential::{self, Exponent};

@@ -14,11 +14,12 @@
 //! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
 //!
-//! A crate with models depends on this one, and on `nalgebra`, whose vectors and matrices models take and give:
+//! A crate with models depends on this one, by its path until it is published, and on `nalgebra`, whose vectors and matrices models
+//! take and give:
 //!
 //! ```toml
 //! [dependencies]
-//! mbg-runtime = "0.1"
+//! mbg-runtime = { path = "../mbg/mbg-runtime" }
 //! nalgebra = "0.35"
 //! ```
 //!

@@ -69,13 +69,31 @@ pub struct Linearised<T, const N: usize, const M: usize, const P: usize> {
 }
 
 impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M, P> {
-    /// Next to a state, exact but for rounding: the model's own Jacobians, and its outputs on [`Dual`] numbers. Where a law
-    /// has no finite slope, as a square root at zero, entries are infinite or NaN.
+    /// Next to a state, exact but for rounding: the model's own Jacobians, and its outputs on [`Dual`] numbers.
     ///
     /// # Errors
     ///
-    /// What [`System::trouble`] says of this state.
+    /// What [`System::trouble`] says of this state, and an entry that is infinite or NaN, where a law has no finite slope.
     pub fn of<S>(system: &S, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Result<Self, Trouble>
+    where
+        S: Convertible<T, N, M, P>,
+    {
+        let linear = Self::unchecked(system, t, x, u)?;
+        let (states, inputs, outputs) = (S::META.states, S::META.inputs, S::META.outputs);
+        let trouble = Trouble::of_jacobian(&linear.state, [states, states])
+            .or_else(|| Trouble::of_jacobian(&linear.input, [states, inputs]))
+            .or_else(|| Trouble::of_jacobian(&linear.output, [outputs, states]))
+            .or_else(|| Trouble::of_jacobian(&linear.feedthrough, [outputs, inputs]));
+        trouble.map_or(Ok(linear), Err)
+    }
+
+    /// The same, whose entries may be infinite or NaN.
+    pub(crate) fn unchecked<S>(
+        system: &S,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+    ) -> Result<Self, Trouble>
     where
         S: Convertible<T, N, M, P>,
     {
@@ -127,8 +145,9 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         response.iter().all(is_finite).then_some(response)
     }
 
-    /// The model from sample to sample, where inputs are held for a `period` in s: `Φ = exp(A h)` and `Γ = ∫ exp(A τ) dτ B` of
-    /// `x(t + h) = Φ x(t) + Γ u`, as discrete controllers and filters are designed with. None where they are not finite.
+    /// The model from sample to sample, where inputs are held for a `period` in s (zero-order hold): `Φ = exp(A h)` and
+    /// `Γ = ∫ exp(A τ) dτ B` of `x(t + h) = Φ x(t) + Γ u`, as discrete controllers and filters are designed with. None where they
+    /// are not finite.
     ///
     /// Both are summed for a part of the period that is short enough, whose double is taken as often as needed (scaling and
     /// squaring; Moler and Van Loan, *SIAM Review* 45 (2003), 3–49, method 3), of `Φ − I`, so that slow motions beside fast

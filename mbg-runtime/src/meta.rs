@@ -164,6 +164,7 @@ pub enum LoopClass {
 
 /// How an algebraic loop is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Solver {
     /// Directly.
     Linear,

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::input::quotient;
 use crate::step::Element;
-use crate::{Columns, Loop, Memory, Meta, Real, Solver, Sparsity};
+use crate::{Columns, Loop, Memory, Meta, Real, Solver, Sparsity, Variable};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -213,7 +213,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// Why the last evaluation at this state must not be trusted, if there is a reason.
     ///
-    /// A block is too near its singular set when its normalised determinant is below the square root of the
+    /// A state must be finite. Its derivative is not evaluated: where that is not finite, the state behind the next step is not
+    /// either. A block is too near its singular set when its normalised determinant is below the square root of the
     /// scalar's precision. A nonlinear algebraic loop is in trouble when its last solve did not converge. Steppers ask
     /// once a step.
     #[must_use]
@@ -225,6 +226,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &Self::Memory,
     ) -> Option<Trouble> {
         if let Some(trouble) = Self::unsolved(memory) {
+            return Some(trouble);
+        }
+        if let Some(trouble) = Trouble::of_state(Self::META, x) {
             return Some(trouble);
         }
         let conditioning = self.conditioning(t, x, u);
@@ -243,9 +247,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// every attitude is a rotation: quaternions have length one, rotation matrices orthonormal rows.
     ///
     /// The correction of a loop is that of least norm in the states, by Gauss and Newton; that of an attitude is
-    /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `held` stay as they are, so that consistent
-    /// initial values are found from a part of them, and so does an attitude of which one is held. Steppers ask at the
-    /// start and after each step, with nothing held. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
+    /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `fixed` stay as they are, so that consistent
+    /// initial values are found from a part of them, and so does an attitude of which one is fixed. Steppers ask at the
+    /// start and after each step, with nothing fixed. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
     /// for which that is largest; a displacement counts as one at least, an angle being zero somewhere.
     ///
     /// # Errors
@@ -256,7 +260,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         _t: T,
         x: SVector<T, N>,
         _u: &SVector<T, M>,
-        _held: &[usize],
+        _fixed: &[usize],
     ) -> Result<SVector<T, N>, Trouble> {
         Ok(x)
     }
@@ -298,7 +302,21 @@ pub struct Power<T> {
 
 /// Why an evaluation must not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Trouble {
+    /// A state, or its derivative, is infinite or NaN.
+    NotFinite {
+        /// The first such state, as [`Meta::states`] names it.
+        state: &'static str,
+    },
+    /// An entry of a Jacobian is infinite or NaN, though the state is finite: a law has no finite slope there, as a square root
+    /// at zero.
+    JacobianNotFinite {
+        /// The state whose derivative, or the output, it belongs to, as [`Meta::states`] and [`Meta::outputs`] name them.
+        of: &'static str,
+        /// The state or the input by which that is differentiated.
+        by: &'static str,
+    },
     /// A singular set is too near.
     Singular {
         /// The block, as [`Meta::conditioning`] names it.
@@ -335,9 +353,63 @@ pub enum Trouble {
     },
 }
 
+impl Trouble {
+    /// Of the first state that is infinite or NaN in some lane.
+    #[inline]
+    pub(crate) fn of_state<T: Real, const N: usize>(
+        meta: &'static Meta,
+        x: &SVector<T, N>,
+    ) -> Option<Self> {
+        // Without a branch per state, since nearly always all are finite.
+        if x.iter().fold(true, |all, state| all & is_finite(state)) {
+            return None;
+        }
+        Some(Self::of_first_state(meta, x))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn of_first_state<T: Real, const N: usize>(meta: &'static Meta, x: &SVector<T, N>) -> Self {
+        let index = x.iter().position(|state| !is_finite(state));
+        let state = index.map_or("?", |index| name(meta.states, index));
+        Self::NotFinite { state }
+    }
+
+    /// Of the first entry of a Jacobian that is infinite or NaN in some lane, whose rows and columns belong to these variables.
+    pub(crate) fn of_jacobian<T: Real, const R: usize, const C: usize>(
+        jacobian: &SMatrix<T, R, C>,
+        [rows, columns]: [&'static [Variable]; 2],
+    ) -> Option<Self> {
+        let mut entries = jacobian.data.0.iter().enumerate();
+        entries.find_map(|(column, entries)| {
+            let row = entries.iter().position(|entry| !is_finite(entry))?;
+            Some(Self::JacobianNotFinite {
+                of: name(rows, row),
+                by: name(columns, column),
+            })
+        })
+    }
+}
+
+fn name(variables: &'static [Variable], index: usize) -> &'static str {
+    variables.get(index).map_or("?", |variable| variable.name)
+}
+
+#[inline]
+fn is_finite<T: Real>(number: &T) -> bool {
+    number.magnitude().is_finite()
+}
+
 impl core::fmt::Display for Trouble {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
+            Self::NotFinite { state } => {
+                write!(formatter, "state `{state}` or its derivative is not finite")
+            }
+            Self::JacobianNotFinite { of, by } => write!(
+                formatter,
+                "the Jacobian is not finite: the derivative of `{of}` by `{by}`"
+            ),
             Self::Singular { name, value } => {
                 write!(formatter, "{name} is {value:e}, too near its singular set")
             }
@@ -388,6 +460,7 @@ impl core::error::Error for Trouble {}
 
 /// A parameter that breaks an assumption of the chosen causality.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterError {
     /// The parameter, or the expression of parameters.
     pub name: &'static str,

@@ -24,7 +24,7 @@ const TINY: f64 = 1e-9;
 /// to linearise at.
 ///
 /// Every rate is to be zero unless something else is said of it: a position in flight is [`free`](Trim::free) to change, and in a
-/// steady turn a rate has a [value](Trim::rate). Every state and input may be chosen unless it is [held](Trim::hold). Each
+/// steady turn a rate has a [value](Trim::rate). Every state and input may be chosen unless it is [fixed](Trim::fix). Each
 /// [`output`](Trim::output) with a wanted value fixes one of them. States, inputs and outputs go by their names, and several at
 /// once by what their names begin with: `"free.position"` is all of `free.position.x` to `.z`.
 ///
@@ -54,10 +54,10 @@ const TINY: f64 = 1e-9;
 ///
 /// let pendulum = Pendulum::<f64>::new(PendulumParameters::default())?;
 /// // The torque that holds it where it starts.
-/// let held = Trim::new(&pendulum).hold("weight.q").solve()?;
-/// assert!((held.input[0] - 20.0 * f64::sin(0.5)).abs() < 1e-12);
+/// let still = Trim::new(&pendulum).fix("weight.q").solve()?;
+/// assert!((still.input[0] - 20.0 * f64::sin(0.5)).abs() < 1e-12);
 /// // The angle at which 10 N*m hold it.
-/// let pushed = Trim::new(&pendulum).input(&[10.0]).hold("torque").solve()?;
+/// let pushed = Trim::new(&pendulum).input(&[10.0]).fix("torque").solve()?;
 /// assert!((pushed.state[1] - f64::asin(0.5)).abs() < 1e-12);
 /// // What its weight does for a small angle more, next to that.
 /// let linear = Linearised::of(&pendulum, 0.0, &pushed.state, &pushed.input)?;
@@ -69,7 +69,7 @@ pub struct Trim<'a, S, const N: usize, const M: usize, const P: usize> {
     system: &'a S,
     time: f64,
     start: Trimmed<N, M>,
-    held: ([bool; N], [bool; M]),
+    fixed: ([bool; N], [bool; M]),
     rates: [Option<f64>; N],
     outputs: [Option<f64>; P],
     unknown: Option<Untrimmed>,
@@ -86,6 +86,7 @@ pub struct Trimmed<const N: usize, const M: usize> {
 
 /// Why there is no operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Untrimmed {
     /// A name that is none of the model's.
     Unknown {
@@ -154,7 +155,7 @@ where
                 state: system.initial_state(),
                 input: SVector::zeros(),
             },
-            held: ([false; N], [false; M]),
+            fixed: ([false; N], [false; M]),
             rates: [Some(0.0); N],
             outputs: [None; P],
             unknown: None,
@@ -184,13 +185,13 @@ where
 
     /// States or inputs that stay as they are in the guess.
     #[must_use]
-    pub fn hold(mut self, name: &'static str) -> Self {
+    pub fn fix(mut self, name: &'static str) -> Self {
         let mut found = false;
         let meta = S::META;
         let names = meta.states.iter().chain(meta.inputs);
-        for (held, variable) in self.held.0.iter_mut().chain(&mut self.held.1).zip(names) {
+        for (fixed, variable) in self.fixed.0.iter_mut().chain(&mut self.fixed.1).zip(names) {
             let is_named = is_named(variable.name, name);
-            (*held, found) = (*held || is_named, found || is_named);
+            (*fixed, found) = (*fixed || is_named, found || is_named);
         }
         self.known(found, "state or input", name)
     }
@@ -276,7 +277,7 @@ where
     /// Why a condition cannot be met.
     fn missed(&self, point: &Trimmed<N, M>, row: usize, rows: &mut Rows<N, M, P>) -> Untrimmed {
         let (rates, outputs) = self.left(point);
-        rows.hold(&self.held);
+        rows.fix(&self.fixed);
         let is_output = row >= N;
         let (variables, lefts, wanted, place) = if is_output {
             (
@@ -301,16 +302,16 @@ where
     /// The point with its state on closed loops and attitudes.
     #[inline(never)]
     fn closed(&self, point: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
-        let states = &self.held.0;
-        // One of them stands for each state that is not held: where they are counted, LLVM takes minutes over the count.
-        let any = states.iter().position(|is_held| *is_held);
+        let states = &self.fixed.0;
+        // One of them stands for each state that is not fixed: where they are counted, LLVM takes minutes over the count.
+        let any = states.iter().position(|is_fixed| *is_fixed);
         let all = core::array::from_fn::<_, N, _>(|state| match states[state] {
             true => state,
             false => any.unwrap_or(state),
         });
-        let held = if any.is_some() { &all[..] } else { &[] };
+        let fixed = if any.is_some() { &all[..] } else { &[] };
         let Trimmed { state, input } = point;
-        match self.system.close(self.time, state, &input, held) {
+        match self.system.close(self.time, state, &input, fixed) {
             Ok(state) => Ok(Trimmed { state, input }),
             Err(trouble) => Err(Untrimmed::Trouble(trouble)),
         }
@@ -319,7 +320,8 @@ where
     /// How the conditions change beside a point, and by how much they fail there.
     #[inline(never)]
     fn rows(&self, point: &Trimmed<N, M>) -> Result<Rows<N, M, P>, Untrimmed> {
-        let linear = Linearised::of(self.system, self.time, &point.state, &point.input)
+        // A slope that is not finite matters where it belongs to what is wanted.
+        let linear = Linearised::unchecked(self.system, self.time, &point.state, &point.input)
             .map_err(Untrimmed::Trouble)?;
         let (rates, outputs) = self.left(point);
         let wanted = |wanted: Option<f64>, row| match wanted {
@@ -358,7 +360,7 @@ where
 
     /// A point at which less is left of the conditions, if there is one.
     fn descend(&self, point: &Trimmed<N, M>, rows: &mut Rows<N, M, P>) -> Option<Trimmed<N, M>> {
-        rows.hold(&self.held);
+        rows.fix(&self.fixed);
         rows.balance();
         let weights = rows.weights();
         let size = |point: &Trimmed<N, M>| {
@@ -389,7 +391,7 @@ where
     fn tangents(&self, point: &Trimmed<N, M>) -> SMatrix<f64, N, N> {
         let mut tangents = SMatrix::<f64, N, N>::identity();
         for (number, mut tangent) in tangents.column_iter_mut().enumerate() {
-            if self.held.0[number] {
+            if self.fixed.0[number] {
                 tangent.fill(0.0);
                 continue;
             }

@@ -138,7 +138,7 @@ fn a_jacobian_that_is_not_finite_is_told_as_such() {
     // By the names of row and column.
     for (solver, stopped) in stops(&Written(Filling), [0.0, 0.0]) {
         let (of, by) = ("pipe", "level");
-        let cause = Cause::JacobianNotFinite { of, by };
+        let cause = Cause::Trouble(Trouble::JacobianNotFinite { of, by });
         assert_eq!((stopped.time, stopped.cause), (0.0, cause), "{solver}");
     }
 }
@@ -146,10 +146,10 @@ fn a_jacobian_that_is_not_finite_is_told_as_such() {
 /// What divides by an infinite entry would let the state stand still.
 #[test]
 fn a_jacobian_that_is_infinite_is_told_too() {
-    let cause = Cause::JacobianNotFinite {
+    let cause = Cause::Trouble(Trouble::JacobianNotFinite {
         of: "level",
         by: "level",
-    };
+    });
     let one = stops(&Written(Rising), [0.0]);
     let two = stops(&Written(Rising), [0.0, 0.5]);
     for (solver, stopped) in one.into_iter().chain(two) {
@@ -184,10 +184,13 @@ fn a_derivative_that_is_not_finite_is_told_before_its_jacobian() {
     // methods share what is not finite; those of Radau's take their Jacobian there.
     for (solver, stopped) in stops(&Written(Emptying), [0.45, 0.0]) {
         if solver.contains("Radau") && solver.starts_with("Fixed") {
-            let cause = Cause::NotFinite { state: "pipe" };
+            let cause = Cause::Trouble(Trouble::NotFinite { state: "pipe" });
             assert_eq!((stopped.time, stopped.cause), (0.4, cause), "{solver}");
         } else if solver.starts_with("Fixed") {
-            assert!(matches!(stopped.cause, Cause::NotFinite { .. }), "{solver}");
+            assert!(
+                matches!(stopped.cause, Cause::Trouble(Trouble::NotFinite { .. })),
+                "{solver}"
+            );
         }
     }
 }
@@ -197,7 +200,7 @@ fn a_derivative_that_is_not_finite_is_told_before_its_jacobian() {
 fn a_jacobian_counts_where_the_method_takes_it() {
     let (of, by) = ("level", "level");
     for (solver, stopped) in stops(&Written(Drained), [0.5, 0.0]) {
-        let cause = Cause::JacobianNotFinite { of, by };
+        let cause = Cause::Trouble(Trouble::JacobianNotFinite { of, by });
         assert_eq!(stopped.cause, cause, "{solver}");
         assert!(stopped.time > 0.3, "{solver}: {stopped}");
     }
@@ -214,7 +217,10 @@ fn what_auto_picks_tells_the_same() {
         let run = auto.integrate(&system, &(), 0.0, 1.0, start, |_| ());
         let stopped = run.unwrap_err();
         let (of, by) = ("level", "level");
-        assert_eq!(stopped.cause, Cause::JacobianNotFinite { of, by });
+        assert_eq!(
+            stopped.cause,
+            Cause::Trouble(Trouble::JacobianNotFinite { of, by })
+        );
         assert!(stopped.time > 0.3 && stopped.time < 0.6, "{stopped}");
     }
 }

@@ -1,8 +1,8 @@
 //! Times of steps: state and time agree, and no piece of the input is too short.
 
 use mbg_runtime::{
-    Adaptive, Auto, Cause, Dop853, Estimating, Fixed, Input, Integrator, Pirk8, Pirk16, Radau5,
-    Radau9, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Stopped, Tsit5, Variable, Verner9,
+    Adaptive, Auto, Cause, Constant, Dop853, Estimating, Fixed, Input, Integrator, Pirk8, Pirk16,
+    Pulse, Radau5, Radau9, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Stopped, Tsit5, Variable, Verner9,
 };
 use nalgebra::SVector;
 
@@ -163,6 +163,51 @@ fn every_jump_counts_however_coarse_time_is() {
             .unwrap();
         assert!((last[0] - 1.0).abs() < 0.01, "{start}: {}", last[0]);
     }
+}
+
+/// An input that is chosen while running.
+#[test]
+fn inputs_may_be_of_different_types() {
+    let quarter = Constant(SVector::from([0.25]));
+    let (start, end) = (1.0, 1.5);
+    let pulse = Pulse {
+        amplitude: SVector::from([2.0]),
+        start,
+        end,
+    };
+    let inputs: [(&dyn Input<f64, 1>, f64); 2] = [(&quarter, 0.5), (&pulse, 1.0)];
+    let begin = SVector::from([0.0]);
+    for (input, way) in inputs {
+        let mut sums = [begin; 3];
+        let [first, second, third] = &mut sums;
+        let system = &Written(Sum);
+        Adaptive::new(Radau5, 1e-6, 1e-6)
+            .integrate(system, input, 0.0, 2.0, begin, |step| {
+                *first = *step.state()
+            })
+            .unwrap();
+        Auto::new(1e-6, 1e-6)
+            .sample(system, input, 0.0, begin, &[2.0], |_, x| *second = *x)
+            .unwrap();
+        Rk4::fixed(system, input, 0.0, 2.0, 0.1, begin, |_, x| *third = *x).unwrap();
+        assert!(
+            sums.iter().all(|sum| (sum[0] - way).abs() < 1e-12),
+            "{sums:?}"
+        );
+    }
+}
+
+#[test]
+fn a_pulse_that_ends_before_it_starts_is_refused() {
+    let (start, end) = (1.5, 1.0);
+    let pulse = Pulse {
+        amplitude: SVector::from([2.0]),
+        start,
+        end,
+    };
+    let begin = SVector::from([0.0]);
+    let run = Fixed::new(Rk4, 0.1).integrate(&Written(Sum), &pulse, 0.0, 2.0, begin, |_| ());
+    assert!(matches!(run.unwrap_err().cause, Cause::Argument(_)));
 }
 
 #[test]

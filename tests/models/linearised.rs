@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use mbg_runtime::{
-    Adaptive, Constant, Dop853, Integrator, Linearised, Real, Smooth, System, Trouble, mbg,
+    Adaptive, Constant, Dop853, Integrator, Linearised, Real, Smooth, System, Trim, Trouble, mbg,
 };
 use nalgebra::{Complex, ComplexField, SMatrix, SVector};
 
@@ -53,6 +53,16 @@ mbg! {
         full: Capacitor { capacitance: 1e-3 } (store, ground);
         output drop: V = valve.voltage;
         output current: A = valve.current;
+    }
+
+    /// A tank that drains by a square root of its level, or whose level is measured by one alone.
+    model Draining {
+        0 tank { C level { effort: q, initial: 1.0 } R outlet { flow: sqrt(e) } }
+    }
+    model Measured {
+        input inflow;
+        0 tank { C level { effort: q, initial: 1.0 } R outlet { flow: e } Sf feed { flow: inflow } }
+        output speed = sqrt(level.q);
     }
 
     /// Pulled through the attitude in which its gimbals lock.
@@ -193,6 +203,41 @@ fn a_singular_attitude_is_refused_by_name() {
     assert!(matches!(refused, Trouble::Singular { .. }), "{refused}");
     x[place("angle.y")] = 1.0;
     assert!(Linearised::of(&model, 0.0, &x, &SVector::zeros()).is_ok());
+}
+
+#[test]
+fn what_has_no_finite_slope_is_told_by_its_place() {
+    let draining = Draining::<f64>::new(DrainingParameters::default()).unwrap();
+    let measured = Measured::<f64>::new(MeasuredParameters::default()).unwrap();
+    let places = [
+        (
+            Linearised::of(&draining, 0.0, &SVector::from([0.0]), &SVector::zeros()).unwrap_err(),
+            ("level.q", "level.q"),
+        ),
+        (
+            Linearised::of(&measured, 0.0, &SVector::from([0.0]), &SVector::zeros()).unwrap_err(),
+            ("speed", "level.q"),
+        ),
+    ];
+    for (refused, (of, by)) in places {
+        assert_eq!(refused, Trouble::JacobianNotFinite { of, by });
+    }
+    // An output that nobody asks for does not keep from a point.
+    let empty = Trim::new(&measured).state(&SVector::from([0.0])).solve();
+    assert_eq!(empty.unwrap().state, SVector::from([0.0]));
+}
+
+#[test]
+fn a_state_that_is_no_number_is_told() {
+    let model = Draining::<f64>::new(DrainingParameters::default()).unwrap();
+    let state = "level.q";
+    for level in [f64::NAN, f64::INFINITY] {
+        let x = SVector::from([level]);
+        let trouble = System::trouble(&model, 0.0, &x, &SVector::zeros(), &());
+        assert_eq!(trouble, Some(Trouble::NotFinite { state }));
+        let refused = Linearised::of(&model, 0.0, &x, &SVector::zeros()).unwrap_err();
+        assert_eq!(refused, Trouble::NotFinite { state });
+    }
 }
 
 #[test]

@@ -147,6 +147,22 @@ fn an_inertia_must_be_positive() {
 }
 
 #[test]
+fn what_is_divided_by_must_have_a_reciprocal() {
+    let reason = "its reciprocal must be a finite number";
+    let lightest = OscillatorParameters {
+        mass: 1e-320,
+        ..OscillatorParameters::default()
+    };
+    refused(Oscillator::new(lightest), "mass", 1e-320, reason);
+    // In single precision a mass is too small sooner.
+    let lightest = OscillatorParameters {
+        mass: 1e-39_f32,
+        ..OscillatorParameters::default()
+    };
+    assert!(Oscillator::new(lightest).is_err());
+}
+
+#[test]
 fn a_resistor_must_have_the_inverse_that_its_stroke_needs() {
     let default = LeaksParameters::default();
     let leaks = |leak, bypass, drag, slip| {

@@ -80,7 +80,7 @@ where
 #[test]
 fn the_poles_of_a_hover_are_those_of_its_drag() {
     let model = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
-    let hover = Trim::new(&model).hold("free.position").solve().unwrap();
+    let hover = Trim::new(&model).fix("free.position").solve().unwrap();
     let next = Linearised::of(&model, 0.0, &hover.state, &hover.input).unwrap();
     let poles = next.poles().unwrap();
     let near = |to: f64, error: f64| {
@@ -99,7 +99,7 @@ fn the_poles_of_a_hover_are_those_of_its_drag() {
 #[test]
 fn a_craft_hovers_with_equal_thrusts() {
     let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
-    let hover = Trim::new(&craft).hold("free.position").solve().unwrap();
+    let hover = Trim::new(&craft).fix("free.position").solve().unwrap();
     // Whatever the heading, torques and thrust fix all four.
     for thrust in hover.input.iter() {
         assert!((thrust - 1.2 * 9.81 / 4.0).abs() < 1e-12, "{thrust}");
@@ -113,7 +113,7 @@ fn a_craft_hovers_with_equal_thrusts() {
 fn a_craft_leans_against_its_drag() {
     let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
     let flight = Trim::new(&craft)
-        .hold("free.position")
+        .fix("free.position")
         .free("free.position")
         .output("speed.x", 6.0)
         .output("speed.y", -2.0)
@@ -145,7 +145,7 @@ fn a_craft_leans_against_its_drag() {
 #[test]
 fn a_closed_loop_is_held() {
     let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();
-    let held = Trim::new(&crank).hold("first").solve().unwrap();
+    let held = Trim::new(&crank).fix("first").solve().unwrap();
     // The coupler alone has weight that a turn lifts: 3 kg at the end of a crank of half a metre.
     let expected = 3.0 * 9.81 * 0.5 * f64::cos(1.2);
     assert!(
@@ -159,7 +159,7 @@ fn a_closed_loop_is_held() {
     let found = Trim::new(&crank)
         .state(&guess)
         .input(&[expected])
-        .hold("torque")
+        .fix("torque")
         .solve()
         .unwrap();
     assert!((found.state - held.state).norm() < 1e-9);
@@ -179,7 +179,7 @@ fn what_cannot_be_is_told() {
     let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
     let told = |trim: Trim<'_, _, 13, 4, 6>| trim.solve().unwrap_err().to_string();
     assert_eq!(
-        told(Trim::new(&craft).hold("free.positon").hold("thrusts")),
+        told(Trim::new(&craft).fix("free.positon").fix("thrusts")),
         "the model has no state or input `free.positon`"
     );
     assert_eq!(
@@ -191,7 +191,7 @@ fn what_cannot_be_is_told() {
         "the model has no output `spee`"
     );
     let fixed = Trim::new(&craft)
-        .hold("free.position")
+        .fix("free.position")
         .output("place.z", 3.0);
     assert_eq!(
         told(fixed),
@@ -204,7 +204,7 @@ fn what_cannot_be_is_told() {
         wanted,
         is_fixed: false,
         ..
-    }) = Trim::new(&craft).hold("thrust").solve()
+    }) = Trim::new(&craft).fix("thrust").solve()
     else {
         panic!("nothing carries it");
     };

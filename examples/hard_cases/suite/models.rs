@@ -9,7 +9,7 @@ mbg! {
     include "tests/models/mechanisms/two_four_bars.mbg";
     include "tests/models/pulses.mbg";
 
-    /// A body whose orientation is held in three angles, turned by a torque.
+    /// A body whose orientation is represented by three angles, turned by a torque.
     pub(crate) model PulledAngles {
         input torque[3]: N*m;
         1 frame[6];

@@ -17,7 +17,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     let memory = quote!(Self::Memory);
     let positions = (!compiled.closed[0].is_empty()).then(|| {
         let rank = rank(compiled, 0);
-        let evaluated = quote!(|x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, held));
+        let evaluated = quote!(|x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, fixed));
         projection(&compiled.closed[0], &quote!(Positions), &rank, &evaluated)
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
@@ -37,7 +37,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             t: T,
             x: mbg_runtime::__private::SVector<T, #n>,
             u: &mbg_runtime::__private::SVector<T, #m>,
-            held: &[::core::primitive::usize],
+            fixed: &[::core::primitive::usize],
         ) -> ::core::result::Result<mbg_runtime::__private::SVector<T, #n>, mbg_runtime::Trouble> {
             #positions
             #flows
@@ -53,7 +53,7 @@ fn attitude(rows: &[Vec<usize>]) -> TokenStream {
         let places = row.iter().copied().map(Literal::usize_suffixed);
         quote!([#(#places),*])
     });
-    quote!(let x = mbg_runtime::__private::orthonormal(x, &[#(#rows),*], held);)
+    quote!(let x = mbg_runtime::__private::orthonormal(x, &[#(#rows),*], fixed);)
 }
 
 /// Projects onto residuals, which are those of the closures given.
@@ -66,7 +66,7 @@ fn projection(
     let closures = closed.iter().copied().map(Literal::usize_suffixed);
     quote! {
         let x = mbg_runtime::__private::close(
-            Self::META, &[#(#closures),*], x, held, (mbg_runtime::__private::Level::#level, #rank), #evaluated,
+            Self::META, &[#(#closures),*], x, fixed, (mbg_runtime::__private::Level::#level, #rank), #evaluated,
         )?;
     }
 }
@@ -120,7 +120,7 @@ pub(super) fn positions(compiled: &Compiled) -> Option<TokenStream> {
             t: T,
             x: &mbg_runtime::__private::SVector<T, #n>,
             u: &mbg_runtime::__private::SVector<T, #m>,
-            held: &[::core::primitive::usize],
+            fixed: &[::core::primitive::usize],
         ) -> (
             mbg_runtime::__private::SVector<T, #size>,
             mbg_runtime::__private::SMatrix<T, #size, #n>,

@@ -247,7 +247,7 @@ pub struct Integral {
     pub initial: Option<Expr>,
 }
 
-/// How an attitude is held in states.
+/// How an attitude is represented by states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Orientation {
     /// Four, the parts of a quaternion.

@@ -107,11 +107,11 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
 
     /// Takes away the influence of what does not change.
     #[inline(never)]
-    pub(crate) fn hold(&mut self, (states, inputs): &([bool; N], [bool; M])) {
-        let held = |slope: &mut f64, is_held| *slope = if is_held { 0.0 } else { *slope };
+    pub(crate) fn fix(&mut self, (states, inputs): &([bool; N], [bool; M])) {
+        let fix = |slope: &mut f64, is_fixed| *slope = if is_fixed { 0.0 } else { *slope };
         for row in self.iter_mut() {
-            row.by_state.zip_apply(&SVector::from(*states), held);
-            row.by_input.zip_apply(&SVector::from(*inputs), held);
+            row.by_state.zip_apply(&SVector::from(*states), fix);
+            row.by_input.zip_apply(&SVector::from(*inputs), fix);
         }
     }
 

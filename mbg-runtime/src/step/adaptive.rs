@@ -138,7 +138,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let tolerances = self.tolerances();
         let tolerance = Tolerance::new(tolerances.0, tolerances.1, self.nominal);
@@ -242,7 +242,7 @@ impl<M: Estimating> Adaptive<'_, M> {
     where
         T: Real,
         S: System<T, N, K, P>,
-        I: Input<T, K>,
+        I: Input<T, K> + ?Sized,
     {
         let first = match self.first {
             Some(first) => first,
@@ -262,7 +262,7 @@ impl<M: Estimating> Adaptive<'_, M> {
     where
         T: Real,
         S: System<T, N, K, P>,
-        I: Input<T, K>,
+        I: Input<T, K> + ?Sized,
     {
         let longest = seen(end - start).min(self.longest);
         // The rule compares derivatives of different order: its unit of time is the second, or for short runs a hundred of them.
@@ -527,7 +527,7 @@ mod tests {
         assert!(
             matches!(
                 stopped.cause,
-                Cause::StepTooSmall | Cause::NotFinite { state: "growth" }
+                Cause::StepTooSmall | Cause::Trouble(Trouble::NotFinite { state: "growth" })
             ),
             "{stopped}"
         );
@@ -567,7 +567,10 @@ mod tests {
         let stopped = STRICT
             .integrate(&Oscillator, &(), 0.0, 2.0, start, |_| ())
             .unwrap_err();
-        assert_eq!(stopped.cause, Cause::NotFinite { state: "velocity" });
+        assert_eq!(
+            stopped.cause,
+            Cause::Trouble(Trouble::NotFinite { state: "velocity" })
+        );
         for times in [&[1.0, 0.5][..], &[-1.0], &[f64::NAN]] {
             let stopped = STRICT.sample(
                 &Oscillator,

@@ -67,6 +67,7 @@ pub struct Auto<'a> {
 
 /// A method and why it was picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Choice {
     /// The method.
     pub method: Picked,
@@ -80,6 +81,7 @@ pub struct Choice {
 
 /// A method that [`Auto`] picks from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 #[allow(missing_docs, reason = "named after the methods")]
 pub enum Picked {
     Tsit5,
@@ -91,6 +93,7 @@ pub enum Picked {
 
 /// Why [`Auto`] picked a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reason {
     /// Stiff, to a tight tolerance.
     StiffTight,
@@ -162,7 +165,7 @@ impl Auto<'_> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let end = piece_end(system, input, t0, t1)?;
@@ -180,7 +183,7 @@ impl Auto<'_> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         problem.jacobian(start, x, &mut jacobian);
@@ -250,7 +253,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let picked = self.pick(problem, ends, &x).method;
         let (system, input, since) = (problem.system, problem.input, problem.since);

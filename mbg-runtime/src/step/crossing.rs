@@ -116,7 +116,7 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
     ) -> Trial<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         problem.closes_stages = self.is_across::<S, M, P>();
         if problem.closes_stages {
@@ -135,7 +135,7 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
     ) -> Polynomial<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         if self.is_across::<S, M, P>() {
             self.explicit.polynomial(problem, start, end)
@@ -229,7 +229,7 @@ impl<T: Real, const N: usize> Across<T, N> {
     ) -> Option<Trial<T, N>>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         if S::META.closures.is_empty() || trial.error.is_finite() {
             return None;
@@ -257,7 +257,7 @@ impl<T: Real, const N: usize> Across<T, N> {
     ) -> Polynomial<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         self.explicit.polynomial(problem, start, (x, None))
     }

@@ -20,6 +20,11 @@ use crate::{Input, Real, System};
 /// `h` where the way is `n · h` to the last bit, else next to it. So the state advances by the time that is told, however
 /// many pieces a run has and however its times are rounded.
 ///
+/// Nothing estimates an error here. An explicit method whose step is too long for the fastest mode lets the state grow from step to
+/// step, and what is finite counts as a state: such a run ends well with numbers of any size, and is
+/// [told](crate::Trouble::NotFinite) only where one overflows. Nothing says how large the states of a model may be: look at them,
+/// at [`System::energy`], or at how they change with half the step; or take [`Adaptive`](super::Adaptive).
+///
 /// A method that uses a Jacobian loses a step across a kink of a stiff law, as where a diode beside a coil begins to block. Such
 /// a step is halved until its stages are found, and the observer is given each part. Methods of Radau then follow the kink;
 /// those of Rosenbrock and the midpoint rule come as near to it as a tenth of what states have been. Next to a singular position
@@ -96,7 +101,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let Division { count, step, last } = divide(start, end, T::from_f64(self.step));
         let mut work = Scheme::Work::<T, N>::new(&self.method);
@@ -272,7 +277,7 @@ impl Rk4 {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let fixed = Fixed::new(Self, seen(h));
         let (mut problem, x) = begin(&fixed, system, input, (t0, t1), x0)?;
@@ -289,7 +294,7 @@ impl Rk4 {
     /// `n · h` to the last bit, where [`FUSED`](crate::FUSED) does not hold.
     ///
     /// Nothing is closed and nothing is checked: attitudes become longer or shorter and closed loops open, unless each step is
-    /// followed by [`System::close`]. Ask [`System::trouble`], and look at the state where it matters.
+    /// followed by [`System::close`]. Ask [`System::trouble`], which also tells a state that is not finite.
     ///
     /// ```
     /// use mbg_runtime::{Rk4, System, Trouble};
@@ -644,7 +649,10 @@ mod tests {
             |_, _| (),
         )
         .unwrap_err();
-        assert_eq!(stopped.cause, Cause::NotFinite { state: "growth" });
+        assert_eq!(
+            stopped.cause,
+            Cause::Trouble(Trouble::NotFinite { state: "growth" })
+        );
         assert!(stopped.time > 1.0 && stopped.time < 3.0, "{stopped}");
         assert!(
             std::format!("{stopped}").ends_with(": state `growth` or its derivative is not finite")
@@ -692,9 +700,9 @@ mod tests {
         }
         assert_eq!(
             run(0.0, 1.0, 0.1, f64::NAN),
-            Cause::NotFinite {
+            Cause::Trouble(Trouble::NotFinite {
                 state: "displacement"
-            }
+            })
         );
     }
 }

@@ -157,7 +157,7 @@ where
     ) -> Trial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let first = self.length.is_none();
         let mut memories = [None; S];
@@ -207,7 +207,7 @@ where
     ) -> Polynomial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         between(&A::TABLEAU, &self.slopes, start, end)
     }
@@ -268,7 +268,7 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
     ) -> f64
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let length = start.span.length;
         let known = self.slopes;

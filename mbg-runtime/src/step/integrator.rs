@@ -7,11 +7,12 @@ use nalgebra::SVector;
 use super::dense::Step;
 use super::event::Direction;
 use super::problem::Problem;
-use super::{Cause, Statistics, Stopped, check_finite, check_times, less, piece_end, seen};
+use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
 
 /// Where and when a run until an event has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Arrival<T, const N: usize> {
     /// The time of the event, or the end.
     pub time: T,
@@ -55,7 +56,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>;
+        I: Input<T, M> + ?Sized;
 
     /// Runs from `t0` to `t1` until the observer breaks off.
     #[doc(hidden)]
@@ -70,7 +71,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut since = t0;
         while less(since, t1) {
@@ -103,7 +104,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         self.run(&mut problem, (t0, t1), x, &mut |step| {
@@ -133,7 +134,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         sample(self, system, input, (t0, times), x0, |t, x, _memory| {
             observer(t, x);
@@ -185,7 +186,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         sample(self, system, input, (t0, times), x0, |t, x, mut memory| {
             let y = system.output(t, x, &input.at(t), &mut memory);
@@ -240,7 +241,7 @@ pub trait Integrator<const N: usize> {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let (mut time, mut state, mut found) = (t1, x, false);
@@ -311,7 +312,7 @@ where
     D: Integrator<N> + ?Sized,
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     let mut last = t0;
     for &time in times {
@@ -359,12 +360,12 @@ where
     D: Integrator<N> + ?Sized,
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     check_times(t0, t1)?;
     integrator.check_settings(t0, t1)?;
-    check_finite(system, t0, &x0)?;
     let problem = Problem::new(system, input, (t0, t1));
+    check_result(system, t0, &x0, &problem.memory)?;
     let x = problem.close(t0, x0)?;
     Ok((problem, x))
 }

@@ -117,7 +117,7 @@ pub trait Stepper<A, T: Real, const N: usize> {
     ) -> Trial<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>;
+        I: Input<T, M> + ?Sized;
 
     /// What the method knows between the ends of the step that it has tried last, from the states and derivatives at
     /// both.
@@ -129,7 +129,7 @@ pub trait Stepper<A, T: Real, const N: usize> {
     ) -> Polynomial<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>;
+        I: Input<T, M> + ?Sized;
 
     /// Where and when the step that has been tried last takes its Jacobian, if the method takes one.
     fn place_of_jacobian(&self, _start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {

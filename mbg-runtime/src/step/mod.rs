@@ -28,7 +28,7 @@ mod watch;
 
 use core::fmt;
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use crate::{Input, Real, System, Trouble};
 
@@ -69,6 +69,7 @@ pub struct Statistics {
 ///
 /// Whatever the observer has been given before is valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Stopped {
     /// When.
     pub time: f64,
@@ -80,20 +81,9 @@ pub struct Stopped {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// The model came too near a singular set.
+    /// The model is in trouble: too near a singular set, say, or where a state, its derivative, or an entry of the Jacobian that
+    /// an implicit method takes is not finite.
     Trouble(Trouble),
-    /// A state, or its derivative, became infinite or NaN.
-    NotFinite {
-        /// The first such state, as [`Meta::states`](crate::Meta::states) names it.
-        state: &'static str,
-    },
-    /// An entry of the Jacobian that an implicit method takes is infinite or NaN, where state and derivative are finite.
-    JacobianNotFinite {
-        /// The state whose derivative it belongs to, as [`Meta::states`](crate::Meta::states) names it.
-        of: &'static str,
-        /// The state by which that is differentiated.
-        by: &'static str,
-    },
     /// The step is so small that time does not advance by it; the problem is stiff or has a singularity there.
     StepTooSmall,
     /// More steps than [`Adaptive::most`] or [`Auto::most`] allows, which a run over many jumps of an input may well need.
@@ -123,13 +113,6 @@ impl fmt::Display for Cause {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Trouble(trouble) => trouble.fmt(formatter),
-            Self::NotFinite { state } => {
-                write!(formatter, "state `{state}` or its derivative is not finite")
-            }
-            Self::JacobianNotFinite { of, by } => write!(
-                formatter,
-                "the Jacobian is not finite: the derivative of `{of}` by `{by}`"
-            ),
             Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
             Self::TooManySteps { next } => write!(
                 formatter,
@@ -170,7 +153,7 @@ pub(crate) fn less<T: Real>(a: T, b: T) -> bool {
 /// Where the piece that begins at `from` ends, at most `end`: at a jump of the input or a change of the laws.
 fn piece_end<T: Real, S, const N: usize, const M: usize, const P: usize>(
     system: &S,
-    input: &impl Input<T, M>,
+    input: &(impl Input<T, M> + ?Sized),
     from: T,
     end: T,
 ) -> Result<T, Stopped>
@@ -219,77 +202,10 @@ fn check_times<T: Real>(start: T, end: T) -> Result<(), Stopped> {
     Ok(())
 }
 
-/// Refuses a state, or a derivative, that is infinite or NaN in some lane.
-#[inline]
-fn check_finite<T, S, const N: usize, const M: usize, const P: usize>(
-    _system: &S,
-    time: T,
-    x: &SVector<T, N>,
-) -> Result<(), Stopped>
-where
-    T: Real,
-    S: System<T, N, M, P>,
-{
-    // Without a branch per state, since nearly always all are finite.
-    if x.iter()
-        .fold(true, |all, component| all & is_finite(component))
-    {
-        return Ok(());
-    }
-    let state = first_not_finite::<T, S, N, M, P>(x);
-    Err(Stopped::new(time, Cause::NotFinite { state }))
-}
-
-/// The name of the first state that is not finite.
-#[cold]
-#[inline(never)]
-fn first_not_finite<T, S, const N: usize, const M: usize, const P: usize>(
-    x: &SVector<T, N>,
-) -> &'static str
-where
-    T: Real,
-    S: System<T, N, M, P>,
-{
-    let index = x.iter().position(|component| !is_finite(component));
-    index.map_or("?", name_of_state::<T, S, N, M, P>)
-}
-
-/// The first entry of a Jacobian that is not finite, as a cause.
-fn first_entry_not_finite<T, S, const N: usize, const M: usize, const P: usize>(
-    jacobian: &SMatrix<T, N, N>,
-) -> Option<Cause>
-where
-    T: Real,
-    S: System<T, N, M, P>,
-{
-    let mut columns = jacobian.data.0.iter().enumerate();
-    columns.find_map(|(column, entries)| {
-        let row = entries.iter().position(|entry| !is_finite(entry))?;
-        Some(Cause::JacobianNotFinite {
-            of: name_of_state::<T, S, N, M, P>(row),
-            by: name_of_state::<T, S, N, M, P>(column),
-        })
-    })
-}
-
-/// What [`Meta::states`](crate::Meta::states) calls a state.
-fn name_of_state<T, S, const N: usize, const M: usize, const P: usize>(index: usize) -> &'static str
-where
-    T: Real,
-    S: System<T, N, M, P>,
-{
-    S::META.states.get(index).map_or("?", |state| state.name)
-}
-
-#[inline]
-fn is_finite<T: Real>(component: &T) -> bool {
-    component.magnitude().is_finite()
-}
-
 /// Refuses a vector that is not finite; where an algebraic loop was not solved on the way to it, that is the cause.
 #[inline]
 fn check_result<T, S, const N: usize, const M: usize, const P: usize>(
-    system: &S,
+    _system: &S,
     time: T,
     x: &SVector<T, N>,
     memory: &S::Memory,
@@ -298,8 +214,11 @@ where
     T: Real,
     S: System<T, N, M, P>,
 {
-    check_finite(system, time, x).map_err(|stopped| match S::unsolved(memory) {
-        Some(trouble) => Stopped::new(time, Cause::Trouble(trouble)),
-        None => stopped,
-    })
+    match Trouble::of_state(S::META, x) {
+        None => Ok(()),
+        Some(trouble) => {
+            let trouble = S::unsolved(memory).unwrap_or(trouble);
+            Err(Stopped::new(time, Cause::Trouble(trouble)))
+        }
+    }
 }

@@ -100,7 +100,7 @@ impl<T, S, I, const N: usize, const M: usize, const P: usize> Problem<'_, T, S, 
 where
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     /// Where a step has missed something: the length up to which it has not. `ahead` is the derivative at its end, and
     /// `polynomial` its dense output.

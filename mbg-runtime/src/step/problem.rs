@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::elimination::Shifted;
 use super::probes::Probes;
-use super::{Cause, Statistics, Stopped, check_result, first_entry_not_finite, seen};
+use super::{Cause, Statistics, Stopped, check_result, seen};
 use crate::{Columns, Input, Real, System, Trouble};
 
 /// What a run carries from step to step besides the state.
@@ -12,6 +12,7 @@ pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
 where
     T: Real,
     S: System<T, N, M, P>,
+    I: ?Sized,
 {
     pub(super) system: &'a S,
     pub(super) input: &'a I,
@@ -34,7 +35,7 @@ impl<'a, T, S, I, const N: usize, const M: usize, const P: usize> Problem<'a, T,
 where
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     pub(super) fn new(system: &'a S, input: &'a I, (start, end): (T, T)) -> Self {
         Self {
@@ -198,7 +199,6 @@ where
                     .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))?;
             }
         }
-        check_result(self.system, t, x, &self.memory)?;
         check_result(self.system, t, slope, &self.memory)
     }
 
@@ -212,7 +212,8 @@ where
         time: T,
         place: Option<(T, SVector<T, N>)>,
     ) -> Stopped {
-        let (Some((t, x)), Cause::NotFinite { .. }) = (place, stopped.cause) else {
+        let not_finite = matches!(stopped.cause, Cause::Trouble(Trouble::NotFinite { .. }));
+        let Some((t, x)) = place.filter(|_| not_finite) else {
             return stopped;
         };
         // Where the derivative is not finite, the Jacobian is not either.
@@ -222,8 +223,9 @@ where
         }
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         self.jacobian(t, &x, &mut jacobian);
-        first_entry_not_finite::<T, S, N, M, P>(&jacobian)
-            .map_or(stopped, |cause| Stopped::new(time, cause))
+        Trouble::of_jacobian(&jacobian, [S::META.states; 2]).map_or(stopped, |trouble| {
+            Stopped::new(time, Cause::Trouble(trouble))
+        })
     }
 
     /// Why a step that is as short as time resolves failed: what is not finite in its change, if anything is.

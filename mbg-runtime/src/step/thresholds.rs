@@ -50,7 +50,7 @@ impl<T, S, I, const N: usize, const M: usize, const P: usize> Problem<'_, T, S, 
 where
     T: Real,
     S: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     /// How many thresholds are passed between two points.
     #[inline]

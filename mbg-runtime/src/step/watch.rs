@@ -42,7 +42,7 @@ impl Watch {
     where
         T: Real,
         S: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let length = seen(span.length);
         if problem.input.is_constant_between_jumps() || length < self.shortest {

@@ -168,7 +168,7 @@ where
         stages: Range<usize>,
     ) where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut last = self.slopes[stages.start - 1];
         each_stage!(STAGE in stages => {
@@ -205,7 +205,7 @@ where
     ) -> Trial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let length = start.span.length;
         self.slopes[0] = start.slope;
@@ -250,7 +250,7 @@ where
     ) -> Polynomial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let length = start.span.length;
         let last = slope.unwrap_or_else(|| problem.slope(start.span.end, end));

@@ -155,7 +155,7 @@ where
     ) -> Trial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let memory = problem.memory;
         let (before, tried) = self.next(start.again);
@@ -220,7 +220,7 @@ where
     ) -> Polynomial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         self.between(start, end)
     }

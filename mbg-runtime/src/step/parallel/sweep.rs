@@ -30,7 +30,7 @@ impl<T: Real, const N: usize, const M: usize, const S: usize, const G: usize> Sw
     where
         A: Swept<S, G>,
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut weights = [[T::Stages::whole(start.span.length); G]; S];
         for (weights, of_node) in weights.iter_mut().zip(const { &A::TABLEAU.weights }) {
@@ -66,7 +66,7 @@ impl<T: Real, const N: usize, const M: usize, const S: usize, const G: usize> Sw
         slopes: &mut Nodes<T, N, G>,
     ) where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         for group in 0..G {
             problem.slopes(

@@ -160,7 +160,7 @@ where
     ) -> Trial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let length = start.span.length;
         if !start.again {
@@ -202,7 +202,7 @@ where
     ) -> Polynomial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let mut polynomial = Polynomial::line(&start.x, end);
         let found = self.tried().1.iter().skip(1);
@@ -240,7 +240,7 @@ where
         stages: &[SVector<T, N>; S],
     ) where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let span = &start.span;
         if self.theta > FAST {

@@ -36,6 +36,7 @@ pub(super) struct Newton<
 > where
     T: Real,
     Y: System<T, N, M, P>,
+    I: ?Sized,
 {
     problem: &'a mut Problem<'b, T, Y, I, N, M, P>,
     start: &'a Start<T, N>,
@@ -63,7 +64,7 @@ where
     A: Tabulated<S, PAIRS>,
     T: Real,
     Y: System<T, N, M, P>,
-    I: Input<T, M>,
+    I: Input<T, M> + ?Sized,
 {
     pub(super) fn new(
         problem: &'a mut Problem<'b, T, Y, I, N, M, P>,

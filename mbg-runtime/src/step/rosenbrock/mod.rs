@@ -165,7 +165,7 @@ where
     ) -> Trial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         let Start { span, x, .. } = start;
         let length = span.length;
@@ -220,7 +220,7 @@ where
     ) -> Polynomial<T, N>
     where
         Y: System<T, N, M, P>,
-        I: Input<T, M>,
+        I: Input<T, M> + ?Sized,
     {
         between(&A::TABLEAU, &self.stages, &start.x, end)
     }

@@ -69,6 +69,7 @@ impl Left {
                 left.keep(*result, None);
             }
         }
+        left.lasts.retain(|first| !left.arrays.contains(first));
         left
     }
 
@@ -192,14 +193,22 @@ struct Turn<'a> {
 impl Turn<'_> {
     /// `first + stride · turn`, where the turn is that of the loop and so many more.
     fn index(&self, first: usize, stride: isize, more: usize) -> TokenStream {
-        let first = Literal::usize_suffixed(first.saturating_add_signed(stride * more as isize));
-        let counter = &self.counter;
+        let first = first.saturating_add_signed(stride * more as isize);
         let step = stride * self.repeat.together as isize;
-        let factor = Literal::usize_suffixed(step.unsigned_abs());
-        if step < 0 {
-            quote!(#first - #factor * #counter)
-        } else {
-            quote!(#factor * #counter + #first)
+        let counter = &self.counter;
+        let number = Literal::usize_suffixed;
+        let behind = match step.unsigned_abs() {
+            1 => quote!(#counter),
+            factor => {
+                let factor = number(factor);
+                quote!(#factor * #counter)
+            }
+        };
+        let begin = number(first);
+        match (step < 0, first) {
+            (true, _) => quote!(#begin - #behind),
+            (false, 0) => behind,
+            (false, _) => quote!(#behind + #begin),
         }
     }
 
@@ -232,7 +241,7 @@ impl Turn<'_> {
 impl Writer<'_> {
     /// A repeat, of which these are the steps of all turns, as a loop.
     pub(super) fn repeat(&self, repeat: &Repeat, steps: &[Step]) -> TokenStream {
-        let width = steps.len() / repeat.turns;
+        let width = repeat.width();
         let mut turn = Turn {
             repeat,
             counter: numbered("n", repeat.first),

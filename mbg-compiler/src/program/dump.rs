@@ -5,11 +5,20 @@ use std::fmt::Write;
 use super::{Operand, Routine, Solve, Solver, Source, Step};
 use crate::symbolic::{Place, Symbol};
 
-/// The routine as text, one step a line; an iteration is indented.
+/// The routine as text, one step a line; an iteration is indented, and so is the first turn of a repeat.
 #[must_use]
 pub fn dump(routine: &Routine) -> String {
     let mut text = String::new();
-    steps(&mut text, &routine.steps, &routine.names, 0, 0);
+    let (all, names) = (&routine.steps, &routine.names);
+    let (mut step, mut value) = (0, 0);
+    for repeat in &routine.repeats {
+        steps(&mut text, &all[step..repeat.steps.start], names, value, 0);
+        let _ = writeln!(text, "{} turns", repeat.turns);
+        steps(&mut text, repeat.turn(all), names, repeat.first, 1);
+        step = repeat.steps.end;
+        value = repeat.first + repeat.turns * repeat.values;
+    }
+    steps(&mut text, &all[step..], names, value, 0);
     let _ = writeln!(text, "return {}", list(&routine.results));
     text
 }

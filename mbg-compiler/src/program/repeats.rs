@@ -63,6 +63,18 @@ pub enum Reading {
 }
 
 impl Repeat {
+    /// How many steps a turn has.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.steps.len() / self.turns
+    }
+
+    /// The steps of the first turn, of those of the routine.
+    #[must_use]
+    pub fn turn<'a>(&self, steps: &'a [Step]) -> &'a [Step] {
+        &steps[self.steps.start..self.steps.start + self.width()]
+    }
+
     /// The turn that makes a value, and its place among the values of one.
     #[must_use]
     pub fn place(&self, value: usize) -> Option<(usize, usize)> {
@@ -81,7 +93,7 @@ pub(super) fn repeats(routine: &Routine) -> Vec<Repeat> {
         return Vec::new();
     }
     let found = Search::of(steps).all();
-    let saved = |it: &Repeat| it.steps.len() - it.steps.len() / it.turns * it.together;
+    let saved = |it: &Repeat| it.steps.len() - it.width() * it.together;
     let saved: usize = found.iter().map(saved).sum();
     if 4 * saved < 3 * steps.len() {
         return Vec::new();
@@ -352,5 +364,201 @@ fn number(source: Source) -> Option<isize> {
         | Source::Folded(number)
         | Source::Symbol(Symbol::State(number) | Symbol::Input(number)) => Some(number as isize),
         Source::Symbol(_) | Source::Constant(_) | Source::Solved(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::program::fixtures::{negative, state, value};
+
+    fn number(number: f64) -> Operand {
+        Operand::plain(Source::Constant(number))
+    }
+
+    /// What an operand is in a turn, by the reading and the operand of the first turn.
+    fn read(repeat: &Repeat, reading: &Reading, turn: usize, first: Operand) -> Operand {
+        let own = repeat.first + turn * repeat.values;
+        let behind =
+            |number: usize, stride: isize| number.saturating_add_signed(stride * turn as isize);
+        let source = match (reading, first.source) {
+            (Reading::Same, source) => source,
+            (Reading::Numbers(numbers), _) => Source::Constant(numbers[turn]),
+            (Reading::Own(place), _) => Source::Value(own + place),
+            (Reading::Before(_), source) if turn == 0 => source,
+            (Reading::Before(place), _) => Source::Value(own - repeat.values + place),
+            (Reading::Along(stride), Source::Value(number)) => {
+                Source::Value(behind(number, *stride))
+            }
+            (Reading::Along(stride), Source::Folded(number)) => {
+                Source::Folded(behind(number, *stride))
+            }
+            (Reading::Along(stride), Source::Symbol(Symbol::State(number))) => {
+                Source::Symbol(Symbol::State(behind(number, *stride)))
+            }
+            (Reading::Along(stride), Source::Symbol(Symbol::Input(number))) => {
+                Source::Symbol(Symbol::Input(behind(number, *stride)))
+            }
+            (Reading::Along(_), source) => panic!("{source:?} does not come in rows"),
+        };
+        Operand { source, ..first }
+    }
+
+    /// The steps are those that turns and readings say.
+    fn assert_told(repeat: &Repeat, steps: &[Step]) {
+        for turn in 0..repeat.turns {
+            let mut readings = repeat.readings.iter();
+            for (place, first) in repeat.turn(steps).iter().enumerate() {
+                let told: Vec<Operand> = first
+                    .operands()
+                    .iter()
+                    .map(|operand| {
+                        read(repeat, readings.next().expect("a reading"), turn, *operand)
+                    })
+                    .collect();
+                let step = &steps[repeat.steps.start + turn * repeat.width() + place];
+                assert_eq!(discriminant(step), discriminant(first));
+                assert_eq!(&*step.operands(), &told[..], "turn {turn}, step {place}");
+            }
+            assert_eq!(readings.next(), None);
+        }
+    }
+
+    fn found(steps: &[Step]) -> Vec<Repeat> {
+        let found = Search::of(steps).all();
+        for repeat in &found {
+            assert_told(repeat, steps);
+        }
+        found
+    }
+
+    /// Cells that each read two states, a number of their own, and the cell before.
+    fn cells(count: usize) -> Vec<Step> {
+        let cell = |k: usize| {
+            let before = if k == 0 { state(99) } else { value(4 * k - 2) };
+            [
+                Step::Multiply(state(2 * k), number(2.0 + k as f64)),
+                Step::Multiply(value(4 * k), state(2 * k + 1)),
+                Step::Sine(value(4 * k + 1)),
+                Step::Add(value(4 * k + 2), negative(before)),
+            ]
+        };
+        (0..count).flat_map(cell).collect()
+    }
+
+    #[test]
+    fn cells_in_a_row_are_turns() {
+        let found = found(&cells(20));
+        assert_eq!(found.len(), 1, "{found:?}");
+        let repeat = &found[0];
+        assert_eq!((repeat.width(), repeat.values), (4, 4));
+        // The first cell reads a state where the others read a value.
+        assert!(repeat.turns >= 18, "{repeat:?}");
+        let has = |is: fn(&Reading) -> bool| repeat.readings.iter().filter(|it| is(it)).count();
+        assert_eq!(has(|it| matches!(it, Reading::Numbers(_))), 1);
+        assert_eq!(has(|it| *it == Reading::Along(2)), 2);
+        // What is handed on, wherever a turn begins, is a sine, or it and what it is of.
+        assert_eq!(has(|it| matches!(it, Reading::Before(_))), 1, "{repeat:?}");
+    }
+
+    #[test]
+    fn values_of_one_loop_are_read_along_by_the_next_and_back() {
+        let mut steps: Vec<Step> = (0..16).map(|k| Step::SineCosine(state(k))).collect();
+        for k in 0..16 {
+            let sum = 32 + 2 * k;
+            steps.push(Step::Multiply(value(30 - 2 * k), value(31 - 2 * k)));
+            steps.push(Step::Add(value(sum), state(3)));
+        }
+        let found = found(&steps);
+        let shapes: Vec<_> = found.iter().map(|it| (it.width(), it.turns)).collect();
+        assert_eq!(shapes, [(1, 16), (2, 16)]);
+        assert_eq!(found[0].together, ANGLES);
+        let back = Reading::Along(-2);
+        assert_eq!(
+            found[1].readings,
+            [back.clone(), back, Reading::Own(0), Reading::Same]
+        );
+    }
+
+    #[test]
+    fn another_operation_sign_or_stride_ends_a_loop() {
+        let ends = |change: fn(&mut Step)| {
+            let mut steps = cells(40);
+            change(&mut steps[83]);
+            let turns = found(&steps).into_iter().map(|it| it.turns);
+            turns.max().unwrap_or(0)
+        };
+        assert!(ends(|_| {}) >= 38);
+        for change in [
+            |step: &mut Step| *step = step.with(&negative),
+            |step: &mut Step| *step = Step::Multiply(value(82), value(78)),
+            |step: &mut Step| *step = Step::Add(value(82), negative(value(74))),
+        ] {
+            assert!(ends(change) < 22);
+        }
+    }
+
+    #[test]
+    fn few_steps_and_few_alike_have_no_loop() {
+        let repeats = |steps: Vec<Step>| {
+            let values = steps.iter().map(Step::results).sum();
+            repeats(&Routine {
+                steps,
+                names: vec![String::new(); values],
+                ..Routine::default()
+            })
+        };
+        assert!(repeats(cells(20)).is_empty());
+        assert_eq!(repeats(cells(40)).len(), 1);
+        let mut mixed = cells(40);
+        let other = |k: usize| match k % 7 * k % 5 {
+            0 => Step::Add(state(k % 3), state(k)),
+            1 => Step::Multiply(state(k), state(k * k)),
+            _ => Step::Sine(state(k * k % 11)),
+        };
+        mixed.extend((0..200).map(other));
+        assert!(repeats(mixed).is_empty());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Rows of a few steps with random operands, some of them changed.
+        #[test]
+        fn what_is_told_of_turns_is_so(
+            turn in prop::collection::vec((0..3usize, 0..5usize, 0..5usize, 0..9usize), 1..9),
+            turns in 4..30usize,
+            changes in prop::collection::vec((0..300usize, 0..5usize), 0..3),
+        ) {
+            let width = turn.len();
+            let operand = |kind: usize, more: usize, at: usize, turn: usize| match kind {
+                0 => state(more),
+                1 => state(3 * turn + more),
+                2 => number(if more < 4 { 2.0 } else { turn as f64 }),
+                _ if at > more => value(at - 1 - more),
+                _ => state(7),
+            };
+            let mut steps = Vec::new();
+            for number in 0..turns {
+                for (operation, a, b, more) in &turn {
+                    let at = steps.len();
+                    let a = operand(*a, *more, at, number);
+                    let b = operand(*b, width, at, number);
+                    steps.push(match operation {
+                        0 => Step::Add(a, b),
+                        1 => Step::Multiply(a, negative(b)),
+                        _ => Step::MultiplyAdd(a, b, state(more % 3)),
+                    });
+                }
+            }
+            for (place, kind) in changes {
+                let place = place % steps.len();
+                let other = operand(kind, 1, place, 5);
+                steps[place] = Step::Add(other, other);
+            }
+            found(&steps);
+        }
     }
 }

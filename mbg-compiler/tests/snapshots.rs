@@ -71,6 +71,8 @@ fn expansion_of_the_oscillator() {
 fn derivative_of_a_line_of_cells() {
     let expansion = formatted(LINE);
     let begin = expansion.find("fn derivative_into").expect("it is there");
-    let (body, _) = expansion[begin..].split_once("\n        }").expect("it ends");
+    let (body, _) = expansion[begin..]
+        .split_once("\n        }")
+        .expect("it ends");
     insta::assert_snapshot!("derivative_line", body);
 }

@@ -100,9 +100,14 @@ impl Solver<'_> {
             divisor.pivots = self.pool.multiply(divisor.pivots, pivot);
             system.eliminate(self.pool, row, column)?;
         }
-        let rows: Vec<usize> = system.open().iter().copied().collect();
-        let (columns, matrix, right) = system.rest();
+        let mut rows: Vec<usize> = system.open().iter().copied().collect();
+        let (columns, mut matrix, mut right) = system.rest();
         if rows.len() > ADJUGATE {
+            if let Some(order) = matrix.order_of_symmetry() {
+                matrix = matrix.with_rows(&order);
+                right = order.iter().map(|row| right[*row]).collect();
+                rows = order.into_iter().map(|row| rows[row]).collect();
+            }
             *divisor = Divisor {
                 last: self.distance(&matrix).ok_or(Failure::Singular)?,
                 ..Divisor::ONE

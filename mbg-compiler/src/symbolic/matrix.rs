@@ -130,6 +130,53 @@ impl Matrix {
             .then_some(signs)
     }
 
+    /// The rows in an order in which the matrix equals its transpose but for signs of rows, if there is one: that of an inertia
+    /// has one, also where its rows and its columns were sorted apart. It is looked for row by row, and not for long: hardly
+    /// ever do as many entries agree that a row was taken in vain.
+    #[must_use]
+    pub fn order_of_symmetry(&self) -> Option<Vec<usize>> {
+        let mut order = Vec::with_capacity(self.rows);
+        let mut tries = self.rows * self.rows * self.rows;
+        let is_found = self.ordered(&mut order, &mut tries);
+        let has_signs = || self.with_rows(&order).signs_of_symmetry().is_some();
+        (is_found && has_signs()).then_some(order)
+    }
+
+    /// Whether rows that go on from these were found.
+    fn ordered(&self, order: &mut Vec<usize>, tries: &mut usize) -> bool {
+        let place = order.len();
+        if place == self.rows {
+            return true;
+        }
+        for row in 0..self.rows {
+            let is_like = |(other, before): (usize, &usize)| {
+                self.at(row, other).magnitude() == self.at(*before, place).magnitude()
+            };
+            let fits = !order.contains(&row)
+                && self.at(row, place) != Expression::ZERO
+                && order.iter().enumerate().all(is_like);
+            if !fits || *tries == 0 {
+                continue;
+            }
+            *tries -= 1;
+            order.push(row);
+            if self.ordered(order, tries) {
+                return true;
+            }
+            order.pop();
+        }
+        false
+    }
+
+    /// The same with its rows in another order.
+    #[must_use]
+    pub fn with_rows(&self, order: &[usize]) -> Self {
+        let entries = order
+            .iter()
+            .flat_map(|row| (0..self.columns).map(|column| self.at(*row, column)));
+        Self::new(order.len(), self.columns, entries.collect())
+    }
+
     /// The same with some rows negated.
     #[must_use]
     pub fn with_rows_negated(&self, negated: &[bool]) -> Self {
@@ -499,6 +546,34 @@ mod tests {
             turn.to_matrix(&mut pool).determinant(&mut pool),
             Expression::ONE
         );
+    }
+
+    #[test]
+    fn rows_of_a_symmetric_matrix_are_found_in_any_order() {
+        let mut pool = Pool::new();
+        let symbol = |pool: &mut Pool, state| pool.symbol(Symbol::State(state));
+        let entry = |row: usize, column: usize| row.min(column) * 5 + row.max(column);
+        let mut entries = Vec::new();
+        for (row, column) in (0..5).flat_map(|row| (0..5).map(move |column| (row, column))) {
+            entries.push(symbol(&mut pool, entry(row, column)).flipped(row == 3));
+        }
+        let matrix = Matrix::new(5, 5, entries);
+        let mixed = matrix.with_rows(&[3, 0, 4, 1, 2]);
+        assert_eq!(mixed.order_of_symmetry(), Some(vec![1, 3, 4, 0, 2]));
+        let mut other = mixed;
+        other.entries[7] = symbol(&mut pool, 99);
+        assert_eq!(other.order_of_symmetry(), None);
+        // A mass whose balances are in axes that turn is none.
+        let angles = angles(&mut pool);
+        let turn = (0..3).map(|axis| Factor::Rotation {
+            axis,
+            angle: angles[axis],
+        });
+        let turn = Product {
+            factors: turn.collect(),
+        };
+        let turn = turn.to_matrix(&mut pool).with_rows(&[2, 0, 1]);
+        assert_eq!(turn.order_of_symmetry(), None);
     }
 
     #[test]

@@ -32,9 +32,9 @@ pub(super) struct Left {
 #[derive(Clone, Copy)]
 pub(super) struct Home {
     repeat: usize,
-    pub(super) turn: usize,
+    turn: usize,
     /// The value in its place in the first turn.
-    pub(super) first: usize,
+    first: usize,
 }
 
 /// Rows of the derivative, one for each turn.

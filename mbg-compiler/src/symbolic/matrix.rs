@@ -529,17 +529,22 @@ mod tests {
         [0, 1, 2].map(|index| pool.symbol(Symbol::State(index)))
     }
 
+    fn turned(angles: &[Expression; 3]) -> Product {
+        let factors = angles.iter().enumerate();
+        let factors = factors.map(|(axis, angle)| Factor::Rotation {
+            axis,
+            angle: *angle,
+        });
+        Product {
+            factors: factors.collect(),
+        }
+    }
+
     #[test]
     fn rotation_times_its_transpose_is_the_identity_node_for_node() {
         let mut pool = Pool::new();
         let angles = angles(&mut pool);
-        let turn = (0..3).map(|axis| Factor::Rotation {
-            axis,
-            angle: angles[axis],
-        });
-        let turn = Product {
-            factors: turn.collect(),
-        };
+        let turn = turned(&angles);
         let product = turn.transpose().then(turn.clone()).to_matrix(&mut pool);
         assert_eq!(product, Matrix::diagonal(&[Expression::ONE; 3]));
         assert_eq!(
@@ -565,13 +570,7 @@ mod tests {
         assert_eq!(other.order_of_symmetry(), None);
         // A mass whose balances are in axes that turn is none.
         let angles = angles(&mut pool);
-        let turn = (0..3).map(|axis| Factor::Rotation {
-            axis,
-            angle: angles[axis],
-        });
-        let turn = Product {
-            factors: turn.collect(),
-        };
+        let turn = turned(&angles);
         let turn = turn.to_matrix(&mut pool).with_rows(&[2, 0, 1]);
         assert_eq!(turn.order_of_symmetry(), None);
     }

@@ -85,7 +85,7 @@ impl Repeat {
 }
 
 /// The repeats of a routine, if they save three quarters of its steps. On an Intel Xeon with AVX-512 a chain of 32 links, of which
-/// 0.55 would be saved, takes 7 % longer with loops, and one of 64 links, of which 0.78 are, 20 % less; lines of 25 to 400
+/// 0.55 would be saved, takes 7 % longer with loops, and one of 64 links, of which 0.78 are, 16 to 20 % less; lines of 25 to 400
 /// cells, whose loops LLVM vectorises, take 30 to 40 % less.
 pub(super) fn repeats(routine: &Routine) -> Vec<Repeat> {
     let steps = &routine.steps;

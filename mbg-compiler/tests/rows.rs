@@ -35,7 +35,7 @@ fn twice_as_many_rods_take_no_more_lines() {
 }
 
 #[test]
-fn what_is_short_or_all_different_has_no_loop() {
+fn few_rods_have_no_loop() {
     let loops = |compiled: &Compiled| {
         compiled.program.routines[Routines::DERIVATIVE]
             .repeats

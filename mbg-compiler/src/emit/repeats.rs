@@ -126,37 +126,35 @@ impl Left {
 
     /// Results that go on from row to row, and are nothing else.
     fn rows(&self, results: &[Operand], places: &[Option<Place>]) -> BTreeMap<usize, Rows> {
-        let mut of_value: BTreeMap<usize, Vec<(usize, isize, bool)>> = BTreeMap::new();
-        for (row, result) in results.iter().enumerate() {
-            let Some(home) = self.home_of(*result) else {
-                continue;
+        let mut of_value: BTreeMap<usize, Vec<(usize, Option<usize>, bool)>> = BTreeMap::new();
+        for (result, place) in results.iter().zip(places) {
+            let row = match place {
+                Some(Place::Derivative(row)) => Some(*row),
+                _ => None,
             };
-            let row = match places.get(row) {
-                Some(Some(Place::Derivative(row))) => *row as isize,
-                _ => -1,
-            };
-            let rows = of_value.entry(home.first).or_default();
-            rows.push((home.turn, row, result.negative));
+            if let Some(home) = self.home_of(*result) {
+                let rows = of_value.entry(home.first).or_default();
+                rows.push((home.turn, row, result.negative));
+            }
         }
         let in_a_row = of_value.into_iter().filter_map(|(value, mut rows)| {
             rows.sort_unstable();
-            let [(_, first, negative), (_, second, _), ..] = rows[..] else {
+            let [(_, Some(first), negative), (_, Some(second), _), ..] = rows[..] else {
                 return None;
             };
-            let stride = second - first;
+            let stride = second as isize - first as isize;
             let turns = self.repeats[self.home(value)?.repeat].turns;
-            let expected = (0..turns).map(|turn| (turn, first + turn as isize * stride, negative));
-            (first >= 0 && rows.iter().copied().eq(expected)).then(|| {
-                let first = first as usize;
-                (
-                    value,
-                    Rows {
-                        first,
-                        stride,
-                        negative,
-                    },
-                )
-            })
+            let row = |turn: usize| first.checked_add_signed(turn as isize * stride);
+            let expected = (0..turns).map(|turn| (turn, row(turn), negative));
+            let rows_of_turns = Rows {
+                first,
+                stride,
+                negative,
+            };
+            rows.iter()
+                .copied()
+                .eq(expected)
+                .then_some((value, rows_of_turns))
         });
         in_a_row.collect()
     }

@@ -86,14 +86,7 @@ impl Solver<'_> {
             self.note(system.entry(*row, *column), &[]);
             return Ok(system.eliminate(self.pool, *row, *column)?);
         }
-        let mut matrix = part(system, rows, columns);
-        let mut rows = rows.clone();
-        if rows.len() > ADJUGATE
-            && let Some(order) = matrix.order_of_symmetry()
-        {
-            matrix = matrix.with_rows(&order);
-            rows = order.into_iter().map(|row| rows[row]).collect();
-        }
+        let matrix = part(system, rows, columns);
         let right = rows.iter().map(|row| system.right(*row)).collect();
         let (solver, right) = self.solver(&matrix, right).ok_or(Failure::Singular)?;
         let held = rows.iter().flat_map(|row| system.row(*row));

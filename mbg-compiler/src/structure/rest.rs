@@ -100,14 +100,11 @@ impl Solver<'_> {
             divisor.pivots = self.pool.multiply(divisor.pivots, pivot);
             system.eliminate(self.pool, row, column)?;
         }
-        let mut rows: Vec<usize> = system.open().iter().copied().collect();
-        let (columns, mut matrix, mut right) = system.rest();
+        let rows: Vec<usize> = system.open().iter().copied().collect();
+        let (columns, matrix, right) = system.rest();
         if rows.len() > ADJUGATE {
-            if let Some(order) = matrix.order_of_symmetry() {
-                matrix = matrix.with_rows(&order);
-                right = order.iter().map(|row| right[*row]).collect();
-                rows = order.into_iter().map(|row| rows[row]).collect();
-            }
+            let (rows, matrix) = symmetric(rows, matrix);
+            let right = rows.iter().map(|row| system.right(*row)).collect();
             *divisor = Divisor {
                 last: self.distance(&matrix).ok_or(Failure::Singular)?,
                 ..Divisor::ONE
@@ -248,4 +245,13 @@ impl Solver<'_> {
         };
         (rest, values)
     }
+}
+
+/// Rows with their matrix in an order in which it is symmetric but for signs, if there is one.
+fn symmetric(rows: Vec<usize>, matrix: Matrix) -> (Vec<usize>, Matrix) {
+    let Some(order) = matrix.order_of_symmetry() else {
+        return (rows, matrix);
+    };
+    let matrix = matrix.with_rows(&order);
+    (order.into_iter().map(|row| rows[row]).collect(), matrix)
 }

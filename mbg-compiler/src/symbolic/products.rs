@@ -34,13 +34,15 @@ pub fn products(pool: &mut Pool, others: &[Expression], roots: &[Expression]) {
     }
 }
 
-/// Whether it is a sum or product with a part that nothing else needs.
+/// Whether it is a sum, product or quotient with a part that nothing else needs.
 fn is_long(pool: &Pool, uses: &Uses, node: Expression) -> bool {
     let operation = pool.operation(node);
     let is_own =
         |part: &Expression| uses.count(*part) == 1 && !pool.operation(*part).operands().is_empty();
-    matches!(operation, Operation::Add(..) | Operation::Multiply(..))
-        && uses.count(node) > 0
+    matches!(
+        operation,
+        Operation::Add(..) | Operation::Multiply(..) | Operation::Divide(..)
+    ) && uses.count(node) > 0
         && operation.operands().iter().any(is_own)
 }
 
@@ -239,6 +241,17 @@ mod tests {
         let sum = pool.add(first, second);
         products(&mut pool, &[], &[along, sum]);
         assert_eq!(*pool.operation(sum), Operation::Divide(x, cosine));
+    }
+
+    #[test]
+    fn the_quotient_of_a_factor_that_is_there_is_a_factor() {
+        let mut pool = Pool::new();
+        let [x, y, z] = states(&mut pool);
+        let quotient = pool.divide(x, z).unwrap();
+        let product = pool.multiply(x, y);
+        let whole = pool.divide(product, z).unwrap();
+        products(&mut pool, &[], &[quotient, whole]);
+        assert_eq!(*pool.operation(whole), Operation::Multiply(y, quotient));
     }
 
     #[test]

@@ -145,7 +145,15 @@ where
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
         let mut memory = self.memory;
-        *jacobian = self.system.jacobian_state(t, x, &u, &mut memory);
+        let mut derivative = SVector::from_element(T::from_f64(0.0));
+        self.system.derivative_and_jacobian_into(
+            t,
+            x,
+            &u,
+            &mut memory,
+            &mut derivative,
+            jacobian,
+        );
     }
 
     /// Writes factors of `I − scale ∂f/∂x`.

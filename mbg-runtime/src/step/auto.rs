@@ -15,7 +15,7 @@ use super::problem::Problem;
 use super::radau::{Radau5, Radau9};
 use super::rosenbrock::Rodas5P;
 use super::{Stopped, piece_end, seen};
-use crate::{Input, Real, System};
+use crate::{Input, Real, Sparsity, System};
 
 /// Integrates with a method that it picks for each piece between two jumps of the input.
 ///
@@ -39,13 +39,13 @@ use crate::{Input, Real, System};
 ///
 /// | method | matrices | 400 states |
 /// |---|---|---|
-/// | [`Rodas4`](crate::Rodas4), [`Rodas5P`], [`Ros2`](crate::Ros2) | 4 | 5.1 MB |
-/// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 5 | 6.3 MB |
-/// | [`Radau5`] | 6 | 7.5 MB |
-/// | [`Radau9`] | 8 | 10 MB |
-/// | `Auto` while a model is not stiff | 3 | 3.8 MB |
+/// | [`Rodas4`](crate::Rodas4), [`Rodas5P`], [`Ros2`](crate::Ros2) | 2 | 2.8 MB |
+/// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 3 | 4.1 MB |
+/// | [`Radau5`] | 4 | 5.5 MB |
+/// | [`Radau9`] | 6 | 8.1 MB |
+/// | `Auto` while a model is not stiff | 1 | 1.4 MB |
 ///
-/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes two more. [`Linearised::of`](crate::Linearised::of)
+/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. [`Linearised::of`](crate::Linearised::of)
 /// takes 4, [`Linearised::held`](crate::Linearised::held) 10, and [`Trim::solve`](crate::Trim::solve) 13.
 ///
 /// The main thread has 8 MB on most systems and others, such as those of tests, have 2 MB. A larger model overflows it, and the process is aborted: run it in a
@@ -187,7 +187,7 @@ impl Auto<'_> {
     {
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         problem.jacobian(start, x, &mut jacobian);
-        let (fastest, oscillates) = fastest(&jacobian);
+        let (fastest, oscillates) = fastest(&jacobian, S::SPARSITY);
         let horizon = seen(end - start);
         let angle = fastest * horizon;
         let (method, reason) = if angle > STIFF {
@@ -315,15 +315,21 @@ where
     T: Real,
     S: System<T, N, M, P>,
 {
-    fastest(&system.jacobian_state(t, x, u, &mut memory))
+    let mut derivative = SVector::from_element(T::from_f64(0.0));
+    let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
+    system.derivative_and_jacobian_into(t, x, u, &mut memory, &mut derivative, &mut jacobian);
+    fastest(&jacobian, S::SPARSITY)
 }
 
 /// Size of the largest eigenvalue of all lanes, and whether it is one of a pair whose angle to the negative axis exceeds 45°.
-fn fastest<T: Real, const N: usize>(jacobian: &SMatrix<T, N, N>) -> (f64, bool) {
+fn fastest<T: Real, const N: usize>(
+    jacobian: &SMatrix<T, N, N>,
+    sparsity: Option<&Sparsity>,
+) -> (f64, bool) {
     let lanes = (0..).map_while(|number| {
         let some = jacobian.iter().next()?;
         lane(*some, number)?;
-        Some(fastest_of(jacobian, number))
+        Some(fastest_of(jacobian, sparsity, number))
     });
     lanes.fold(
         (0.0, false),
@@ -347,7 +353,11 @@ fn lane<T: Real>(number: T, place: u32) -> Option<f64> {
 ///
 /// The last three vectors of the power method are nearly dependent: `v″ = a v′ + b v` has the eigenvalues as roots. Where many
 /// modes are about as fast as each other they are not, and the size is that by which the vectors have grown.
-fn fastest_of<T: Real, const N: usize>(jacobian: &SMatrix<T, N, N>, number: u32) -> (f64, bool) {
+fn fastest_of<T: Real, const N: usize>(
+    jacobian: &SMatrix<T, N, N>,
+    sparsity: Option<&Sparsity>,
+    number: u32,
+) -> (f64, bool) {
     let seen = |it: T| lane(it, number).unwrap_or(f64::NAN);
     let scale = jacobian
         .iter()
@@ -358,9 +368,20 @@ fn fastest_of<T: Real, const N: usize>(jacobian: &SMatrix<T, N, N>, number: u32)
     // Uneven, so that no symmetry of the model hides a mode.
     let mut v = SVector::<f64, N>::from_fn(|row, _| 1.0 + 0.37 * Real::sin(row as f64 * 1.7));
     let times = |v: &SVector<f64, N>| {
+        let v = v / scale;
         let mut product = SVector::<f64, N>::from_element(0.0);
-        for (column, factor) in jacobian.column_iter().zip(v) {
-            product.zip_apply(&column, |sum, it| *sum += seen(it) / scale * factor);
+        if let Some(Sparsity { rows, .. }) = sparsity {
+            for ((row, columns), sum) in rows.iter().enumerate().zip(&mut product) {
+                for column in columns.iter().map(|it| usize::from(*it)) {
+                    if let (Some(it), Some(factor)) = (jacobian.get((row, column)), v.get(column)) {
+                        *sum += seen(*it) * factor;
+                    }
+                }
+            }
+        } else {
+            for (column, factor) in jacobian.column_iter().zip(&v) {
+                product.zip_apply(&column, |sum, it| *sum += seen(it) * factor);
+            }
         }
         product
     };
@@ -420,17 +441,30 @@ mod tests {
 
     #[test]
     fn fastest_modes_are_found() {
-        let (size, oscillates) = fastest(&SMatrix::from([[0.0, -1e8], [1.0, -10.0]]));
+        let (size, oscillates) = fastest(&SMatrix::from([[0.0, -1e8], [1.0, -10.0]]), None);
         assert!((size / 1e4 - 1.0).abs() < 1e-6 && oscillates, "{size}");
-        let (size, oscillates) = fastest(&SMatrix::from([[-1e6, 3.0], [2.0, -1.0]]));
+        let (size, oscillates) = fastest(&SMatrix::from([[-1e6, 3.0], [2.0, -1.0]]), None);
         assert!((size / 1e6 - 1.0).abs() < 1e-6 && !oscillates, "{size}");
-        let (size, oscillates) = fastest(&SMatrix::from([[0.0, 1.0], [1.0, 0.0]]));
+        let (size, oscillates) = fastest(&SMatrix::from([[0.0, 1.0], [1.0, 0.0]]), None);
         assert!((size - 1.0).abs() < 1e-9 && !oscillates, "{size}");
         assert_eq!(
-            fastest(&SMatrix::from([[0.0, 0.0], [1.0, 0.0]])),
+            fastest(&SMatrix::from([[0.0, 0.0], [1.0, 0.0]]), None),
             (0.0, false)
         );
-        assert_eq!(fastest(&SMatrix::<f64, 0, 0>::from([])), (0.0, false));
+        assert_eq!(fastest(&SMatrix::<f64, 0, 0>::from([]), None), (0.0, false));
+    }
+
+    #[test]
+    fn zeros_of_a_pattern_are_left_out() {
+        let sparsity = Sparsity {
+            rows: &[&[0, 1], &[0, 1, 2], &[1]],
+            elimination: None,
+        };
+        let matrix = SMatrix::from([[-3.0, 1.0, 0.0], [2.0, -5.0, 7.0], [0.0, 4.0, 0.0]]);
+        assert_eq!(fastest(&matrix, Some(&sparsity)), fastest(&matrix, None));
+        let mut other = matrix;
+        other[(2, 2)] = f64::NAN;
+        assert_eq!(fastest(&other, Some(&sparsity)), fastest(&matrix, None));
     }
 
     #[test]
@@ -452,7 +486,7 @@ mod tests {
             })
         };
         for unit in [1.0, 1e3, 1e6, 1e-6] {
-            let (size, _) = fastest(&wave(unit));
+            let (size, _) = fastest(&wave(unit), None);
             assert!(size > 1.0 && size < 4.0, "{unit:e}: {size}");
         }
     }

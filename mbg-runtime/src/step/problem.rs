@@ -146,14 +146,8 @@ where
         let u = self.input.value(t, self.since);
         let mut memory = self.memory;
         let mut derivative = SVector::from_element(T::from_f64(0.0));
-        self.system.derivative_and_jacobian_into(
-            t,
-            x,
-            &u,
-            &mut memory,
-            &mut derivative,
-            jacobian,
-        );
+        self.system
+            .derivative_and_jacobian_into(t, x, &u, &mut memory, &mut derivative, jacobian);
     }
 
     /// Writes factors of `I − scale ∂f/∂x`.

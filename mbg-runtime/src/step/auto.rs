@@ -29,8 +29,9 @@ use crate::{Input, Real, Sparsity, System};
 ///
 /// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of steps of
 /// the power method: where many modes are about as fast, within a factor of two. [`Auto::choose`] tells what is picked and
-/// why. A problem may become stiff later on: every 50 steps of a method for smooth problems the fastest mode is looked at
-/// again, and where stability is what keeps the steps short, the piece goes on with a method for stiff ones.
+/// why. A problem may become stiff later on: while a method for smooth problems has more than 1000 steps to go, the fastest mode
+/// is looked at after 50 of them, and again whenever a quarter of them has been added, at least 50. Where stability is what keeps
+/// the steps short, the piece goes on with a method for stiff ones.
 ///
 /// # Stack
 ///
@@ -258,18 +259,19 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         let picked = self.pick(problem, ends, &x).method;
         let (system, input, since) = (problem.system, problem.input, problem.since);
         let mut stiff = None;
-        let mut steps = 0_u32;
+        let (mut steps, mut next) = (0_u64, WATCHED);
         let mut watch = |step: &mut Step<'_, T, N, S::Memory>| {
             observer(step)?;
-            steps = (steps + 1) % WATCHED;
-            if steps != 0 {
+            steps += 1;
+            let (t, x) = (step.end(), *step.state());
+            let (length, left) = (seen(t - step.start()), seen(ends.1 - t));
+            if steps < next || left < FEW * length {
                 return ControlFlow::Continue(());
             }
-            let (t, x) = (step.end(), *step.state());
+            next = steps + WATCHED.max(steps / 4);
             let u = input.value(t, since);
             let (fastest, oscillates) = fastest_at(system, t, &x, &u, step.memory());
-            let length = seen(t - step.start());
-            if fastest * length > UNSTABLE && fastest * seen(ends.1 - t) > STIFF {
+            if fastest * length > UNSTABLE && fastest * left > STIFF {
                 stiff = Some((t, x, oscillates));
                 return ControlFlow::Break(());
             }
@@ -294,13 +296,23 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
     }
 }
 
-/// Steps between two looks at the fastest mode.
-const WATCHED: u32 = 50;
+/// The least number of steps between two looks at the fastest mode.
+const WATCHED: u64 = 50;
+/// So few steps have no mode that is stiff in what is left: none moves through much more than 6 rad in a step that is stable.
+const FEW: f64 = 1000.0;
 /// An angle per step, in rad, that is near the bound of stability of the methods for smooth problems.
 const UNSTABLE: f64 = 2.0;
 
 /// Rounds of the power method.
 const ROUNDS: usize = 60;
+
+/// An entry of a pattern takes so many times as long as one of whole columns, of which several are multiplied at once.
+const SPARSE: usize = 4;
+
+/// How many entries a pattern has.
+fn entries(sparsity: &Sparsity) -> usize {
+    sparsity.rows.iter().map(|row| row.len()).sum()
+}
 
 /// What [`fastest`] tells of the Jacobian there.
 #[inline(never)]
@@ -367,6 +379,7 @@ fn fastest_of<T: Real, const N: usize>(
     }
     // Uneven, so that no symmetry of the model hides a mode.
     let mut v = SVector::<f64, N>::from_fn(|row, _| 1.0 + 0.37 * Real::sin(row as f64 * 1.7));
+    let sparsity = sparsity.filter(|it| SPARSE * entries(it) < N * N);
     let times = |v: &SVector<f64, N>| {
         let v = v / scale;
         let mut product = SVector::<f64, N>::from_element(0.0);
@@ -380,7 +393,7 @@ fn fastest_of<T: Real, const N: usize>(
             }
         } else {
             for (column, factor) in jacobian.column_iter().zip(&v) {
-                product.zip_apply(&column, |sum, it| *sum += seen(it) * factor);
+                product.axpy(*factor, &column.map(seen), 1.0);
             }
         }
         product
@@ -457,13 +470,26 @@ mod tests {
     #[test]
     fn zeros_of_a_pattern_are_left_out() {
         let sparsity = Sparsity {
-            rows: &[&[0, 1], &[0, 1, 2], &[1]],
+            rows: &[
+                &[0, 1],
+                &[1, 8],
+                &[2],
+                &[2, 3],
+                &[4],
+                &[5],
+                &[4, 6],
+                &[7],
+                &[0, 8],
+            ],
             elimination: None,
         };
-        let matrix = SMatrix::from([[-3.0, 1.0, 0.0], [2.0, -5.0, 7.0], [0.0, 4.0, 0.0]]);
+        let matrix = SMatrix::<f64, 9, 9>::from_fn(|row, column| {
+            let is_there = sparsity.rows[row].contains(&(column as u16));
+            f64::from(u8::from(is_there)) * (1.0 + row as f64 - 3.0 * column as f64)
+        });
         assert_eq!(fastest(&matrix, Some(&sparsity)), fastest(&matrix, None));
         let mut other = matrix;
-        other[(2, 2)] = f64::NAN;
+        other[(2, 5)] = f64::NAN;
         assert_eq!(fastest(&other, Some(&sparsity)), fastest(&matrix, None));
     }
 

@@ -161,7 +161,8 @@ fn scales<T: Real, const K: usize>(matrix: &SMatrix<T, K, K>) -> [T; K] {
 /// `P D S D Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot.
 #[derive(Clone, Debug)]
 struct Pivoted<T, const K: usize> {
-    /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
+    /// `L` below the diagonal, the reciprocals of that on it, in the order of the pivots. In lanes that have ended a column
+    /// is zero.
     lower: [[T; K]; K],
     order: Order<T, K>,
     /// What rows and columns were multiplied by, in the order of the pivots.
@@ -232,11 +233,15 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
             }
             self.kept[k] = kept;
             let root = zero.select_less(kept, pivot, one).sqrt();
-            self.lower[k][k] = root;
+            let inverse = kept / root;
+            self.lower[k][k] = inverse;
             let mut column = [zero; K];
             for i in k + 1..K {
-                column[i] = kept * self.lower[i][k] / root;
+                column[i] = self.lower[i][k] * inverse;
                 self.lower[i][k] = column[i];
+            }
+            // The column is there before it is read: several elements at once would wait for each of them.
+            for i in k + 1..K {
                 let factor = column[i];
                 let row = self.lower[i][k + 1..=i].iter_mut();
                 for (element, other) in row.zip(&column[k + 1..=i]) {
@@ -296,9 +301,13 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
     /// `L₁₁ᵀ x = y` in place, with zeros for pivots that do not count.
     fn solve_transposed(&self, x: &mut [T; K]) {
         for k in (0..self.rank).rev() {
-            let sum =
-                (k + 1..self.rank).fold(T::from_f64(0.0), |sum, i| sum + self.lower[i][k] * x[i]);
-            x[k] = self.kept[k] * (x[k] - sum) / self.lower[k][k];
+            let (before, rest) = x.split_at_mut(k);
+            let own = rest[0] * self.lower[k][k];
+            rest[0] = own;
+            // Row by row, as L stands in memory.
+            for (x, element) in before.iter_mut().zip(&self.lower[k]) {
+                *x -= *element * own;
+            }
         }
         x[self.rank..].fill(T::from_f64(0.0));
     }
@@ -324,7 +333,13 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         self.remove_null_space(&mut x);
         self.scale_each(&mut x);
         for k in 0..self.rank {
-            x[k] = self.kept[k] * (x[k] - dot(&self.lower[k][..k], &x[..k])) / self.lower[k][k];
+            let (before, rest) = x.split_at_mut(k + 1);
+            let own = before[k] * self.lower[k][k];
+            before[k] = own;
+            // Each sum by itself: one after the other they would wait for each other.
+            for (x, row) in rest.iter_mut().zip(&self.lower[k + 1..self.rank]) {
+                *x -= row[k] * own;
+            }
         }
         self.solve_transposed(&mut x);
         self.scale_each(&mut x);

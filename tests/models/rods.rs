@@ -1,0 +1,249 @@
+//! Rods without mass, and ropes that winches reel in.
+
+use mbg_runtime::{Adaptive, Constant, Dop853, Dual, Integrator, System, Trim, mbg};
+use nalgebra::{SMatrix, SVector, Vector3};
+
+use super::audit::Probe;
+use crate::references::noise::noise;
+
+mbg! {
+    /// A Delta robot, z up: three arms on the ground, driven by torques, and a platform that slides, joined by rods.
+    ///
+    /// Clavel, "Device for the movement and positioning of an element in space", US patent 4976582 (1990): the pair of rods of
+    /// each forearm is one here, since joints keep the platform level.
+    #[derivative]
+    pub(crate) model Delta {
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        input torque[3]: N*m;
+        1 ground[6]; 1 slid[6]; 1 slid_twice[6]; 1 platform[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        x: Prismatic { axis: 0 } (ground, slid);
+        y: Prismatic { axis: 1 } (slid, slid_twice);
+        z: Prismatic { axis: 2, initial: -0.66 } (slid_twice, platform);
+        load: PointMass { mass: 1.2 } (platform);
+        arms: for k in 0..3 {
+            let turn = 2.0 * 3.141592653589793 * k / 3;
+            1 shoulder[6]; 1 upper[6]; 1 elbow[6]; 1 wrist[6];
+            foot: Fixed { offset: [0.2 * cos(turn), 0.2 * sin(turn), 0.0], tilt: rot_z(turn) } (ground, shoulder);
+            hinge: Revolute { axis: 1, torque: torque[k] } (shoulder, upper);
+            arm: Body { mass: 0.5, inertia: diag(0.0001, 0.004, 0.004), centre: [0.15, 0.0, 0.0] } (upper);
+            to_elbow: Offset { by: [0.3, 0.0, 0.0] } (upper, elbow);
+            to_wrist: Offset { by: [0.05 * cos(turn), 0.05 * sin(turn), 0.0] } (platform, wrist);
+            rod: Rod { length: 0.8 } (elbow, wrist);
+        }
+        output place[3]: m = [x.travel, y.travel, z.travel];
+        output tension[3]: N = [arms[0].rod.tension, arms[1].rod.tension, arms[2].rod.tension];
+        output length[3]: m = [arms[0].rod.apart, arms[1].rod.apart, arms[2].rod.apart];
+    }
+
+    /// A bob on a rod in a plane.
+    #[derivative]
+    pub(crate) model Bob {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        1 ground[3]; 1 rail[3]; 1 bob[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        across: PlanarPrismatic { initial: 0.3 } (ground, rail);
+        up: PlanarPrismatic { direction: 1.5707963267948966, initial: -0.4 } (rail, bob);
+        mass: PlanarPointMass { mass: 1.5 } (bob);
+        rod: PlanarRod { length: 0.5 } (ground, bob);
+        output tension: N = rod.tension;
+    }
+
+    /// A trunk that a winch hoists.
+    #[derivative]
+    pub(crate) model Hoist {
+        causality componentwise;
+        input winch: m/s;
+        integral out: m = winch, initial: 1.2;
+        gravity [0.0, 0.0, -9.81];
+        1 ground[6]; 1 trunk[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        free: Free { orientation: quaternion, initial_position: [0.1, 0.0, -1.3] } (ground, trunk);
+        body: Body { mass: 3.0, inertia: 0.2 } (trunk);
+        rope: LineForce { kind: rope, stiffness: 1e3, damping: 20.0, rest: out, rest_rate: winch } (ground, trunk);
+        output tension: N = rope.reel.e;
+    }
+
+    /// A sled on a rail that a winch drags.
+    #[derivative]
+    pub(crate) model Dragged {
+        causality componentwise;
+        input winch: m/s;
+        integral out: m = winch, initial: 1.2;
+        1 floor[3]; 1 sled[3];
+        Sf still[3] { flow: 0.0 } -> floor;
+        rail: PlanarPrismatic { initial: 1.25 } (floor, sled);
+        load: PlanarPointMass { mass: 2.0 } (sled);
+        strap: PlanarLineForce { stiffness: 500.0, damping: 10.0, rest: out, rest_rate: winch } (floor, sled);
+        output tension: N = strap.reel.e;
+    }
+}
+
+/// Accelerations of the platform and of the arms, then tensions, by multipliers of Lagrange.
+fn lagrange(
+    [place, velocity]: [Vector3<f64>; 2],
+    [angles, rates]: [[f64; 3]; 2],
+    torque: [f64; 3],
+) -> SVector<f64, 9> {
+    let mut matrix = SMatrix::<f64, 9, 9>::zeros();
+    let mut right = SVector::<f64, 9>::zeros();
+    for axis in 0..3 {
+        matrix[(axis, axis)] = 1.2;
+    }
+    right[2] = -1.2 * 9.81;
+    for arm in 0..3 {
+        let turn = std::f64::consts::TAU * arm as f64 / 3.0;
+        let outwards = Vector3::new(turn.cos(), turn.sin(), 0.0);
+        let (sine, cosine) = angles[arm].sin_cos();
+        let along = outwards * cosine - Vector3::z() * sine;
+        let lever = -outwards * sine - Vector3::z() * cosine;
+        let span = place + 0.05 * outwards - (0.2 * outwards + 0.3 * along);
+        let relative = velocity - 0.3 * lever * rates[arm];
+        let (length, unit) = (span.norm(), span.normalize());
+        let row = 6 + arm;
+        matrix[(3 + arm, 3 + arm)] = 0.004 + 0.5 * 0.15 * 0.15;
+        right[3 + arm] = torque[arm] + 0.5 * 9.81 * 0.15 * cosine;
+        for axis in 0..3 {
+            matrix[(row, axis)] = unit[axis];
+            matrix[(axis, row)] = unit[axis];
+        }
+        matrix[(row, 3 + arm)] = -0.3 * unit.dot(&lever);
+        matrix[(3 + arm, row)] = matrix[(row, 3 + arm)];
+        // The rod turns, and the elbow is drawn inwards.
+        let turning = relative.norm_squared() - unit.dot(&relative).powi(2);
+        right[row] = -turning / length - 0.3 * unit.dot(&along) * rates[arm].powi(2);
+    }
+    matrix.lu().solve(&right).unwrap()
+}
+
+#[test]
+fn a_delta_robot_moves_as_by_multipliers_of_lagrange() {
+    let model = Delta::new(DeltaParameters::default()).unwrap();
+    let place = |name: &str| Delta::<f64>::META.state(name).unwrap();
+    let vector = |x: &SVector<f64, 12>, names: [&str; 3]| names.map(|name| x[place(name)]);
+    let travels = ["x.travel", "y.travel", "z.travel"];
+    let momenta = ["load.body.p.x", "load.body.p.y", "load.body.p.z"];
+    let angles = [0, 1, 2].map(|k| format!("arms[{k}].hinge.angle"));
+    let angles = [0, 1, 2].map(|k| angles[k].as_str());
+    let rates = [0, 1, 2].map(|k| format!("arms[{k}].hinge.rate.f"));
+    let rates = [0, 1, 2].map(|k| rates[k].as_str());
+    let mut next = noise(3);
+    for _ in 0..20 {
+        let torque = SVector::<f64, 3>::from_fn(|_, _| next());
+        let moved = model.initial_state().map(|it| it + 0.2 * next());
+        let x = model.close(0.0, moved, &torque, &[]).unwrap();
+        let slopes = model.derivative(0.0, &x, &torque, &mut ());
+        let outputs = model.output(0.0, &x, &torque, &mut ());
+        let expected = lagrange(
+            [
+                vector(&x, travels).into(),
+                Vector3::from(vector(&x, momenta)) / 1.2,
+            ],
+            [vector(&x, angles), vector(&x, rates)],
+            torque.into(),
+        );
+        let size = expected.amax();
+        let force = Vector3::from(vector(&slopes, momenta)) / 1.2;
+        let turning = vector(&slopes, rates);
+        let found = force
+            .iter()
+            .chain(&turning)
+            .chain(&outputs.as_slice()[3..6]);
+        for (found, expected) in found.zip(&expected) {
+            let error = (found - expected).abs();
+            assert!(error < 1e-10 * size, "{found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_delta_robot_is_trimmed_and_its_rods_keep_their_length() {
+    let model = Delta::new(DeltaParameters::default()).unwrap();
+    let wanted = [("place.x", 0.05), ("place.y", -0.02), ("place.z", -0.6)];
+    let trim = wanted
+        .iter()
+        .fold(Trim::new(&model), |trim, (name, value)| {
+            trim.output(name, *value)
+        });
+    let rest = trim.solve().unwrap();
+    let torque = Constant(rest.input + Vector3::new(0.3, -0.2, 0.1));
+    let mut apart = 0.0_f64;
+    Adaptive::new(Dop853, 1e-9, 1e-9)
+        .integrate(&model, &torque, 0.0, 0.5, rest.state, |step| {
+            let outputs = model.output(step.end(), step.state(), &torque.0, &mut ());
+            let lengths = outputs.rows(6, 3).map(|length| (length - 0.8).abs());
+            apart = apart.max(lengths.max());
+        })
+        .unwrap();
+    assert!(apart < 1e-14, "{apart:e}");
+}
+
+#[test]
+fn a_rod_pulls_against_weight_and_swing() {
+    let model = Bob::new(BobParameters::default()).unwrap();
+    let mut x = model.initial_state();
+    // Along the circle at 2 m/s, at the sine 0.6 and the cosine 0.8 from below.
+    for (name, speed) in [("across.rate.f", 1.6), ("up.rate.f", 1.2)] {
+        if let Some(place) = Bob::<f64>::META.state(name) {
+            x[place] = speed;
+        }
+    }
+    for (name, speed) in [("mass.body.p.x", 1.6), ("mass.body.p.y", 1.2)] {
+        if let Some(place) = Bob::<f64>::META.state(name) {
+            x[place] = 1.5 * speed;
+        }
+    }
+    let tension: f64 = model.output(0.0, &x, &SVector::zeros(), &mut ())[0];
+    let expected = 1.5 * (9.81 * 0.8 + 2.0 * 2.0 / 0.5);
+    assert!((tension - expected).abs() < 1e-12, "{tension} {expected}");
+}
+
+#[test]
+fn a_winch_pulls_by_stretch_and_by_its_rate() {
+    let winch = SVector::from([-0.3]);
+    let hoist = Hoist::new(HoistParameters::default()).unwrap();
+    let found = hoist.output(0.0, &hoist.initial_state(), &winch, &mut ())[0];
+    assert!((found - 1e3 * (f64::hypot(0.1, 1.3) - 1.2) - 20.0 * 0.3).abs() < 1e-11);
+    let dragged = Dragged::new(DraggedParameters::default()).unwrap();
+    let found = dragged.output(0.0, &dragged.initial_state(), &winch, &mut ())[0];
+    assert!((found - 500.0 * (1.25 - 1.2) - 10.0 * 0.3).abs() < 1e-11);
+}
+
+/// At states about the start: energies balance, and Jacobians are right.
+fn sound<S, D, const N: usize, const M: usize, const P: usize>((plain, dual): (&S, &D))
+where
+    S: System<f64, N, M, P>,
+    D: System<Dual<f64>, N, M, P>,
+{
+    let mut next = noise(5);
+    for _ in 0..20 {
+        let moved = plain.initial_state().map(|it| it + 0.2 * next());
+        let input = SVector::from_fn(|_, _| next());
+        let state = plain.close(0.3, moved, &input, &[]).unwrap();
+        let probe = Probe {
+            model: dual,
+            time: 0.3,
+            state,
+            input,
+        };
+        probe.assert_sound(plain);
+    }
+}
+
+#[test]
+fn rods_and_winches_are_in_the_balance() {
+    macro_rules! sound {
+        ($model:ident, $parameters:ident) => {
+            sound((
+                &$model::<f64>::new($parameters::default()).unwrap(),
+                &$model::<Dual<f64>>::new($parameters::default()).unwrap(),
+            ))
+        };
+    }
+    sound!(Delta, DeltaParameters);
+    sound!(Bob, BobParameters);
+    sound!(Hoist, HoistParameters);
+    sound!(Dragged, DraggedParameters);
+}

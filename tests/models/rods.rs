@@ -7,78 +7,7 @@ use super::audit::Probe;
 use crate::references::noise::noise;
 
 mbg! {
-    /// A Delta robot, z up: three arms on the ground, driven by torques, and a platform that slides, joined by rods.
-    ///
-    /// Clavel, "Device for the movement and positioning of an element in space", US patent 4976582 (1990): the pair of rods of
-    /// each forearm is one here, since joints keep the platform level.
-    #[derivative]
-    pub(crate) model Delta {
-        causality componentwise;
-        gravity [0.0, 0.0, -9.81];
-        input torque[3]: N*m;
-        1 ground[6]; 1 slid[6]; 1 slid_twice[6]; 1 platform[6];
-        Sf fixed[6] { flow: 0.0 } -> ground;
-        x: Prismatic { axis: 0 } (ground, slid);
-        y: Prismatic { axis: 1 } (slid, slid_twice);
-        z: Prismatic { axis: 2, initial: -0.66 } (slid_twice, platform);
-        load: PointMass { mass: 1.2 } (platform);
-        arms: for k in 0..3 {
-            let turn = 2.0 * 3.141592653589793 * k / 3;
-            1 shoulder[6]; 1 upper[6]; 1 elbow[6]; 1 wrist[6];
-            foot: Fixed { offset: [0.2 * cos(turn), 0.2 * sin(turn), 0.0], tilt: rot_z(turn) } (ground, shoulder);
-            hinge: Revolute { axis: 1, torque: torque[k] } (shoulder, upper);
-            arm: Body { mass: 0.5, inertia: diag(0.0001, 0.004, 0.004), centre: [0.15, 0.0, 0.0] } (upper);
-            to_elbow: Offset { by: [0.3, 0.0, 0.0] } (upper, elbow);
-            to_wrist: Offset { by: [0.05 * cos(turn), 0.05 * sin(turn), 0.0] } (platform, wrist);
-            rod: Rod { length: 0.8 } (elbow, wrist);
-        }
-        output place[3]: m = [x.travel, y.travel, z.travel];
-        output tension[3]: N = [arms[0].rod.tension, arms[1].rod.tension, arms[2].rod.tension];
-        output length[3]: m = [arms[0].rod.apart, arms[1].rod.apart, arms[2].rod.apart];
-    }
-
-    /// A bob on a rod in a plane.
-    #[derivative]
-    pub(crate) model Bob {
-        causality componentwise;
-        gravity [0.0, -9.81];
-        1 ground[3]; 1 rail[3]; 1 bob[3];
-        Sf fixed[3] { flow: 0.0 } -> ground;
-        across: PlanarPrismatic { initial: 0.3 } (ground, rail);
-        up: PlanarPrismatic { direction: 1.5707963267948966, initial: -0.4 } (rail, bob);
-        mass: PlanarPointMass { mass: 1.5 } (bob);
-        rod: PlanarRod { length: 0.5 } (ground, bob);
-        output tension: N = rod.tension;
-    }
-
-    /// A trunk that a winch hoists.
-    #[derivative]
-    pub(crate) model Hoist {
-        causality componentwise;
-        input winch: m/s;
-        integral out: m = winch, initial: 1.2;
-        gravity [0.0, 0.0, -9.81];
-        1 ground[6]; 1 trunk[6];
-        Sf fixed[6] { flow: 0.0 } -> ground;
-        free: Free { orientation: quaternion, initial_position: [0.1, 0.0, -1.3] } (ground, trunk);
-        body: Body { mass: 3.0, inertia: 0.2 } (trunk);
-        rope: LineForce { kind: rope, stiffness: 1e3, damping: 20.0, rest: out, rest_rate: winch } (ground, trunk);
-        output tension: N = rope.reel.e;
-    }
-
-    /// A sled on a rail that a winch drags.
-    #[derivative]
-    pub(crate) model Dragged {
-        causality componentwise;
-        input winch: m/s;
-        integral out: m = winch, initial: 1.2;
-        1 floor[3]; 1 sled[3];
-        Sf still[3] { flow: 0.0 } -> floor;
-        rail: PlanarPrismatic { initial: 1.25 } (floor, sled);
-        load: PlanarPointMass { mass: 2.0 } (sled);
-        strap: PlanarLineForce { stiffness: 500.0, damping: 10.0, rest: out, rest_rate: winch } (floor, sled);
-        output tension: N = strap.reel.e;
-    }
+    include "tests/models/rods.mbg";
 }
 
 /// Accelerations of the platform and of the arms, then tensions, by multipliers of Lagrange.

@@ -161,8 +161,7 @@ fn scales<T: Real, const K: usize>(matrix: &SMatrix<T, K, K>) -> [T; K] {
 /// `P D S D Pᵀ = L Lᵀ` with the largest remaining diagonal element as the next pivot.
 #[derive(Clone, Debug)]
 struct Pivoted<T, const K: usize> {
-    /// `L` below the diagonal, the reciprocals of that on it, in the order of the pivots. In lanes that have ended a column
-    /// is zero.
+    /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
     lower: [[T; K]; K],
     order: Order<T, K>,
     /// What rows and columns were multiplied by, in the order of the pivots.
@@ -233,15 +232,11 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
             }
             self.kept[k] = kept;
             let root = zero.select_less(kept, pivot, one).sqrt();
-            let inverse = kept / root;
-            self.lower[k][k] = inverse;
+            self.lower[k][k] = root;
             let mut column = [zero; K];
             for i in k + 1..K {
-                column[i] = self.lower[i][k] * inverse;
+                column[i] = kept * self.lower[i][k] / root;
                 self.lower[i][k] = column[i];
-            }
-            // The column is there before it is read: several elements at once would wait for each of them.
-            for i in k + 1..K {
                 let factor = column[i];
                 let row = self.lower[i][k + 1..=i].iter_mut();
                 for (element, other) in row.zip(&column[k + 1..=i]) {
@@ -302,7 +297,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
     fn solve_transposed(&self, x: &mut [T; K]) {
         for k in (0..self.rank).rev() {
             let (before, rest) = x.split_at_mut(k);
-            let own = rest[0] * self.lower[k][k];
+            let own = self.kept[k] * rest[0] / self.lower[k][k];
             rest[0] = own;
             // Row by row, as L stands in memory.
             for (x, element) in before.iter_mut().zip(&self.lower[k]) {
@@ -334,7 +329,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         self.scale_each(&mut x);
         for k in 0..self.rank {
             let (before, rest) = x.split_at_mut(k + 1);
-            let own = before[k] * self.lower[k][k];
+            let own = self.kept[k] * before[k] / self.lower[k][k];
             before[k] = own;
             // Each sum by itself: one after the other they would wait for each other.
             for (x, row) in rest.iter_mut().zip(&self.lower[k + 1..self.rank]) {

@@ -55,6 +55,7 @@ mod models {
     mod parameters;
     mod pins;
     mod pivots;
+    mod rods;
     mod rows;
     mod stages;
     #[allow(deprecated, reason = "a warning of the macro, which is meant there")]

@@ -166,11 +166,19 @@ pub fn check(
             };
             let message = format!("the displacement of `{name}` does not change as `{name}` flows");
             let report = error(codes::DISPLACEMENT, place(model, element), message);
+            let report = report.note(format!(
+                "{whose} has another rate than the flow into `{name}`"
+            ));
+            // What a component is given may change by itself.
+            let report = match element.instance() {
+                Some(_) => report.help(
+                    "if a length that a component is given changes, give it the rate, too, as `rest_rate` of a `LineForce` \
+                     whose `rest` is an integral of that",
+                ),
+                None => report,
+            };
             diagnostics.report(
                 report
-                    .note(format!(
-                        "{whose} has another rate than the flow into `{name}`"
-                    ))
                     .help("bond it where the flow is the rate of what is told")
                     .help("or leave `displacement` out: then it is a state"),
             );

@@ -628,3 +628,65 @@ fn a_vector_input_whose_rate_is_needed_is_told_once() {
         "input speed_rate[3]; integral speed[3]: m/s = speed_rate;",
     ));
 }
+
+/// A platform on a leg without mass, whose length is a state, and a cut at the end of it.
+#[test]
+fn a_leg_without_mass_is_a_line_or_in_a_ring() {
+    let scene = |leg: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81];
+             1 ground[6]; 1 platform[6]; 1 eye[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             free: Free {{ orientation: quaternion, initial_position: [0.0, 0.0, 1.0] }} (ground, platform);
+             load: Body {{ mass: 2.0, inertia: diag(0.1, 0.2, 0.3), centre: [0.1, 0.2, 0.3] }} (platform);
+             to_eye: Offset {{ by: [0.1, 0.0, 0.0] }} (platform, eye); {leg} }}"
+        )
+    };
+    let leg = |end: &str| {
+        scene(&format!(
+            "1 lower[6]; 1 upper[6]; cross: Universal {{ first: 0, second: 1, initial: [0.0, 0.1] }} (ground, lower);
+             piston: Prismatic {{ axis: 2, initial: 1.0, stiffness: 100.0 }} (lower, upper); ball: {end} (upper, eye);"
+        ))
+    };
+    let typed = helps(&leg("Cut"), codes::ORDER_LOST_UNSUPPORTED);
+    let helps = typed.join("\n");
+    for (word, followed) in [
+        (
+            "LineForce",
+            scene("leg: LineForce { stiffness: 100.0, rest: 1.0 } (ground, eye);"),
+        ),
+        ("Rod", scene("leg: Rod { length: 1.0 } (ground, eye);")),
+        ("Spherical", leg("Spherical { orientation: quaternion }")),
+    ] {
+        assert!(helps.contains(&format!("`{word}`")), "{word}: {helps}");
+        compiles(&followed);
+    }
+    assert!(
+        helps.contains("in the place of its joints and of `ball`"),
+        "{helps}"
+    );
+    compiles(&leg("Cut").replace(
+        "ball:",
+        "rod: Body { mass: 1.0, inertia: diag(0.1, 0.1, 0.01) } (upper);
+         cylinder: Body { mass: 1.0, inertia: diag(0.1, 0.1, 0.01) } (lower); ball:",
+    ));
+}
+
+/// A rope whose length at rest changes needs its rate.
+#[test]
+fn a_rope_that_is_wound_up_is_given_the_rate() {
+    let scene = |more: &str| {
+        format!(
+            "model M {{ input winch: m/s; integral rest: m = winch, initial: 1.0; gravity [0.0, 0.0, -9.81];
+             1 ground[6]; 1 stone[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             free: Free {{ initial_position: [0.0, 0.0, -1.0] }} (ground, stone);
+             rock: Body {{ mass: 2.0, inertia: 0.1 }} (stone);
+             rope: LineForce {{ kind: rope, stiffness: 100.0, rest: rest{more} }} (ground, stone); }}"
+        )
+    };
+    let helps = helps(&scene(""), codes::DISPLACEMENT);
+    assert!(
+        helps[0].contains("`rest_rate` of a `LineForce`"),
+        "{helps:?}"
+    );
+    compiles(&scene(", rest_rate: winch"));
+}

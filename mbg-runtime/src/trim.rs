@@ -31,7 +31,9 @@ const TINY: f64 = 1e-9;
 /// The point is found by the method of Gauss and Newton with the model's own Jacobians, damped until what is left of the conditions
 /// falls. Where more may be chosen than is asked, as with an elevator and a canard for one moment, each correction is the one of
 /// least norm in units of what states and inputs do. Corrections lead along closed loops and attitudes, on which the state stays
-/// ([`System::close`](crate::System::close)). The guess decides which point is found of several: a pendulum may hang or stand.
+/// ([`System::close`](crate::System::close)). A ring of joints without a `Cut` is no such loop: each of its coordinates is moved by
+/// itself, and the point that is found may be one where the ring is open. Put a `Cut` in the place of one of its joints, or let what
+/// is between its ends be an output that is zero. The guess decides which point is found of several: a pendulum may hang or stand.
 ///
 /// # Example
 ///

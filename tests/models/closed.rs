@@ -328,20 +328,32 @@ fn a_loop_that_cannot_close_is_named() {
     );
 }
 
-/// A scissor lift whose platform is not let turn against the bar that it slides on: it would fit flat or upright alone.
+/// A scissor lift whose platform is not let turn against the bar that it slides on: it would fit flat or upright alone. By
+/// corrections that halve what is left it comes so near to that that rounding decides whether it fits.
 #[test]
 fn a_mechanism_that_is_locked_is_told_by_its_constraints() {
     let model = Locked::new(LockedParameters::default()).unwrap();
-    let start = model.initial_state();
-    let trouble = model.close(0.0, start, &SVector::from([]), &[]);
-    let told = trouble.unwrap_err().to_string();
-    assert!(
-        told.ends_with(
-            " is left next to a position in which constraints depend on each other: 6 constraints hold 6 \
-             coordinates, so that nothing moves unless some are redundant; see whether a cut holds more than it should"
-        ),
-        "{told}"
-    );
+    let mut locked = 0;
+    for number in 0..12 {
+        let mut start = model.initial_state();
+        start[number % 5 + 1] += 0.01 * number as f64;
+        match model.close(0.0, start, &SVector::from([]), &[]) {
+            Ok(flat) => assert!(flat[1].sin().abs() < 1e-6, "{flat}"),
+            Err(trouble) => {
+                locked += 1;
+                let told = trouble.to_string();
+                assert!(
+                    told.ends_with(
+                        " is left next to a position in which constraints depend on each other: 6 constraints hold 6 \
+                         coordinates, so that nothing moves unless some are redundant; see whether a cut holds more than it \
+                         should"
+                    ),
+                    "{told}"
+                );
+            }
+        }
+    }
+    assert!(locked > 2, "{locked}");
 }
 
 /// The motion of a slider-crank at rest and at speed, in units of its size: that of one of a metre, whatever its size is.

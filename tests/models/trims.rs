@@ -1,7 +1,8 @@
 //! Operating points, against closed forms and runs that begin there.
 
 use mbg_runtime::{
-    Adaptive, Constant, Convertible, Dop853, Integrator, Linearised, Trim, Trimmed, Untrimmed, mbg,
+    Adaptive, Constant, Convertible, Dop853, Integrator, Linearised, System, Trim, Trimmed,
+    Untrimmed, mbg,
 };
 use nalgebra::SVector;
 
@@ -49,6 +50,29 @@ mbg! {
         arm: PlanarOffset { x: 1.0 } (coupler, end);
         cut: PlanarCut (end, b);
         output angles[2]: rad = [first.angle, second.angle];
+    }
+
+    /// The same as a ring of joints, which nothing closes.
+    #[derivative]
+    model Ring {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        input torque: N*m;
+        1 ground[3]; 1 left[3]; 1 a[3]; 1 right[3]; 1 b[3]; 1 coupler[3]; 1 end[3]; 1 foot[3]; 1 centre[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        first: PlanarRevolute { initial: 1.2, torque: torque } (ground, left);
+        left_body: PlanarBody { mass: 1.0, inertia: 0.1 } (left);
+        left_arm: PlanarOffset { x: 0.5 } (left, a);
+        base: PlanarOffset { x: 1.0 } (ground, foot);
+        second: PlanarRevolute { initial: 1.2 } (foot, right);
+        right_body: PlanarBody { mass: 1.0, inertia: 0.1 } (right);
+        right_arm: PlanarOffset { x: 0.5 } (right, b);
+        third: PlanarRevolute { initial: -1.2 } (a, coupler);
+        half: PlanarOffset { x: 0.5 } (coupler, centre);
+        body: PlanarBody { mass: 3.0, inertia: 0.1 } (centre);
+        arm: PlanarOffset { x: 1.0 } (coupler, end);
+        fourth: PlanarRevolute { initial: 1.2 } (end, b);
+        output gap[2]: m = arm.position_b - right_arm.position_b;
     }
 
     /// A pull on two springs of which each may have any stroke: more may be chosen than is asked.
@@ -163,6 +187,23 @@ fn a_closed_loop_is_held() {
         .solve()
         .unwrap();
     assert!((found.state - held.state).norm() < 1e-9);
+}
+
+/// A ring is opened, since its coordinates are moved each by itself, unless its gap is asked to be none.
+#[test]
+fn a_ring_is_held_where_its_gap_is_an_output() {
+    let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();
+    let held = Trim::new(&crank).fix("first.angle").solve().unwrap();
+    let ring = Ring::<f64>::new(RingParameters::default()).unwrap();
+    let trim = Trim::new(&ring).fix("first.angle");
+    let gap = |point: &Trimmed<4, 1>| ring.output(0.0, &point.state, &point.input, &mut ());
+    assert!(gap(&trim.solve().unwrap()).norm() > 0.01);
+    let closed = trim.output("gap", 0.0).solve().unwrap();
+    assert!(gap(&closed).norm() < 1e-12);
+    assert!(
+        (closed.input[0] - held.input[0]).abs() < 1e-9,
+        "{closed:?} {held:?}"
+    );
 }
 
 #[test]

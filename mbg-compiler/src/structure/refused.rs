@@ -52,7 +52,7 @@ pub(super) fn report_second_derivative(
     diagnostics.report(report);
 }
 
-/// A closure between flows without states behind them.
+/// A closure between flows without states behind them, such as one by a cut at the end of a leg that has no mass.
 pub(super) fn report_unmoved(model: &Elaborated, closure: usize, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
     let closure = &graph.closures[closure];
@@ -64,9 +64,22 @@ pub(super) fn report_unmoved(model: &Elaborated, closure: usize, diagnostics: &m
         codes::ORDER_LOST_UNSUPPORTED,
         graph.origins.span(closure.origin),
         message,
-    );
-    let help = "put an inertia at both ends, or let them move with joints whose rates are states";
-    diagnostics.report(report.help(help));
+    )
+    .help("put an inertia at both ends, or let them move with joints whose rates are states");
+    let cut = closure.instance.as_str();
+    diagnostics.report(match cut {
+        "" => report,
+        cut => report
+            .help(format!(
+                "or, if a leg without mass ends at `{cut}`, write one line in the place of its joints and of `{cut}`: a \
+                 `LineForce` if it pulls or pushes by a law, a `Rod` if it keeps its length; in a plane a `PlanarLineForce` \
+                 or a `PlanarRod`"
+            ))
+            .help(format!(
+                "or put a joint in the place of `{cut}`, such as `Spherical`, in a plane `PlanarRevolute`: in a ring the \
+                 rates of links without mass follow from those of the others, where its `initial` values close it"
+            )),
+    });
 }
 
 /// A storage that depends on an input: one mistake, whichever components of it show it.

@@ -192,3 +192,31 @@ fn axes_in_numbers_that_are_rounded_close_a_loop() {
     ));
     assert_eq!(model.closed[0].len(), 4);
 }
+
+/// The slides are along one axis, but for what is rounded of the tilt; the cut leaves the pendulum and a wheel.
+#[test]
+fn what_is_rounded_of_a_right_angle_is_not_divided_by() {
+    let tilt = "[[0.0, -1.0, 6.123e-17], [6.123e-17, 6.123e-17, 1.0], [-1.0, 0.0, 6.123e-17]]";
+    let model = models::compiled(&format!(
+        "#[derivative] model Mechanism {{
+            gravity [0.0, 0.0, -9.81];
+            1 ground[6] {{ Sf fixed {{ flow: 0.0 }} }} 1 first[6]; 1 second[6]; 1 third[6]; 1 eye[6];
+            hinge: Revolute {{ axis: 0 }} (ground, first);
+            body: Body {{ mass: 1.0, inertia: 1.0 }} (first);
+            slide: Prismatic {{ axis: 1 }} (first, second);
+            sleeve: Cylindrical {{ axis: 2, tilt: {tilt} }} (second, third);
+            swinging: Body {{ mass: 1.0, inertia: 1.0, centre: [1.0, 0.0, 0.0] }} (third);
+            I wheel {{ inertia: 0.2 }} -> sleeve.sliding;
+            mount: Mount {{ tilt: {tilt} }} (first, eye);
+            cut: Cut {{ joint: revolute }} (third, eye);
+        }}"
+    ));
+    let arguments = Arguments {
+        parameters: &[],
+        time: 0.0,
+        state: &vec![0.0; model.states.len()],
+        input: &[],
+    };
+    let rates = program::evaluate(&model.program, Routines::DERIVATIVE, &arguments);
+    assert!(rates.iter().all(|rate| rate.abs() < 1e-12), "{rates:?}");
+}

@@ -584,9 +584,8 @@ fn a_tilt_by_three_angles_is_told_as_turns() {
         assert_eq!(told(&tilted(turns)), "");
     }
     insta::assert_snapshot!(told(&tilted("[0.1, 0.2, 0.3]")), @"
-    3:34 `tilt` does not fit in `Revolute`: found `[0.1, 0.2, 0.3]` [MBG0204]
+    3:34 `tilt` does not fit in `Revolute`: expected a 3×3 matrix, found a vector of 3 [MBG0204]
       `tilt`: Takes axes of the joint to axes of a, such as `rot_x(0.5)`
-      inside it, `gravity_b` has dimension 3, found a 3×3 matrix
       help: for roll, pitch and yaw write `tilt: rot_z(0.3) * rot_y(0.2) * rot_x(0.1)`
     ");
 }

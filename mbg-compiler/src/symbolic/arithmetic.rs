@@ -23,11 +23,11 @@ impl Pool {
             return a;
         }
         let image = self.image(a).plus(self.image(b));
-        if let Some(expression) = self.find(image) {
+        if let Some(expression) = self.known(image, &[a, b]) {
             return expression;
         }
-        if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
-            return self.constant(x + y, image);
+        if [a, b].map(|term| self.rate(term)) == [Rate::Constant; 2] {
+            return self.put_sum(a, b);
         }
         if let Some(collected) = self.collect(a, b) {
             return collected;
@@ -47,6 +47,9 @@ impl Pool {
             return a;
         }
         let image = self.image(a).plus(self.image(b));
+        if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
+            return self.constant(x + y, image);
+        }
         match (a.is_negative(), b.is_negative()) {
             (true, true) => self
                 .intern(Operation::Add(a.negated(), b.negated()), image.negated())
@@ -115,7 +118,7 @@ impl Pool {
         let image = product(self, &rest, a.is_negative());
         let image = image.plus(product(self, &right, b.is_negative()));
         let varies = |factor: &Expression| self.rate(*factor) == Rate::Varying;
-        let whole = match self.find(image) {
+        let whole = match self.known(image, &[a, b]) {
             Some(whole) => whole,
             None if rest.iter().chain(&right).any(varies) => return None,
             None => {
@@ -198,7 +201,7 @@ impl Pool {
             return a;
         }
         let image = self.image(a).times(self.image(b));
-        if let Some(expression) = self.find(image) {
+        if let Some(expression) = self.known(image, &[a, b]) {
             return expression;
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
@@ -243,7 +246,7 @@ impl Pool {
         let (a, b) = (a.magnitude(), b.magnitude());
         let inverse = self.image(b).inverted()?;
         let image = self.image(a).times(inverse);
-        if let Some(expression) = self.find(image) {
+        if let Some(expression) = self.known(image, &[a, b]) {
             return Some(expression.flipped(negative));
         }
         if let (Some(x), Some(y)) = (self.constant_value(a), self.constant_value(b)) {
@@ -371,6 +374,42 @@ impl Pool {
             Some(0.5) => Some(self.call(Function::Sqrt, &[base])),
             Some(negative) if negative < 0.0 && base == Expression::ZERO => None,
             _ => Some(self.call(Function::Pow, &[base, exponent])),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Symbol;
+    use super::*;
+
+    #[test]
+    fn a_sum_of_what_comes_to_numbers_is_a_number() {
+        let mut pool = Pool::new();
+        let x = pool.symbol(Symbol::State(0));
+        let [three, four] = [3, 4].map(|it| pool.integer(it));
+        let parts = [pool.sine(x), pool.cosine(x)];
+        let squares = parts.map(|it| pool.multiply(it, it));
+        let left = pool.add(squares[0], three);
+        let right = pool.add(squares[1], four);
+        let sum = pool.add(left, right);
+        assert_eq!(pool.constant_value(sum), Some(8.0));
+    }
+
+    #[test]
+    fn what_varied_at_first_is_replaced_by_what_does_not() {
+        let mut pool = Pool::new();
+        let [x, p] = [Symbol::State(0), Symbol::Parameter(0)].map(|it| pool.symbol(it));
+        let seven = pool.integer(7);
+        let whole = pool.multiply(seven, x);
+        for (part, rate) in [(Expression::ONE, Rate::Constant), (p, Rate::Parameter)] {
+            let product = pool.multiply(part, x);
+            let first = pool.divide(product, whole).unwrap();
+            assert_eq!(pool.rate(first), Rate::Varying);
+            let quotient = pool.divide(part, seven).unwrap();
+            assert_eq!(pool.rate(quotient), rate);
+            assert_eq!(pool.image(quotient), pool.image(first));
+            assert_eq!(pool.divide(product, whole), Some(quotient));
         }
     }
 }

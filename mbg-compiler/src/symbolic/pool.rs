@@ -2,8 +2,8 @@
 //!
 //! A node is found again by its image (see [`super::field`]), not by its form, so `sin² + cos²` *is* 1, a product of
 //! a rotation with its inverse *is* the vector it began with, and a gyroscopic torque of an isotropic inertia *is*
-//! zero. The first form in which a function was built is the one that is kept. Negation is a bit of the handle and
-//! costs nothing.
+//! zero. The first form in which a function was built is the one that is kept, unless a later one changes less often: a
+//! length that only seems to vary. Negation is a bit of the handle and costs nothing.
 
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
@@ -173,17 +173,26 @@ impl Pool {
         Some(found.flipped(is_negative))
     }
 
-    /// The node with this image, or a new one.
+    /// The expression with this image, if there is one that changes no more often than any of these.
+    pub(super) fn known(&self, image: Image, operands: &[Expression]) -> Option<Expression> {
+        let expression = self.find(image)?;
+        (self.rate(expression) <= self.rate_of(operands)).then_some(expression)
+    }
+
+    /// How often anything made of these changes.
+    fn rate_of(&self, operands: &[Expression]) -> Rate {
+        let rates = operands.iter().map(|operand| self.rate(*operand));
+        rates.max().unwrap_or(Rate::Constant)
+    }
+
+    /// The node with this image, or a new one where there is none that changes as seldom.
     pub(super) fn intern(&mut self, operation: Operation, image: Image) -> Expression {
-        if let Some(expression) = self.find(image) {
+        let operands = operation.operands();
+        if let Some(expression) = self.known(image, &operands) {
             return expression;
         }
-        let rate = operation
-            .operands()
-            .iter()
-            .map(|operand| self.rate(*operand))
-            .max();
-        self.insert(operation, image, rate.unwrap_or(Rate::Constant))
+        let rate = self.rate_of(&operands);
+        self.insert(operation, image, rate)
     }
 
     /// A constant with its exact image.

@@ -30,13 +30,13 @@ struct Turn {
 /// Two turns in a row, as where there is a zero off the diagonal, cost less one by one; three cost more than their product.
 #[must_use]
 pub fn rotation(pool: &mut Pool, matrix: [[f64; 3]; 3]) -> Product {
-    let mut rest = matrix;
-    let turns = planes(&matrix).map(|(first, second)| {
+    let mut rest = matrix.map(|row| row.map(without_rounding));
+    let turns = planes(&rest).map(|(first, second)| {
         let turn = Turn::towards((first, second), rest[first][first], rest[second][first]);
         let (cosine, sine) = (turn.cosine.value, turn.sine.value);
         let [along, across] = [first, second].map(|row| rest[row]);
-        rest[first] = [0, 1, 2].map(|k| cosine * along[k] + sine * across[k]);
-        rest[second] = [0, 1, 2].map(|k| cosine * across[k] - sine * along[k]);
+        rest[first] = [0, 1, 2].map(|k| without_rounding(cosine * along[k] + sine * across[k]));
+        rest[second] = [0, 1, 2].map(|k| without_rounding(cosine * across[k] - sine * along[k]));
         turn
     });
     let made = turns.iter().filter(|turn| !turn.is_nothing());
@@ -53,6 +53,14 @@ pub fn rotation(pool: &mut Pool, matrix: [[f64; 3]; 3]) -> Product {
     });
     Product {
         factors: factors.collect(),
+    }
+}
+
+/// Zero in the place of a rounding error, which would be divided by.
+fn without_rounding(entry: f64) -> f64 {
+    match entry.abs() <= 2.0 * f64::EPSILON {
+        true => 0.0,
+        false => entry,
     }
 }
 
@@ -217,13 +225,14 @@ mod tests {
 
     #[test]
     fn right_angles_are_whole() {
-        let mut pool = Pool::new();
         let matrix = [[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]];
-        let rotation = rotation(&mut pool, matrix).to_matrix(&mut pool);
-        let whole = matrix
-            .as_flattened()
-            .iter()
-            .map(|it| pool.integer(*it as i64));
-        assert_eq!(rotation.entries, whole.collect::<Vec<_>>());
+        for rounding in [0.0, 6e-17, -6e-17] {
+            let mut pool = Pool::new();
+            let rounded = matrix.map(|row| row.map(|it| it + rounding));
+            let rotation = rotation(&mut pool, rounded).to_matrix(&mut pool);
+            let whole = matrix.as_flattened().iter();
+            let whole = whole.map(|it| pool.integer(*it as i64));
+            assert_eq!(rotation.entries, whole.collect::<Vec<_>>(), "{rounding}");
+        }
     }
 }

@@ -44,10 +44,14 @@ pub(crate) fn solved(text: &str) -> Result<(Elaborated, Solved, Pool), String> {
 
 /// The last model of a text after all stages; it has no mistakes.
 pub(crate) fn compiled(text: &str) -> Compiled {
-    let model = stage(text, |model, source, diagnostics| {
+    completed(text).unwrap_or_else(|reported| panic!("{reported}"))
+}
+
+/// The last model of a text after all stages.
+pub(crate) fn completed(text: &str) -> Result<Compiled, String> {
+    stage(text, |model, source, diagnostics| {
         compile(model, &elaborate::component_table(source), diagnostics)
-    });
-    model.unwrap_or_else(|reported| panic!("{reported}"))
+    })
 }
 
 /// The last model of a text after all stages, or the codes of what was reported.

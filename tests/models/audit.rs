@@ -167,3 +167,25 @@ pub(super) fn near(found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
     assert!(error < tolerance, "{found} is not {expected}, by {error:e}");
 }
+
+/// At states about the start, closed: energies balance, and Jacobians are right.
+pub(super) fn assert_sound_about_the_start<S, D, const N: usize, const M: usize, const P: usize>(
+    (plain, dual): (&S, &D),
+) where
+    S: System<f64, N, M, P>,
+    D: System<Dual<f64>, N, M, P>,
+{
+    let mut next = noise(5);
+    for _ in 0..20 {
+        let moved = plain.initial_state().map(|it| it + 0.2 * next());
+        let input = SVector::from_fn(|_, _| next());
+        let state = plain.close(0.3, moved, &input, &[]).unwrap();
+        let probe = Probe {
+            model: dual,
+            time: 0.3,
+            state,
+            input,
+        };
+        probe.assert_sound(plain);
+    }
+}

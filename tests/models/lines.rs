@@ -3,8 +3,7 @@
 use mbg_runtime::{Adaptive, Dop853, Dual, Integrator, System, mbg};
 use nalgebra::{Quaternion, SVector, UnitQuaternion, Vector3};
 
-use super::audit::Probe;
-use crate::references::noise::noise;
+use super::audit::assert_sound_about_the_start;
 
 mbg! {
     include "tests/models/lines.mbg";
@@ -160,32 +159,11 @@ fn bodies_on_lines_move_as_by_newton_and_euler() {
     assert!((5..35).contains(&slack), "{slack} of 40 are slack");
 }
 
-/// At states about the start.
-fn sound<S, D, const N: usize, const M: usize, const P: usize>((plain, dual): (&S, &D))
-where
-    S: System<f64, N, M, P>,
-    D: System<Dual<f64>, N, M, P>,
-{
-    let mut next = noise(5);
-    for _ in 0..20 {
-        let moved = plain.initial_state().map(|it| it + 0.2 * next());
-        let input = SVector::from_fn(|_, _| next());
-        let state = plain.close(0.3, moved, &input, &[]).unwrap();
-        let probe = Probe {
-            model: dual,
-            time: 0.3,
-            state,
-            input,
-        };
-        probe.assert_sound(plain);
-    }
-}
-
 #[test]
 fn what_is_stored_is_in_the_balance_and_jacobians_are_right() {
     macro_rules! sound {
         ($model:ident, $parameters:ident) => {
-            sound((
+            assert_sound_about_the_start((
                 &$model::<f64>::new($parameters::default()).unwrap(),
                 &$model::<Dual<f64>>::new($parameters::default()).unwrap(),
             ))

@@ -3,7 +3,7 @@
 use mbg_runtime::{Adaptive, Constant, Dop853, Dual, Integrator, System, Trim, mbg};
 use nalgebra::{SMatrix, SVector, Vector3};
 
-use super::audit::Probe;
+use super::audit::assert_sound_about_the_start;
 use crate::references::noise::noise;
 
 mbg! {
@@ -140,32 +140,11 @@ fn a_winch_pulls_by_stretch_and_by_its_rate() {
     assert!((found - 500.0 * (1.25 - 1.2) - 10.0 * 0.3).abs() < 1e-11);
 }
 
-/// At states about the start: energies balance, and Jacobians are right.
-fn sound<S, D, const N: usize, const M: usize, const P: usize>((plain, dual): (&S, &D))
-where
-    S: System<f64, N, M, P>,
-    D: System<Dual<f64>, N, M, P>,
-{
-    let mut next = noise(5);
-    for _ in 0..20 {
-        let moved = plain.initial_state().map(|it| it + 0.2 * next());
-        let input = SVector::from_fn(|_, _| next());
-        let state = plain.close(0.3, moved, &input, &[]).unwrap();
-        let probe = Probe {
-            model: dual,
-            time: 0.3,
-            state,
-            input,
-        };
-        probe.assert_sound(plain);
-    }
-}
-
 #[test]
 fn rods_and_winches_are_in_the_balance() {
     macro_rules! sound {
         ($model:ident, $parameters:ident) => {
-            sound((
+            assert_sound_about_the_start((
                 &$model::<f64>::new($parameters::default()).unwrap(),
                 &$model::<Dual<f64>>::new($parameters::default()).unwrap(),
             ))

@@ -296,13 +296,9 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
     /// `L₁₁ᵀ x = y` in place, with zeros for pivots that do not count.
     fn solve_transposed(&self, x: &mut [T; K]) {
         for k in (0..self.rank).rev() {
-            let (before, rest) = x.split_at_mut(k);
-            let own = self.kept[k] * rest[0] / self.lower[k][k];
-            rest[0] = own;
-            // Row by row, as L stands in memory.
-            for (x, element) in before.iter_mut().zip(&self.lower[k]) {
-                *x -= *element * own;
-            }
+            let sum =
+                (k + 1..self.rank).fold(T::from_f64(0.0), |sum, i| sum + self.lower[i][k] * x[i]);
+            x[k] = self.kept[k] * (x[k] - sum) / self.lower[k][k];
         }
         x[self.rank..].fill(T::from_f64(0.0));
     }
@@ -328,13 +324,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         self.remove_null_space(&mut x);
         self.scale_each(&mut x);
         for k in 0..self.rank {
-            let (before, rest) = x.split_at_mut(k + 1);
-            let own = self.kept[k] * before[k] / self.lower[k][k];
-            before[k] = own;
-            // Each sum by itself: one after the other they would wait for each other.
-            for (x, row) in rest.iter_mut().zip(&self.lower[k + 1..self.rank]) {
-                *x -= row[k] * own;
-            }
+            x[k] = self.kept[k] * (x[k] - dot(&self.lower[k][..k], &x[..k])) / self.lower[k][k];
         }
         self.solve_transposed(&mut x);
         self.scale_each(&mut x);

@@ -56,44 +56,28 @@ fn exchanged<T: Real>(first: T, second: T, (a, b): (T, T)) -> (T, T) {
     )
 }
 
-/// An order that may differ from lane to lane.
+/// An order that may differ from lane to lane: the places that the elements came from.
 #[derive(Clone, Copy, Debug)]
-struct Order<T, const K: usize> {
-    /// The places that the elements came from.
-    places: [T; K],
-    /// The same as long as lanes do not differ, as a single one never does: looking for places takes as long as a solve.
-    common: Option<[usize; K]>,
-}
+struct Order<T, const K: usize>([T; K]);
 
 impl<T: Real, const K: usize> Order<T, K> {
     fn unchanged() -> Self {
-        Self {
-            places: core::array::from_fn(|place| T::from_f64(place as f64)),
-            common: Some(core::array::from_fn(|place| place)),
-        }
+        Self(core::array::from_fn(|place| T::from_f64(place as f64)))
     }
 
     /// Exchanges two elements in the lanes where `first < second`.
     fn exchange(&mut self, (first, second): (T, T), i: usize, k: usize) {
-        let pair = (self.places[i], self.places[k]);
-        (self.places[i], self.places[k]) = exchanged(first, second, pair);
-        match &mut self.common {
-            Some(common) if everywhere(second - first, |by| by > 0.0) => common.swap(i, k),
-            common => *common = None,
-        }
+        (self.0[i], self.0[k]) = exchanged(first, second, (self.0[i], self.0[k]));
     }
 
     /// Whether element `i` came from `place`: below zero in the lanes where it did.
     fn differs(&self, i: usize, place: usize) -> T {
-        (self.places[i] - T::from_f64(place as f64)).abs() - T::from_f64(0.5)
+        (self.0[i] - T::from_f64(place as f64)).abs() - T::from_f64(0.5)
     }
 
     /// Elements in this order.
     fn apply(&self, elements: &[T; K]) -> [T; K] {
         let zero = T::from_f64(0.0);
-        if let Some(common) = &self.common {
-            return common.map(|place| elements.get(place).copied().unwrap_or(zero));
-        }
         core::array::from_fn(|i| {
             (0..K).fold(zero, |found, place| {
                 self.differs(i, place)
@@ -105,15 +89,6 @@ impl<T: Real, const K: usize> Order<T, K> {
     /// Elements back in the order that they came from.
     fn undo(&self, elements: &[T; K]) -> [T; K] {
         let zero = T::from_f64(0.0);
-        if let Some(common) = &self.common {
-            let mut back = [zero; K];
-            for (place, element) in common.iter().zip(elements) {
-                back.get_mut(*place)
-                    .into_iter()
-                    .for_each(|it| *it = *element);
-            }
-            return back;
-        }
         core::array::from_fn(|place| {
             (0..K).fold(zero, |found, i| {
                 self.differs(i, place).select_less(zero, elements[i], found)

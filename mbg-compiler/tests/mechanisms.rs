@@ -6,8 +6,8 @@
 //! their rates, whatever is chosen.
 //!
 //! `PROPTEST_CASES=20000 PROPTEST_RNG_SEED=7 cargo test --release -p mbg-compiler --test mechanisms` tries many others.
-//! Of thousands a loop may be refused with `MBG0404` that starts where no motion is singular: with a frame that nothing is
-//! fixed to it may be divided by more than the inertia of the mechanism.
+//! Of thousands, a loop may be refused with `MBG0404` though no motion is singular where it starts: if nothing is fixed to one of
+//! its frames, elimination may divide by more than the inertia of the mechanism.
 #![allow(clippy::unwrap_used)]
 
 mod models;

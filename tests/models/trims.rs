@@ -29,13 +29,10 @@ mbg! {
         output place[3]: m = free.position;
     }
 
-    /// A four-bar held by a torque at its first crank, which multipliers close.
-    #[derivative]
-    model Crank {
-        causality componentwise;
-        gravity [0.0, -9.81];
-        input torque: N*m;
-        1 ground[3]; 1 left[3]; 1 a[3]; 1 right[3]; 1 b[3]; 1 coupler[3]; 1 end[3]; 1 foot[3]; 1 centre[3];
+    /// A crank, a rocker and a coupler between them, whose end is to be where the rocker's is.
+    component Bars(port 1 end[3], port 1 b[3]) {
+        param torque: N*m;
+        1 ground[3]; 1 left[3]; 1 a[3]; 1 right[3]; 1 coupler[3]; 1 foot[3]; 1 centre[3];
         Sf fixed[3] { flow: 0.0 } -> ground;
         first: PlanarRevolute { initial: 1.2, torque: torque } (ground, left);
         left_body: PlanarBody { mass: 1.0, inertia: 0.1 } (left);
@@ -48,8 +45,18 @@ mbg! {
         half: PlanarOffset { x: 0.5 } (coupler, centre);
         body: PlanarBody { mass: 3.0, inertia: 0.1 } (centre);
         arm: PlanarOffset { x: 1.0 } (coupler, end);
+    }
+
+    /// A four-bar held by a torque at its first crank, which multipliers close.
+    #[derivative]
+    model Crank {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        input torque: N*m;
+        1 end[3]; 1 b[3];
+        bars: Bars { torque: torque } (end, b);
         cut: PlanarCut (end, b);
-        output angles[2]: rad = [first.angle, second.angle];
+        output angles[2]: rad = [bars.first.angle, bars.second.angle];
     }
 
     /// The same as a ring of joints, which nothing closes.
@@ -58,21 +65,10 @@ mbg! {
         causality componentwise;
         gravity [0.0, -9.81];
         input torque: N*m;
-        1 ground[3]; 1 left[3]; 1 a[3]; 1 right[3]; 1 b[3]; 1 coupler[3]; 1 end[3]; 1 foot[3]; 1 centre[3];
-        Sf fixed[3] { flow: 0.0 } -> ground;
-        first: PlanarRevolute { initial: 1.2, torque: torque } (ground, left);
-        left_body: PlanarBody { mass: 1.0, inertia: 0.1 } (left);
-        left_arm: PlanarOffset { x: 0.5 } (left, a);
-        base: PlanarOffset { x: 1.0 } (ground, foot);
-        second: PlanarRevolute { initial: 1.2 } (foot, right);
-        right_body: PlanarBody { mass: 1.0, inertia: 0.1 } (right);
-        right_arm: PlanarOffset { x: 0.5 } (right, b);
-        third: PlanarRevolute { initial: -1.2 } (a, coupler);
-        half: PlanarOffset { x: 0.5 } (coupler, centre);
-        body: PlanarBody { mass: 3.0, inertia: 0.1 } (centre);
-        arm: PlanarOffset { x: 1.0 } (coupler, end);
+        1 end[3]; 1 b[3];
+        bars: Bars { torque: torque } (end, b);
         fourth: PlanarRevolute { initial: 1.2 } (end, b);
-        output gap[2]: m = arm.position_b - right_arm.position_b;
+        output gap[2]: m = bars.arm.position_b - bars.right_arm.position_b;
     }
 
     /// A pull on two springs of which each may have any stroke: more may be chosen than is asked.
@@ -169,7 +165,7 @@ fn a_craft_leans_against_its_drag() {
 #[test]
 fn a_closed_loop_is_held() {
     let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();
-    let held = Trim::new(&crank).fix("first").solve().unwrap();
+    let held = Trim::new(&crank).fix("bars.first").solve().unwrap();
     // The coupler alone has weight that a turn lifts: 3 kg at the end of a crank of half a metre.
     let expected = 3.0 * 9.81 * 0.5 * f64::cos(1.2);
     assert!(
@@ -193,9 +189,9 @@ fn a_closed_loop_is_held() {
 #[test]
 fn a_ring_is_held_where_its_gap_is_an_output() {
     let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();
-    let held = Trim::new(&crank).fix("first.angle").solve().unwrap();
+    let held = Trim::new(&crank).fix("bars.first.angle").solve().unwrap();
     let ring = Ring::<f64>::new(RingParameters::default()).unwrap();
-    let trim = Trim::new(&ring).fix("first.angle");
+    let trim = Trim::new(&ring).fix("bars.first.angle");
     let gap = |point: &Trimmed<4, 1>| ring.output(0.0, &point.state, &point.input, &mut ());
     assert!(gap(&trim.solve().unwrap()).norm() > 0.01);
     let closed = trim.output("gap", 0.0).solve().unwrap();

@@ -46,11 +46,12 @@ use crate::{Input, Real, Sparsity, System};
 /// | [`Radau9`] | 6 | 8.1 MB |
 /// | `Auto` while a model is not stiff | 1 | 1.4 MB |
 ///
-/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. [`Linearised::of`](crate::Linearised::of)
-/// takes 4, [`Linearised::held`](crate::Linearised::held) 10, and [`Trim::solve`](crate::Trim::solve) 13.
+/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. With what they give,
+/// [`Linearised::of`](crate::Linearised::of) takes 7, [`Linearised::held`](crate::Linearised::held) 11, and
+/// [`Trim::solve`](crate::Trim::solve) 13.
 ///
-/// The main thread has 8 MB on most systems and others, such as those of tests, have 2 MB. A larger model overflows it, and the process is aborted: run it in a
-/// thread of its own, by `std::thread::Builder::new().stack_size(256 << 20).spawn(…)`. Without optimisation more is copied, which
+/// The main thread has 8 MB on most systems and others, such as those of tests, have 2 MB. A larger model overflows it, and the
+/// process is aborted: run it in a thread of its own, by `std::thread::Builder::new().stack_size(256 << 20).spawn(…)`. Without optimisation more is copied, which
 /// takes three to four times as much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Auto<'a> {
@@ -263,12 +264,13 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         let mut watch = |step: &mut Step<'_, T, N, S::Memory>| {
             observer(step)?;
             steps += 1;
-            let (t, x) = (step.end(), *step.state());
+            let t = step.end();
             let (length, left) = (seen(t - step.start()), seen(ends.1 - t));
             if steps < next || left < FEW * length {
                 return ControlFlow::Continue(());
             }
             next = steps + WATCHED.max(steps / 4);
+            let x = *step.state();
             let u = input.value(t, since);
             let (fastest, oscillates) = fastest_at(system, t, &x, &u, step.memory());
             if fastest * length > UNSTABLE && fastest * left > STIFF {

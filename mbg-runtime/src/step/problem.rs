@@ -136,7 +136,8 @@ where
         *slopes = self.system.derivatives(times, x, u, &mut self.memory);
     }
 
-    /// Writes `∂f/∂x`, which may be asked for ahead: the memory stays as it is.
+    /// Writes `∂f/∂x` over a matrix that began with zeros: those that it has in every state stay. It may be asked for
+    /// ahead: the memory stays as it is.
     ///
     /// A matrix on its way is on the stack no longer than the call.
     #[inline(never)]

@@ -3,7 +3,8 @@
 With z = y², sin y = y + y z S(z) and cos y = 1 - z/2 + z² C(z) on |y| <= pi/4. S and C are the minimax polynomials for
 the error in sin y relative to sin y, and for the absolute error in cos y, by Remez' exchange. Coefficients are rounded
 one at a time, the lowest first, and the rest is fitted again, so that rounding one is made good by the others.
-pi/2 is cut into parts of so few bits that the multiples in use are exact, and a last one in full.
+pi/2 is cut into parts of so few bits that the multiples in use are exact, and a last one in full; for a fused
+multiply-add, into parts in full.
 
 exp r = 1 + r + r² E(r) on |r| <= ln(2) / 2, E the minimax polynomial for the relative error of exp r. ln 2 is cut as pi/2.
 """
@@ -103,6 +104,7 @@ for BITS, degrees, short, count in [(53, (5, 5, 9), 38, 2), (24, (2, 2, 4), 14, 
     found, rest = parts(pi / 2, short, count, BITS)
     show("    pi/2", found)
     print("    rest 2^", mp.nstr(log(abs(rest), 2), 4))
+    show("    pi/2, fused", parts(pi / 2, BITS, 2, BITS)[0])
     coefficients, error = polynomial(power, lambda r: r**2 / exp(r), degrees[2], BITS, AROUND)
     show(f"f{BITS} power ", coefficients)
     print("    relative error 2^", mp.nstr(log(error, 2), 4))

@@ -6,7 +6,7 @@
 //! one. The tangent has no branch at all. Nothing is computed in a wider type than the scalar's.
 //!
 //! `tools/constants.py` derives the constants. Errors found are below one unit of the last place of an exponential in double
-//! and 1.04 in single precision, and below 2.75 of a tangent, over millions of numbers.
+//! precision, 1.02 with fused products, below 1.04 in single precision, and below 2.75 of a tangent, over millions of numbers.
 
 use crate::Real;
 use crate::sine::{Angle, every, linear, multiply, multiply_add};
@@ -202,7 +202,8 @@ mod tests {
     fn double_precision_stays_within_its_bounds() {
         for largest in [1e-3, 0.35, 1.0, 30.0, 600.0] {
             let found = worst(spread(largest), 52);
-            assert!(found < 1.0, "{largest}: {found}");
+            let bound = if crate::FUSED { 1.02 } else { 1.0 };
+            assert!(found < bound, "{largest}: {found}");
         }
     }
 
@@ -210,7 +211,8 @@ mod tests {
     fn single_precision_stays_within_its_bounds() {
         for largest in [1e-3, 0.35, 1.0, 87.0] {
             let found = worst(spread(largest).map(|x| x as f32), 23);
-            assert!(found < 1.0, "{largest}: {found}");
+            let bound = if crate::FUSED { 1.01 } else { 1.0 };
+            assert!(found < bound, "{largest}: {found}");
         }
         // The worst of all, with rounded products and with fused ones.
         let found = worst([59.300_01_f32, -70.998_886].into_iter(), 23);

@@ -198,7 +198,7 @@ macro_rules! lanes {
         }
 
         impl Angle for $lanes {
-            sine::$constants!();
+            sine::$constants!(FUSED);
 
             #[inline(always)]
             fn is_within(self, largest: f64) -> bool {

@@ -261,7 +261,7 @@ macro_rules! registers {
         }
 
         impl<S: Proven> Angle for $name<S> {
-            sine::$constants!();
+            sine::$constants!(!cfg!(feature = "reproducible"));
 
             #[inline(always)]
             fn is_within(self, largest: f64) -> bool {

@@ -46,6 +46,13 @@ impl<T: Real> Span<T> {
             self.start + fraction * self.length
         }
     }
+
+    /// Its first and its second half.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        let half = T::from_f64(0.5);
+        let (middle, length) = (self.at(half), half * self.length);
+        [(self.start, middle), (middle, self.end)].map(|(start, end)| Self { start, end, length })
+    }
 }
 
 /// Where a step starts.

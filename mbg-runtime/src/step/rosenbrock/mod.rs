@@ -1,5 +1,6 @@
 //! Methods of Rosenbrock: implicit by one linear system per step.
 
+mod kink;
 mod rodas4;
 mod rodas5p;
 
@@ -115,6 +116,8 @@ pub struct Stages<A, T, const N: usize, const S: usize> {
     stages: [SVector<T, N>; S],
     /// Of steps without a tolerance.
     sizes: Sizes<N>,
+    /// Whether the last step was tried across a kink: the Jacobian and the stages are none of the start.
+    is_across: bool,
     method: PhantomData<A>,
 }
 
@@ -153,6 +156,7 @@ where
             by_time: SVector::from_element(zero),
             stages: [SVector::from_element(zero); S],
             sizes: Sizes::new(),
+            is_across: false,
             method: PhantomData,
         }
     }
@@ -169,7 +173,8 @@ where
     {
         let Start { span, x, .. } = start;
         let length = span.length;
-        if !start.again {
+        let was_across = core::mem::take(&mut self.is_across);
+        if !start.again || was_across {
             problem.jacobian(span.start, x, &mut self.jacobian);
             self.by_time = problem.slope_by_time(span.start, x, length);
         }
@@ -195,13 +200,19 @@ where
             last = self.factors.solved::<Y, M, P>(&(slope + known));
             self.stages[stage] = last;
         }
-        let change = combination(const { &A::TABLEAU.result }, &self.stages);
+        let mut change = combination(const { &A::TABLEAU.result }, &self.stages);
         let error = match tolerance {
             Some(tolerance) => {
                 let error = combination(const { &A::TABLEAU.error }, &self.stages);
                 tolerance.between(x, &change).norm(&error)
             }
-            None if self.is_lost(start) => f64::INFINITY,
+            None if self.is_lost(start) => match self.across(problem, start) {
+                Some(found) => {
+                    change = found;
+                    0.0
+                }
+                None => f64::INFINITY,
+            },
             None => 0.0,
         };
         Trial {
@@ -222,6 +233,9 @@ where
         Y: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
+        if self.is_across {
+            return Polynomial::line(&start.x, end);
+        }
         between(&A::TABLEAU, &self.stages, &start.x, end)
     }
 

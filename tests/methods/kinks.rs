@@ -30,36 +30,69 @@ mbg! {
     }
 }
 
-/// The least and the largest current, and the one at the end, from a time on; and how many steps there are.
+/// Currents of a run.
+struct Found {
+    /// At the ends of steps.
+    least: f64,
+    largest: f64,
+    last: f64,
+    /// The least in the middle of steps.
+    between: f64,
+    steps: u64,
+}
+
+/// Of a run from a time on.
 fn currents<S, const N: usize>(
     model: &S,
     solver: &impl Integrator<N>,
     (from, to): (f64, f64),
-) -> ([f64; 3], u64)
+) -> Found
 where
     S: System<f64, N, 0, 1>,
 {
     let mut memory = S::Memory::default();
-    let mut found = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
+    let mut current = |t: f64, x| {
+        let none = nalgebra::SVector::zeros();
+        model.output(t, &x, &none, &mut memory)[0]
+    };
+    let mut found = Found {
+        least: f64::INFINITY,
+        largest: f64::NEG_INFINITY,
+        last: 0.0,
+        between: f64::INFINITY,
+        steps: 0,
+    };
     let statistics = solver
         .integrate(model, &(), 0.0, to, model.initial_state(), |step| {
-            if step.end() >= from {
-                let none = nalgebra::SVector::zeros();
-                let current = model.output(step.end(), step.state(), &none, &mut memory)[0];
-                found = [found[0].min(current), found[1].max(current), current];
+            if step.end() < from {
+                return;
             }
+            let middle = (step.start() + step.end()) / 2.0;
+            found.between = found.between.min(current(middle, step.at(middle)));
+            found.last = current(step.end(), *step.state());
+            found.least = found.least.min(found.last);
+            found.largest = found.largest.max(found.last);
         })
         .unwrap();
-    (found, statistics.steps)
+    found.steps = statistics.steps;
+    found
 }
 
 /// The current comes to -20 V / 10 kΩ, on the way and at the end within so much of it.
 fn assert_blocked(name: &str, solver: &impl Integrator<1>, within: f64) {
     let model = Blocking::<f64>::new(BlockingParameters::default()).unwrap();
-    let ([least, largest, last], _) = currents(&model, solver, (0.0, 2e-6));
-    println!("{name:<18}from {least:.2e} to {largest:.3} A, {last:.6} A at the end");
-    assert!(least > -2e-3 - within && largest < 0.5, "{name}: {least}");
+    let found = currents(&model, solver, (0.0, 2e-6));
+    let (least, last) = (found.least, found.last);
+    println!(
+        "{name:<18}from {least:.2e} to {:.3} A, {last:.6} A at the end",
+        found.largest
+    );
+    assert!(
+        least > -2e-3 - within && found.largest < 0.5,
+        "{name}: {least}"
+    );
     assert!((last + 2e-3).abs() < within, "{name}: {last}");
+    assert!(found.between > -0.05, "{name}: {}", found.between);
 }
 
 #[test]
@@ -83,18 +116,17 @@ fn a_diode_beside_a_coil_blocks_at_fixed_steps() {
     let model = HalfWave::<f64>::new(HalfWaveParameters::default()).unwrap();
     let period = (0.02, 0.0395);
     let adaptive = Adaptive::new(Rodas5P, 1e-8, 1e-10);
-    let ([_, peak, _], _) = currents(&model, &adaptive, period);
+    let peak = currents(&model, &adaptive, period).largest;
     assert!((peak - 32.35).abs() < 0.02, "{peak}");
     for step in [50e-6, 20e-6, 5e-6] {
         println!("steps of {step:e} s");
-        let assert_rectified = |name: &str,
-                                ([least, largest, _], steps): ([f64; 3], u64),
-                                overshoot: f64,
-                                most: f64| {
-            let steps = steps as f64 * step / period.1;
+        let assert_rectified = |name: &str, found: Found, overshoot: f64, most: f64| {
+            let Found { least, largest, .. } = found;
+            let steps = found.steps as f64 * step / period.1;
             println!("{name:<18}from {least:.4} to {largest:.4} A, {steps:.2} of the steps");
             assert!((largest - peak).abs() < 0.03, "{name}: {largest}");
             assert!(least > -overshoot, "{name}: {least}");
+            assert!(found.between > -0.1 * peak, "{name}: {}", found.between);
             assert!(steps < most, "{name}: {steps}");
         };
         let radau5 = currents(&model, &Fixed::new(Radau5, step), period);

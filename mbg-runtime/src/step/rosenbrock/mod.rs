@@ -116,7 +116,7 @@ pub struct Stages<A, T, const N: usize, const S: usize> {
     stages: [SVector<T, N>; S],
     /// Of steps without a tolerance.
     sizes: Sizes<N>,
-    /// Whether the last step was tried across a kink: the Jacobian and the stages are none of the start.
+    /// Whether the last step was one across a kink, of which the stages tell nothing.
     is_across: bool,
     method: PhantomData<A>,
 }
@@ -173,8 +173,9 @@ where
     {
         let Start { span, x, .. } = start;
         let length = span.length;
-        let was_across = core::mem::take(&mut self.is_across);
-        if !start.again || was_across {
+        self.is_across = false;
+        // Of a part that is tried again the Jacobian is where a step across came to.
+        if !start.again || start.is_part {
             problem.jacobian(span.start, x, &mut self.jacobian);
             self.by_time = problem.slope_by_time(span.start, x, length);
         }

@@ -145,3 +145,19 @@ fn a_diode_beside_a_coil_blocks_at_fixed_steps() {
         assert_rectified(ImplicitMidpoint::NAME, midpoint, 0.1 * peak, 2.0);
     }
 }
+
+/// Where rounding is a tenth of what a step across a kink is to be found to.
+#[test]
+fn a_diode_blocks_in_single_precision() {
+    let model = HalfWave::<f32>::new(HalfWaveParameters::default()).unwrap();
+    let (inductance, step, end) = (2e-3, 20e-6, 0.0395);
+    let mut least = 0.0_f32;
+    let statistics = Fixed::new(Ros2, step)
+        .integrate(&model, &(), 0.0, end, model.initial_state(), |step| {
+            least = least.min(step.state()[0] / inductance);
+        })
+        .unwrap();
+    assert!(least > -4e-4, "{least}");
+    let whole = f64::from(end) / step;
+    assert!((statistics.steps as f64) < 1.1 * whole, "{statistics:?}");
+}

@@ -56,8 +56,11 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
     {
         let one = T::from_f64(1.0);
         let inverse = one / span.length;
+        let memory = problem.memory;
         let mut end = *x;
         for _ in 0..SWEEPS {
+            // Loops go on from the start, not from where a sweep strayed to.
+            problem.memory = memory;
             let slope = problem.slope(span.end, &end);
             problem.jacobian(span.end, &end, &mut self.jacobian);
             problem.statistics.factorisations += 1;

@@ -152,6 +152,23 @@ fn the_ring_modulator_reaches_its_published_end() {
     assert!(error < 2e-3, "{error:e}");
 }
 
+/// The first stages that are tried on the way overflow in a diode: such a step is halved, too.
+#[test]
+fn the_ring_modulator_runs_at_fixed_steps() {
+    let system = RingModulator::<f64>::new(RingModulatorParameters::default()).unwrap();
+    // A period of the fastest modes is 0.2 µs.
+    for (step, within) in [(1e-7, 0.1), (2e-8, 3e-3)] {
+        let mut last = system.initial_state();
+        let statistics = Fixed::new(Radau5, step)
+            .integrate(&system, &(), 0.0, 1e-3, last, |step| last = *step.state())
+            .unwrap();
+        let error = ring_error(&last);
+        println!("{step:e} s: {error:.1e} V, {statistics:?}");
+        assert!(statistics.rejected > 0);
+        assert!(error < within, "{error:e}");
+    }
+}
+
 #[test]
 fn steps_are_those_of_the_dense_system() {
     fn end<S, D: Method>(system: &S, method: D) -> SVector<f64, 31>

@@ -222,6 +222,26 @@ fn sweeps_go_to_rounding_where_they_turn() {
     assert!((found - strict).norm() < 2e-3, "{found:?} {strict:?}");
 }
 
+/// Sweeps to rounding take one more than what they need, and the Jacobian is as good in the next step.
+#[test]
+fn steps_of_radau_cost_little_where_the_law_is_linear() {
+    fn assert_cheap<M: Method>(method: M, stages: u64, pairs: u64) {
+        let start = SVector::from([1.0, 0.0]);
+        let (x, statistics) = end(Relaxation(0.0), Fixed::new(method, 0.125), 100.0, start);
+        println!("{}: {statistics:?}", M::NAME);
+        let error = (x - SVector::from([f64::cos(100.0), -f64::sin(100.0)])).norm();
+        assert!(error < 1e-4, "{}: {error:e}", M::NAME);
+        assert_eq!((statistics.steps, statistics.rejected), (800, 0));
+        assert_eq!(statistics.jacobians, 1);
+        assert_eq!(statistics.factorisations, 1 + pairs);
+        // The derivative at the start of a step, and two sweeps.
+        let most = 800 * (1 + 2 * stages) + stages;
+        assert!(statistics.evaluations <= most, "{statistics:?}");
+    }
+    assert_cheap(Radau5, 3, 1);
+    assert_cheap(Radau9, 5, 2);
+}
+
 /// Decay at a rate that is an input, each lane at its own.
 #[derive(Clone, Copy)]
 struct Decay;

@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Adaptive, Fixed, ImplicitMidpoint, Integrator, Method, Radau5, Radau9, Rodas4, Rodas5P, Ros2,
-    System, mbg,
+    Statistics, System, mbg,
 };
 
 mbg! {
@@ -27,6 +27,20 @@ mbg! {
         diode: Diode {} (anode, cathode);
         load: Resistor { resistance: 10.0 } (cathode, ground);
         output current: A = coil.current;
+    }
+}
+
+mbg! {
+    /// A block on a belt, held by a spring: it sticks, and slips when the spring is strong enough.
+    model Slipping {
+        1 block {
+            I mass { inertia: 1.0 }
+            C spring { stiffness: 100.0 }
+        }
+        1 slip { R friction { effort: (8.0 + 4.0 * exp(-abs(f) / 0.05)) * tanh(f / 1e-5) } }
+        0 contact;
+        block -> contact -> slip;
+        Sf belt { flow: -0.1 } -> contact;
     }
 }
 
@@ -143,6 +157,39 @@ fn a_diode_beside_a_coil_blocks_at_fixed_steps() {
         let midpoint = Fixed::new(ImplicitMidpoint::default(), step);
         let midpoint = currents(&model, &midpoint, period);
         assert_rectified(ImplicitMidpoint::NAME, midpoint, 0.1 * peak, 2.0);
+    }
+}
+
+/// The compression of the spring after each hundredth of a second.
+fn compressions(solver: &impl Integrator<2>) -> (Vec<f64>, Statistics) {
+    let model = Slipping::<f64>::new(SlippingParameters::default()).unwrap();
+    let times: Vec<f64> = (1..=400).map(|k| 0.01 * f64::from(k)).collect();
+    let mut found = Vec::new();
+    let statistics = solver
+        .sample(&model, &(), 0.0, model.initial_state(), &times, |_, x| {
+            found.push(x[1]);
+        })
+        .unwrap();
+    (found, statistics)
+}
+
+/// While the block sticks its friction is a damper of 1.2 MN s/m, and slips begin and end within microseconds.
+#[test]
+fn sticking_and_slipping_is_followed_at_fixed_steps_of_radau() {
+    let (expected, _) = compressions(&Adaptive::new(Radau9, 1e-11, 1e-13));
+    fn largest(sizes: impl Iterator<Item = f64>) -> f64 {
+        sizes.fold(0.0, |largest, size| largest.max(size.abs()))
+    }
+    let assert_follows = |name: &str, step, (found, statistics): (Vec<f64>, Statistics)| {
+        let differences = found.iter().zip(&expected).map(|(a, b)| a - b);
+        let error = largest(differences) / largest(expected.iter().copied());
+        println!("{name:<12} at {step:e} s: {error:.1e}, {statistics:?}");
+        assert!(error < 1e-6, "{name} at {step:e} s: {error:e}");
+        assert!(statistics.jacobians < statistics.steps / 5);
+    };
+    for step in [1e-3, 1e-4] {
+        assert_follows(Radau5::NAME, step, compressions(&Fixed::new(Radau5, step)));
+        assert_follows(Radau9::NAME, step, compressions(&Fixed::new(Radau9, step)));
     }
 }
 

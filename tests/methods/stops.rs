@@ -181,11 +181,12 @@ fn a_derivative_that_is_not_finite_is_told_before_its_jacobian() {
         );
     }
     // At 0.4 s the level is still above zero, at a stage of the step from there it is below. The stages of Rosenbrock's
-    // methods share what is not finite; those of Radau's take their Jacobian there.
+    // methods share what is not finite; those of Radau's take their Jacobian there, in halves of the step up to 0.45 s.
     for (solver, stopped) in stops(&Written(Emptying), [0.45, 0.0]) {
         if solver.contains("Radau") && solver.starts_with("Fixed") {
             let cause = Cause::Trouble(Trouble::NotFinite { state: "pipe" });
-            assert_eq!((stopped.time, stopped.cause), (0.4, cause), "{solver}");
+            assert_eq!(stopped.cause, cause, "{solver}");
+            assert!((stopped.time - 0.45).abs() < 1e-6, "{solver}: {stopped}");
         } else if solver.starts_with("Fixed") {
             assert!(
                 matches!(stopped.cause, Cause::Trouble(Trouble::NotFinite { .. })),

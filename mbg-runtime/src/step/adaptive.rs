@@ -200,7 +200,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 // Written so that a step of NaN is refused as well.
                 if control.length.is_nan() || control.length <= smallest(t) {
                     let place = steps.place_of_jacobian(&from);
-                    return Err(problem.too_small((t, &trial.change), &tried, place));
+                    return Err(problem.too_small((&from, &trial.change), &tried, place));
                 }
                 continue;
             };

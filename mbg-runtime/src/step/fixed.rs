@@ -26,9 +26,9 @@ use crate::{Input, Real, System};
 /// at [`System::energy`], or at how they change with half the step; or take [`Adaptive`](super::Adaptive).
 ///
 /// A method that uses a Jacobian loses a step across a kink of a stiff law, as where a diode beside a coil begins to block. Such
-/// a step is halved until its stages are found, and the observer is given each part. Methods of Radau then follow the kink. Those
-/// of Rosenbrock take a part that is lost, too, by Euler's implicit method, where that errs by less than a thousandth of what
-/// states have been. The midpoint rule comes as near to the kink as a tenth of that. Next to a singular position
+/// a step is halved until its stages are found and finite, and the observer is given each part. Methods of Radau then follow the
+/// kink. Those of Rosenbrock take a part that is lost, too, by Euler's implicit method, where that errs by less than a thousandth
+/// of what states have been. The midpoint rule comes as near to the kink as a tenth of that. Next to a singular position
 /// of closed loops a step whose stages are not found is one of [`Dop853`](super::Dop853) whose stages are closed, if that is off
 /// by no more than 1e-5 of what states have been.
 ///
@@ -139,13 +139,13 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                 }
                 if !trial.error.is_finite() {
                     let jacobian = work.place_of_jacobian(&from);
-                    check_result(problem.system, t, &trial.change, &problem.memory)
-                        .map_err(|stopped| problem.traced(stopped, t, jacobian))?;
                     problem.statistics.rejected += 1;
                     if jacobian.is_some() && parts.halve() {
                         problem.memory = memory;
                         continue;
                     }
+                    check_result(problem.system, t, &trial.change, &problem.memory)
+                        .map_err(|stopped| problem.traced(stopped, &from, jacobian))?;
                     return Err(Stopped::new(t, Cause::Diverged));
                 }
                 x = if self.compensated {
@@ -155,7 +155,7 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                 };
                 t = span.end;
                 check_result(problem.system, t, &x, &problem.memory).map_err(|stopped| {
-                    problem.traced(stopped, span.start, work.place_of_jacobian(&from))
+                    problem.traced(stopped, &from, work.place_of_jacobian(&from))
                 })?;
                 x = problem.close(t, x)?;
                 problem.statistics.steps += 1;

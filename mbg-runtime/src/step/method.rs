@@ -339,18 +339,25 @@ pub(super) fn along<T: Real, const N: usize>(
 /// Repeats what gives the size of a change, relative to what is changed, until nothing but rounding is left, at most so
 /// many times; whether it came to that.
 ///
-/// It has when nothing changes, or when a small change no longer becomes smaller (Hairer, McLachlan and Razakarivony,
-/// *BIT Numerical Mathematics* 48 (2008), 231–243). Where the iteration turns while it converges, a change is larger than
+/// It has when nothing changes, when the last two changes are said to be enough, or when a small change no longer becomes
+/// smaller (Hairer, McLachlan and Razakarivony, *BIT Numerical Mathematics* 48 (2008), 231–243). Where the iteration turns while it converges, a change is larger than
 /// the one before now and then, and in a component near zero all of it may be rounding: so the longer none has been the
 /// smallest, the larger one is taken for rounding. Where the iteration is cut off, the last change must be small.
-pub(super) fn settles<T: Real>(most: u32, mut change: impl FnMut() -> f64) -> bool {
+pub(super) fn settles<T: Real>(
+    most: u32,
+    is_enough: impl Fn(f64, f64) -> bool,
+    mut change: impl FnMut() -> f64,
+) -> bool {
     const FIRST: f64 = 64.0;
     const FACTOR: f64 = 16.0;
     const LARGEST: f64 = 1e-2;
     let mut least = f64::INFINITY;
     let (mut rounding, mut last) = (0.0, f64::INFINITY);
     for _ in 0..most {
-        last = change();
+        let before = core::mem::replace(&mut last, change());
+        if is_enough(before, last) {
+            return true;
+        }
         if last < least {
             (least, rounding) = (last, 0.0);
         } else {

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::elimination::Shifted;
+use super::method::{Span, Start, along};
 use super::probes::Probes;
 use super::{Cause, Statistics, Stopped, check_result, seen};
 use crate::{Columns, Input, Real, System, Trouble};
@@ -205,43 +206,52 @@ where
         check_result(self.system, t, slope, &self.memory)
     }
 
-    /// Why a step from this time failed, where it took its Jacobian at `place`: of what is not finite, that which made
-    /// the rest so.
+    /// Why this step failed, which took its Jacobian at `place`: of what is not finite, that which made the rest so.
     #[cold]
     #[inline(never)]
     pub(super) fn traced(
         &mut self,
         stopped: Stopped,
-        time: T,
+        start: &Start<T, N>,
         place: Option<(T, SVector<T, N>)>,
     ) -> Stopped {
         let not_finite = matches!(stopped.cause, Cause::Trouble(Trouble::NotFinite { .. }));
         let Some((t, x)) = place.filter(|_| not_finite) else {
             return stopped;
         };
+        let Span {
+            start: time,
+            end,
+            length,
+        } = start.span;
+        let slope_at = |problem: &mut Self, t: T, x: &SVector<T, N>| {
+            let slope = problem.slope(t, x);
+            check_result(problem.system, time, &slope, &problem.memory)
+        };
         // Where the derivative is not finite, the Jacobian is not either.
-        let slope = self.slope(t, &x);
-        if let Err(stopped) = check_result(self.system, time, &slope, &self.memory) {
+        if let Err(stopped) = slope_at(self, t, &x) {
             return stopped;
         }
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         self.jacobian(t, &x, &mut jacobian);
-        Trouble::of_jacobian(&jacobian, [S::META.states; 2]).map_or(stopped, |trouble| {
-            Stopped::new(time, Cause::Trouble(trouble))
-        })
+        if let Some(trouble) = Trouble::of_jacobian(&jacobian, [S::META.states; 2]) {
+            return Stopped::new(time, Cause::Trouble(trouble));
+        }
+        let ahead = along(&start.x, length, &start.slope);
+        slope_at(self, end, &ahead).err().unwrap_or(stopped)
     }
 
     /// Why a step that is as short as time resolves failed: what is not finite in its change, if anything is.
     #[cold]
     pub(super) fn too_small(
         &mut self,
-        (t, change): (T, &SVector<T, N>),
+        (start, change): (&Start<T, N>, &SVector<T, N>),
         tried: &S::Memory,
         place: Option<(T, SVector<T, N>)>,
     ) -> Stopped {
-        match check_result(self.system, t, change, tried) {
-            Ok(()) => Stopped::new(t, Cause::StepTooSmall),
-            Err(stopped) => self.traced(stopped, t, place),
+        match check_result(self.system, start.span.start, change, tried) {
+            Ok(()) => Stopped::new(start.span.start, Cause::StepTooSmall),
+            Err(stopped) => self.traced(stopped, start, place),
         }
     }
 

@@ -13,7 +13,7 @@ use super::elimination::Shifted;
 use super::linear::{Complex, Element};
 use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combination};
 use super::problem::Problem;
-use super::tolerance::Tolerance;
+use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 use newton::Newton;
 use tableaux::{RADAU5, RADAU9};
@@ -28,7 +28,8 @@ use tableaux::{RADAU5, RADAU9};
 ///
 /// The stages are found by Newton's method in the coordinates in which the tableau is diagonal; the estimate is
 /// filtered. Coefficients and most decisions follow `radau5`; other than there, the Jacobian is taken at the predicted
-/// middle of the step. At a fixed step the sweeps go to rounding. What it takes of the stack, [`Auto`](crate::Auto#stack) tells.
+/// middle of the step. At a fixed step the sweeps go to rounding, and the next step keeps a Jacobian with which two came to it. What
+/// it takes of the stack, [`Auto`](crate::Auto#stack) tells.
 ///
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.8.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -97,6 +98,8 @@ pub struct Stages<A, T, const N: usize, const S: usize, const PAIRS: usize> {
     /// How fast sweeps converge, from step to step.
     rate: f64,
     rejected: bool,
+    /// Of the states, at fixed steps.
+    sizes: Sizes<N>,
     method: PhantomData<A>,
 }
 
@@ -148,6 +151,7 @@ where
             is_second: false,
             rate: 1.0,
             rejected: false,
+            sizes: Sizes::new(),
             method: PhantomData,
         }
     }
@@ -172,7 +176,10 @@ where
             Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, &self.factors);
         let found = match tolerance {
             Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
-            None => newton.settled(&mut stages),
+            None => {
+                self.sizes.note(&start.x);
+                newton.settled(&mut stages, &self.sizes.before::<T>())
+            }
         };
         match found {
             Ok(theta) => self.theta = theta,

@@ -8,7 +8,7 @@ use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, combined, larger, relative, settles};
 use crate::step::problem::Problem;
-use crate::step::tolerance::Tolerance;
+use crate::step::tolerance::{Measure, Tolerance};
 use crate::{Input, Real, System};
 
 /// Most sweeps in a step that is controlled by its error.
@@ -17,6 +17,8 @@ const SWEEPS: i32 = 10;
 const ENOUGH: f64 = 3e-3;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
+/// So few sweeps to rounding keep the Jacobian.
+const FEW: u32 = 2;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
 const FAR: f64 = 20.0;
 
@@ -188,20 +190,35 @@ where
         Err(f64::INFINITY)
     }
 
-    /// Sweeps to rounding, or a failure where it does not come to that.
-    pub(super) fn settled(&mut self, stages: &mut [SVector<T, N>; S]) -> Result<f64, f64> {
+    /// Sweeps to rounding; gives what a step leaves for the next like [`Newton::controlled`], or a failure where it does
+    /// not come to that.
+    ///
+    /// Changes are measured relative to the stages, so that small states are as exact as large ones; whether it is
+    /// going to come to rounding is told by what states have been, `sizes`: beside a state that is near zero all
+    /// changes are large.
+    pub(super) fn settled(
+        &mut self,
+        stages: &mut [SVector<T, N>; S],
+        sizes: &Measure<N>,
+    ) -> Result<f64, f64> {
         let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
-        let settles = settles::<T>(MOST, || {
+        let mut convergence = Convergence::new();
+        let settles = settles::<T>(MOST, is_rounding::<T>, || {
             let old = *stages;
-            self.sweep(stages, &mut inner);
+            let changes = self.sweep(stages, &mut inner);
+            if convergence.is_hopeless::<T>(Real::sqrt(sizes.squares(&changes))) {
+                return f64::NAN;
+            }
             let changes = old.iter().zip(&*stages);
             let sizes = changes.map(|(old, new)| relative(&(new - old), &self.start.x, new));
             sizes.fold(0.0, larger)
         });
-        if settles {
-            Ok(f64::INFINITY)
-        } else {
+        if !settles {
             Err(f64::INFINITY)
+        } else if convergence.sweeps <= FEW {
+            Ok(0.0)
+        } else {
+            Ok(f64::INFINITY)
         }
     }
 
@@ -229,6 +246,42 @@ where
     }
 }
 
+/// Whether the change after the last of two would be less than rounding.
+fn is_rounding<T: Real>(before: f64, last: f64) -> bool {
+    let rate = last / before;
+    // Of a change that is large itself, or the first, a rate tells nothing.
+    let is_known = last * last < T::EPSILON * Real::sqrt(T::EPSILON) && rate > 0.0;
+    is_known && last * rate <= T::EPSILON * (1.0 - rate)
+}
+
+/// How sweeps to rounding converge.
+struct Convergence {
+    sweeps: u32,
+    /// The last change and by how much the last sweep reduced it.
+    last: f64,
+    rate: f64,
+}
+
+impl Convergence {
+    fn new() -> Self {
+        Self {
+            sweeps: 0,
+            last: f64::INFINITY,
+            rate: 0.0,
+        }
+    }
+
+    /// Notes a change; whether the sweeps that may follow are not going to make it small. Then a shorter step costs less.
+    fn is_hopeless<T: Real>(&mut self, change: f64) -> bool {
+        let rate = (change / self.last).min(1.0);
+        let slower = rate.max(self.rate);
+        self.sweeps += 1;
+        (self.last, self.rate) = (change, rate);
+        let ahead = (self.sweeps..MOST).fold(change, |change, _| change * slower);
+        self.sweeps > 2 && ahead > T::SINGULAR
+    }
+}
+
 /// All but the first, two by two: what belongs to pairs of eigenvalues.
 #[inline(always)]
 fn pairs<E>(of_all: &[E]) -> &[[E; 2]] {
@@ -239,4 +292,43 @@ fn pairs<E>(of_all: &[E]) -> &[[E; 2]] {
 #[inline(always)]
 fn pairs_mut<E>(of_all: &mut [E]) -> &mut [[E; 2]] {
     of_all.get_mut(1..).unwrap_or_default().as_chunks_mut().0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_changes_tell_whether_another_would_be_rounding() {
+        // The next would be 1e-18.
+        assert!(is_rounding::<f64>(1e-8, 1e-13));
+        // 1e-15, and more of them.
+        assert!(!is_rounding::<f64>(1e-11, 1e-13));
+        assert!(!is_rounding::<f64>(1.01e-13, 1e-13));
+        // Nothing is known of the first, of one that grows, and of one that is large.
+        assert!(!is_rounding::<f64>(f64::INFINITY, 1e-13));
+        assert!(!is_rounding::<f64>(1e-14, 1e-13));
+        assert!(!is_rounding::<f64>(1e30, 1e-10));
+        assert!(!is_rounding::<f64>(f64::NAN, 1e-13) && !is_rounding::<f64>(1e-8, f64::NAN));
+        assert!(is_rounding::<f32>(1e-3, 1e-6) && !is_rounding::<f64>(1e-3, 1e-6));
+    }
+
+    /// After how many of these changes it is.
+    fn hopeless(changes: &[f64]) -> Option<usize> {
+        let mut convergence = Convergence::new();
+        let is_hopeless = |change: &f64| convergence.is_hopeless::<f64>(*change);
+        changes.iter().position(is_hopeless).map(|place| place + 1)
+    }
+
+    #[test]
+    fn sweeps_are_given_up_where_all_that_may_follow_come_to_nothing() {
+        assert_eq!(hopeless(&[1.0, 0.99, 0.98]), Some(3));
+        assert_eq!(hopeless(&[1.0, 3.0, 9.0]), Some(3));
+        // 0.25 · 0.5¹⁷ is too much, 0.3³ · 0.3¹⁷ is not.
+        assert_eq!(hopeless(&[1.0, 0.5, 0.25]), Some(3));
+        assert_eq!(hopeless(&[1.0, 0.3, 0.09, 0.027]), None);
+        // One that grew between is believed as long as the slower of two tells.
+        assert_eq!(hopeless(&[1e-3, 1e-9, 1e-9, 1e-13]), None);
+        assert_eq!(hopeless(&[1e-3, 1e-3, 1e-9]), None);
+    }
 }

@@ -28,9 +28,14 @@ use crate::{Input, Real, System};
 /// A method that uses a Jacobian loses a step across a kink of a stiff law, as where a diode beside a coil begins to block. Such
 /// a step is halved until its stages are found and finite, and the observer is given each part. Methods of Radau then follow the
 /// kink. Those of Rosenbrock take a part that is lost, too, by Euler's implicit method, where that errs by less than a thousandth
-/// of what states have been. The midpoint rule comes as near to the kink as a tenth of that. Next to a singular position
-/// of closed loops a step whose stages are not found is one of [`Dop853`](super::Dop853) whose stages are closed, if that is off
-/// by no more than 1e-5 of what states have been.
+/// of what states have been. The midpoint rule comes as near to the kink as a tenth of that.
+///
+/// A law that is steep at one place and level beside it, as dry friction by a steep curve, is one for those of Radau, or for
+/// [`Adaptive`](super::Adaptive) steps: one of Rosenbrock that starts where it is level knows nothing of the steep place, and makes
+/// another motion of a block that sticks and slips.
+///
+/// Next to a singular position of closed loops a step whose stages are not found is one of [`Dop853`](super::Dop853) whose stages are
+/// closed, if that is off by no more than 1e-5 of what states have been.
 ///
 /// # Example
 ///

@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::solve::{Row, Rows};
+use crate::solve::{Row, Rows, Sizes};
 use crate::{Convertible, Linearised, Trouble};
 
 /// Points at which the model is linearised at most.
@@ -17,8 +17,10 @@ const PARTS: [f64; 4] = [1e-4, 1e-6, 1e-9, 1e-12];
 const ASIDE: f64 = 6e-6;
 /// What may be left of a condition beside its terms.
 const LEFT: f64 = 1e-11;
-/// Nothing counts as smaller, where terms are zero.
+/// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
+/// In units of the precision and of its terms: a condition of which less is left is rounding.
+const ROUNDING: f64 = 4.0;
 
 /// A state and an input at which rates and outputs have wanted values: an operating point, to rest at, to start from, and
 /// to linearise at.
@@ -251,11 +253,11 @@ where
             return Err(unknown);
         }
         let mut point = self.closed(self.start)?;
-        let mut sizes = point;
-        let larger = |size: &mut f64, number: f64| *size = size.abs().max(number.abs()).max(TINY);
+        let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
+        let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
         for _ in 0..ITERATIONS {
-            sizes.state.zip_apply(&point.state, larger);
-            sizes.input.zip_apply(&point.input, larger);
+            sizes.0.zip_apply(&point.state, larger);
+            sizes.1.zip_apply(&point.input, larger);
             let mut rows = self.rows(&point)?;
             match self.descend(&point, &mut rows) {
                 Some(next) => point = next,
@@ -263,9 +265,9 @@ where
             }
         }
         let mut rows = self.rows(&point)?;
-        let parts = rows
-            .iter()
-            .map(|row| row.part_left(&sizes.state, &sizes.input));
+        let seen = rows.seen(&sizes, TINY);
+        // NaN is the worst, whatever its sign.
+        let parts = rows.iter().map(|row| row.part_left(&seen).abs());
         let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         match worst {
             // NaN is not small.
@@ -362,15 +364,29 @@ where
 
     /// A point at which less is left of the conditions, if there is one.
     fn descend(&self, point: &Trimmed<N, M>, rows: &mut Rows<N, M, P>) -> Option<Trimmed<N, M>> {
+        let seen = rows.seen(&(point.state.abs(), point.input.abs()), TINY);
+        let rounding = rows.roundings(ROUNDING * f64::EPSILON, &seen);
         rows.fix(&self.fixed);
         rows.balance();
         let weights = rows.weights();
+        // Rounding of one condition must not hide what is left of another one.
+        let counts = |left: f64, weight: f64, rounding: f64| {
+            if left.abs() <= rounding {
+                0.0
+            } else {
+                weight * left
+            }
+        };
         let size = |point: &Trimmed<N, M>| {
             let (rates, outputs) = self.left(point);
-            rates.component_mul(&weights.0).norm_squared()
-                + outputs.component_mul(&weights.1).norm_squared()
+            let rates = rates.zip_zip_map(&weights.0, &rounding.0, counts);
+            let outputs = outputs.zip_zip_map(&weights.1, &rounding.1, counts);
+            rates.norm_squared() + outputs.norm_squared()
         };
         let before = size(point);
+        if before == 0.0 {
+            return None;
+        }
         rows.straighten(&self.tangents(point));
         let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
         let mut tried = dampings
@@ -418,4 +434,76 @@ where
 fn is_named(whole: &str, name: &str) -> bool {
     let rest = whole.strip_prefix(name);
     !name.is_empty() && rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+#[cfg(all(test, feature = "macros"))]
+mod tests {
+    use super::*;
+
+    crate::mbg! {
+        /// A small capacitor behind a resistor.
+        model Charged {
+            param small: F = 1e-15;
+            param bias: V = 1e-6;
+            input voltage: V;
+            1 wire {
+                Se source { effort: voltage + bias }
+                R resistor { resistance: 1e3 }
+                C capacitor { compliance: small }
+            }
+            output charge: C = capacitor.q;
+        }
+        /// A mass on a spring that hardens within a length.
+        model Pushed {
+            param length: m = 1.0;
+            input force: N;
+            1 velocity {
+                I body { inertia: 1.0 }
+                C spring { effort: 2.0 * q + 3.0 / (length * length) * powi(q, 3) }
+                R damper { resistance: 1.0 }
+                Se push { effort: force }
+            }
+            output way: m = spring.q;
+        }
+    }
+
+    #[test]
+    fn small_states_meet_their_conditions_too() {
+        for [small, bias] in [[1e-9, 1e-3], [1e-12, 1e-9], [1e-15, 1e-6], [1e-18, 1e-9]] {
+            let model = Charged::<f64>::new(ChargedParameters { small, bias }).unwrap();
+            let trim = Trim::new(&model).fix("voltage");
+            let charge = trim.solve().unwrap().state[0];
+            assert!((charge / (small * bias) - 1.0).abs() < 1e-12, "{charge:e}");
+            // At rest it has no other charge.
+            for other in [
+                trim.fix("capacitor.q"),
+                trim.output("charge", 0.3 * small * bias),
+            ] {
+                let missed = other.solve();
+                assert!(matches!(missed, Err(Untrimmed::Missed { .. })), "{small:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn rounding_of_a_force_hides_no_momentum() {
+        for length in [1e-60, 1e-9, 1.0, 3.0, 1e9, 1e20, 1e40] {
+            for part in [0.3, 0.5, 0.7, 0.9, 1.1] {
+                let model = Pushed::<f64>::new(PushedParameters { length }).unwrap();
+                let held = Trim::new(&model).output("way", part * length).solve();
+                let force = held.unwrap().input[0] / length;
+                let expected = 2.0 * part + 3.0 * part * part * part;
+                assert!((force / expected - 1.0).abs() < 1e-12, "{length:e} {part}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_force_that_is_infinite_is_no_rest() {
+        let model = Pushed::<f64>::new(PushedParameters::default()).unwrap();
+        for force in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            let trimmed = Trim::new(&model).input(&[force]).fix("force").solve();
+            assert!(trimmed.is_err(), "{trimmed:?}");
+        }
+    }
 }

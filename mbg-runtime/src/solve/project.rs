@@ -41,7 +41,8 @@ pub struct Projected<T, const N: usize> {
 /// with [`least_norm`](super::least_norm) for the pseudoinverse, so that redundant constraints and singular positions do no harm. It is
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
 /// most 32 corrections; after a step of integration it takes one or two. Where it does not lower `|g|`, constraints are
-/// first divided by the largest number of their rows, since momenta of small machines stand beside rates and lengths.
+/// first divided by the largest number of their rows, since momenta of small machines stand beside rates and lengths, and where
+/// that does not do either, it is of least norm in coordinates that are multiplied by the largest number of their columns.
 ///
 /// **Near a singular position** rounding in `g` divided by a small singular value `σ` of `G` moves the point by far
 /// more than `g` itself, and the velocities that fit the point by as much over `σ²`. So the first correction is softened:
@@ -96,10 +97,13 @@ pub(crate) fn project_of_rank<T: Real, const M: usize, const N: usize>(
         let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
         let along = |step| descend(&point, &residual, &step, limits, &evaluate);
         let next = along(correction(&jacobian, &residual, softening, rank)).or_else(|| {
+            if met || softening > 0.0 {
+                return None;
+            }
             // A constraint of small numbers was taken for rounding of one of large numbers.
-            let (jacobian, residual) = in_proportion(&jacobian, &residual);
-            (!met && softening == 0.0)
-                .then(|| along(correction(&jacobian, &residual, 0.0, rank)))?
+            let (rows, right) = in_proportion(&jacobian, &residual);
+            along(correction(&rows, &right, 0.0, rank))
+                .or_else(|| along(balanced_correction(&jacobian, &residual, rank)))
         });
         if let Some((next, values)) = next {
             iterations += 1;
@@ -154,6 +158,23 @@ fn correction<T: Real, const M: usize, const N: usize>(
     (0..M).for_each(|i| square[(i, i)] += softening);
     let multipliers = Semidefinite::of_rank(square, rank).solution(residual);
     SVector::from_fn(|j, _| dot(&jacobian.data.0[j], &multipliers.data.0[0]))
+}
+
+/// The correction of least norm where each coordinate is measured in what it does to the constraints: beside the momentum of a
+/// light rod, of which the column is large in all rows, rates are rounding else.
+fn balanced_correction<T: Real, const M: usize, const N: usize>(
+    jacobian: &SMatrix<T, M, N>,
+    residual: &SVector<T, M>,
+    rank: T,
+) -> SVector<T, N> {
+    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    let units = SVector::<T, N>::from_fn(|j, _| {
+        let size = largest(jacobian.column(j).iter().copied());
+        one / zero.select_less(size, size, one)
+    });
+    let columns = SMatrix::<T, M, N>::from_fn(|i, j| units[j] * jacobian[(i, j)]);
+    let (rows, right) = in_proportion(&columns, residual);
+    correction(&rows, &right, 0.0, rank).zip_map(&units, |step, unit| unit * step)
 }
 
 /// `G Gᵀ`.
@@ -335,6 +356,23 @@ mod tests {
         });
         assert!(found.converged, "{found:?}");
         assert!((found.point[1] + 2.0 * found.point[2]).abs() < 1e-8);
+    }
+
+    /// The velocity of a pin, which a light rod by its momentum, a crank by its rate and a slide by its speed give.
+    #[test]
+    fn rates_beside_the_momentum_of_a_light_rod_are_corrected() {
+        let closed = |start: f64, tolerance: f64, inertia: f64| {
+            let [tilted, upright] = [0.3 / inertia, 0.8 / inertia];
+            let rows = SMatrix::<f64, 2, 3>::new(tilted, -0.1, -1.0, upright, 0.2, 0.0);
+            let found = project(SVector::from([start * inertia, 1.0, 0.5]), tolerance, |x| {
+                (rows * x, rows)
+            });
+            assert!(found.converged, "{inertia:e} {found:?}");
+            rows * found.point
+        };
+        for inertia in [1.0, 1e-4, 1e-9, 1e-18, 1e-24] {
+            assert!(closed(-0.7, 1e-14, inertia).norm() < 1e-13);
+        }
     }
 
     #[test]

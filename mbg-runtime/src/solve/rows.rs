@@ -9,6 +9,9 @@ const PASSES: usize = 30;
 /// Passes that bring the entries of rows and columns to the size of one.
 const BALANCES: usize = 3;
 
+/// Sizes of states and inputs.
+pub(crate) type Sizes<const N: usize, const M: usize> = (SVector<f64, N>, SVector<f64, M>);
+
 /// An equation `a · x + b · u = right`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const N: usize, const M: usize> {
@@ -38,13 +41,17 @@ impl<const N: usize, const M: usize> Row<N, M> {
         self.largest() == 0.0
     }
 
+    /// The terms that it is made of where unknowns have these sizes.
+    pub(crate) fn terms(&self, (states, inputs): &Sizes<N, M>) -> f64 {
+        self.by_state.abs().dot(states) + self.by_input.abs().dot(inputs)
+    }
+
     /// What is left of it, its right side, beside the terms that it is made of where unknowns have these sizes.
-    pub(crate) fn part_left(&self, states: &SVector<f64, N>, inputs: &SVector<f64, M>) -> f64 {
+    pub(crate) fn part_left(&self, sizes: &Sizes<N, M>) -> f64 {
         if self.right == 0.0 {
             return 0.0;
         }
-        let terms = self.by_state.abs().dot(states) + self.by_input.abs().dot(inputs);
-        self.right.abs() / terms
+        self.right.abs() / self.terms(sizes)
     }
 
     fn largest(&self) -> f64 {
@@ -105,6 +112,25 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
         self.rates.iter_mut().chain(&mut self.outputs)
     }
 
+    /// These sizes, but no unknown smaller than this part of what would be as much as all else that an equation has: what is zero
+    /// has a size by that, in its own unit.
+    #[inline(never)]
+    pub(crate) fn seen(&self, sizes: &Sizes<N, M>, part: f64) -> Sizes<N, M> {
+        let (mut states, mut inputs) = *sizes;
+        for row in self.iter() {
+            let terms = row.right.abs() + row.terms(sizes);
+            let see = |size: &mut f64, entry: f64| {
+                let other = part * (terms / entry.abs());
+                if other.is_finite() {
+                    *size = size.max(other);
+                }
+            };
+            states.zip_apply(&row.by_state, see);
+            inputs.zip_apply(&row.by_input, see);
+        }
+        (states, inputs)
+    }
+
     /// Takes away the influence of what does not change.
     #[inline(never)]
     pub(crate) fn fix(&mut self, (states, inputs): &([bool; N], [bool; M])) {
@@ -113,6 +139,19 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             row.by_state.zip_apply(&SVector::from(*states), fix);
             row.by_input.zip_apply(&SVector::from(*inputs), fix);
         }
+    }
+
+    /// This part of the terms of equations.
+    pub(crate) fn roundings(
+        &self,
+        part: f64,
+        sizes: &Sizes<N, M>,
+    ) -> (SVector<f64, N>, SVector<f64, P>) {
+        let terms = |row: &Row<N, M>| part * row.terms(sizes);
+        (
+            SVector::from(self.rates.each_ref().map(terms)),
+            SVector::from(self.outputs.each_ref().map(terms)),
+        )
     }
 
     /// What equations were multiplied by.

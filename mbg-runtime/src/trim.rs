@@ -19,8 +19,10 @@ const ASIDE: f64 = 6e-6;
 const LEFT: f64 = 1e-11;
 /// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
-/// In units of the precision and of its terms: a condition of which less is left is rounding.
-const ROUNDING: f64 = 4.0;
+/// So many points a few units in the last place away tell what of a condition is rounding,
+const BESIDE: usize = 8;
+/// in units of how far apart its values are there.
+const ROUNDING: f64 = 64.0;
 
 /// A state and an input at which rates and outputs have wanted values: an operating point, to rest at, to start from, and
 /// to linearise at.
@@ -144,6 +146,9 @@ impl core::fmt::Display for Untrimmed {
 }
 
 impl core::error::Error for Untrimmed {}
+
+/// What is left of rates and of outputs.
+type Left<const N: usize, const P: usize> = (SVector<f64, N>, SVector<f64, P>);
 
 impl<'a, S, const N: usize, const M: usize, const P: usize> Trim<'a, S, N, M, P>
 where
@@ -327,7 +332,7 @@ where
         // A slope that is not finite matters where it belongs to what is wanted.
         let linear = Linearised::unchecked(self.system, self.time, &point.state, &point.input)
             .map_err(Untrimmed::Trouble)?;
-        let (rates, outputs) = self.left(point);
+        let (rates, outputs) = beyond(&self.rounding(point), self.left(point));
         let wanted = |wanted: Option<f64>, row| match wanted {
             Some(_) => row,
             None => Row::empty(),
@@ -350,7 +355,7 @@ where
 
     /// What is left of the conditions.
     #[inline(never)]
-    fn left(&self, point: &Trimmed<N, M>) -> (SVector<f64, N>, SVector<f64, P>) {
+    fn left(&self, point: &Trimmed<N, M>) -> Left<N, P> {
         let Trimmed { state, input } = point;
         let mut memory = S::Memory::default();
         let rates = self.system.derivative(self.time, state, input, &mut memory);
@@ -362,26 +367,50 @@ where
         )
     }
 
+    /// What of that may be rounding: how far apart values are next to each other.
+    ///
+    /// Slopes do not tell where summands cancel out whatever the point is, as in the moment on a platform that rods keep level.
+    /// Points beside this one are compared with each other, and not with it, where a law may jump: of each number they lie on
+    /// one side.
+    #[inline(never)]
+    fn rounding(&self, point: &Trimmed<N, M>) -> Left<N, P> {
+        let aside = |beside: usize, number: usize, value: f64| {
+            let units = (((number + 1) * (2 * beside + 3)) % 11 + 1) as f64;
+            let away = f64::EPSILON * units;
+            value
+                * (1.0
+                    + if number.is_multiple_of(2) {
+                        away
+                    } else {
+                        -away
+                    })
+        };
+        let at = |beside| {
+            self.left(&Trimmed {
+                state: (point.state).map_with_location(|number, _, x| aside(beside, number, x)),
+                input: (point.input).map_with_location(|number, _, u| aside(beside, N + number, u)),
+            })
+        };
+        let mut least = at(0);
+        let mut most = least;
+        for (rates, outputs) in (1..BESIDE).map(at) {
+            least = (least.0.inf(&rates), least.1.inf(&outputs));
+            most = (most.0.sup(&rates), most.1.sup(&outputs));
+        }
+        (ROUNDING * (most.0 - least.0), ROUNDING * (most.1 - least.1))
+    }
+
     /// A point at which less is left of the conditions, if there is one.
     fn descend(&self, point: &Trimmed<N, M>, rows: &mut Rows<N, M, P>) -> Option<Trimmed<N, M>> {
-        let seen = rows.seen(&(point.state.abs(), point.input.abs()), TINY);
-        let rounding = rows.roundings(ROUNDING * f64::EPSILON, &seen);
+        let rounding = self.rounding(point);
         rows.fix(&self.fixed);
         rows.balance();
         let weights = rows.weights();
-        // Rounding of one condition must not hide what is left of another one.
-        let counts = |left: f64, weight: f64, rounding: f64| {
-            if left.abs() <= rounding {
-                0.0
-            } else {
-                weight * left
-            }
-        };
         let size = |point: &Trimmed<N, M>| {
-            let (rates, outputs) = self.left(point);
-            let rates = rates.zip_zip_map(&weights.0, &rounding.0, counts);
-            let outputs = outputs.zip_zip_map(&weights.1, &rounding.1, counts);
-            rates.norm_squared() + outputs.norm_squared()
+            // Rounding of one condition must not hide what is left of another one.
+            let (rates, outputs) = beyond(&rounding, self.left(point));
+            rates.component_mul(&weights.0).norm_squared()
+                + outputs.component_mul(&weights.1).norm_squared()
         };
         let before = size(point);
         if before == 0.0 {
@@ -428,6 +457,22 @@ where
         }
         tangents
     }
+}
+
+/// What is left beyond rounding.
+fn beyond<const N: usize, const P: usize>(
+    rounding: &Left<N, P>,
+    (rates, outputs): Left<N, P>,
+) -> Left<N, P> {
+    // Written so that NaN is left.
+    let beyond = |left: f64, rounding: f64| match left.abs() <= rounding {
+        true => 0.0,
+        false => left,
+    };
+    (
+        rates.zip_map(&rounding.0, beyond),
+        outputs.zip_map(&rounding.1, beyond),
+    )
 }
 
 /// Whether a name is this one, or begins with it and a part of its own.

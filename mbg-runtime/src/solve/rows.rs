@@ -141,19 +141,6 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
         }
     }
 
-    /// This part of the terms of equations.
-    pub(crate) fn roundings(
-        &self,
-        part: f64,
-        sizes: &Sizes<N, M>,
-    ) -> (SVector<f64, N>, SVector<f64, P>) {
-        let terms = |row: &Row<N, M>| part * row.terms(sizes);
-        (
-            SVector::from(self.rates.each_ref().map(terms)),
-            SVector::from(self.outputs.each_ref().map(terms)),
-        )
-    }
-
     /// What equations were multiplied by.
     pub(crate) fn weights(&self) -> (SVector<f64, N>, SVector<f64, P>) {
         (

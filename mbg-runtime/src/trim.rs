@@ -17,6 +17,12 @@ const PARTS: [f64; 4] = [1e-4, 1e-6, 1e-9, 1e-12];
 const ASIDE: f64 = 6e-6;
 /// What may be left of a condition beside its terms.
 const LEFT: f64 = 1e-11;
+/// What may be left of it beside the largest of all terms, both in units that bring slopes to the size of one.
+const LEFT_OF_ALL: f64 = 64.0 * f64::EPSILON;
+/// How many points a few units in the last place away tell what of a condition is rounding.
+const ASIDE_BY_ROUNDING: usize = 8;
+/// What may be rounding, in units of how far apart those are.
+const ROUNDING: f64 = 64.0;
 /// Nothing counts as smaller, where terms are zero.
 const TINY: f64 = 1e-9;
 
@@ -143,6 +149,9 @@ impl core::fmt::Display for Untrimmed {
 
 impl core::error::Error for Untrimmed {}
 
+/// What is left of rates and of outputs.
+type Left<const N: usize, const P: usize> = (SVector<f64, N>, SVector<f64, P>);
+
 impl<'a, S, const N: usize, const M: usize, const P: usize> Trim<'a, S, N, M, P>
 where
     S: Convertible<f64, N, M, P>,
@@ -263,9 +272,16 @@ where
             }
         }
         let mut rows = self.rows(&point)?;
-        let parts = rows
-            .iter()
-            .map(|row| row.part_left(&sizes.state, &sizes.input));
+        let mut balanced = rows;
+        balanced.balance();
+        let largest = LEFT_OF_ALL * balanced.largest_term(&sizes.state, &sizes.input);
+        let parts =
+            rows.iter()
+                .zip(balanced.iter())
+                .map(|(row, balanced)| match balanced.right() {
+                    right if right.abs() <= largest && !balanced.is_empty() => 0.0,
+                    _ => row.part_left(&sizes.state, &sizes.input),
+                });
         let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         match worst {
             // NaN is not small.
@@ -325,7 +341,7 @@ where
         // A slope that is not finite matters where it belongs to what is wanted.
         let linear = Linearised::unchecked(self.system, self.time, &point.state, &point.input)
             .map_err(Untrimmed::Trouble)?;
-        let (rates, outputs) = self.left(point);
+        let (rates, outputs) = self.beyond(&self.rounding(point), self.left(point));
         let wanted = |wanted: Option<f64>, row| match wanted {
             Some(_) => row,
             None => Row::empty(),
@@ -348,7 +364,7 @@ where
 
     /// What is left of the conditions.
     #[inline(never)]
-    fn left(&self, point: &Trimmed<N, M>) -> (SVector<f64, N>, SVector<f64, P>) {
+    fn left(&self, point: &Trimmed<N, M>) -> Left<N, P> {
         let Trimmed { state, input } = point;
         let mut memory = S::Memory::default();
         let rates = self.system.derivative(self.time, state, input, &mut memory);
@@ -360,13 +376,56 @@ where
         )
     }
 
+    /// What may be rounding of what is left of the conditions: that of sums whose summands cancel out may be large beside the
+    /// terms that slopes tell of, as is the moment on a platform that rods keep level.
+    ///
+    /// Points beside this one are compared with each other, and not with it, where a law may jump: of each state and input they
+    /// lie on one side.
+    #[inline(never)]
+    fn rounding(&self, point: &Trimmed<N, M>) -> Left<N, P> {
+        let aside = |number: usize, index: usize| {
+            let units = (((index + 1) * (2 * number + 3)) % 11 + 1) as f64;
+            let away = f64::EPSILON * units;
+            1.0 + if index.is_multiple_of(2) { away } else { -away }
+        };
+        let at = |number| {
+            self.left(&Trimmed {
+                state: point
+                    .state
+                    .map_with_location(|i, _, x| x * aside(number, i)),
+                input: (point.input).map_with_location(|i, _, u| u * aside(number, N + i)),
+            })
+        };
+        let mut least = at(0);
+        let mut most = least;
+        for number in 1..ASIDE_BY_ROUNDING {
+            let (rates, outputs) = at(number);
+            least = (least.0.inf(&rates), least.1.inf(&outputs));
+            most = (most.0.sup(&rates), most.1.sup(&outputs));
+        }
+        (ROUNDING * (most.0 - least.0), ROUNDING * (most.1 - least.1))
+    }
+
+    /// What is left beyond rounding.
+    fn beyond(&self, rounding: &Left<N, P>, left: Left<N, P>) -> Left<N, P> {
+        let beyond = |left: f64, rounding: f64| match left.abs() <= rounding {
+            true => 0.0,
+            false => left,
+        };
+        (
+            left.0.zip_map(&rounding.0, beyond),
+            left.1.zip_map(&rounding.1, beyond),
+        )
+    }
+
     /// A point at which less is left of the conditions, if there is one.
     fn descend(&self, point: &Trimmed<N, M>, rows: &mut Rows<N, M, P>) -> Option<Trimmed<N, M>> {
         rows.fix(&self.fixed);
         rows.balance();
         let weights = rows.weights();
+        let rounding = self.rounding(point);
         let size = |point: &Trimmed<N, M>| {
-            let (rates, outputs) = self.left(point);
+            let (rates, outputs) = self.beyond(&rounding, self.left(point));
             rates.component_mul(&weights.0).norm_squared()
                 + outputs.component_mul(&weights.1).norm_squared()
         };

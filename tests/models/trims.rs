@@ -71,6 +71,29 @@ mbg! {
         output gap[2]: m = bars.arm.position_b - bars.right_arm.position_b;
     }
 
+    /// A seat that two rods of one length keep level, pushed aside: the moment on it is zero, whatever is chosen.
+    #[derivative]
+    model Seat {
+        causality componentwise;
+        gravity [0.0, -9.81];
+        input push: N;
+        1 ground[3]; 1 slid[3]; 1 lifted[3]; 1 seat[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        x: PlanarPrismatic (ground, slid);
+        y: PlanarPrismatic { direction: 1.5707963267948966, initial: -1.5 } (slid, lifted);
+        turn: PlanarRevolute (lifted, seat);
+        body: PlanarBody { mass: 3.0, inertia: 0.1 } (seat);
+        hand: PlanarLoad { axes: world, force: [push, 0.0] } (seat);
+        sides: for k in 0..2 {
+            let side: m = 0.4 * (2 * k - 1);
+            1 hook[3]; 1 corner[3];
+            above: PlanarOffset { x: side } (ground, hook);
+            beside: PlanarOffset { x: side, y: 0.1 } (seat, corner);
+            rod: PlanarRod { length: 1.4 } (hook, corner);
+        }
+        output place[2]: m = [x.travel, y.travel];
+    }
+
     /// A pull on two springs of which each may have any stroke: more may be chosen than is asked.
     model Shared {
         input pull: N;
@@ -200,6 +223,24 @@ fn a_ring_is_held_where_its_gap_is_an_output() {
         (closed.input[0] - held.input[0]).abs() < 1e-9,
         "{closed:?} {held:?}"
     );
+}
+
+/// What is left of a moment that is zero whatever is chosen is rounding, and no failure; so are rates next to rest.
+#[test]
+fn what_rods_keep_level_is_held() {
+    let seat = Seat::<f64>::new(SeatParameters::default()).unwrap();
+    for aside in [0.0, 0.1, 0.5, -0.7, 0.84, 1.0, 1.3] {
+        let trim = Trim::new(&seat).output("place.x", aside);
+        let held = trim.solve().unwrap();
+        let expected = 3.0 * 9.81 * aside / f64::sqrt(1.4 * 1.4 - aside * aside);
+        let [force]: [f64; 1] = held.input.into();
+        assert!(
+            (force - expected).abs() < 1e-12 * (30.0 + expected.abs()),
+            "{aside}: {force} {expected}"
+        );
+        let again = trim.state(&held.state).input(&[force]).solve().unwrap();
+        assert!((again.state - held.state).norm() < 1e-12);
+    }
 }
 
 #[test]

@@ -47,6 +47,11 @@ impl<const N: usize, const M: usize> Row<N, M> {
         self.right.abs() / terms
     }
 
+    /// What is left of it, in units of the equation.
+    pub(crate) fn right(&self) -> f64 {
+        self.right
+    }
+
     fn largest(&self) -> f64 {
         let entries = self.by_state.iter().chain(self.by_input.iter());
         entries.fold(0.0, |largest, entry| largest.max(entry.abs()))
@@ -121,6 +126,14 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             SVector::from(self.rates.map(|row| row.weight)),
             SVector::from(self.outputs.map(|row| row.weight)),
         )
+    }
+
+    /// The largest of these unknowns, in the units of equations that are balanced.
+    pub(crate) fn largest_term(&self, states: &SVector<f64, N>, inputs: &SVector<f64, M>) -> f64 {
+        let states = states.component_div(&self.units.0);
+        let inputs = inputs.component_div(&self.units.1);
+        let terms = states.iter().chain(inputs.iter());
+        terms.fold(0.0, |largest, term| largest.max(term.abs()))
     }
 
     /// Turns the equations to right angles, with changes of the state along `tangents`.

@@ -690,3 +690,42 @@ fn a_rope_that_is_wound_up_is_given_the_rate() {
     );
     compiles(&scene(", rest_rate: winch"));
 }
+
+/// A row that is written as a vector, and a matrix the other way round; what fits neither way is left alone.
+#[test]
+fn matrices_of_two_ports_are_transposed() {
+    let model = |law: &str| {
+        let parts = "1 a[2] { I m { inertia: 1.0 } } 1 b { R r { resistance: 1.0 } }";
+        format!("model M {{ {parts} a -> {law} -> b; }}")
+    };
+    for (wrong, right) in [
+        ("TF t { flow: [3.0, 4.0] }", "TF t { flow: [[3.0, 4.0]] }"),
+        (
+            "TF t { flow: [3.0, 4.0] }",
+            "TF t { flow: transpose([3.0, 4.0]) }",
+        ),
+        (
+            "GY g { effort: [[3.0], [4.0]] }",
+            "GY g { effort: transpose([[3.0], [4.0]]) }",
+        ),
+    ] {
+        let diagnostics = diagnose(&model(wrong));
+        assert_eq!(diagnostics.list().len(), 2);
+        for told in diagnostics.list() {
+            assert_eq!(told.code, codes::WRONG_DIMENSION);
+            assert_eq!(told.helps.len(), 1, "{}", told.text());
+            assert!(
+                told.helps[0].contains("`transpose(…)`")
+                    && told.text().contains("1 of 2 numbers, and this has 2 of 1")
+            );
+        }
+        compiles(&model(right));
+    }
+    assert!(
+        helps(
+            &model("TF t { flow: [3.0, 4.0, 5.0] }"),
+            codes::WRONG_DIMENSION
+        )
+        .is_empty()
+    );
+}

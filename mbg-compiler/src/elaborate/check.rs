@@ -59,6 +59,7 @@ impl Builder<'_> {
             } else if from != to {
                 let message = format!("`{name}` joins dimension {from} to dimension {to}");
                 let report = error(codes::WRONG_DIMENSION, span, message);
+                let report = self.tell_of_transposed(index, report);
                 self.tell_of_two_port(index, report);
             }
             self.graph.bonds[index].dimension = from;
@@ -75,6 +76,39 @@ impl Builder<'_> {
         let [a, b] = [a, b].map(|id| self.graph.junctions[id.0].kind);
         let mut before = self.graph.bonds[..index].iter();
         a == b && before.any(|it| [(&it.from, &it.to), (&it.to, &it.from)].contains(&(from, to)))
+    }
+
+    /// What to type where the matrix of a two-port would fit at both of its ends if it were transposed.
+    fn tell_of_transposed(&self, bond: usize, report: Diagnostic) -> Diagnostic {
+        let Bond { from, to, .. } = &self.graph.bonds[bond];
+        let Some(id) = [from, to].into_iter().find_map(|end| match end {
+            End::In(id) | End::Out(id) => Some(*id),
+            _ => None,
+        }) else {
+            return report;
+        };
+        let beside = |end: End| {
+            let mut bonds = self.graph.bonds.iter();
+            let other = bonds.find_map(|bond| match bond {
+                Bond { from, to, .. } if *to == end => Some(from),
+                Bond { from, to, .. } if *from == end => Some(to),
+                _ => None,
+            });
+            other.map(|other| self.size(other))
+        };
+        let (rows, columns) = self.two_port(id);
+        if rows == columns
+            || (beside(End::In(id)), beside(End::Out(id))) != (Some(rows), Some(columns))
+        {
+            return report;
+        }
+        let name = &self.graph.elements[id.0].name;
+        report
+            .note(format!(
+                "the matrix of `{name}` has a row for each component behind it and a column for each before it: {columns} of \
+                 {rows} numbers, and this has {rows} of {columns}"
+            ))
+            .help("write `transpose(…)` around it; one row is written `[[a, b]]`, since `[a, b]` is a column")
     }
 
     /// Reports a mistake at a bond, of which the law of a two-port is the reason if one is there.

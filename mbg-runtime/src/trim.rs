@@ -376,14 +376,8 @@ where
     fn rounding(&self, point: &Trimmed<N, M>) -> Left<N, P> {
         let aside = |beside: usize, number: usize, value: f64| {
             let units = (((number + 1) * (2 * beside + 3)) % 11 + 1) as f64;
-            let away = f64::EPSILON * units;
-            value
-                * (1.0
-                    + if number.is_multiple_of(2) {
-                        away
-                    } else {
-                        -away
-                    })
+            let sign = 1.0 - 2.0 * (number % 2) as f64;
+            value * (1.0 + sign * units * f64::EPSILON)
         };
         let at = |beside| {
             self.left(&Trimmed {

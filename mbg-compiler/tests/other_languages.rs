@@ -479,6 +479,37 @@ fn functions_without_parentheses_and_products_are_told_before_prefixes() {
 }
 
 #[test]
+fn conditions_are_joined_by_marks() {
+    let resistor = |condition: &str| {
+        masses(&format!(
+            "R r {{ effort: if {condition} {{ f }} else {{ 0.5 * f }} }} -> v;"
+        ))
+    };
+    for (slip, here, mark) in [
+        ("f > 0.0 and f < 1.0", "f > 0.0 && f < 1.0", "&&"),
+        ("(f > 0.0) or (f < -1.0)", "(f > 0.0) || (f < -1.0)", "||"),
+        ("not (f > 0.0)", "!(f > 0.0)", "!"),
+        (
+            "f < 2.0 && (f > 0.0 or t > 1.0)",
+            "f < 2.0 && (f > 0.0 || t > 1.0)",
+            "||",
+        ),
+    ] {
+        assert_eq!(typed(&resistor(slip)), [mark]);
+        assert_eq!(told(&resistor(here)), "");
+    }
+    insta::assert_snapshot!(told(&resistor("f > 0.0 and t > 1.0")), @"
+    2:26 `and` is no operator [MBG0101]
+      help: write `&&`
+    ");
+    // Names are as good as others.
+    assert_eq!(
+        told(&masses("let and = 2.0; R r { effort: and * f } -> v;")),
+        ""
+    );
+}
+
+#[test]
 fn attributes_of_rust_are_told_with_where_they_stand() {
     let text = "#[derive(Default)] #[cfg(unix)] #[serde(default)]
         model M { #[allow(dead_code)] param x = 1.0; 1 v { I m { inertia: x } } }";

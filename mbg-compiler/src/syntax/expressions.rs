@@ -86,7 +86,8 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         cursor.advance(whole());
         return Err(report);
     }
-    if let Some(report) = slips::entry(cursor.ahead(length)) {
+    let slip = slips::entry(cursor.ahead(length));
+    if let Some(report) = slip.or_else(|| slips::connective(cursor.ahead(length))) {
         cursor.advance(length);
         return Err(report);
     }

@@ -306,6 +306,29 @@ pub(super) fn without_zero(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
     })
 }
 
+/// Words that join conditions in other languages, and what does it here.
+const CONNECTIVES: &[(&str, &str)] = &[("and", "&&"), ("or", "||"), ("not", "!")];
+
+/// What to type for a word that joins conditions or turns one round, among these tokens or in a group of theirs.
+pub(super) fn connective(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    tokens.iter().enumerate().find_map(|(at, token)| {
+        let (word, mark) = match token {
+            TokenTree::Group(group) => {
+                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+                return connective(&inside);
+            }
+            TokenTree::Ident(name) => CONNECTIVES.iter().find(|(word, _)| name == word)?,
+            _ => return None,
+        };
+        let is_before = at > 0 && is_operand(&tokens[at - 1]);
+        let is_behind = tokens.get(at + 1).is_some_and(is_operand);
+        let is_joining = is_behind && is_before != (*word == "not");
+        let message = format!("`{word}` is no operator");
+        let report = || error(codes::SYNTAX, token.span(), message);
+        is_joining.then(|| Box::new(report().help(format!("write `{mark}`"))))
+    })
+}
+
 /// A remainder by its name in other languages, which is a keyword of Rust.
 pub(super) fn remainder(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
     tokens

@@ -242,6 +242,38 @@ fn steps_of_radau_cost_little_where_the_law_is_linear() {
     assert_cheap(Radau9, 5, 2);
 }
 
+/// The pin is bent by a tenth of a micrometre, which is rounding beside its place in single precision.
+#[test]
+fn stiff_pins_in_single_precision_cost_no_more_than_in_double() {
+    fn after<T: Real, M: Method>(method: M) -> (f64, Statistics) {
+        let pin = StiffPin {
+            stiffness: 1e8,
+            damping: 1e3,
+        };
+        let [start, end] = [0.0, 2.0].map(T::from_f64);
+        let level = StiffPin::level().map(T::from_f64);
+        let mut last = level;
+        let statistics = Fixed::new(method, 1e-3)
+            .integrate(&Written(pin), &(), start, end, level, |step| {
+                last = *step.state()
+            })
+            .unwrap();
+        (last[2].find(|_| true).unwrap(), statistics)
+    }
+    fn compare<M: Method>(method: M) {
+        let ((double, whole), (single, counts)) =
+            (after::<f64, M>(method), after::<f32, M>(method));
+        println!("{}: {double} {whole:?}, {single} {counts:?}", M::NAME);
+        assert!((double - single).abs() < 1e-5, "{}", M::NAME);
+        for statistics in [whole, counts] {
+            assert_eq!((statistics.steps, statistics.rejected), (2000, 0));
+            assert!(statistics.evaluations < 20 * statistics.steps);
+        }
+    }
+    compare(Radau5);
+    compare(Radau9);
+}
+
 /// Decay at a rate that is an input, each lane at its own.
 #[derive(Clone, Copy)]
 struct Decay;

@@ -48,7 +48,7 @@ impl<const N: usize> Tolerance<N> {
 }
 
 /// In units of the precision: a state that has been no larger may be rounding.
-const ROUNDING: f64 = 4096.0;
+pub(super) const ROUNDING: f64 = 4096.0;
 
 /// The largest values that states had: what errors are large beside where there is no tolerance.
 pub(super) struct Sizes<const N: usize>([f64; N]);

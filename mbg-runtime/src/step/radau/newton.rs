@@ -8,7 +8,7 @@ use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, combined, larger, relative, settles};
 use crate::step::problem::Problem;
-use crate::step::tolerance::{Measure, Tolerance};
+use crate::step::tolerance::{Measure, ROUNDING, Tolerance};
 use crate::{Input, Real, System};
 
 /// Most sweeps in a step that is controlled by its error.
@@ -17,6 +17,8 @@ const SWEEPS: i32 = 10;
 const ENOUGH: f64 = 3e-3;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
+/// A change that is no smaller than this part of the one before does not converge.
+const OVER: f64 = 0.5;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
@@ -194,8 +196,8 @@ where
     /// not come to that.
     ///
     /// Changes are measured relative to the stages, so that small states are as exact as large ones; whether it is
-    /// going to come to rounding is told by what states have been, `sizes`: beside a state that is near zero all
-    /// changes are large.
+    /// going to come to rounding, or has and stays there, is told by what states have been, `sizes`: beside a state that is near
+    /// zero all changes are large.
     pub(super) fn settled(
         &mut self,
         stages: &mut [SVector<T, N>; S],
@@ -206,8 +208,12 @@ where
         let settles = settles::<T>(MOST, is_rounding::<T>, || {
             let old = *stages;
             let changes = self.sweep(stages, &mut inner);
-            if convergence.is_hopeless::<T>(Real::sqrt(sizes.squares(&changes))) {
+            convergence.note(Real::sqrt(sizes.squares(&changes)));
+            if convergence.is_hopeless::<T>() {
                 return f64::NAN;
+            }
+            if convergence.is_over::<T>() {
+                return 0.0;
             }
             let changes = old.iter().zip(&*stages);
             let sizes = changes.map(|(old, new)| relative(&(new - old), &self.start.x, new));
@@ -257,9 +263,10 @@ fn is_rounding<T: Real>(before: f64, last: f64) -> bool {
 /// How sweeps to rounding converge.
 struct Convergence {
     sweeps: u32,
-    /// The last change and by how much the last sweep reduced it.
+    /// The last change and by how much the last sweep reduced it, and the slower one of the last two.
     last: f64,
     rate: f64,
+    slower: f64,
 }
 
 impl Convergence {
@@ -268,17 +275,27 @@ impl Convergence {
             sweeps: 0,
             last: f64::INFINITY,
             rate: 0.0,
+            slower: 0.0,
         }
     }
 
-    /// Notes a change; whether the sweeps that may follow are not going to make it small. Then a shorter step costs less.
-    fn is_hopeless<T: Real>(&mut self, change: f64) -> bool {
+    /// Notes a change, in units of what states have been.
+    fn note(&mut self, change: f64) {
         let rate = (change / self.last).min(1.0);
-        let slower = rate.max(self.rate);
+        (self.slower, self.rate) = (rate.max(self.rate), rate);
+        self.last = change;
         self.sweeps += 1;
-        (self.last, self.rate) = (change, rate);
-        let ahead = (self.sweeps..MOST).fold(change, |change, _| change * slower);
+    }
+
+    /// Whether the sweeps that may follow are not going to make a change small. Then a shorter step costs less.
+    fn is_hopeless<T: Real>(&self) -> bool {
+        let ahead = (self.sweeps..MOST).fold(self.last, |change, _| change * self.slower);
         self.sweeps > 2 && ahead > T::SINGULAR
+    }
+
+    /// Whether changes stay as they are, and are what rounding does: those of a state next to zero may be as large as itself.
+    fn is_over<T: Real>(&self) -> bool {
+        self.last <= ROUNDING * T::EPSILON && self.rate >= OVER
     }
 }
 
@@ -313,10 +330,31 @@ mod tests {
         assert!(is_rounding::<f32>(1e-3, 1e-6) && !is_rounding::<f64>(1e-3, 1e-6));
     }
 
+    #[test]
+    fn changes_that_stay_are_rounding_where_they_are_small() {
+        let is_over = |changes: [f64; 2]| {
+            let mut convergence = Convergence::new();
+            for change in changes {
+                convergence.note(change);
+            }
+            [convergence.is_over::<f64>(), convergence.is_over::<f32>()]
+        };
+        assert_eq!(is_over([5e-13, 4e-13]), [true, true]);
+        assert_eq!(is_over([4e-13, 5e-13]), [true, true]);
+        assert_eq!(is_over([1e-4, 1e-4]), [false, true]);
+        assert_eq!(is_over([1e-2, 1e-2]), [false, false]);
+        // These still become smaller, and of the first nothing is known.
+        assert_eq!(is_over([1e-12, 4e-13]), [false, false]);
+        assert_eq!(is_over([f64::INFINITY, 4e-13]), [false, false]);
+    }
+
     /// After how many of these changes it is.
     fn hopeless(changes: &[f64]) -> Option<usize> {
         let mut convergence = Convergence::new();
-        let is_hopeless = |change: &f64| convergence.is_hopeless::<f64>(*change);
+        let is_hopeless = |change: &f64| {
+            convergence.note(*change);
+            convergence.is_hopeless::<f64>()
+        };
         changes.iter().position(is_hopeless).map(|place| place + 1)
     }
 

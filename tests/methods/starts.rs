@@ -1,8 +1,12 @@
 //! First steps: short runs, and runs that begin next to rest.
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Integrator, Radau5, Rodas4, Rodas5P, Ros2, System, Tsit5, mbg,
+    Adaptive, Auto, Dop853, Fixed, Integrator, Method, Radau5, Radau9, Real, Rodas4, Rodas5P, Ros2,
+    System, Tsit5, Variable, mbg,
 };
+use nalgebra::SVector;
+
+use crate::problems::{Law, Written, state};
 
 mbg! {
     /// A wheel that a smooth pulse drives, the same at any scale of time.
@@ -79,5 +83,38 @@ fn a_pulse_behind_a_start_next_to_rest_is_met() {
                 "{tolerance:e}: {found} {exact}"
             );
         }
+    }
+}
+
+/// `x = tan t` beside a state that stays at zero, or at one.
+#[derive(Clone, Copy)]
+struct Tangent;
+
+impl Law<2, 0> for Tangent {
+    const STATES: &'static [Variable] = &[state("resting"), state("rising")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
+        let [zero, one] = [0.0, 1.0].map(T::from_f64);
+        SVector::from([zero, one + x[1] * x[1]])
+    }
+}
+
+/// What states have been tells nothing in the first step from zero.
+#[test]
+fn sweeps_of_radau_settle_from_zero() {
+    fn end<M: Method>(method: M, resting: f64, step: f64) -> f64 {
+        let mut last = SVector::from([resting, 0.0]);
+        Fixed::new(method, step)
+            .integrate(&Written(Tangent), &(), 0.0, 1.0, last, |step| {
+                last = *step.state()
+            })
+            .unwrap();
+        (last[1] - f64::tan(1.0)).abs()
+    }
+    for resting in [0.0, 1.0] {
+        assert!(end(Radau5, resting, 1.0) < 2e-3);
+        assert!(end(Radau5, resting, 0.1) < 4e-7);
+        assert!(end(Radau9, resting, 1.0) < 1e-4);
+        assert!(end(Radau9, resting, 0.25) < 4e-10);
     }
 }

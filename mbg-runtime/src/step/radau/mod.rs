@@ -178,7 +178,7 @@ where
             Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
             None => {
                 self.sizes.note(&start.x);
-                newton.settled(&mut stages, &self.sizes.before::<T>())
+                newton.settled(&mut stages, &self.sizes)
             }
         };
         match found {

@@ -8,7 +8,7 @@ use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, combined, larger, relative, settles};
 use crate::step::problem::Problem;
-use crate::step::tolerance::{Measure, ROUNDING, Tolerance};
+use crate::step::tolerance::{ROUNDING, Sizes, Tolerance};
 use crate::{Input, Real, System};
 
 /// Most sweeps in a step that is controlled by its error.
@@ -18,7 +18,7 @@ const ENOUGH: f64 = 3e-3;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
 /// A change that is no smaller than this part of the one before does not converge.
-const OVER: f64 = 0.5;
+const STAYS: f64 = 0.5;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
@@ -201,18 +201,21 @@ where
     pub(super) fn settled(
         &mut self,
         stages: &mut [SVector<T, N>; S],
-        sizes: &Measure<N>,
+        sizes: &Sizes<N>,
     ) -> Result<f64, f64> {
         let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
+        let before = sizes.before::<T>();
         let mut convergence = Convergence::new();
         let settles = settles::<T>(MOST, is_rounding::<T>, || {
             let old = *stages;
             let changes = self.sweep(stages, &mut inner);
-            convergence.note(Real::sqrt(sizes.squares(&changes)));
+            convergence.note(Real::sqrt(before.squares(&changes)));
             if convergence.is_hopeless::<T>() {
                 return f64::NAN;
             }
-            if convergence.is_over::<T>() {
+            // Of states that have been nothing yet the sizes tell nothing: they count by what they become.
+            let between = || sizes.between(&self.start.x, &stages[S - 1]);
+            if convergence.stays::<T>() && is_small::<T>(between().squares(&changes)) {
                 return 0.0;
             }
             let changes = old.iter().zip(&*stages);
@@ -260,6 +263,12 @@ fn is_rounding<T: Real>(before: f64, last: f64) -> bool {
     is_known && last * rate <= T::EPSILON * (1.0 - rate)
 }
 
+/// Whether a change with this square may be rounding.
+fn is_small<T: Real>(square: f64) -> bool {
+    let rounding = ROUNDING * T::EPSILON;
+    square <= rounding * rounding
+}
+
 /// How sweeps to rounding converge.
 struct Convergence {
     sweeps: u32,
@@ -294,8 +303,8 @@ impl Convergence {
     }
 
     /// Whether changes stay as they are, and are what rounding does: those of a state next to zero may be as large as itself.
-    fn is_over<T: Real>(&self) -> bool {
-        self.last <= ROUNDING * T::EPSILON && self.rate >= OVER
+    fn stays<T: Real>(&self) -> bool {
+        is_small::<T>(self.last * self.last) && self.rate >= STAYS
     }
 }
 
@@ -332,20 +341,20 @@ mod tests {
 
     #[test]
     fn changes_that_stay_are_rounding_where_they_are_small() {
-        let is_over = |changes: [f64; 2]| {
+        let stays = |changes: [f64; 2]| {
             let mut convergence = Convergence::new();
             for change in changes {
                 convergence.note(change);
             }
-            [convergence.is_over::<f64>(), convergence.is_over::<f32>()]
+            [convergence.stays::<f64>(), convergence.stays::<f32>()]
         };
-        assert_eq!(is_over([5e-13, 4e-13]), [true, true]);
-        assert_eq!(is_over([4e-13, 5e-13]), [true, true]);
-        assert_eq!(is_over([1e-4, 1e-4]), [false, true]);
-        assert_eq!(is_over([1e-2, 1e-2]), [false, false]);
+        assert_eq!(stays([5e-13, 4e-13]), [true, true]);
+        assert_eq!(stays([4e-13, 5e-13]), [true, true]);
+        assert_eq!(stays([1e-4, 1e-4]), [false, true]);
+        assert_eq!(stays([1e-2, 1e-2]), [false, false]);
         // These still become smaller, and of the first nothing is known.
-        assert_eq!(is_over([1e-12, 4e-13]), [false, false]);
-        assert_eq!(is_over([f64::INFINITY, 4e-13]), [false, false]);
+        assert_eq!(stays([1e-12, 4e-13]), [false, false]);
+        assert_eq!(stays([f64::INFINITY, 4e-13]), [false, false]);
     }
 
     /// After how many of these changes it is.

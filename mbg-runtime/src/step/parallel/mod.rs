@@ -30,8 +30,8 @@ use crate::{Columns, Input, Real, System};
 /// time than one ([`System::derivatives`]). Without lanes, in `f32`, on dual numbers and for models with nonlinear loops it
 /// gives the same, and [`Dop853`](super::Dop853) is faster. So it is for a handful of products per state.
 ///
-/// Not for laws that bend, as at contacts and in dry friction: a ball that bounces off a stiff floor is 0.7 mm off after 5 s at a tolerance of
-/// 1e-8, where the other adaptive methods are some micrometres off at most.
+/// Not for laws that bend, as at contacts and in dry friction: a ball that bounces off a stiff floor is 0.7 mm off after 5 s at a
+/// tolerance of 1e-8, where the other adaptive methods are some micrometres off at most.
 ///
 /// Sweeps begin with the polynomial of the step before. At the start and behind a jump there is none, and three more are
 /// taken. The limits of stability are those of steps of one length.

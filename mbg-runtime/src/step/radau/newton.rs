@@ -17,7 +17,7 @@ const SWEEPS: i32 = 10;
 const ENOUGH: f64 = 3e-3;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
-/// A change that is no smaller than this part of the one before does not converge.
+/// Changes that become smaller by no more than this are looked at: they may stay.
 const STAYS: f64 = 0.5;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
@@ -302,9 +302,11 @@ impl Convergence {
         self.sweeps > 2 && ahead > T::SINGULAR
     }
 
-    /// Whether changes stay as they are, and are what rounding does: those of a state next to zero may be as large as itself.
+    /// Whether changes stay about as they are, and are what rounding does, with all that may follow: those of a state next to zero
+    /// may be as large as itself.
     fn stays<T: Real>(&self) -> bool {
-        is_small::<T>(self.last * self.last) && self.rate >= STAYS
+        let left = self.last * self.rate / (1.0 - self.rate).max(0.1);
+        is_small::<T>(left * left) && self.rate >= STAYS
     }
 }
 
@@ -348,13 +350,13 @@ mod tests {
             }
             [convergence.stays::<f64>(), convergence.stays::<f32>()]
         };
-        assert_eq!(stays([5e-13, 4e-13]), [true, true]);
-        assert_eq!(stays([4e-13, 5e-13]), [true, true]);
-        assert_eq!(stays([1e-4, 1e-4]), [false, true]);
-        assert_eq!(stays([1e-2, 1e-2]), [false, false]);
+        assert_eq!(stays([5e-14, 4.6e-14]), [true, true]);
+        assert_eq!(stays([4e-14, 5e-14]), [true, true]);
+        assert_eq!(stays([2e-5, 2e-5]), [false, true]);
+        assert_eq!(stays([1e-4, 1e-4]), [false, false]);
         // These still become smaller, and of the first nothing is known.
-        assert_eq!(stays([1e-12, 4e-13]), [false, false]);
-        assert_eq!(stays([f64::INFINITY, 4e-13]), [false, false]);
+        assert_eq!(stays([1e-13, 4e-14]), [false, false]);
+        assert_eq!(stays([f64::INFINITY, 4e-14]), [false, false]);
     }
 
     /// After how many of these changes it is.

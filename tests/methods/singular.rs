@@ -73,6 +73,21 @@ fn steps_of_constant_length_stay_on_their_branch() {
     }
 }
 
+/// Next to the position rounding of the stages is large: parts of a step that is halved for it lead onto the other branch.
+#[test]
+fn steps_of_radau_of_any_length_stay_on_their_branch() {
+    for part in 0..12 {
+        let step = 2.5e-3 * f64::powf(1.133_7, f64::from(part));
+        for [angle, _] in [
+            arrived(&Fixed::new(Radau5, step)),
+            arrived(&Fixed::new(Radau9, step)),
+        ] {
+            let error = angle - EXPECTED;
+            assert!(error.abs() < 2e-2, "{step:e} {error:e}");
+        }
+    }
+}
+
 fn at_end<M: Estimating>(method: M, tolerance: f64) -> [f64; 2] {
     arrived(&Adaptive::new(method, tolerance, tolerance))
 }

@@ -19,9 +19,9 @@ const ASIDE: f64 = 6e-6;
 const LEFT: f64 = 1e-11;
 /// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
-/// So many points a few units in the last place away tell what of a condition is rounding,
+/// How many points a few units in the last place away tell what of a condition is rounding.
 const BESIDE: usize = 8;
-/// in units of how far apart its values are there.
+/// What is rounding, in units of how far apart its values are there.
 const ROUNDING: f64 = 64.0;
 
 /// A state and an input at which rates and outputs have wanted values: an operating point, to rest at, to start from, and
@@ -263,13 +263,14 @@ where
         for _ in 0..ITERATIONS {
             sizes.0.zip_apply(&point.state, larger);
             sizes.1.zip_apply(&point.input, larger);
-            let mut rows = self.rows(&point)?;
-            match self.descend(&point, &mut rows) {
+            let rounding = self.rounding(&point);
+            let mut rows = self.rows(&point, &rounding)?;
+            match self.descend(&point, &mut rows, &rounding) {
                 Some(next) => point = next,
                 None => break,
             }
         }
-        let mut rows = self.rows(&point)?;
+        let mut rows = self.rows(&point, &self.rounding(&point))?;
         let seen = rows.seen(&sizes, TINY);
         // NaN is the worst, whatever its sign.
         let parts = rows.iter().map(|row| row.part_left(&seen).abs());
@@ -328,11 +329,15 @@ where
 
     /// How the conditions change beside a point, and by how much they fail there.
     #[inline(never)]
-    fn rows(&self, point: &Trimmed<N, M>) -> Result<Rows<N, M, P>, Untrimmed> {
+    fn rows(
+        &self,
+        point: &Trimmed<N, M>,
+        rounding: &Left<N, P>,
+    ) -> Result<Rows<N, M, P>, Untrimmed> {
         // A slope that is not finite matters where it belongs to what is wanted.
         let linear = Linearised::unchecked(self.system, self.time, &point.state, &point.input)
             .map_err(Untrimmed::Trouble)?;
-        let (rates, outputs) = beyond(&self.rounding(point), self.left(point));
+        let (rates, outputs) = beyond(rounding, self.left(point));
         let wanted = |wanted: Option<f64>, row| match wanted {
             Some(_) => row,
             None => Row::empty(),
@@ -395,14 +400,18 @@ where
     }
 
     /// A point at which less is left of the conditions, if there is one.
-    fn descend(&self, point: &Trimmed<N, M>, rows: &mut Rows<N, M, P>) -> Option<Trimmed<N, M>> {
-        let rounding = self.rounding(point);
+    fn descend(
+        &self,
+        point: &Trimmed<N, M>,
+        rows: &mut Rows<N, M, P>,
+        rounding: &Left<N, P>,
+    ) -> Option<Trimmed<N, M>> {
         rows.fix(&self.fixed);
         rows.balance();
         let weights = rows.weights();
         let size = |point: &Trimmed<N, M>| {
             // Rounding of one condition must not hide what is left of another one.
-            let (rates, outputs) = beyond(&rounding, self.left(point));
+            let (rates, outputs) = beyond(rounding, self.left(point));
             rates.component_mul(&weights.0).norm_squared()
                 + outputs.component_mul(&weights.1).norm_squared()
         };

@@ -42,7 +42,7 @@ impl<const N: usize, const M: usize> Row<N, M> {
     }
 
     /// The terms that it is made of where unknowns have these sizes.
-    pub(crate) fn terms(&self, (states, inputs): &Sizes<N, M>) -> f64 {
+    fn terms(&self, (states, inputs): &Sizes<N, M>) -> f64 {
         self.by_state.abs().dot(states) + self.by_input.abs().dot(inputs)
     }
 

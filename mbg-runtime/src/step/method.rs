@@ -340,9 +340,10 @@ pub(super) fn along<T: Real, const N: usize>(
 /// many times; whether it came to that.
 ///
 /// It has when nothing changes, when the last two changes are said to be enough, or when a small change no longer becomes
-/// smaller (Hairer, McLachlan and Razakarivony, *BIT Numerical Mathematics* 48 (2008), 231–243). Where the iteration turns while it converges, a change is larger than
-/// the one before now and then, and in a component near zero all of it may be rounding: so the longer none has been the
-/// smallest, the larger one is taken for rounding. Where the iteration is cut off, the last change must be small.
+/// smaller (Hairer, McLachlan and Razakarivony, *BIT Numerical Mathematics* 48 (2008), 231–243). Where the iteration turns
+/// while it converges, a change is larger than the one before now and then, and in a component near zero all of it may be
+/// rounding: so the longer none has been the smallest, the larger one is taken for rounding. Where the iteration is cut off,
+/// the last change must be small.
 pub(super) fn settles<T: Real>(
     most: u32,
     is_enough: impl Fn(f64, f64) -> bool,

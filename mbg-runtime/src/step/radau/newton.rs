@@ -376,7 +376,7 @@ mod tests {
         // 0.25 · 0.5¹⁷ is too much, 0.3³ · 0.3¹⁷ is not.
         assert_eq!(hopeless(&[1.0, 0.5, 0.25]), Some(3));
         assert_eq!(hopeless(&[1.0, 0.3, 0.09, 0.027]), None);
-        // One that grew between is believed as long as the slower of two tells.
+        // One that stayed is small already, or is made up for by the next.
         assert_eq!(hopeless(&[1e-3, 1e-9, 1e-9, 1e-13]), None);
         assert_eq!(hopeless(&[1e-3, 1e-3, 1e-9]), None);
     }

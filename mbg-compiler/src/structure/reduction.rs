@@ -34,6 +34,14 @@ pub struct Reduction {
     pub momenta: BTreeMap<usize, Expression>,
 }
 
+/// How a symbol changes in time.
+enum Change {
+    /// At a rate that is known before the rates are solved for.
+    Known(Expression),
+    /// At the rate that this unknown is, or its negative.
+    Unknown(usize, bool),
+}
+
 /// Reduces; coordinates become states of the model. None if something was reported.
 pub fn reduce(
     model: &mut Elaborated,
@@ -506,53 +514,53 @@ impl Reducer<'_> {
         if self.pool.rate(expression) != Rate::Varying {
             return sum;
         }
+        let mut known = BTreeMap::new();
         for symbol in symbols(self.pool, &[expression]) {
-            let slope = Differentiator::new(symbol).derivative(self.pool, expression);
-            match symbol {
-                // Unknowns are given symbols of their own only where a reduced system is solved.
-                Symbol::Parameter(_) | Symbol::Unknown(_) | Symbol::Slope(_) => {}
-                Symbol::Time => sum.constant = self.pool.add(sum.constant, slope),
-                Symbol::Input(input) => sum.input = Some(input),
-                Symbol::Signal(signal) => {
-                    let (unknown, reversed) = self.scalars.signals[signal];
-                    let rate = self.rate_of[&unknown];
+            if let Symbol::Input(input) = symbol {
+                sum.input = Some(input);
+            }
+            match self.change(model, symbol) {
+                Some(Change::Known(rate)) => {
+                    known.insert(symbol, rate);
+                }
+                Some(Change::Unknown(rate, reversed)) => {
+                    let slope = Differentiator::new(symbol).derivative(self.pool, expression);
                     sum.add(self.pool, rate, slope.flipped(reversed));
                 }
-                Symbol::State(state) => self.along_state(model, state, slope, &mut sum),
+                None => {}
             }
         }
+        // All at once: what several states move together, as those of an attitude do, is differentiated once.
+        sum.constant = Differentiator::along(known).derivative(self.pool, expression);
         sum
     }
 
-    fn along_state(
-        &mut self,
-        model: &Elaborated,
-        state: usize,
-        slope: Expression,
-        sum: &mut Linear,
-    ) {
-        match model.states[state].rate {
+    /// How a symbol changes in time; none for one that stays.
+    fn change(&mut self, model: &Elaborated, symbol: Symbol) -> Option<Change> {
+        let state = match symbol {
+            // Unknowns are given symbols of their own only where a reduced system is solved.
+            Symbol::Parameter(_) | Symbol::Unknown(_) | Symbol::Slope(_) | Symbol::Input(_) => {
+                return None;
+            }
+            Symbol::Time => return Some(Change::Known(Expression::ONE)),
+            Symbol::Signal(signal) => {
+                let (unknown, reversed) = self.scalars.signals[signal];
+                return Some(Change::Unknown(self.rate_of[&unknown], reversed));
+            }
+            Symbol::State(state) => state,
+        };
+        Some(match model.states[state].rate {
             StateRate::Storage(id, component) => {
                 let (unknown, reversed) = self.own_rate(model, id, component);
-                let slope = slope.flipped(reversed);
                 if self.determined[unknown] {
-                    let rate = self.signal(unknown);
-                    let product = self.pool.multiply(slope, rate);
-                    sum.constant = self.pool.add(sum.constant, product);
+                    Change::Known(self.signal(unknown).flipped(reversed))
                 } else {
-                    sum.add(self.pool, unknown, slope);
+                    Change::Unknown(unknown, reversed)
                 }
             }
-            StateRate::Expression(rate) => {
-                let product = self.pool.multiply(slope, rate);
-                sum.constant = self.pool.add(sum.constant, product);
-            }
-            StateRate::Unknown(flow) => {
-                if let Some(rate) = self.rate_of.get(&flow) {
-                    sum.add(self.pool, *rate, slope);
-                }
-            }
-        }
+            StateRate::Expression(rate) => Change::Known(rate),
+            StateRate::Unknown(flow) => Change::Unknown(*self.rate_of.get(&flow)?, false),
+        })
     }
 
     /// `ṗ = d/dt J (y − y₀)` for every lost state.

@@ -381,8 +381,9 @@ fn outer(pool: &mut Pool, whole: Expression, function: Function, a: Expression) 
         Function::Ln => quotient(pool, one, a),
         Function::Abs => pool.call(Function::Sign, &[a]),
         Function::Sqrt => {
-            let double = pool.add(whole, whole);
-            quotient(pool, one, double)
+            let two = pool.integer(2);
+            let (half, reciprocal) = (quotient(pool, one, two), quotient(pool, one, whole));
+            pool.multiply(half, reciprocal)
         }
         Function::Tan => {
             let square = pool.multiply(whole, whole);

@@ -1,8 +1,9 @@
 //! Gauss's methods of collocation, solved by sweeps over the stages.
 
+use core::array;
 use core::marker::PhantomData;
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
 use super::elimination::Shifted;
@@ -123,9 +124,16 @@ pub trait Collocation<const S: usize>: Copy {
     fn solve(&self) -> Solve;
 }
 
-/// The stages of the last step.
-pub struct Stages<A, T, const N: usize, const S: usize> {
+/// What Newton's sweeps keep from step to step, so that zeros outside of the pattern are written once.
+struct Newton<T, const N: usize> {
+    jacobian: SMatrix<T, N, N>,
+    factors: Shifted<T, N>,
+}
+
+/// The stages of the last step, and `K` matrices for Newton's sweeps, one or none.
+pub struct Stages<A, T, const N: usize, const S: usize, const K: usize> {
     solve: Solve,
+    newton: [Newton<T, N>; K],
     slopes: [SVector<T, N>; S],
     /// Length of the last step; none at the start and behind a jump.
     length: Option<T>,
@@ -134,15 +142,22 @@ pub struct Stages<A, T, const N: usize, const S: usize> {
 }
 
 #[allow(private_interfaces, reason = "no method is written outside")]
-impl<A, T, const N: usize, const S: usize> Stepper<A, T, N> for Stages<A, T, N, S>
+impl<A, T, const N: usize, const S: usize, const K: usize> Stepper<A, T, N>
+    for Stages<A, T, N, S, K>
 where
     A: Collocation<S>,
     T: Real,
 {
     fn new(method: &A) -> Self {
+        let zero = T::from_f64(0.0);
+        let newton = |_| Newton {
+            jacobian: SMatrix::from_element(zero),
+            factors: Shifted::empty(),
+        };
         Self {
             solve: method.solve(),
-            slopes: [SVector::from_element(T::from_f64(0.0)); S],
+            newton: array::from_fn(newton),
+            slopes: [SVector::from_element(zero); S],
             length: None,
             sizes: Sizes::new(),
             method: PhantomData,
@@ -163,24 +178,10 @@ where
         let mut memories = [None; S];
         self.predict(start);
         let found = match self.solve {
-            Solve::Newton(sweeps) => {
-                self.sizes.note(&start.x);
-                let mut factors = Shifted::empty();
-                let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
-                problem.factorise((start.span.start, &start.x), scale, &mut factors);
-                let (mut before, mut last) = (f64::INFINITY, f64::INFINITY);
-                for _ in 0..sweeps {
-                    before = last;
-                    let known = self.slopes[0];
-                    self.sweep(problem, (start, &mut memories), Some(&factors));
-                    last = self.size(start, &known);
-                }
-                let rate = last / before;
-                last <= NEAR || rate < 1.0 && last * rate / (1.0 - rate) <= LEFT
-            }
+            Solve::Newton(sweeps) => self.by_newton(problem, (start, &mut memories), sweeps),
             Solve::Sweeps(Some(sweeps)) => {
                 for _ in 0..if first { sweeps + 2 } else { sweeps } {
-                    self.sweep(problem, (start, &mut memories), None);
+                    Self::sweep(&mut self.slopes, problem, (start, &mut memories), None);
                 }
                 true
             }
@@ -188,7 +189,7 @@ where
             Solve::Sweeps(None) => settles::<T>(
                 MOST,
                 |_before, _last| false,
-                || self.sweep(problem, (start, &mut memories), None),
+                || Self::sweep(&mut self.slopes, problem, (start, &mut memories), None),
             ),
         };
         let length = start.span.length;
@@ -239,7 +240,11 @@ fn between<T: Real, const N: usize, const S: usize>(
     polynomial
 }
 
-impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S> {
+impl<A, T, const N: usize, const S: usize, const K: usize> Stages<A, T, N, S, K>
+where
+    A: Collocation<S>,
+    T: Real,
+{
     /// The stages as the last step continues; without one, the derivative at the start.
     fn predict(&mut self, start: &Start<T, N>) {
         let Some(before) = self.length.filter(|_| !start.again) else {
@@ -255,16 +260,39 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
         }
     }
 
-    /// How much a sweep of Newton's has changed a stage, whose slope was known as this.
-    fn size(&self, start: &Start<T, N>, known: &SVector<T, N>) -> f64 {
+    /// Sweeps of Newton's method with the Jacobian at the start; whether they have found the stages.
+    fn by_newton<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        (start, memories): (&Start<T, N>, &mut [Option<Y::Memory>; S]),
+        sweeps: u32,
+    ) -> bool
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let Some(Newton { jacobian, factors }) = self.newton.first_mut() else {
+            return false;
+        };
+        let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
+        problem.factorise((start.span.start, &start.x), scale, (jacobian, factors));
+        self.sizes.note(&start.x);
         let along = |slope: SVector<T, N>| slope.map(|slope| start.span.length * slope);
-        let [change, ahead] = [self.slopes[0] - known, self.slopes[0]].map(along);
-        self.sizes.between(&start.x, &ahead).norm(&change)
+        let (mut before, mut last) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..sweeps {
+            before = last;
+            let known = self.slopes[0];
+            Self::sweep(&mut self.slopes, problem, (start, memories), Some(factors));
+            let [change, ahead] = [self.slopes[0] - known, self.slopes[0]].map(along);
+            last = self.sizes.between(&start.x, &ahead).norm(&change);
+        }
+        let rate = last / before;
+        last <= NEAR || rate < 1.0 && last * rate / (1.0 - rate) <= LEFT
     }
 
     /// One sweep over all stages; gives the largest change of a stage relative to the state.
     fn sweep<Y, I, const M: usize, const P: usize>(
-        &mut self,
+        slopes: &mut [SVector<T, N>; S],
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         (start, memories): (&Start<T, N>, &mut [Option<Y::Memory>; S]),
         newton: Option<&Shifted<T, N>>,
@@ -274,7 +302,7 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
         I: Input<T, M> + ?Sized,
     {
         let length = start.span.length;
-        let known = self.slopes;
+        let known = *slopes;
         let mut largest = 0.0_f64;
         for stage in 0..S {
             let direction = combination(&A::TABLEAU.matrix[stage], &known);
@@ -284,9 +312,9 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
             let mut change = slope - known[stage];
             if let Some(factors) = newton {
                 change = factors.solved::<Y, M, P>(&change);
-                self.slopes[stage] = known[stage] + change;
+                slopes[stage] = known[stage] + change;
             } else {
-                self.slopes[stage] = slope;
+                slopes[stage] = slope;
             }
             let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
             largest = larger(largest, relative(&scaled(change), &start.x, &scaled(slope)));
@@ -297,7 +325,7 @@ impl<A: Collocation<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N,
 
 /// A method of this family.
 macro_rules! gauss {
-    ($name:ident, $tableau:ident: $stages:literal, $text:literal, order $order:literal, $dense:literal, |$method:ident| $solve:expr) => {
+    ($name:ident, $tableau:ident: $stages:literal, $matrices:literal, $text:literal, order $order:literal, $dense:literal, |$method:ident| $solve:expr) => {
         impl Method for $name {
             const NAME: &'static str = $text;
             const ORDER: u32 = $order;
@@ -316,13 +344,13 @@ macro_rules! gauss {
         }
 
         impl Family for $name {
-            type Work<T: Real, const N: usize> = Stages<Self, T, N, $stages>;
+            type Work<T: Real, const N: usize> = Stages<Self, T, N, $stages, $matrices>;
         }
     };
 }
 
-gauss!(Gauss6, GAUSS6: 3, "Gauss 6", order 6, 4, |method| Solve::Sweeps(method.sweeps));
-gauss!(ImplicitMidpoint, MIDPOINT: 1, "implicit midpoint", order 2, 2, |method| Solve::Newton(method.sweeps));
+gauss!(Gauss6, GAUSS6: 3, 0, "Gauss 6", order 6, 4, |method| Solve::Sweeps(method.sweeps));
+gauss!(ImplicitMidpoint, MIDPOINT: 1, 1, "implicit midpoint", order 2, 2, |method| Solve::Newton(method.sweeps));
 
 #[cfg(test)]
 mod tests {

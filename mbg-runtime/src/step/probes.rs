@@ -1,6 +1,6 @@
 //! What a model does between the stages of a step.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::dense::Polynomial;
 use super::elimination::Shifted;
@@ -233,8 +233,9 @@ where
             let moved = beside.zip_map(&slope, |beside, slope| length * (beside - slope));
             return !is_small(size, LARGE * (1.0 + measure.norm(&moved)));
         }
+        let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         let mut factors = Shifted::empty();
-        self.factorise((t, x), length, &mut factors);
+        self.factorise((t, x), length, (&mut jacobian, &mut factors));
         !is_small(measure.norm(&factors.solved::<S, M, P>(defect)), LARGE)
     }
 }

@@ -152,18 +152,17 @@ where
             .derivative_and_jacobian_into(t, x, &u, &mut memory, &mut derivative, jacobian);
     }
 
-    /// Writes factors of `I − scale ∂f/∂x`.
+    /// Writes the Jacobian, and factors of `I − scale ∂f/∂x`.
     #[inline(never)]
     pub(super) fn factorise(
         &mut self,
         (t, x): (T, &SVector<T, N>),
         scale: T,
-        factors: &mut Shifted<T, N>,
+        (jacobian, factors): (&mut SMatrix<T, N, N>, &mut Shifted<T, N>),
     ) {
         self.statistics.factorisations += 1;
-        let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
-        self.jacobian(t, x, &mut jacobian);
-        factors.factorise::<S, M, P>(T::from_f64(1.0), scale, &jacobian);
+        self.jacobian(t, x, jacobian);
+        factors.factorise::<S, M, P>(T::from_f64(1.0), scale, jacobian);
     }
 
     /// The derivative of `f(t, x, u(t))` by time at a fixed state, for a step of this length.

@@ -262,7 +262,7 @@ fn what_cannot_be_is_told() {
     );
     assert_eq!(
         told(Trim::new(&craft).rate("x", 1.0)),
-        "the model has no state `x`"
+        "the model has no state `x`: a position or an angle that nothing reads is none"
     );
     assert_eq!(
         told(Trim::new(&craft).output("spee", 1.0)),
@@ -274,6 +274,15 @@ fn what_cannot_be_is_told() {
     assert_eq!(
         told(fixed),
         "`place.z` is 0e0 instead of 3e0, and nothing that may be chosen has an influence on it"
+    );
+    let moving = Trim::new(&craft)
+        .fix("free")
+        .fix("hull")
+        .rate("free.position.x", 1.0);
+    assert_eq!(
+        told(moving),
+        "the rate of `free.position.x` is 0e0 instead of 1e0, and nothing that may be chosen has an influence on it there: \
+         begin elsewhere, or write `.free(\"free.position.x\")` where it is to change"
     );
     let nowhere = SVector::from_element(f64::NAN);
     assert!(Trim::new(&craft).state(&nowhere).solve().is_err());

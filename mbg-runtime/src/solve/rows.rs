@@ -114,19 +114,24 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
 
     /// These sizes, but no unknown smaller than this part of what would be as much as all else that an equation has: what is zero
     /// has a size by that, in its own unit.
+    ///
+    /// An equation in which an unknown has less than this part of its balanced entries tells nothing: that may be what rounding has
+    /// left of slopes that cancel out, and sizes by that would hide whatever is left of other equations.
     #[inline(never)]
     pub(crate) fn seen(&self, sizes: &Sizes<N, M>, part: f64) -> Sizes<N, M> {
         let (mut states, mut inputs) = *sizes;
-        for row in self.iter() {
+        let mut balanced = *self;
+        balanced.balance();
+        for (row, balanced) in self.iter().zip(balanced.iter()) {
             let terms = row.right.abs() + row.terms(sizes);
-            let see = |size: &mut f64, entry: f64| {
+            let see = |size: &mut f64, entry: f64, balanced: f64| {
                 let other = part * (terms / entry.abs());
-                if other.is_finite() {
+                if other.is_finite() && balanced.abs() > part {
                     *size = size.max(other);
                 }
             };
-            states.zip_apply(&row.by_state, see);
-            inputs.zip_apply(&row.by_input, see);
+            states.zip_zip_apply(&row.by_state, &balanced.by_state, see);
+            inputs.zip_zip_apply(&row.by_input, &balanced.by_input, see);
         }
         (states, inputs)
     }
@@ -305,5 +310,19 @@ mod tests {
         rows.straighten(&tangents);
         let (x, _) = rows.solution(1e-9);
         assert!((x - SVector::from([1.0, 1.0])).norm() < 1e-14, "{x}");
+    }
+
+    /// A slope that is rounding beside the others makes no unknown so large that what is left elsewhere is small beside it.
+    #[test]
+    fn rounding_of_a_slope_hides_nothing() {
+        let rates = [
+            row([1e5, -1e-18], [0.0; 2], 0.0),
+            row([2.0, 1.0], [0.0; 2], 1e-3),
+        ];
+        let rows = Rows::new(rates, []);
+        let sizes = (SVector::repeat(1.0), SVector::zeros());
+        let seen = rows.seen(&sizes, 1e-9);
+        let left = rows.iter().map(|row| row.part_left(&seen)).sum::<f64>();
+        assert!((left - 1e-3 / 3.0).abs() < 1e-15, "{left:e}");
     }
 }

@@ -57,6 +57,18 @@ fn what_stands_in_the_place_of_something_else_is_told() {
     1:20 expected the name of a unit, found `1.0` [MBG0102]
       help: a colon is before a unit; a value follows `=`: write `= 1.0`
     ");
+    insta::assert_snapshot!(told(&value(": f64 = 1.0")), @"
+    1:20 `f64` is not a unit of SI [MBG0502]
+      help: a colon is before a unit, and every value is a number: leave the colon and the type out
+    ");
+    insta::assert_snapshot!(told(&value(": [f64; 3] = [1.0, 2.0, 3.0]")), @"
+    1:20 expected the name of a unit, found `[` [MBG0102]
+      help: a colon is before a unit, and a size stands behind the name, as in `gains[3] = …`
+    ");
+    insta::assert_snapshot!(told(&value(" = noise(0.1)")), @"
+    1:21 `noise` is not a function of the language [MBG0203]
+      help: what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`
+    ");
     assert_eq!(told(&value(" = 1.0")), "");
     let thrust = |read: &str| {
         format!(

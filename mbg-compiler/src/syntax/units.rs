@@ -145,6 +145,9 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
         let report = *cursor.expected_with(codes::UNIT, "the name of a unit");
         return Err(Box::new(match cursor.peek(0) {
             _ if cursor.punct(0, '%') => report.help("write `1`, and each value times 0.01"),
+            _ if cursor.group(0, Delimiter::Bracket).is_some() => report.help(
+                "a colon is before a unit, and a size stands behind the name, as in `gains[3] = …`",
+            ),
             Some(TokenTree::Literal(value)) if unit.text.is_empty() && ends(cursor) => report.help(
                 format!("a colon is before a unit; a value follows `=`: write `= {value}`"),
             ),

@@ -11,8 +11,10 @@ use crate::{Convertible, Linearised, Trouble};
 const ITERATIONS: usize = 60;
 /// Dampings of one correction at most; the last one is below 1e-7.
 const DAMPINGS: usize = 24;
-/// Where no longer part of a correction does, two whole ones are tried.
+/// Where no longer part of a correction does, two are tried.
 const SLOW: f64 = 0.1;
+/// Dampings of the first of them.
+const BENDS: [f64; 3] = [0.5, 0.25, 0.125];
 /// What is left out of a correction, in units of what matters most: first what may be an error of tangents.
 const PARTS: [f64; 4] = [1e-4, 1e-6, 1e-9, 1e-12];
 /// How far beside a state its neighbours are closed, in units of the state: the cube root of the precision.
@@ -276,12 +278,14 @@ where
         let mut point = self.closed(self.start)?;
         let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
         let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
+        let infinite = f64::INFINITY;
+        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
         for _ in 0..ITERATIONS {
             sizes.0.zip_apply(&point.state, larger);
             sizes.1.zip_apply(&point.input, larger);
             let rounding = self.rounding(&point);
             let mut rows = self.rows(&point, &rounding)?;
-            match self.descend(&point, &mut rows, &rounding) {
+            match self.descend(&point, &mut rows, &rounding, &mut units) {
                 Some(next) => point = next,
                 None => break,
             }
@@ -421,9 +425,11 @@ where
         point: &Trimmed<N, M>,
         rows: &mut Rows<N, M, P>,
         rounding: &Left<N, P>,
+        units: &mut Sizes<N, M>,
     ) -> Option<Trimmed<N, M>> {
         rows.fix(&self.fixed);
         rows.balance();
+        rows.limit(units);
         let weights = rows.weights();
         let size = |point: &Trimmed<N, M>| {
             // Rounding of one condition must not hide what is left of another one.
@@ -448,10 +454,15 @@ where
         match damped {
             Some((next, damping, _)) if damping > SLOW => Some(next),
             _ => {
-                let most = damped.map_or(0.5 * before, |(.., left)| left.min(0.5 * before));
-                let ahead = PARTS.iter().find_map(|part| {
-                    self.twice(point, rows, rounding, *part)
-                        .filter(|next| size(next) < most)
+                let most = damped.map_or(before, |(.., left)| left);
+                let whole = PARTS.map(|part| (1.0, part));
+                let mut tried = whole
+                    .into_iter()
+                    .chain(BENDS.map(|damping| (damping, PARTS[3])));
+                let ahead = tried.find_map(|(damping, part)| {
+                    let next = self.twice(point, rows, (rounding, *units), (damping, part))?;
+                    let left = size(&next);
+                    (left < most && left < (1.0 - 0.5 * damping) * before).then_some(next)
                 });
                 ahead.or(damped.map(|(next, ..)| next))
             }
@@ -474,7 +485,7 @@ where
         })
     }
 
-    /// The point behind two whole corrections.
+    /// The point behind two corrections, of which the first may be damped and the second then leads back alone.
     ///
     /// Where one condition hardly changes with what is chosen, such as the moment about the vertical with the heading of a craft
     /// that leans, a correction of it bends away from all others by more than it gains, and the next one leads back.
@@ -483,15 +494,17 @@ where
         &self,
         point: &Trimmed<N, M>,
         rows: &Rows<N, M, P>,
-        rounding: &Left<N, P>,
-        part: f64,
+        (rounding, mut units): (&Left<N, P>, Sizes<N, M>),
+        (damping, part): (f64, f64),
     ) -> Option<Trimmed<N, M>> {
-        let ahead = self.corrected(point, rows, 1.0, part).ok()?;
+        let ahead = self.corrected(point, rows, damping, part).ok()?;
         let mut rows = self.rows(&ahead, rounding).ok()?;
         rows.fix(&self.fixed);
         rows.balance();
+        rows.limit(&mut units);
         rows.straighten(&self.tangents(&ahead));
-        self.corrected(&ahead, &rows, 1.0, part).ok()
+        let back = if damping < 1.0 { PARTS[0] } else { part };
+        self.corrected(&ahead, &rows, 1.0, back).ok()
     }
 
     /// How a state that is closed again changes with each of its numbers.

@@ -133,6 +133,21 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             states.zip_zip_apply(&row.by_state, &balanced.by_state, see);
             inputs.zip_zip_apply(&row.by_input, &balanced.by_input, see);
         }
+        // In balanced units unknowns are about as large as each other, and so is what no other equation tells of: a velocity
+        // at rest.
+        let units = &balanced.units;
+        let (by_state, by_input) = (
+            sizes.0.component_div(&units.0),
+            sizes.1.component_div(&units.1),
+        );
+        let least = part
+            * by_state
+                .iter()
+                .chain(&by_input)
+                .fold(0.0, |most: f64, it| most.max(*it));
+        let larger = |size: &mut f64, unit: f64| *size = size.max(least * unit);
+        states.zip_apply(&units.0, larger);
+        inputs.zip_apply(&units.1, larger);
         (states, inputs)
     }
 
@@ -216,6 +231,24 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             self.units.0.component_mul_assign(&by_state);
             self.units.1.component_mul_assign(&by_input);
         }
+    }
+
+    /// Measures no unknown in a larger unit than these, and lowers them to the present ones.
+    ///
+    /// What has an influence only while equations do not hold, such as the angles of a load on a rope with the force that is left
+    /// on it, would move without bound where hardly anything is left.
+    #[inline(never)]
+    pub(crate) fn limit(&mut self, most: &mut Sizes<N, M>) {
+        let lower = |most: &mut f64, unit: f64| *most = most.min(unit);
+        most.0.zip_apply(&self.units.0, lower);
+        most.1.zip_apply(&self.units.1, lower);
+        let by_state = most.0.component_div(&self.units.0);
+        let by_input = most.1.component_div(&self.units.1);
+        for row in self.iter_mut() {
+            row.by_state.component_mul_assign(&by_state);
+            row.by_input.component_mul_assign(&by_input);
+        }
+        self.units = *most;
     }
 
     /// Turns two rows to right angles; whether they were not.
@@ -324,5 +357,30 @@ mod tests {
         let seen = rows.seen(&sizes, 1e-9);
         let left = rows.iter().map(|row| row.part_left(&seen)).sum::<f64>();
         assert!((left - 1e-3 / 3.0).abs() < 1e-15, "{left:e}");
+    }
+
+    #[test]
+    fn what_loses_its_influence_stays_in_its_unit() {
+        let mut units = (
+            SVector::repeat(f64::INFINITY),
+            SVector::repeat(f64::INFINITY),
+        );
+        let solution = |slope: f64, units: &mut Sizes<2, 2>| {
+            let rate = row([1.0, slope], [0.0; 2], slope);
+            let mut rows = Rows::new([rate, Row::empty()], []);
+            rows.balance();
+            rows.limit(units);
+            rows.straighten(&SMatrix::identity());
+            rows.solution(1e-9).0
+        };
+        let (first, second) = (solution(1.0, &mut units), solution(1e-6, &mut units));
+        assert!(
+            (first - SVector::from([0.5, 0.5])).norm() < 1e-15,
+            "{first}"
+        );
+        assert!(
+            (second - SVector::from([1e-6, 1e-12])).norm() < 1e-15,
+            "{second}"
+        );
     }
 }

@@ -187,7 +187,10 @@ fn mistakes_in_curves_are_told() {
     insta::assert_snapshot!(curve("t, [0.0, 1.0], [0.0, 1.0, 2.0]"), @"2:39 expected 2 values, one for each place, found 3 [MBG0204]");
     insta::assert_snapshot!(curve("t, [0.0], [1.0]"), @"2:27 expected at least two points, found one [MBG0204]");
     insta::assert_snapshot!(curve("t, 0.0, [1.0]"), @"2:27 expected a vector such as `[0.0, 1.0]`, found a number [MBG0204]");
-    insta::assert_snapshot!(curve("a.f, [0.0, 1.0], [1.0, 2.0]"), @"2:24 expected a number, found a vector of 3 [MBG0204]");
+    insta::assert_snapshot!(curve("a.f, [0.0, 1.0], [1.0, 2.0]"), @"
+    2:24 expected a number, found a vector of 3 [MBG0204]
+      help: write one component, such as `a.f[0]`
+    ");
     insta::assert_snapshot!(curve("t, [0.0, 1.0, 0.5], [1.0, 2.0, 3.0]"), @"2:38 expected a place beyond 1, found 0.5 [MBG0213]");
     insta::assert_snapshot!(curve("t, [0.0, n, n], [1.0, 2.0, 3.0]"), @"2:36 expected a place beyond the one before [MBG0213]");
     insta::assert_snapshot!(curve("t, [0.0, t], [1.0, 2.0]"), @"2:33 expected places of numbers and parameters alone [MBG0213]");

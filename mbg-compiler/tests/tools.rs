@@ -31,6 +31,58 @@ fn follow(scene: &dyn Fn(&str) -> String, slip: &str, expected: &str) {
 }
 
 #[test]
+fn what_stands_in_the_place_of_something_else_is_told() {
+    let rope = scene("Body { mass: 1.0, inertia: 1.0 }", "Rope { rest: 1.0 }");
+    assert_eq!(typed(&rope), ["LineForce"]);
+    let driven = scene("Body { mass: 1.0, inertia: 1.0 }", "Revolute { axis: 2 }");
+    let driven = |end: &str| {
+        driven.replace(
+            "(ground, arm); }",
+            &format!("(ground, arm);\nSf drive {{ flow: 1.0 }} -> joint.{end}; }}"),
+        )
+    };
+    insta::assert_snapshot!(told(&driven("angle")), @"
+    4:27 `joint.angle` is not declared [MBG0203]
+      help: junctions of `joint` are `force`, `moment`, `rate`
+    ");
+    insta::assert_snapshot!(told(&driven("rat")), @"
+    4:27 `joint.rat` is not declared [MBG0203]
+      help: did you mean `joint.rate`?
+    ");
+    assert_eq!(told(&driven("rate")), "");
+    let value = |declared: &str| {
+        format!("model M {{ param k{declared}; 1 v {{ I m {{ inertia: k }} }} output y = v.f; }}")
+    };
+    insta::assert_snapshot!(told(&value(": 1.0")), @"
+    1:20 expected the name of a unit, found `1.0` [MBG0102]
+      help: a colon is before a unit; a value follows `=`: write `= 1.0`
+    ");
+    insta::assert_snapshot!(told(&value(": f64 = 1.0")), @"
+    1:20 `f64` is not a unit of SI [MBG0502]
+      help: a colon is before a unit, and every value is a number: leave the colon and the type out
+    ");
+    insta::assert_snapshot!(told(&value(": [f64; 3] = [1.0, 2.0, 3.0]")), @"
+    1:20 expected the name of a unit, found `[` [MBG0102]
+      help: a colon is before a unit, and a size stands behind the name, as in `gains[3] = …`
+    ");
+    insta::assert_snapshot!(told(&value(" = noise(0.1)")), @"
+    1:21 `noise` is not a function of the language [MBG0203]
+      help: what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`
+    ");
+    assert_eq!(told(&value(" = 1.0")), "");
+    let thrust = |read: &str| {
+        format!(
+            "model M {{ input thrust[4]; output y = v.f[0];
+             1 v[3] {{ I m {{ inertia: 2.0 }} Se lift {{ effort: [0.0, 0.0, {read}] }} }} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&thrust("thrust")), @"
+    2:73 expected a number, found a vector of 4 [MBG0204]
+      help: write one component, such as `thrust[0]`
+    ");
+}
+
+#[test]
 fn parameters_of_bodies_and_joints_are_told_by_their_names_here() {
     let body = |given: &str| scene(&format!("Body {{ {given} }}"), "Fixed");
     follow(&body, "m: 1.0, I: 2.0", "mass: 1.0, inertia: 2.0");

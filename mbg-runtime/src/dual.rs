@@ -16,6 +16,9 @@ use crate::Real;
 /// Where a function has no finite derivative (square root at zero, arc sine at ±1) the slope is infinite or NaN, but zero of
 /// what does not change, such as `max(x, 0)` below zero.
 ///
+/// `nalgebra` asks for the zero and the one of the crate `num-traits` where it makes zeros and multiplies matrices, which these
+/// numbers have not: `SVector::repeat(Dual::constant(0.0))` is zero, and `matrix.map(…)` makes them of others.
+///
 /// # Example
 ///
 /// ```

@@ -7,16 +7,16 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 
 /// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
 ///
-/// Poles are given by [`Linearised::poles`]; `complex_eigenvalues()` of `nalgebra` does not end on chains of integrators, such as those
-/// of what flies freely. The four numbers of an attitude count as states, and so do all coordinates of loops that multipliers close: some poles are no motion of such a
-/// model. Nor is a pole at zero that two displacements at one junction make, such as that of a spring beside a field of two ports:
-/// their difference stays what it was, whatever is done. No feedback moves such a pole, and an iteration of Riccati's equation
-/// over all states does not end. The rows of both are the same in `A` and in `B`: leave one state out, and add its columns of `A`
-/// and `C` to those of the other.
+/// Poles are given by [`Linearised::poles`]; `complex_eigenvalues()` of `nalgebra` does not end on chains of integrators, such
+/// as those of what flies freely. The four numbers of an attitude count as states, and so do all coordinates of loops that
+/// multipliers close: some poles are no motion of such a model. Nor is a pole at zero that two displacements at one junction
+/// make, such as that of a spring beside a field of two ports: their difference stays what it was, whatever is done. No
+/// feedback moves such a pole, and an iteration of Riccati's equation over all states does not end. The rows of both are the
+/// same in `A` and in `B`: leave one state out, and add its columns of `A` and `C` to those of the other.
 ///
 /// `A` belongs to one state and time. Of a rotor that spins, with its body in axes that turn with it, or on a shaft that is not
-/// round, the states do not rest: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the rotor
-/// is round, write it in axes that do not turn; else take Floquet's multipliers over a turn, of which
+/// round, the states do not rest: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the
+/// rotor is round, write it in axes that do not turn; else take Floquet's multipliers over a turn, of which
 /// [`Linearised::held`] gives one part after the other.
 ///
 /// A nonlinear algebraic loop is solved from zero, as at the start of a run: of several solutions it may find another one than
@@ -172,6 +172,87 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
     /// ```
     #[must_use]
     pub fn held(&self, period: T) -> Option<(SMatrix<T, N, N>, SMatrix<T, N, M>)> {
+        let (doublings, part) = self.parts(period)?;
+        let (mut change, mean) = self.short(part);
+        let mut push = product(&mean, &self.input).map(|it| part * it);
+        for _ in 0..doublings {
+            push = push + push + product(&change, &push);
+            change = change + change + product(&change, &change);
+        }
+        let transition = beside_one(change);
+        let is_finite = |it: &T| it.magnitude().is_finite();
+        let are_finite = transition.iter().all(is_finite) && push.iter().all(is_finite);
+        are_finite.then_some((transition, push))
+    }
+
+    /// What white noise of the inputs adds to the covariance of the state over a `period` in s:
+    /// `∫ exp(A τ) B S Bᵀ exp(Aᵀ τ) dτ` with its two-sided spectral density `S`, as Kalman's filter is designed with beside `Φ` of
+    /// [`held`](Self::held). None where it is not finite.
+    ///
+    /// `S` has the square of an input's unit per Hz, such as the square of a gyroscope's angle random walk in rad/s/√Hz. The same
+    /// noise in a run is a [`Sampled::held`](crate::Sampled::held) input, of which values that are held for a time `h` have the
+    /// variance `S / h`.
+    ///
+    /// It is summed for a part of the period and doubled as often as needed, as by [`held`](Self::held).
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use mbg_runtime::Linearised;
+    /// use nalgebra::{Matrix1, Matrix2, SMatrix};
+    ///
+    /// // A mass of 1 kg that noise pushes: x = (way, velocity).
+    /// let mass = Linearised {
+    ///     state: Matrix2::new(0.0, 1.0, 0.0, 0.0),
+    ///     input: SMatrix::<f64, 2, 1>::new(0.0, 1.0),
+    ///     output: SMatrix::<f64, 1, 2>::new(1.0, 0.0),
+    ///     feedthrough: SMatrix::<f64, 1, 1>::new(0.0),
+    /// };
+    /// let (s, h) = (0.2, 0.5);
+    /// let added = mass.noise(&Matrix1::new(s), h).unwrap();
+    /// let expected = s * Matrix2::new(h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h);
+    /// assert!((added - expected).norm() < 1e-16);
+    /// ```
+    #[must_use]
+    pub fn noise(&self, density: &SMatrix<T, M, M>, period: T) -> Option<SMatrix<T, N, N>> {
+        let (doublings, part) = self.parts(period)?;
+        let source = product(&product(&self.input, density), &self.input.transpose());
+        // Σ hᵏ⁺¹ / (k + 1)! of what is applied k times, X → A X + X Aᵀ, the last terms first.
+        let step = self.state.map(|it| part * it);
+        let mut sum = source;
+        for order in (2..=2 * TERMS).rev() {
+            let shrink = T::from_f64(1.0 / f64::from(order));
+            let applied = product(&step, &sum) + product(&sum, &step.transpose());
+            sum = source + applied.map(|it| shrink * it);
+        }
+        let mut covariance = sum.map(|it| part * it);
+        let (mut change, _) = self.short(part);
+        for _ in 0..doublings {
+            // Half of Q + Φ Q Φᵀ, and the other, or rounding would add up to what is not symmetric.
+            let first = product(&change, &covariance);
+            let both = product(&first, &change.transpose()).map(|it| T::from_f64(0.5) * it);
+            let half = covariance + first + both;
+            covariance = half + half.transpose();
+            change = change + change + product(&change, &change);
+        }
+        let is_finite = |it: &T| it.magnitude().is_finite();
+        covariance.iter().all(is_finite).then_some(covariance)
+    }
+
+    /// `exp(A h) − I` and `Σ (A h)ᵏ / (k + 1)!` over a short period, the last terms first.
+    fn short(&self, part: T) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
+        let step = self.state.map(|it| part * it);
+        let mut mean = SMatrix::<T, N, N>::from_element(T::from_f64(0.0));
+        for order in (2..=TERMS).rev() {
+            let shrink = T::from_f64(1.0 / f64::from(order));
+            mean = product(&step, &beside_one(mean)).map(|it| shrink * it);
+        }
+        let mean = beside_one(mean);
+        (product(&step, &mean), mean)
+    }
+
+    /// How often a part of a period is doubled, and that part: over it, the exponential is a short sum.
+    fn parts(&self, period: T) -> Option<(u32, T)> {
         let columns = self.state.column_iter();
         let sums = columns.map(|column| column.iter().map(|it| it.magnitude()).sum::<f64>());
         let norm = sums.fold(0.0, f64::max) * period.magnitude();
@@ -182,25 +263,7 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         while norm * part > 0.5 {
             (doublings, part) = (doublings + 1, 0.5 * part);
         }
-        let part = T::from_f64(part) * period;
-        // Σ (A h)ᵏ / (k + 1)!, the last terms first.
-        let step = self.state.map(|it| part * it);
-        let mut mean = SMatrix::<T, N, N>::from_element(T::from_f64(0.0));
-        for order in (2..=TERMS).rev() {
-            let shrink = T::from_f64(1.0 / f64::from(order));
-            mean = product(&step, &beside_one(mean)).map(|it| shrink * it);
-        }
-        let mean = beside_one(mean);
-        let mut change = product(&step, &mean);
-        let mut push = product(&mean, &self.input).map(|it| part * it);
-        for _ in 0..doublings {
-            push = push + push + product(&change, &push);
-            change = change + change + product(&change, &change);
-        }
-        let transition = beside_one(change);
-        let is_finite = |it: &T| it.magnitude().is_finite();
-        let are_finite = transition.iter().all(is_finite) && push.iter().all(is_finite);
-        are_finite.then_some((transition, push))
+        Some((doublings, T::from_f64(part) * period))
     }
 }
 

@@ -229,7 +229,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
             return Some(trouble);
         }
         if let Some(trouble) = Trouble::of_state(Self::META, x) {
-            return Some(trouble);
+            return Some(trouble.traced(Self::META, u));
         }
         let conditioning = self.conditioning(t, x, u);
         Self::META
@@ -309,6 +309,11 @@ pub enum Trouble {
         /// The first such state, as [`Meta::states`] names it.
         state: &'static str,
     },
+    /// An input is infinite or NaN, and so is a state, or its derivative.
+    InputNotFinite {
+        /// The first such input, as [`Meta::inputs`] names it.
+        input: &'static str,
+    },
     /// An entry of a Jacobian is infinite or NaN, though the state is finite: a law has no finite slope there, as a square root
     /// at zero.
     JacobianNotFinite {
@@ -375,6 +380,22 @@ impl Trouble {
         Self::NotFinite { state }
     }
 
+    /// Of the input, where that is what is not finite beside a state.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn traced<T: Real, const M: usize>(
+        self,
+        meta: &'static Meta,
+        u: &SVector<T, M>,
+    ) -> Self {
+        match (self, u.iter().position(|input| !is_finite(input))) {
+            (Self::NotFinite { .. }, Some(index)) => Self::InputNotFinite {
+                input: name(meta.inputs, index),
+            },
+            _ => self,
+        }
+    }
+
     /// Of the first entry of a Jacobian that is infinite or NaN in some lane, whose rows and columns belong to these variables.
     pub(crate) fn of_jacobian<T: Real, const R: usize, const C: usize>(
         jacobian: &SMatrix<T, R, C>,
@@ -406,6 +427,7 @@ impl core::fmt::Display for Trouble {
             Self::NotFinite { state } => {
                 write!(formatter, "state `{state}` or its derivative is not finite")
             }
+            Self::InputNotFinite { input } => write!(formatter, "input `{input}` is not finite"),
             Self::JacobianNotFinite { of, by } => write!(
                 formatter,
                 "the Jacobian is not finite: the derivative of `{of}` by `{by}`"

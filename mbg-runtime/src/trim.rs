@@ -11,6 +11,10 @@ use crate::{Convertible, Linearised, Trouble};
 const ITERATIONS: usize = 60;
 /// Dampings of one correction at most; the last one is below 1e-7.
 const DAMPINGS: usize = 24;
+/// Where no longer part of a correction does, two are tried.
+const SLOW: f64 = 0.1;
+/// Dampings of the first of them.
+const BENDS: [f64; 3] = [0.5, 0.25, 0.125];
 /// What is left out of a correction, in units of what matters most: first what may be an error of tangents.
 const PARTS: [f64; 4] = [1e-4, 1e-6, 1e-9, 1e-12];
 /// How far beside a state its neighbours are closed, in units of the state: the cube root of the precision.
@@ -121,7 +125,13 @@ pub enum Untrimmed {
 impl core::fmt::Display for Untrimmed {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match *self {
-            Self::Unknown { kind, name } => write!(formatter, "the model has no {kind} `{name}`"),
+            Self::Unknown { kind, name } => {
+                write!(formatter, "the model has no {kind} `{name}`")?;
+                formatter.write_str(match kind {
+                    "state" => ": a position or an angle that nothing reads is none",
+                    _ => "",
+                })
+            }
             Self::Missed {
                 name,
                 is_output,
@@ -134,11 +144,19 @@ impl core::fmt::Display for Untrimmed {
                     formatter,
                     "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
                 )?;
-                formatter.write_str(if is_fixed {
-                    "nothing that may be chosen has an influence on it"
-                } else {
-                    "no choice was found that does better: begin elsewhere, or let more be chosen"
-                })
+                if !is_fixed {
+                    return formatter.write_str(
+                        "no choice was found that does better: begin elsewhere, or let more be chosen",
+                    );
+                }
+                formatter.write_str("nothing that may be chosen has an influence on it")?;
+                if is_output {
+                    return Ok(());
+                }
+                write!(
+                    formatter,
+                    " there: begin elsewhere, or write `.free(\"{name}\")` where it is to change"
+                )
             }
             Self::Trouble(trouble) => trouble.fmt(formatter),
         }
@@ -260,12 +278,14 @@ where
         let mut point = self.closed(self.start)?;
         let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
         let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
+        let infinite = f64::INFINITY;
+        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
         for _ in 0..ITERATIONS {
             sizes.0.zip_apply(&point.state, larger);
             sizes.1.zip_apply(&point.input, larger);
             let rounding = self.rounding(&point);
             let mut rows = self.rows(&point, &rounding)?;
-            match self.descend(&point, &mut rows, &rounding) {
+            match self.descend(&point, &mut rows, &rounding, &mut units) {
                 Some(next) => point = next,
                 None => break,
             }
@@ -405,9 +425,11 @@ where
         point: &Trimmed<N, M>,
         rows: &mut Rows<N, M, P>,
         rounding: &Left<N, P>,
+        units: &mut Sizes<N, M>,
     ) -> Option<Trimmed<N, M>> {
         rows.fix(&self.fixed);
         rows.balance();
+        rows.limit(units);
         let weights = rows.weights();
         let size = |point: &Trimmed<N, M>| {
             // Rounding of one condition must not hide what is left of another one.
@@ -424,16 +446,65 @@ where
         let mut tried = dampings
             .take(DAMPINGS)
             .flat_map(|damping| PARTS.map(|part| (damping, part)));
-        tried.find_map(|(damping, part)| {
-            let (by_state, by_input) = rows.solution(part);
-            // Where a step too long leads to what the model does not reach a shorter one may do.
-            let next = self.closed(Trimmed {
-                state: point.state - damping * by_state,
-                input: point.input - damping * by_input,
-            });
-            next.ok()
-                .filter(|next| size(next) < (1.0 - 0.5 * damping) * before)
+        let damped = tried.find_map(|(damping, part)| {
+            let next = self.corrected(point, rows, damping, part).ok()?;
+            let left = size(&next);
+            (left < (1.0 - 0.5 * damping) * before).then_some((next, damping, left))
+        });
+        match damped {
+            Some((next, damping, _)) if damping > SLOW => Some(next),
+            _ => {
+                let most = damped.map_or(before, |(.., left)| left);
+                let whole = PARTS.map(|part| (1.0, part));
+                let mut tried = whole
+                    .into_iter()
+                    .chain(BENDS.map(|damping| (damping, PARTS[3])));
+                let ahead = tried.find_map(|(damping, part)| {
+                    let next = self.twice(point, rows, (rounding, *units), (damping, part))?;
+                    let left = size(&next);
+                    (left < most && left < (1.0 - 0.5 * damping) * before).then_some(next)
+                });
+                ahead.or(damped.map(|(next, ..)| next))
+            }
+        }
+    }
+
+    /// The point behind a part of a correction by equations at right angles.
+    fn corrected(
+        &self,
+        point: &Trimmed<N, M>,
+        rows: &Rows<N, M, P>,
+        damping: f64,
+        part: f64,
+    ) -> Result<Trimmed<N, M>, Untrimmed> {
+        let (by_state, by_input) = rows.solution(part);
+        // Where a step too long leads to what the model does not reach a shorter one may do.
+        self.closed(Trimmed {
+            state: point.state - damping * by_state,
+            input: point.input - damping * by_input,
         })
+    }
+
+    /// The point behind two corrections, of which the first may be damped and the second then leads back alone.
+    ///
+    /// Where one condition hardly changes with what is chosen, such as the moment about the vertical with the heading of a craft
+    /// that leans, a correction of it bends away from all others by more than it gains, and the next one leads back.
+    #[inline(never)]
+    fn twice(
+        &self,
+        point: &Trimmed<N, M>,
+        rows: &Rows<N, M, P>,
+        (rounding, mut units): (&Left<N, P>, Sizes<N, M>),
+        (damping, part): (f64, f64),
+    ) -> Option<Trimmed<N, M>> {
+        let ahead = self.corrected(point, rows, damping, part).ok()?;
+        let mut rows = self.rows(&ahead, rounding).ok()?;
+        rows.fix(&self.fixed);
+        rows.balance();
+        rows.limit(&mut units);
+        rows.straighten(&self.tangents(&ahead));
+        let back = if damping < 1.0 { PARTS[0] } else { part };
+        self.corrected(&ahead, &rows, 1.0, back).ok()
     }
 
     /// How a state that is closed again changes with each of its numbers.
@@ -501,6 +572,15 @@ mod tests {
             }
             output charge: C = capacitor.q;
         }
+        /// Two conditions along a bend that hardly differ.
+        model Bend {
+            input across;
+            input along;
+            let bend = along - across * across;
+            integral first = bend;
+            integral second = bend + 1e-6 * (across - 1.0);
+            output sums[2] = [first, second];
+        }
         /// A mass on a spring that hardens within a length.
         model Pushed {
             param length: m = 1.0;
@@ -530,6 +610,16 @@ mod tests {
                 let missed = other.solve();
                 assert!(matches!(missed, Err(Untrimmed::Missed { .. })), "{small:e}");
             }
+        }
+    }
+
+    #[test]
+    fn conditions_that_hardly_differ_along_a_bend_are_met() {
+        let model = Bend::<f64>::new(BendParameters::default()).unwrap();
+        for start in [[-1.0, 1.0], [3.0, 9.0], [3.0, 0.0], [100.0, 3.0]] {
+            let met = Trim::new(&model).input(&start).solve().unwrap().input;
+            // What is left of the difference is rounding of the bend.
+            assert!((met - SVector::from([1.0, 1.0])).amax() < 1e-6, "{met}");
         }
     }
 

@@ -1,8 +1,8 @@
 //! What runs tell that cannot go on.
 
 use mbg_runtime::{
-    Adaptive, Auto, Cause, Fixed, Gauss6, ImplicitMidpoint, Integrator, Picked, Radau5, Radau9,
-    Real, Rk4, Rodas4, Rodas5P, Ros2, Stopped, System, Trouble, Tsit5, Variable, mbg,
+    Adaptive, Auto, Cause, Constant, Fixed, Gauss6, ImplicitMidpoint, Integrator, Picked, Radau5,
+    Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Stopped, System, Trouble, Tsit5, Variable, mbg,
 };
 use nalgebra::SVector;
 
@@ -30,6 +30,20 @@ mbg! {
         Se turn { effort: 0.02 } -> skate[0];
         Sf drive { flow: 10.0 } -> along;
         output sliding = across.f;
+    }
+}
+
+mbg! {
+    /// A mass that is pushed, and one behind a spring.
+    model Pushed {
+        input push: N;
+        input pull: N;
+        1 first { I a { inertia: 2.0 } Se left { effort: push } }
+        1 second { I b { inertia: 1.0 } Se right { effort: pull } }
+        0 between { C spring { stiffness: 50.0 } }
+        first -> between;
+        between -> second;
+        output y = first.f;
     }
 }
 
@@ -169,6 +183,32 @@ fn methods_without_a_jacobian_go_on_where_it_is_not_finite() {
     let expected = end(Adaptive::new(Tsit5, 1e-10, 1e-10));
     assert!((end(Fixed::new(Gauss6::default(), 1e-2)) - expected).abs() < 1e-6);
     assert!((end(Auto::new(1e-6, 1e-6)) - expected).abs() < 1e-6);
+}
+
+/// Not the state that it makes so.
+#[test]
+fn an_input_that_is_no_number_is_told() {
+    let model = Pushed::<f64>::new(PushedParameters::default()).unwrap();
+    let start = model.initial_state();
+    for value in [f64::NAN, f64::INFINITY] {
+        let input = Constant(SVector::from([1.0, value]));
+        let stops = [
+            Fixed::new(Rk4, 0.1).integrate(&model, &input, 0.0, 1.0, start, |_| ()),
+            Fixed::new(Gauss6::default(), 0.1).integrate(&model, &input, 0.0, 1.0, start, |_| ()),
+            Adaptive::new(Tsit5, 1e-6, 1e-6).integrate(&model, &input, 0.0, 1.0, start, |_| ()),
+            Adaptive::new(Radau5, 1e-6, 1e-6).integrate(&model, &input, 0.0, 1.0, start, |_| ()),
+            Auto::new(1e-6, 1e-6).integrate(&model, &input, 0.0, 1.0, start, |_| ()),
+        ];
+        for stopped in stops.map(Result::unwrap_err) {
+            assert_eq!(
+                stopped.to_string(),
+                "stopped at t = 0: input `pull` is not finite"
+            );
+        }
+        let next = Rk4::step(&model, 0.0, &start, &input.0, 0.1, &mut ());
+        let trouble = System::trouble(&model, 0.1, &next, &input.0, &());
+        assert_eq!(trouble, Some(Trouble::InputNotFinite { input: "pull" }));
+    }
 }
 
 #[test]

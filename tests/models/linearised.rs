@@ -356,3 +356,51 @@ fn from_sample_to_sample_a_car_is_its_run() {
     };
     assert!(endless.held(period).is_none());
 }
+
+/// Noise that pushes a mass on a spring, over less than a millionth and over thirty of its periods.
+#[test]
+fn noise_from_sample_to_sample_is_its_closed_form() {
+    let model = Ringing::<f64>::new(RingingParameters::default()).unwrap();
+    let (x, u) = (model.initial_state(), SVector::from([0.0]));
+    let linear = Linearised::of(&model, 0.0, &x, &u).unwrap();
+    let density = 0.3;
+    for (period, tolerance) in [(1e-3, 1e-13), (0.3, 1e-14), (100.0, 1e-12)] {
+        let found = linear.noise(&SMatrix::from([[density]]), period).unwrap();
+        let sine = f64::sin(4.0 * period);
+        let product = f64::sin(2.0 * period) * f64::sin(2.0 * period) / 16.0;
+        // Momentum and stroke, of 2 kg at 2 rad/s; the last cancels out over a short period, but for period³ / 12.
+        let stroke = (4.0 * period - sine) / 128.0;
+        let expected =
+            SMatrix::from([[0.5 * period + sine / 8.0, product], [product, stroke]]) * density;
+        for (found, expected) in found.iter().zip(expected.iter()) {
+            let error = (found - expected).abs() / expected.abs();
+            assert!(
+                error < tolerance.max(1e-16 * period / expected),
+                "{period} {error:e}"
+            );
+        }
+    }
+}
+
+/// Over a long time the covariance of a car on a rough road is what its dampers hold it at, and its heights go with the road.
+#[test]
+fn noise_over_a_long_time_is_at_rest() {
+    let car = QuarterCar::<f64>::new(QuarterCarParameters::default()).unwrap();
+    let (start, none) = (car.initial_state(), SVector::from([0.0]));
+    let linear = Linearised::of(&car, 0.0, &start, &none).unwrap();
+    let density = 0.04;
+    let source = linear.input * linear.input.transpose() * density;
+    let covariance = linear.noise(&SMatrix::from([[density]]), 1e3).unwrap();
+    let change = linear.state * covariance;
+    let mut rate = change + change.transpose() + source;
+    for height in rate.fixed_view_mut::<2, 2>(4, 4).iter_mut() {
+        *height -= density;
+    }
+    let terms = linear.state.abs() * covariance.abs();
+    assert!(rate.norm() < 1e-14 * terms.norm(), "{rate}");
+    let endless = Linearised {
+        state: linear.state * f64::INFINITY,
+        ..linear
+    };
+    assert!(endless.noise(&SMatrix::from([[0.04]]), 1.0).is_none());
+}

@@ -94,6 +94,21 @@ mbg! {
         output place[2]: m = [x.travel, y.travel];
     }
 
+    /// A load on a rope below a craft that is lifted: how the load is turned has no influence where it hangs.
+    model Slung {
+        gravity [0.0, 0.0, -9.81];
+        input lift: N;
+        1 ground[6]; 1 craft[6]; 1 load[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        above: Free { orientation: quaternion, force: [0.0, 0.0, lift] } (ground, craft);
+        hull: Body { mass: 10.0, inertia: 0.4 } (craft);
+        below: Free (ground, load);
+        freight: Body { mass: 4.0, inertia: 0.2 } (load);
+        rope: LineForce { kind: rope, stiffness: 1e5, rest: 4.99, damping: 2000.0 } (craft, load);
+        output tension: N = rope.spring.e;
+        output angles[3]: rad = below.angle;
+    }
+
     /// A pull on two springs of which each may have any stroke: more may be chosen than is asked.
     model Shared {
         input pull: N;
@@ -243,6 +258,33 @@ fn what_rods_keep_level_is_held() {
     }
 }
 
+/// Whatever the guess, if the rope is taut in it. Nothing but their own rates tells how large most velocities are.
+#[test]
+fn a_load_hangs_below_its_craft() {
+    const PLACES: [&str; 6] = [
+        "below.position.x",
+        "below.position.y",
+        "below.position.z",
+        "below.rotation.gimbal.angle.x",
+        "below.rotation.gimbal.angle.y",
+        "below.rotation.gimbal.angle.z",
+    ];
+    let slung = Slung::<f64>::new(SlungParameters::default()).unwrap();
+    for guess in 0..40 {
+        let mut start = slung.initial_state();
+        let aside = |number: usize| (1.7 * (number * 40 + guess) as f64).sin();
+        for (number, place) in PLACES.iter().enumerate() {
+            start[Slung::<f64>::META.state(place).unwrap()] = 0.5 * aside(number);
+        }
+        start[Slung::<f64>::META.state("below.position.z").unwrap()] -= 5.6;
+        let found = Trim::new(&slung).state(&start).fix("above").solve();
+        let hanging = found.unwrap_or_else(|missed| panic!("{guess}: {missed}"));
+        assert!((hanging.input[0] - 14.0 * 9.81).abs() < 1e-8);
+        let angles = slung.output(0.0, &hanging.state, &hanging.input, &mut ());
+        assert!(angles.fixed_rows::<3>(1).amax() < 3.0, "{guess}: {angles}");
+    }
+}
+
 #[test]
 fn more_may_be_chosen_than_is_asked() {
     let shared = Shared::<f64>::new(SharedParameters::default()).unwrap();
@@ -262,7 +304,7 @@ fn what_cannot_be_is_told() {
     );
     assert_eq!(
         told(Trim::new(&craft).rate("x", 1.0)),
-        "the model has no state `x`"
+        "the model has no state `x`: a position or an angle that nothing reads is none"
     );
     assert_eq!(
         told(Trim::new(&craft).output("spee", 1.0)),
@@ -274,6 +316,15 @@ fn what_cannot_be_is_told() {
     assert_eq!(
         told(fixed),
         "`place.z` is 0e0 instead of 3e0, and nothing that may be chosen has an influence on it"
+    );
+    let moving = Trim::new(&craft)
+        .fix("free")
+        .fix("hull")
+        .rate("free.position.x", 1.0);
+    assert_eq!(
+        told(moving),
+        "the rate of `free.position.x` is 0e0 instead of 1e0, and nothing that may be chosen has an influence on it there: \
+         begin elsewhere, or write `.free(\"free.position.x\")` where it is to change"
     );
     let nowhere = SVector::from_element(f64::NAN);
     assert!(Trim::new(&craft).state(&nowhere).solve().is_err());

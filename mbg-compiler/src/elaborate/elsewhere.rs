@@ -296,6 +296,19 @@ const JUMPING: &[&str] = &[
     "rem_euclid",
 ];
 
+/// Functions whose values do not follow from their arguments alone.
+const OUTSIDE: &[&str] = &[
+    "noise",
+    "white_noise",
+    "random",
+    "rand",
+    "randn",
+    "gauss",
+    "sample",
+    "hold",
+    "zoh",
+];
+
 /// What to type here for a word of another language with these arguments.
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     match (word, arguments) {
@@ -305,6 +318,12 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
         ("delay", [value, by]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
+        _ if OUTSIDE.contains(&word) => {
+            return Some(
+                "what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`"
+                    .to_owned(),
+            );
+        }
         _ if JUMPING.contains(&word) => {
             return Some(format!(
                 "its value jumps, and a law has no such function: {JUMPING_INPUT}"

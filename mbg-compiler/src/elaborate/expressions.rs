@@ -219,7 +219,15 @@ impl<N: Names> Evaluator<'_, N> {
     /// The value, which must be a number.
     pub fn scalar(&mut self, expression: &Expr) -> Result<Expression> {
         let value = self.evaluate(expression)?;
-        number(&value, expression.span())
+        let number = number(&value, expression.span());
+        let is_named = matches!(expression, Expr::Path(_) | Expr::Field(_));
+        number.map_err(|report| match &value {
+            Value::Matrix(vector) if is_named && vector.columns() == 1 => {
+                let name = dump::expression(expression);
+                Box::new(report.help(format!("write one component, such as `{name}[0]`")))
+            }
+            _ => report,
+        })
     }
 
     fn literal(&mut self, literal: &Lit) -> Result<Value> {

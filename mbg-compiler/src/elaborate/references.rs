@@ -5,6 +5,7 @@ use std::ops::Range;
 use syn::Expr;
 
 use super::Builder;
+use super::advice::text;
 use super::expressions::{Index, Result, Step};
 use super::indices::component_index;
 use super::scope::Entity;
@@ -13,6 +14,7 @@ use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{End, JunctionKind};
 use crate::syntax::ast::{Reference, Segment, Selection};
 use crate::syntax::dump;
+use crate::syntax::words::nearest;
 
 impl Builder<'_> {
     /// What a reference stands for, and its dimension; none if that is broken, which is told.
@@ -156,8 +158,9 @@ impl Builder<'_> {
             let last = place + 1 == reference.path.len();
             self.step(scope, segment, last)
         });
-        let steps: Result<Vec<Step>> = steps.collect();
-        if let Some(help) = steps.ok().and_then(|it| self.scopes.in_loop(scope, &it)) {
+        let steps: Vec<Step> = steps.collect::<Result<_>>().unwrap_or_default();
+        let help = self.scopes.in_loop(scope, &steps);
+        if let Some(help) = help.or_else(|| self.junctions_inside(scope, &steps)) {
             return Box::new(report.help(help));
         }
         let last = reference.path.last().map(|last| last.name.to_string());
@@ -172,6 +175,26 @@ impl Builder<'_> {
         } else {
             report
         })
+    }
+
+    /// The junctions of the instance in which a path ends, but for its ports, which are the caller's.
+    fn junctions_inside(&self, scope: usize, path: &[Step]) -> Option<String> {
+        let (name, front) = path.split_last()?;
+        let Ok(Some((Entity::Instance(inner), _))) = self.scopes.follow(scope, front) else {
+            return None;
+        };
+        let inner = &self.scopes[*inner];
+        let junctions = inner.names.iter().filter(|(name, entity)| {
+            matches!(entity, Entity::Junction(id, _)
+                if self.graph.junctions[id.0].name == format!("{}{name}", inner.prefix))
+        });
+        let junctions: Vec<&str> = junctions.map(|(name, _)| name.as_str()).collect();
+        let front = text(front);
+        if let Some(near) = nearest(&name.name.to_string(), &junctions) {
+            return Some(format!("did you mean `{front}.{near}`?"));
+        }
+        let junctions = junctions.into_iter().map(str::to_owned);
+        (junctions.len() > 0).then(|| format!("junctions of `{front}` are {}", listing(junctions)))
     }
 }
 

@@ -39,6 +39,8 @@ const COMPONENTS: &[(&[&str], &str)] = &[
         ],
         "Load",
     ),
+    (&["rope", "cable", "tether", "string"], "LineForce"),
+    (&["mainrotor", "helicopterrotor"], "Rotor"),
     (&["motor", "dcmachine"], "DcMotor"),
     (&["idealtransformer"], "Transformer"),
     (&["idealdiode"], "Diode"),

@@ -143,9 +143,15 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
     let group = brackets.find_map(|brackets| cursor.group(0, brackets).cloned());
     let Some(group) = group else {
         let report = *cursor.expected_with(codes::UNIT, "the name of a unit");
-        return Err(Box::new(match cursor.punct(0, '%') {
-            true => report.help("write `1`, and each value times 0.01"),
-            false => report,
+        return Err(Box::new(match cursor.peek(0) {
+            _ if cursor.punct(0, '%') => report.help("write `1`, and each value times 0.01"),
+            _ if cursor.group(0, Delimiter::Bracket).is_some() => report.help(
+                "a colon is before a unit, and a size stands behind the name, as in `gains[3] = …`",
+            ),
+            Some(TokenTree::Literal(value)) if unit.text.is_empty() && ends(cursor) => report.help(
+                format!("a colon is before a unit; a value follows `=`: write `= {value}`"),
+            ),
+            _ => report,
         }));
     };
     if depth == 0 {
@@ -172,6 +178,11 @@ fn factor(cursor: &mut Cursor, unit: &mut Unit, sign: i32, depth: usize) -> Pars
         }
     }
     Ok(())
+}
+
+/// Whether a statement or an argument ends behind the next token.
+fn ends(cursor: &Cursor) -> bool {
+    cursor.peek(1).is_none() || [',', ';'].iter().any(|&end| cursor.punct(1, end))
 }
 
 /// Reads `^n`, 1 when it is not there, of a factor above or below a stroke.

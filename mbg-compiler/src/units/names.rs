@@ -387,6 +387,12 @@ fn no_unit(name: &Ident) -> Diagnostic {
     error(codes::UNIT_NAME, name.span(), message)
 }
 
+/// Types of other languages, where a unit stands here.
+const TYPES: &[&str] = &[
+    "f64", "f32", "float", "double", "real", "Real", "number", "int", "Integer", "i32", "usize",
+    "bool", "Boolean",
+];
+
 /// A name of which it cannot be told what was meant: one that differs by a letter may be another quantity.
 fn unknown(name: &Ident) -> Diagnostic {
     let text = name.to_string();
@@ -397,6 +403,10 @@ fn unknown(name: &Ident) -> Diagnostic {
         return report.help(
             "write `K`, and temperatures above absolute zero: 20 degrees Celsius are 293.15",
         );
+    }
+    if TYPES.contains(&text.as_str()) {
+        let help = "a colon is before a unit, and every value is a number: leave the colon and the type out";
+        return no_unit(name).help(help);
     }
     let coherent: Vec<&str> = COHERENT.iter().map(|(name, _)| *name).collect();
     let help = format!("units are products of powers of {}", coherent.join(", "));

@@ -114,20 +114,40 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
 
     /// These sizes, but no unknown smaller than this part of what would be as much as all else that an equation has: what is zero
     /// has a size by that, in its own unit.
+    ///
+    /// An equation in which an unknown has less than this part of its balanced entries tells nothing: that may be what rounding has
+    /// left of slopes that cancel out, and sizes by that would hide whatever is left of other equations.
     #[inline(never)]
     pub(crate) fn seen(&self, sizes: &Sizes<N, M>, part: f64) -> Sizes<N, M> {
         let (mut states, mut inputs) = *sizes;
-        for row in self.iter() {
+        let mut balanced = *self;
+        balanced.balance();
+        for (row, balanced) in self.iter().zip(balanced.iter()) {
             let terms = row.right.abs() + row.terms(sizes);
-            let see = |size: &mut f64, entry: f64| {
+            let see = |size: &mut f64, entry: f64, balanced: f64| {
                 let other = part * (terms / entry.abs());
-                if other.is_finite() {
+                if other.is_finite() && balanced.abs() > part {
                     *size = size.max(other);
                 }
             };
-            states.zip_apply(&row.by_state, see);
-            inputs.zip_apply(&row.by_input, see);
+            states.zip_zip_apply(&row.by_state, &balanced.by_state, see);
+            inputs.zip_zip_apply(&row.by_input, &balanced.by_input, see);
         }
+        // In balanced units unknowns are about as large as each other, and so is what no other equation tells of: a velocity
+        // at rest.
+        let units = &balanced.units;
+        let (by_state, by_input) = (
+            sizes.0.component_div(&units.0),
+            sizes.1.component_div(&units.1),
+        );
+        let least = part
+            * by_state
+                .iter()
+                .chain(&by_input)
+                .fold(0.0, |most: f64, it| most.max(*it));
+        let larger = |size: &mut f64, unit: f64| *size = size.max(least * unit);
+        states.zip_apply(&units.0, larger);
+        inputs.zip_apply(&units.1, larger);
         (states, inputs)
     }
 
@@ -211,6 +231,24 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             self.units.0.component_mul_assign(&by_state);
             self.units.1.component_mul_assign(&by_input);
         }
+    }
+
+    /// Measures no unknown in a larger unit than these, and lowers them to the present ones.
+    ///
+    /// What has an influence only while equations do not hold, such as the angles of a load on a rope with the force that is left
+    /// on it, would move without bound where hardly anything is left.
+    #[inline(never)]
+    pub(crate) fn limit(&mut self, most: &mut Sizes<N, M>) {
+        let lower = |most: &mut f64, unit: f64| *most = most.min(unit);
+        most.0.zip_apply(&self.units.0, lower);
+        most.1.zip_apply(&self.units.1, lower);
+        let by_state = most.0.component_div(&self.units.0);
+        let by_input = most.1.component_div(&self.units.1);
+        for row in self.iter_mut() {
+            row.by_state.component_mul_assign(&by_state);
+            row.by_input.component_mul_assign(&by_input);
+        }
+        self.units = *most;
     }
 
     /// Turns two rows to right angles; whether they were not.
@@ -305,5 +343,44 @@ mod tests {
         rows.straighten(&tangents);
         let (x, _) = rows.solution(1e-9);
         assert!((x - SVector::from([1.0, 1.0])).norm() < 1e-14, "{x}");
+    }
+
+    /// A slope that is rounding beside the others makes no unknown so large that what is left elsewhere is small beside it.
+    #[test]
+    fn rounding_of_a_slope_hides_nothing() {
+        let rates = [
+            row([1e5, -1e-18], [0.0; 2], 0.0),
+            row([2.0, 1.0], [0.0; 2], 1e-3),
+        ];
+        let rows = Rows::new(rates, []);
+        let sizes = (SVector::repeat(1.0), SVector::zeros());
+        let seen = rows.seen(&sizes, 1e-9);
+        let left = rows.iter().map(|row| row.part_left(&seen)).sum::<f64>();
+        assert!((left - 1e-3 / 3.0).abs() < 1e-15, "{left:e}");
+    }
+
+    #[test]
+    fn what_loses_its_influence_stays_in_its_unit() {
+        let mut units = (
+            SVector::repeat(f64::INFINITY),
+            SVector::repeat(f64::INFINITY),
+        );
+        let solution = |slope: f64, units: &mut Sizes<2, 2>| {
+            let rate = row([1.0, slope], [0.0; 2], slope);
+            let mut rows = Rows::new([rate, Row::empty()], []);
+            rows.balance();
+            rows.limit(units);
+            rows.straighten(&SMatrix::identity());
+            rows.solution(1e-9).0
+        };
+        let (first, second) = (solution(1.0, &mut units), solution(1e-6, &mut units));
+        assert!(
+            (first - SVector::from([0.5, 0.5])).norm() < 1e-15,
+            "{first}"
+        );
+        assert!(
+            (second - SVector::from([1e-6, 1e-12])).norm() < 1e-15,
+            "{second}"
+        );
     }
 }

@@ -77,7 +77,8 @@ pub trait Integrator<const N: usize> {
         while less(since, t1) {
             let end = piece_end(problem.system, problem.input, since, t1)?;
             problem.enter((since, end));
-            match self.piece(problem, (since, end), x, observer)? {
+            let done = self.piece(problem, (since, end), x, observer);
+            match done.map_err(|stopped| problem.of_input(stopped))? {
                 ControlFlow::Continue(next) => x = next,
                 ControlFlow::Break(()) => return Ok(()),
             }

@@ -205,6 +205,18 @@ where
         check_result(self.system, t, slope, &self.memory)
     }
 
+    /// Of the input, where that is what is not finite.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn of_input(&self, stopped: Stopped) -> Stopped {
+        let Cause::Trouble(trouble) = stopped.cause else {
+            return stopped;
+        };
+        let u = (self.input).value(self.on_piece(T::from_f64(stopped.time)), self.since);
+        let cause = Cause::Trouble(trouble.traced(S::META, &u));
+        Stopped { cause, ..stopped }
+    }
+
     /// Why this step failed, which took its Jacobian at `place`: of what is not finite, that which made the rest so.
     #[cold]
     #[inline(never)]

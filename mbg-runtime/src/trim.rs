@@ -406,8 +406,9 @@ where
         rows: &mut Rows<N, M, P>,
         rounding: &Left<N, P>,
     ) -> Option<Trimmed<N, M>> {
+        let tangents = self.tangents(point);
         rows.fix(&self.fixed);
-        rows.balance();
+        rows.balance(&tangents);
         let weights = rows.weights();
         let size = |point: &Trimmed<N, M>| {
             // Rounding of one condition must not hide what is left of another one.
@@ -419,7 +420,7 @@ where
         if before == 0.0 {
             return None;
         }
-        rows.straighten(&self.tangents(point));
+        rows.straighten(&tangents);
         let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
         let mut tried = dampings
             .take(DAMPINGS)

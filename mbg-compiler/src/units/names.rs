@@ -387,6 +387,9 @@ fn no_unit(name: &Ident) -> Diagnostic {
     error(codes::UNIT_NAME, name.span(), message)
 }
 
+/// Types of Rust that are written in the place of a unit.
+const TYPES: &[&str] = &["f64", "f32", "usize", "u32", "i32", "bool"];
+
 /// A name of which it cannot be told what was meant: one that differs by a letter may be another quantity.
 fn unknown(name: &Ident) -> Diagnostic {
     let text = name.to_string();
@@ -397,6 +400,9 @@ fn unknown(name: &Ident) -> Diagnostic {
         return report.help(
             "write `K`, and temperatures above absolute zero: 20 degrees Celsius are 293.15",
         );
+    }
+    if TYPES.contains(&text.as_str()) {
+        return no_unit(name).help("a value has no type here: leave it out, or write its unit");
     }
     let coherent: Vec<&str> = COHERENT.iter().map(|(name, _)| *name).collect();
     let help = format!("units are products of powers of {}", coherent.join(", "));

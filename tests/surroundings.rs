@@ -4,6 +4,7 @@
 #![forbid(clippy::all)]
 
 /// Models of any visibility.
+#[deny(clippy::pedantic, clippy::nursery)]
 pub mod models {
     use mbg_runtime::mbg;
 

@@ -181,14 +181,18 @@ fn open_closures(model: &Elaborated, answers: &Answers, pool: &Pool) -> Vec<(Spa
             instance => instance,
         };
         let own = name.rsplit('.').next().unwrap_or(name);
-        let gap = start.value(pool, *displacement);
+        let gap = start.value(pool, *displacement).abs();
         let terms = terms(pool, *displacement);
         let far = terms.map(|term| start.value(pool, term).abs());
-        let is_open = gap.abs() > GUESSED * far.fold(SMALLEST, f64::max);
+        let is_open = gap > GUESSED * far.fold(SMALLEST, f64::max);
         if !is_open || own.starts_with('_') || !told.insert(name.to_owned()) {
             return None;
         }
-        let note = format!("`{name}` is open at the start, by {gap:.3}");
+        let by = match gap < 0.1 {
+            true => format!("{gap:.2e}"),
+            false => format!("{gap:.3}"),
+        };
+        let note = format!("`{name}` is open at the start, by {by}");
         Some((model.graph.origins.span(closure.origin), note))
     };
     answers.displacements.iter().filter_map(open).collect()

@@ -80,6 +80,42 @@ fn choices_are_told_with_braces() {
 }
 
 #[test]
+fn words_of_declarations_in_rust_are_left_out() {
+    for slip in ["pub param factor = 1.0;", "pub(crate) param factor = 1.0;"] {
+        assert_eq!(typed(&masses(slip)), ["param factor = 1.0;"]);
+    }
+    insta::assert_snapshot!(told(&masses("param factor: f64 = 1.0;")), @"
+    2:15 `f64` is not a unit of SI [MBG0502]
+      help: a colon is before a unit, and every value is a number: leave the colon and the type out
+    ");
+    insta::assert_snapshot!(told(&masses("let mut factor = 1.0;")), @"
+    2:5 expected the name of the value after `let`, found the keyword `mut` [MBG0101]
+      help: a value does not change: leave out `mut`
+    ");
+}
+
+#[test]
+fn curves_and_choices_are_told_by_their_words_here() {
+    for (slip, law) in [
+        (
+            "select(t > 1, 2.0, 0.0)",
+            "(if (t > 1) { 2.0 } else { 0.0 })",
+        ),
+        (
+            "table(t, [0.0, 1.0], [2.0, 3.0])",
+            "interpolate(t, [0.0, 1.0], [2.0, 3.0])",
+        ),
+        (
+            "lookup(t, [0.0, 1.0], [2.0, 3.0])",
+            "interpolate(t, [0.0, 1.0], [2.0, 3.0])",
+        ),
+    ] {
+        assert_eq!(typed(&driven(slip)), [law]);
+        assert_eq!(told(&driven(law)), "");
+    }
+}
+
+#[test]
 fn connections_and_rates_are_told_as_statements() {
     for (slip, here) in [
         ("connect(v, k);", "v -> k;"),

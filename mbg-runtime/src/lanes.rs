@@ -1,8 +1,8 @@
 //! Several numbers in one scalar: a model built for `f64x4` runs four times at once.
 //!
 //! The types are those of the crate `wide`. Lanes may differ in states, inputs and parameters; each gives bit for bit what
-//! the model gives for its numbers alone. Where a nonlinear loop is solved or a mechanism closed by iteration it is that but
-//! for rounding: all lanes go on until the last one is there. Which instructions are used is settled when the program is
+//! the model gives for its numbers alone, whatever is in the others, nonlinear loops included. Where a mechanism is closed by
+//! iteration it is that but for rounding: all lanes go on until the last one is there. Which instructions are used is settled when the program is
 //! compiled: with `-C target-cpu=x86-64-v3` or `native` four `f64` or eight `f32` are one register, without such a flag two
 //! are needed and the gain is half as large. With the feature `dispatch` the module `batch` chooses them when the program
 //! runs.

@@ -291,7 +291,7 @@ where
             }
         }
         let mut rows = self.rows(&point, &self.rounding(&point))?;
-        let seen = rows.seen(&sizes, TINY);
+        let seen = rows.seen(&sizes, TINY, &self.tangents(&point));
         // NaN is the worst, whatever its sign.
         let parts = rows.iter().map(|row| row.part_left(&seen).abs());
         let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -427,8 +427,9 @@ where
         rounding: &Left<N, P>,
         units: &mut Sizes<N, M>,
     ) -> Option<Trimmed<N, M>> {
+        let tangents = self.tangents(point);
         rows.fix(&self.fixed);
-        rows.balance();
+        rows.balance(&tangents);
         rows.limit(units);
         let weights = rows.weights();
         let size = |point: &Trimmed<N, M>| {
@@ -441,7 +442,7 @@ where
         if before == 0.0 {
             return None;
         }
-        rows.straighten(&self.tangents(point));
+        rows.straighten(&tangents);
         let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
         let mut tried = dampings
             .take(DAMPINGS)
@@ -499,10 +500,11 @@ where
     ) -> Option<Trimmed<N, M>> {
         let ahead = self.corrected(point, rows, damping, part).ok()?;
         let mut rows = self.rows(&ahead, rounding).ok()?;
+        let tangents = self.tangents(&ahead);
         rows.fix(&self.fixed);
-        rows.balance();
+        rows.balance(&tangents);
         rows.limit(&mut units);
-        rows.straighten(&self.tangents(&ahead));
+        rows.straighten(&tangents);
         let back = if damping < 1.0 { PARTS[0] } else { part };
         self.corrected(&ahead, &rows, 1.0, back).ok()
     }

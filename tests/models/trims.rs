@@ -224,6 +224,21 @@ fn a_closed_loop_is_held() {
 }
 
 /// A ring is opened, since its coordinates are moved each by itself, unless its gap is asked to be none.
+/// By itself the angle of a coupler that stays level has no influence but rounding.
+#[test]
+fn a_parallelogram_is_held_wherever_it_shall_be() {
+    let model = Crank::<f64>::new(CrankParameters::default()).unwrap();
+    for angle in [1.19, 1.0, 0.3, 0.1, -0.3, 2.5, 3.0] {
+        let point = Trim::new(&model).output("angles.x", angle).solve().unwrap();
+        let expected = 3.0 * 9.81 * 0.5 * f64::cos(angle);
+        assert!(
+            (point.input[0] - expected).abs() < 1e-9,
+            "{angle}: {}",
+            point.input[0]
+        );
+    }
+}
+
 #[test]
 fn a_ring_is_held_where_its_gap_is_an_output() {
     let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();

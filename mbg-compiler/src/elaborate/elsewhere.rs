@@ -64,11 +64,23 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("limit", &["x", "a", "b"], "min(max(x, a), b)"),
     ("ifelse", &["a", "b", "c"], CHOICE),
     ("if_else", &["a", "b", "c"], CHOICE),
+    ("select", &["a", "b", "c"], CHOICE),
+    ("iif", &["a", "b", "c"], CHOICE),
     ("deadzone", &["x", "width"], DEAD_ZONE),
     ("dead_zone", &["x", "width"], DEAD_ZONE),
     ("deadband", &["x", "width"], DEAD_ZONE),
     (
         "interp",
+        &["x", "places", "values"],
+        "interpolate(x, places, values)",
+    ),
+    (
+        "lookup",
+        &["x", "places", "values"],
+        "interpolate(x, places, values)",
+    ),
+    (
+        "table",
         &["x", "places", "values"],
         "interpolate(x, places, values)",
     ),

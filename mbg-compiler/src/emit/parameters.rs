@@ -7,7 +7,7 @@ use super::Items;
 use super::meta::spaced;
 use super::tokens::{self, structure};
 use crate::compile::Compiled;
-use crate::elaborate::Parameter;
+use crate::elaborate::{Elaborated, Parameter};
 use crate::symbolic::print;
 
 /// `NameParameters` with its `Default`.
@@ -46,8 +46,7 @@ pub(super) fn items(compiled: &Compiled) -> Items {
         }
     });
     let documentation = spaced(format!("Parameters of [`{}`].", model.name));
-    let phantom = model.parameters.is_empty();
-    let (field, default) = if phantom {
+    let (field, default) = if model.parameters.is_empty() {
         (
             quote!(#[doc(hidden)] pub scalar: ::core::marker::PhantomData<T>),
             quote!(scalar: ::core::marker::PhantomData),
@@ -55,11 +54,7 @@ pub(super) fn items(compiled: &Compiled) -> Items {
     } else {
         (TokenStream::new(), TokenStream::new())
     };
-    let (derived, written) = if phantom {
-        (TokenStream::new(), Some(bare_traits(&name)))
-    } else {
-        (quote!(Debug, PartialEq), None)
-    };
+    let (derived, written) = traits(model, &name);
     let declared = structure(visibility, &name, quote!(#(#declared,)* #field));
     let types = quote! {
         #[doc = #documentation]
@@ -77,20 +72,34 @@ pub(super) fn items(compiled: &Compiled) -> Items {
     Items { types, behaviour }
 }
 
-/// Traits of parameters without any, whose only field is nobody's business. Derived, clippy would have `Eq` beside them.
-fn bare_traits(name: &Ident) -> TokenStream {
-    let text = name.to_string();
-    quote! {
-        impl<T> ::core::fmt::Debug for #name<T> {
-            fn fmt(&self, formatter: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
-                formatter.write_str(#text)
+/// Traits of parameters: those that are derived, and those that are written. Derived, clippy would have `Eq` beside `PartialEq`; and
+/// the only field of parameters without any is nobody's business.
+fn traits(model: &Elaborated, name: &Ident) -> (TokenStream, TokenStream) {
+    if model.parameters.is_empty() {
+        let text = name.to_string();
+        let written = quote! {
+            impl<T> ::core::fmt::Debug for #name<T> {
+                fn fmt(&self, formatter: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                    formatter.write_str(#text)
+                }
             }
-        }
 
-        impl<T> ::core::cmp::PartialEq for #name<T> {
-            fn eq(&self, _: &Self) -> ::core::primitive::bool { true }
-        }
+            impl<T> ::core::cmp::PartialEq for #name<T> {
+                fn eq(&self, _: &Self) -> ::core::primitive::bool { true }
+            }
+        };
+        return (TokenStream::new(), written);
     }
+    let equal = fields(&model.parameters).map(|field| {
+        let name = &field[0].declared;
+        quote!(self.#name == other.#name)
+    });
+    let written = quote! {
+        impl<T: ::core::cmp::PartialEq> ::core::cmp::PartialEq for #name<T> {
+            fn eq(&self, other: &Self) -> ::core::primitive::bool { #(#equal)&&* }
+        }
+    };
+    (quote!(Debug), written)
 }
 
 /// The parameters by field of their type: those of a vector are declared one behind the other.

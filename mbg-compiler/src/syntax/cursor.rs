@@ -172,6 +172,9 @@ impl Cursor {
                     let report = *self.failure(codes::SYNTAX, message);
                     return Err(Box::new(match text.as_str() {
                         "_" => report,
+                        "mut" if self.ident(1).is_some() => {
+                            report.help("a value does not change: leave out `mut`")
+                        }
                         _ => report.help(words::another_name(&text)),
                     }));
                 }

@@ -34,6 +34,14 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
         }
         "fn" | "function" | "def" => function(cursor),
         "assert" => Some(assertion(arguments()?)),
+        "pub" => {
+            let behind = 1 + usize::from(arguments().is_some());
+            cursor.ident(behind)?;
+            Some(format!(
+                "what is declared is as visible as its model: write `{};`",
+                dump::tokens(until_end(cursor, behind))
+            ))
+        }
         "bond" if cursor.arrow(2) => Some(format!(
             "a bond is written without a word before it: `{};`",
             dump::tokens(until_end(cursor, 1))

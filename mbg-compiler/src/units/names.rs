@@ -390,7 +390,7 @@ fn no_unit(name: &Ident) -> Diagnostic {
 /// Types of other languages, where a unit stands here.
 const TYPES: &[&str] = &[
     "f64", "f32", "float", "double", "real", "Real", "number", "int", "Integer", "i32", "usize",
-    "bool", "Boolean",
+    "u32", "bool", "Boolean",
 ];
 
 /// A name of which it cannot be told what was meant: one that differs by a letter may be another quantity.

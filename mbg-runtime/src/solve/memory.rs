@@ -2,8 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Solved;
-use super::newton::attempt;
+use super::flags::Flags;
+use super::newton::Found;
 use crate::Real;
 
 /// What a model keeps from one evaluation to the next; `()` for a model without bounded solves.
@@ -35,7 +35,8 @@ pub struct Outcome {
 ///
 /// A solve begins where the last one ended, at first at zero. If it fails, it begins again at zero and then at one,
 /// where a law whose slope at zero is infinite has a finite one. A solve that fails all the same gives NaN, so that no
-/// result can be mistaken for a solution, and leaves the start as it was.
+/// result can be mistaken for a solution, and leaves the start as it was. Of several lanes each is solved for itself, and those
+/// that fail are NaN alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMemory<T, const LOOPS: usize, const UNKNOWNS: usize> {
     unknowns: [T; UNKNOWNS],
@@ -97,46 +98,57 @@ impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UN
         let mut start = zero;
         let last = self.unknowns.iter().skip(first);
         start.iter_mut().zip(last).for_each(|(z, last)| *z = *last);
-        let one = zero.map(|_| T::from_f64(1.0));
-        let (mut solved, mut is_settled) = attempt(start, &evaluate);
-        let go_on = |solved: &mut Solved<T, K>, from| {
-            let (next, is_settled) = attempt(from, &evaluate);
-            let iterations = solved.iterations + next.iterations;
-            *solved = Solved { iterations, ..next };
-            is_settled
-        };
-        for other in [zero, one] {
-            if !solved.converged && other != start {
-                is_settled = go_on(&mut solved, other);
-            }
+        let mut found = Found::nothing(start);
+        found.attempt(start, Flags::all(), &evaluate);
+        if !found.converged.and(found.settled).everywhere() {
+            again(&mut found, start, &evaluate);
         }
-        // Where it ended it may be near; and a solution beside which values on the way were far larger is none yet.
-        for _ in 0..FURTHER {
-            if !(solved.converged && is_settled) {
-                let from = solved.solution;
-                is_settled = go_on(&mut solved, from);
-            }
-        }
+        let converged = found.converged;
         if let Some(outcome) = self.outcomes.get_mut(number) {
             *outcome = Outcome {
-                residual: solved.residual.magnitude(),
-                iterations: solved.iterations,
-                converged: solved.converged,
+                residual: found.residual.magnitude(),
+                iterations: found.iterations,
+                converged: converged.everywhere(),
             };
         }
-        if !solved.converged {
-            return solved.solution.map(|z| z * T::from_f64(f64::NAN));
-        }
         let next = self.unknowns.iter_mut().skip(first);
-        next.zip(solved.solution.iter())
-            .for_each(|(next, z)| *next = *z);
-        solved.solution
+        next.zip(found.solution.iter())
+            .for_each(|(next, z)| *next = converged.choose(*z, *next));
+        if converged.everywhere() {
+            return found.solution;
+        }
+        let nan = T::from_f64(f64::NAN);
+        found.solution.map(|z| converged.choose(z, z * nan))
+    }
+}
+
+/// Further attempts where the first one did not do: from zero, from one, and from where it ended.
+#[cold]
+#[inline(never)]
+fn again<T: Real, const K: usize>(
+    found: &mut Found<T, K>,
+    start: SVector<T, K>,
+    evaluate: &impl Fn(&SVector<T, K>) -> (SVector<T, K>, SMatrix<T, K, K>),
+) {
+    let [zero, one] = [0.0, 1.0].map(|number| start.map(|_| T::from_f64(number)));
+    for other in [zero, one] {
+        if !found.converged.everywhere() && other != start {
+            found.attempt(other, found.converged.not(), evaluate);
+        }
+    }
+    // Where it ended it may be near; and a solution beside which values on the way were far larger is none yet.
+    for _ in 0..FURTHER {
+        let sure = found.converged.and(found.settled);
+        if !sure.everywhere() {
+            found.attempt(found.solution, sure.not(), evaluate);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::lanes::Pair;
 
     fn root(of: f64, memory: &mut LoopMemory<f64, 2, 3>) -> SVector<f64, 1> {
         memory.solve(1, 2, |z: &SVector<f64, 1>| {
@@ -168,5 +180,28 @@ mod tests {
         assert_eq!(memory.unknowns, before);
         root(10.0, &mut memory);
         assert_eq!(memory.unsolved(), None);
+    }
+
+    #[test]
+    fn a_lane_that_fails_leaves_the_others_their_solutions() {
+        let mut memory = LoopMemory::<Pair, 1, 1>::default();
+        let mut root = |of| {
+            let found = memory.solve(0, 0, |z: &SVector<Pair, 1>| {
+                let square = z[0] * z[0];
+                (
+                    SVector::from([square * z[0] + z[0] - Pair(of)]),
+                    SMatrix::from([[square + square + square + Pair([1.0; 2])]]),
+                )
+            });
+            (found[0].0, memory.unsolved(), memory.unknowns[0].0)
+        };
+        root([10.0, 2.0]);
+        let (found, unsolved, start) = root([f64::NAN, 30.0]);
+        assert!(found[0].is_nan() && (found[1] - 3.0).abs() < 1e-15);
+        assert!(unsolved.is_some());
+        assert!((start[0] - 2.0).abs() < 1e-15 && start[1] == found[1]);
+        let (found, unsolved, _) = root([2.0, 10.0]);
+        assert!((found[0] - 1.0).abs() < 1e-15 && (found[1] - 2.0).abs() < 1e-15);
+        assert_eq!(unsolved, None);
     }
 }

@@ -7,6 +7,7 @@
 
 mod definite;
 mod dense;
+mod flags;
 #[cfg(test)]
 pub(crate) mod lanes;
 mod least_norm;

@@ -118,10 +118,15 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
     /// An equation in which an unknown has less than this part of its balanced entries tells nothing: that may be what rounding has
     /// left of slopes that cancel out, and sizes by that would hide whatever is left of other equations.
     #[inline(never)]
-    pub(crate) fn seen(&self, sizes: &Sizes<N, M>, part: f64) -> Sizes<N, M> {
+    pub(crate) fn seen(
+        &self,
+        sizes: &Sizes<N, M>,
+        part: f64,
+        tangents: &SMatrix<f64, N, N>,
+    ) -> Sizes<N, M> {
         let (mut states, mut inputs) = *sizes;
         let mut balanced = *self;
-        balanced.balance();
+        balanced.balance(tangents);
         for (row, balanced) in self.iter().zip(balanced.iter()) {
             let terms = row.right.abs() + row.terms(sizes);
             let see = |size: &mut f64, entry: f64, balanced: f64| {
@@ -172,12 +177,10 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
     /// Turns the equations to right angles, with changes of the state along `tangents`.
     #[inline(never)]
     pub(crate) fn straighten(&mut self, tangents: &SMatrix<f64, N, N>) {
-        let units = self.units.0;
-        self.along = tangents * SMatrix::from_diagonal(&units);
-        let inverse = units.map(|unit| 1.0 / unit);
-        let along = self.along;
+        let closed = closed(tangents, &self.units.0);
+        self.along = tangents * SMatrix::from_diagonal(&self.units.0);
         for row in self.iter_mut() {
-            row.by_state = along.tr_mul(&row.by_state.component_mul(&inverse));
+            row.by_state = closed(&row.by_state);
         }
         for _ in 0..PASSES {
             let mut turned = false;
@@ -210,15 +213,18 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
         )
     }
 
-    /// Brings the largest entries of rows and columns to the size of one: the scaling of Ruiz.
+    /// Brings the largest entries of rows and columns to the size of one: the scaling of Ruiz. A state does what it does by itself,
+    /// and what it does by changes along `tangents`: the angle of a rod that stays level does nothing but turn what it is joined to.
     #[inline(never)]
-    pub(crate) fn balance(&mut self) {
+    pub(crate) fn balance(&mut self, tangents: &SMatrix<f64, N, N>) {
         for _ in 0..BALANCES {
+            let closed = closed(tangents, &self.units.0);
             let mut by_state = SVector::<f64, N>::zeros();
             let mut by_input = SVector::<f64, M>::zeros();
             for row in self.iter_mut() {
                 *row = row.times(inverse_root(row.largest(), 0.0));
                 by_state.zip_apply(&row.by_state, larger);
+                by_state.zip_apply(&closed(&row.by_state), larger);
                 by_input.zip_apply(&row.by_input, larger);
             }
             // What no row has more of than rounding has no influence.
@@ -278,6 +284,16 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
     }
 }
 
+/// What slopes by states in these units are for changes along tangents.
+fn closed<const N: usize>(
+    tangents: &SMatrix<f64, N, N>,
+    units: &SVector<f64, N>,
+) -> impl Fn(&SVector<f64, N>) -> SVector<f64, N> + use<N> {
+    let along = tangents * SMatrix::from_diagonal(units);
+    let inverse = units.map(|unit| 1.0 / unit);
+    move |slopes| along.tr_mul(&slopes.component_mul(&inverse))
+}
+
 fn larger(largest: &mut f64, entry: f64) {
     *largest = largest.max(entry.abs());
 }
@@ -300,7 +316,7 @@ mod tests {
     }
 
     fn balanced<const P: usize>(mut rows: Rows<2, 2, P>) -> (SVector<f64, 2>, SVector<f64, 2>) {
-        rows.balance();
+        rows.balance(&SMatrix::identity());
         rows.straighten(&SMatrix::identity());
         rows.solution(1e-9)
     }
@@ -339,7 +355,7 @@ mod tests {
             [],
         );
         let tangents = SMatrix::from([[0.5, 0.5], [0.5, 0.5]]);
-        rows.balance();
+        rows.balance(&tangents);
         rows.straighten(&tangents);
         let (x, _) = rows.solution(1e-9);
         assert!((x - SVector::from([1.0, 1.0])).norm() < 1e-14, "{x}");
@@ -354,7 +370,7 @@ mod tests {
         ];
         let rows = Rows::new(rates, []);
         let sizes = (SVector::repeat(1.0), SVector::zeros());
-        let seen = rows.seen(&sizes, 1e-9);
+        let seen = rows.seen(&sizes, 1e-9, &SMatrix::identity());
         let left = rows.iter().map(|row| row.part_left(&seen)).sum::<f64>();
         assert!((left - 1e-3 / 3.0).abs() < 1e-15, "{left:e}");
     }
@@ -368,7 +384,7 @@ mod tests {
         let solution = |slope: f64, units: &mut Sizes<2, 2>| {
             let rate = row([1.0, slope], [0.0; 2], slope);
             let mut rows = Rows::new([rate, Row::empty()], []);
-            rows.balance();
+            rows.balance(&SMatrix::identity());
             rows.limit(units);
             rows.straighten(&SMatrix::identity());
             rows.solution(1e-9).0

@@ -55,6 +55,7 @@ mod models {
     mod parameters;
     mod pins;
     mod pivots;
+    mod platform;
     mod rods;
     mod rows;
     mod stages;

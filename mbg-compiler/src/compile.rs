@@ -114,6 +114,8 @@ impl Routines {
     pub const DERIVATIVE_TIME: usize = 11;
     pub const CHANGES: usize = 12;
     pub const THRESHOLDS: usize = 13;
+    pub const RESIDUALS_OF_POSITIONS: usize = 14;
+    pub const RESIDUALS_OF_FLOWS: usize = 15;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -202,7 +204,7 @@ fn finish(
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let changes = changes::times(&mut pool, rates);
     let arguments = changes::arguments(&mut pool, rates, &by_state);
-    let requests: [Request; 14] = [
+    let requests: [Request; 16] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -217,6 +219,8 @@ fn finish(
         jacobian(&mut pool, rates, &[Symbol::Time]).entries.into(),
         changes.into(),
         changes::listed(&arguments).into(),
+        positions.values.clone().into(),
+        flows.values.clone().into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);

@@ -337,12 +337,8 @@ fn what_flies_leaves_six_equations_whatever_the_axes_of_its_hinges() {
 /// platform that turns has four, and so are columns of the Jacobian. By states they took 2,429 and 53,940 operations.
 #[test]
 fn rods_of_a_platform_cost_what_their_motion_is() {
-    let text = std::fs::read_to_string("../tests/models/rods.mbg").unwrap();
-    let model = text
-        .split("\n\n")
-        .find(|model| model.contains("model Platform"))
-        .unwrap();
-    let compiled = models::compiled(model);
+    let text = std::fs::read_to_string("../tests/models/platform.mbg").unwrap();
+    let compiled = models::compiled(&text);
     let count = |routine: usize| compiled.program.routines[routine].operations();
     let counts = [Routines::DERIVATIVE, Routines::DERIVATIVE_AND_JACOBIAN].map(count);
     println!("a platform on six rods: {counts:?} operations, alone and with the Jacobian");

@@ -10,7 +10,7 @@ pub use mbg_macros::expand;
 pub use nalgebra::{SMatrix, SVector};
 
 pub use crate::solve::ITERATIONS;
-use crate::solve::project_of_rank;
+use crate::solve::project_from;
 pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
     Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
@@ -190,7 +190,8 @@ pub enum Level {
     Flows,
 }
 
-/// Projects a state onto residuals, whose closures are numbered in `closures`, with a Jacobian of this rank at most.
+/// Projects a state onto residuals, whose closures are numbered in `closures`, with a Jacobian of this rank at most. The last
+/// function gives the residuals alone.
 pub fn close<T: Real, const M: usize, const N: usize>(
     meta: &Meta,
     closures: &[usize; M],
@@ -198,24 +199,27 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     fixed: &[usize],
     (level, rank): (Level, T),
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+    residuals: impl Fn(&SVector<T, N>) -> SVector<T, M>,
 ) -> Result<SVector<T, N>, Trouble> {
-    let (residuals, jacobian) = evaluate(&x);
-    let rounding = T::EPSILON
-        * match level {
-            Level::Positions => size(&x, &jacobian, DISPLACEMENT),
-            // What drives a loop is no state, and is all there is where rates are zero before.
-            Level::Flows => residuals
-                .iter()
-                .fold(size(&x, &jacobian, 0.0), |size, it| size + it.magnitude()),
-        };
-    let tolerance = CLOSED * rounding;
-    let found = project_of_rank(x, tolerance, rank, |x| {
-        let (residuals, mut jacobian) = evaluate(x);
+    let hold = |(residuals, mut jacobian): (SVector<T, M>, SMatrix<T, M, N>)| {
         for state in fixed.iter().filter(|state| **state < N) {
             jacobian.column_mut(*state).fill(T::from_f64(0.0));
         }
         (residuals, jacobian)
-    });
+    };
+    let start = evaluate(&x);
+    let rounding = T::EPSILON
+        * match level {
+            Level::Positions => size(&x, &start.1, DISPLACEMENT),
+            // What drives a loop is no state, and is all there is where rates are zero before.
+            Level::Flows => start
+                .0
+                .iter()
+                .fold(size(&x, &start.1, 0.0), |size, it| size + it.magnitude()),
+        };
+    let tolerance = CLOSED * rounding;
+    let held = |x: &SVector<T, N>| hold(evaluate(x));
+    let found = project_from(x, hold(start), (tolerance, rank), (held, residuals));
     let nearly = T::from_f64(NEARLY * tolerance);
     let missing = T::from_f64(M as f64) - rank;
     let zero = T::from_f64(0.0);

@@ -17,18 +17,31 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     let memory = quote!(Self::Memory);
     let positions = (!compiled.closed[0].is_empty()).then(|| {
         let rank = rank(compiled, 0);
-        let evaluated = quote!(|x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, fixed));
+        let body = residuals(
+            compiled,
+            &attitudes,
+            Routines::RESIDUALS_OF_POSITIONS,
+            &memory,
+        );
+        let evaluated = quote! {
+            |x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, fixed),
+            |x: &mbg_runtime::__private::SVector<T, #n>| { #body }
+        };
         projection(&compiled.closed[0], &quote!(Positions), &rank, &evaluated)
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
-        let body = residuals(compiled, &attitudes, Routines::CLOSED_FLOWS, &memory);
+        let body = |routine: usize| residuals(compiled, &attitudes, routine, &memory);
+        let [both, alone] = [Routines::CLOSED_FLOWS, Routines::RESIDUALS_OF_FLOWS].map(body);
         // Flows are as dependent as positions are.
         let rank = if compiled.closed[0] == compiled.closed[1] {
             rank(compiled, 0)
         } else {
             full(compiled.closed[1].len())
         };
-        let evaluated = quote!(|x: &mbg_runtime::__private::SVector<T, #n>| { #body });
+        let evaluated = quote! {
+            |x: &mbg_runtime::__private::SVector<T, #n>| { #both },
+            |x: &mbg_runtime::__private::SVector<T, #n>| { #alone }
+        };
         projection(&compiled.closed[1], &quote!(Flows), &rank, &evaluated)
     });
     Some(quote! {
@@ -71,8 +84,8 @@ fn projection(
     }
 }
 
-/// What a routine's residuals are, with their derivatives. They are looked at where every attitude is a rotation, so that
-/// what makes it one in the end opens no loop.
+/// What a routine's residuals are, with their derivatives if it has these. They are looked at where every attitude is a
+/// rotation, so that what makes it one in the end opens no loop.
 fn residuals(
     compiled: &Compiled,
     attitudes: &[TokenStream],
@@ -81,19 +94,30 @@ fn residuals(
 ) -> TokenStream {
     let program = &compiled.program.routines[routine];
     let (steps, results) = lines(compiled, program, Setting::Method);
-    let count = compiled.closed[routine - Routines::CLOSED_POSITIONS].len();
-    let (values, jacobian) = results.split_at(count);
-    let [size, n] = [count, compiled.states.len()].map(Literal::usize_suffixed);
+    let states = compiled.states.len();
+    let closed = match routine {
+        Routines::CLOSED_POSITIONS | Routines::RESIDUALS_OF_POSITIONS => &compiled.closed[0],
+        _ => &compiled.closed[1],
+    };
+    let (values, jacobian) = results.split_at(closed.len());
+    let [size, n] = [closed.len(), states].map(Literal::usize_suffixed);
     let memory = cold_memory(compiled, routine, memory);
     let rotations = (!attitudes.is_empty()).then(|| quote!(let x = *x; #(#attitudes)* let x = &x;));
+    let values = quote!(mbg_runtime::__private::SVector::<T, #size>::from([#(#values),*]));
+    let columns = (0..states).map(|state| jacobian.iter().skip(state).step_by(states));
+    let columns = columns.map(|column| quote!([#(#column),*]));
+    let found = if jacobian.is_empty() {
+        values
+    } else {
+        let jacobian =
+            quote!(mbg_runtime::__private::SMatrix::<T, #size, #n>::from([#(#columns),*]));
+        quote!((#values, #jacobian))
+    };
     quote! {
         #rotations
         #memory
         #steps
-        (
-            mbg_runtime::__private::SVector::<T, #size>::from_row_slice(&[#(#values),*]),
-            mbg_runtime::__private::SMatrix::<T, #size, #n>::from_row_slice(&[#(#jacobian),*]),
-        )
+        #found
     }
 }
 

@@ -13,7 +13,7 @@ const SMALL: f64 = 1e-4;
 /// In units of the largest diagonal element: a matrix whose pivots are all above it needs no exchanges.
 const REGULAR: f64 = 1e-4;
 /// Up to this size a regular matrix is factorised without exchanges. Larger ones take their time anyway, and are refined.
-const SHORT: usize = 8;
+const SHORT: usize = 32;
 
 /// What [`least_norm`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,6 +14,8 @@ const ITERATIONS: usize = 32;
 const SOFTENING: f64 = 1e-4;
 /// Dampings of one correction tried at most.
 const DAMPINGS: usize = 16;
+/// To what part of it a correction lowers the square of `|g|` where its Jacobian serves the next one, too.
+const KEPT: f64 = 1e-4;
 
 /// Where a projection ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +42,8 @@ pub struct Projected<T, const N: usize> {
 /// ```
 /// with [`least_norm`](super::least_norm) for the pseudoinverse, so that redundant constraints and singular positions do no harm. It is
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
-/// most 32 corrections; after a step of integration it takes one or two. Where it does not lower `|g|`, constraints are
+/// most 32 corrections; after a step of integration it takes one or two, with one Jacobian: that of a correction which lowers
+/// `|g|` to a hundredth serves the next one. Where it does not lower `|g|`, constraints are
 /// first divided by the largest number of their rows, since momenta of small machines stand beside rates and lengths, and where
 /// that does not do either, it is of least norm in coordinates that are multiplied by the largest number of their columns.
 ///
@@ -76,28 +79,43 @@ pub fn project<T: Real, const M: usize, const N: usize>(
     tolerance: f64,
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> Projected<T, N> {
-    project_of_rank(start, tolerance, T::from_f64(M as f64), evaluate)
+    let rank = T::from_f64(M as f64);
+    let residual = |point: &SVector<T, N>| evaluate(point).0;
+    project_from(
+        start,
+        evaluate(&start),
+        (tolerance, rank),
+        (&evaluate, residual),
+    )
 }
 
-/// The same where `G` has this rank at most wherever the constraints hold, see [`ranks`].
-pub(crate) fn project_of_rank<T: Real, const M: usize, const N: usize>(
+/// The same from a point where `g` and `G` are known, if `G` has this rank at most wherever the constraints hold, see
+/// [`ranks`]. The last function gives `g` alone.
+pub(crate) fn project_from<T: Real, const M: usize, const N: usize>(
     start: SVector<T, N>,
-    tolerance: f64,
-    rank: T,
-    evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+    (mut residual, mut jacobian): (SVector<T, M>, SMatrix<T, M, N>),
+    (tolerance, rank): (f64, T),
+    (evaluate, residual_at): (
+        impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
+        impl Fn(&SVector<T, N>) -> SVector<T, M>,
+    ),
 ) -> Projected<T, N> {
     let mut point = start;
-    let (mut residual, mut jacobian) = evaluate(&point);
+    let (mut is_here, mut is_kept) = (true, false);
     let mut iterations = 0;
     for softening in iter::once(SOFTENING).chain(iter::repeat_n(0.0, ITERATIONS - 1)) {
         let met = holds(&residual, tolerance);
         if holds(&residual, 0.0) || (met && softening == 0.0) {
             break;
         }
+        if !is_here && !is_kept {
+            jacobian = evaluate(&point).1;
+            is_here = true;
+        }
         let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
-        let along = |step| descend(&point, &residual, &step, limits, &evaluate);
+        let along = |step| descend(&point, &residual, &step, limits, &residual_at);
         let next = along(correction(&jacobian, &residual, softening, rank)).or_else(|| {
-            if met || softening > 0.0 {
+            if met || softening > 0.0 || !is_here {
                 return None;
             }
             // A constraint of small numbers was taken for rounding of one of large numbers.
@@ -105,15 +123,32 @@ pub(crate) fn project_of_rank<T: Real, const M: usize, const N: usize>(
             along(correction(&rows, &right, 0.0, rank))
                 .or_else(|| along(balanced_correction(&jacobian, &residual, rank)))
         });
-        if let Some((next, values)) = next {
+        if let Some((next, left)) = next {
             iterations += 1;
-            point = next;
-            (residual, jacobian) = values;
-        } else if met || softening == 0.0 {
+            is_kept = is_lower(&left, &residual, KEPT);
+            is_here = false;
+            (point, residual) = (next, left);
+        } else if is_here && (met || softening == 0.0) {
             break;
+        } else {
+            is_kept = false;
         }
     }
     Projected::new(point, &residual, tolerance, iterations)
+}
+
+/// Whether the square of a residual is at most this part of that of another one, in every lane.
+fn is_lower<T: Real, const M: usize>(
+    left: &SVector<T, M>,
+    before: &SVector<T, M>,
+    part: f64,
+) -> bool {
+    let more = square(left) - T::from_f64(part) * square(before);
+    everywhere(more, |lane| lane <= 0.0)
+}
+
+fn square<T: Real, const M: usize>(residual: &SVector<T, M>) -> T {
+    dot(&residual.data.0[0], &residual.data.0[0])
 }
 
 /// The velocity next to `velocity` with `G v = b` to `tolerance`: `v ← v − Gᵀ (G Gᵀ)⁺ (G v − b)`.
@@ -177,10 +212,20 @@ fn balanced_correction<T: Real, const M: usize, const N: usize>(
     correction(&rows, &right, 0.0, rank).zip_map(&units, |step, unit| unit * step)
 }
 
-/// `G Gᵀ`.
+/// `G Gᵀ`. Most constraints depend on a few coordinates.
 fn gram<T: Real, const M: usize, const N: usize>(jacobian: &SMatrix<T, M, N>) -> SMatrix<T, M, M> {
-    let rows = jacobian.transpose().data.0;
-    SMatrix::from_fn(|i, j| dot(&rows[i], &rows[j]))
+    let mut sums = [[T::from_f64(0.0); M]; M];
+    for column in &jacobian.data.0 {
+        for (sums, factor) in sums.iter_mut().zip(column) {
+            if everywhere(*factor, |lane| lane == 0.0) {
+                continue;
+            }
+            for (sum, element) in sums.iter_mut().zip(column) {
+                *sum += *factor * *element;
+            }
+        }
+    }
+    SMatrix::from(sums)
 }
 
 /// How far from the start constraints are looked at, in each coordinate.
@@ -278,28 +323,26 @@ fn in_proportion<T: Real, const M: usize, const N: usize>(
     )
 }
 
-/// The next point and what holds there: the longest damped step that lowers `|g|` in every lane that is still out of
+/// The next point and what is left there: the longest damped step that lowers `|g|` in every lane that is still out of
 /// tolerance, if there is one.
-#[expect(clippy::type_complexity, reason = "what `evaluate` gives")]
 fn descend<T: Real, const M: usize, const N: usize>(
     point: &SVector<T, N>,
     residual: &SVector<T, M>,
     step: &SVector<T, N>,
     (tolerance, dampings): (f64, usize),
-    evaluate: &impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
-) -> Option<(SVector<T, N>, (SVector<T, M>, SMatrix<T, M, N>))> {
+    residual_at: &impl Fn(&SVector<T, N>) -> SVector<T, M>,
+) -> Option<(SVector<T, N>, SVector<T, M>)> {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    let square = |g: &SVector<T, M>| dot(&g.data.0[0], &g.data.0[0]);
     let here = square(residual);
     let open = largest(residual.iter().copied());
     let mut damping = one;
     for _ in 0..dampings {
         let next = point.zip_map(step, |q, step| q - damping * step);
-        let values = evaluate(&next);
-        let lower = square(&values.0).select_less(here, one, zero);
+        let left = residual_at(&next);
+        let lower = square(&left).select_less(here, one, zero);
         let accepted = T::from_f64(tolerance).select_less(open, lower, one);
         if everywhere(accepted, |lane| lane == 1.0) {
-            return Some((next, values));
+            return Some((next, left));
         }
         damping = T::from_f64(0.5).select_less(accepted, damping, T::from_f64(0.5) * damping);
     }

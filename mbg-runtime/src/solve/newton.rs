@@ -173,8 +173,8 @@ impl<T: Real, const K: usize> Found<T, K> {
     }
 
     /// The point beside one from which open lanes cannot go on whose correction is not finite, because the Jacobian is singular
-    /// there; the others stay where they are. Those that solve the equations exactly end, and so do those that have gone aside too often; it breaks off where
-    /// these were the last ones.
+    /// there; the others stay where they are. Those that solve the equations exactly end, and so do those that have gone aside too
+    /// often; it breaks off where these were the last ones.
     #[cold]
     #[inline(never)]
     fn aside(

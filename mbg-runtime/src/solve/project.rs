@@ -378,6 +378,8 @@ impl<T: Real, const N: usize> Projected<T, N> {
 
 #[cfg(test)]
 mod tests {
+    use core::cell::Cell;
+
     use super::*;
     use crate::solve::lanes::Pair;
 
@@ -503,6 +505,30 @@ mod tests {
             assert!(found.converged, "{angle} {found:?}");
             assert!((found.point - closed).norm() < 1e-6, "{angle} {found:?}");
         }
+    }
+
+    #[test]
+    fn a_jacobian_serves_corrections_as_long_as_they_lead_there() {
+        let closed = SVector::from([0.8, 0.0, 0.8]);
+        let taken = |aside: f64| {
+            let start = closed + SVector::from([aside, -2.0 * aside, aside]);
+            let count = Cell::new(0);
+            let evaluate = |q: &SVector<f64, 3>| {
+                count.set(count.get() + 1);
+                four_bar::<2>(q)
+            };
+            let residual = |q: &SVector<f64, 3>| four_bar::<2>(q).0;
+            let found = project_from(start, four_bar(&start), (1e-14, 2.0), (evaluate, residual));
+            assert!(found.converged, "{found:?}");
+            [found.iterations, count.get()]
+        };
+        // As behind a step, and from far away.
+        assert_eq!(taken(1e-8), [2, 0]);
+        let [iterations, jacobians] = taken(0.3);
+        assert!(
+            jacobians > 0 && jacobians < iterations - 1,
+            "{iterations} {jacobians}"
+        );
     }
 
     #[test]

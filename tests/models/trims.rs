@@ -223,7 +223,6 @@ fn a_closed_loop_is_held() {
     assert!((found.state - held.state).norm() < 1e-9);
 }
 
-/// A ring is opened, since its coordinates are moved each by itself, unless its gap is asked to be none.
 /// By itself the angle of a coupler that stays level has no influence but rounding.
 #[test]
 fn a_parallelogram_is_held_wherever_it_shall_be() {
@@ -239,6 +238,7 @@ fn a_parallelogram_is_held_wherever_it_shall_be() {
     }
 }
 
+/// A ring is opened, since its coordinates are moved each by itself, unless its gap is asked to be none.
 #[test]
 fn a_ring_is_held_where_its_gap_is_an_output() {
     let crank = Crank::<f64>::new(CrankParameters::default()).unwrap();

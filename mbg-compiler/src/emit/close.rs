@@ -15,14 +15,10 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
     let attitudes: Vec<TokenStream> = compiled.attitudes.iter().map(|it| attitude(it)).collect();
     let memory = quote!(Self::Memory);
+    let body = |routine: usize| residuals(compiled, &attitudes, routine, &memory);
     let positions = (!compiled.closed[0].is_empty()).then(|| {
         let rank = rank(compiled, 0);
-        let body = residuals(
-            compiled,
-            &attitudes,
-            Routines::RESIDUALS_OF_POSITIONS,
-            &memory,
-        );
+        let body = body(Routines::RESIDUALS_OF_POSITIONS);
         let evaluated = quote! {
             |x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, fixed),
             |x: &mbg_runtime::__private::SVector<T, #n>| { #body }
@@ -30,8 +26,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
         projection(&compiled.closed[0], &quote!(Positions), &rank, &evaluated)
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
-        let body = |routine: usize| residuals(compiled, &attitudes, routine, &memory);
-        let [both, alone] = [Routines::CLOSED_FLOWS, Routines::RESIDUALS_OF_FLOWS].map(body);
+        let [both, alone] = [Routines::CLOSED_FLOWS, Routines::RESIDUALS_OF_FLOWS].map(&body);
         // Flows are as dependent as positions are.
         let rank = if compiled.closed[0] == compiled.closed[1] {
             rank(compiled, 0)

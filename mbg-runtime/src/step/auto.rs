@@ -41,7 +41,7 @@ use crate::{Input, Real, Sparsity, System};
 /// | method | matrices | 400 states |
 /// |---|---|---|
 /// | [`Rodas4`](crate::Rodas4), [`Rodas5P`], [`Ros2`](crate::Ros2) | 2 | 2.8 MB |
-/// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 3 | 4.1 MB |
+/// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 2 | 2.8 MB |
 /// | [`Radau5`] | 4 | 5.5 MB |
 /// | [`Radau9`] | 6 | 8.1 MB |
 /// | `Auto` while a model is not stiff | 1 | 1.4 MB |

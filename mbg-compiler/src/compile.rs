@@ -265,7 +265,7 @@ fn shorten(pool: &mut Pool, requests: &[Request]) {
     let Some((jacobian, behind)) = rest.split_first() else {
         return;
     };
-    if jacobian.columns.is_empty() {
+    if jacobian.sweeps.is_empty() {
         let others = before.iter().chain(behind).flat_map(roots);
         let others: Vec<Expression> = others.collect();
         products(pool, &others, &jacobian.results);

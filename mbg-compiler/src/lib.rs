@@ -12,7 +12,7 @@
 //! | network, equations | [`network`], [`equations`] | one linear equation per unknown |
 //! | structure | [`structure`] | every unknown as an expression |
 //! | answers | [`answers`], [`closures`], [`checks`], [`start`] | what functions return, projection makes zero, `new` asks |
-//! | Jacobians | [`jacobians`] | their entries, or what columns are worked out from |
+//! | Jacobians | [`jacobians`], [`sweeps`] | their entries, or what columns or rows are worked out from |
 //! | program | [`program`], [`sparsity`] | straight-line arithmetic, the pattern of the Jacobian |
 //! | emission | [`emit`] | Rust |
 //!
@@ -47,6 +47,7 @@ mod scaling;
 pub mod sparsity;
 pub mod start;
 pub mod structure;
+pub mod sweeps;
 pub mod symbolic;
 pub mod syntax;
 pub mod units;

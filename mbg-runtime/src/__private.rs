@@ -1,6 +1,7 @@
 //! What generated code refers to by whole paths. No part of the public interface.
 
 pub mod locals;
+mod sweeps;
 
 use ::core::cell::Cell;
 
@@ -15,6 +16,7 @@ pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
     Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };
+pub use sweeps::{by_lane, columns, rows};
 
 /// What the chosen causality relies on; each condition implies that the value is finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -268,88 +270,6 @@ fn together<T: Real, const M: usize, const N: usize>(
     }
     let count = |found: &[bool]| found.iter().filter(|it| **it).count();
     (count(&constraints), count(&coordinates))
-}
-
-/// How `R` rates change with `K` variables, for several columns of a Jacobian at once. The bits say in which directions, by
-/// their places modulo 64: what changes in none of these is zero, and left out.
-pub type Slopes<'a, T, const K: usize, const R: usize> =
-    dyn Fn(u64, &[<T as Real>::Columns; K]) -> [<T as Real>::Columns; R] + 'a;
-
-/// Variables that change together: one, and others with the rows that depend on them instead of on it.
-pub type Direction<'a> = (usize, &'a [(usize, &'a [usize])]);
-
-/// Fills the columns of a Jacobian that belong to some variables, in some of its rows. `slopes` says how these change with
-/// the variables, for several directions at once.
-// It is called as a function of its own: written into the loop, all that does not depend on the column would be made lanes
-// of before, and kept in memory.
-#[inline(never)]
-pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
-    jacobian: &mut SMatrix<T, N, K>,
-    directions: &[Direction<'_>],
-    rows: &[usize; R],
-    slopes: &Slopes<T, K, R>,
-) {
-    let count = <T::Columns as Columns<T>>::COUNT;
-    for (number, together) in directions.chunks(count).enumerate() {
-        let places = number * count..number * count + together.len();
-        let changing = places.fold(0, |changing, place| changing | 1 << (place % 64));
-        let mut changes = [<T::Columns as Real>::from_f64(0.0); K];
-        for (lane, (first, others)) in together.iter().enumerate() {
-            let others = others.iter().map(|(variable, _)| variable);
-            for variable in [first].into_iter().chain(others) {
-                if let Some(change) = changes.get_mut(*variable) {
-                    *change = Columns::<T>::from_columns(|other| {
-                        T::from_f64(if other == lane { 1.0 } else { 0.0 })
-                    });
-                }
-            }
-        }
-        let found = slopes(changing, &changes);
-        for (lane, (first, others)) in together.iter().enumerate() {
-            let entries = jacobian.as_mut_slice().chunks_exact_mut(N).nth(*first);
-            let entries = entries.unwrap_or_default();
-            for (row, slope) in rows.iter().zip(&found) {
-                if let (Some(entry), Some(slope)) =
-                    (entries.get_mut(*row), slope.as_columns().get(lane))
-                {
-                    *entry = *slope;
-                }
-            }
-            for (variable, own) in *others {
-                for row in *own {
-                    if let Some(entry) = jacobian.get_mut((*row, *first)) {
-                        let slope = core::mem::replace(entry, T::from_f64(0.0));
-                        if let Some(entry) = jacobian.get_mut((*row, *variable)) {
-                            *entry = slope;
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Solves linear equations for several columns, one after the other.
-pub fn by_lane<T: Real, const K: usize>(
-    right: &[T::Columns; K],
-    solution: impl Fn(&SVector<T, K>) -> SVector<T, K>,
-) -> [T::Columns; K] {
-    let lane = |row: usize, lane: usize| right[row].as_columns()[lane];
-    let mut solved = *right;
-    for column in 0..<T::Columns as Columns<T>>::COUNT {
-        let values = solution(&SVector::from_fn(|row, _| lane(row, column)));
-        for (solved, value) in solved.iter_mut().zip(values.iter()) {
-            let before = *solved;
-            *solved = Columns::<T>::from_columns(|other| {
-                if other == column {
-                    *value
-                } else {
-                    before.as_columns()[other]
-                }
-            });
-        }
-    }
-    solved
 }
 
 /// A symmetric matrix from row, column and value of the elements below and on its diagonal that are not zero.

@@ -1,8 +1,8 @@
-//! Several numbers side by side: of columns of a Jacobian, or of stages of a step.
+//! Several numbers side by side: of columns or rows of a Jacobian, or of stages of a step.
 
 use crate::Real;
 
-/// Numbers that belong to several columns of a matrix of `T`, or to the stages of a step ([`Real::Stages`]).
+/// Numbers that belong to several columns or rows of a matrix of `T`, or to the stages of a step ([`Real::Stages`]).
 ///
 /// [`Real::Columns`] says how many columns a scalar takes at once. With the feature `lanes` `f64` takes eight where the
 /// target has AVX-512 and four elsewhere, and `f32` eight; otherwise it is one.

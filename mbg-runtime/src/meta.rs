@@ -204,8 +204,8 @@ pub struct Operations {
     pub derivative: usize,
     /// Of `output`.
     pub output: usize,
-    /// Of `derivative_and_jacobian`; where several columns are worked out at once, each counts in full, with what is left out
-    /// because none of them changes it.
+    /// Of `derivative_and_jacobian`; where several columns or rows are worked out at once, each counts in full, with what is
+    /// left out because none of them changes it.
     pub derivative_and_jacobian: usize,
     /// Of `jacobian_input`, counted alike.
     pub jacobian_input: usize,

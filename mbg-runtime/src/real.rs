@@ -41,7 +41,7 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
-    /// What several columns of a Jacobian are worked out in at once.
+    /// What several columns or rows of a Jacobian are worked out in at once.
     type Columns: crate::Columns<Self>;
     /// Four of them side by side, as the stages of a step are: lanes where the feature `lanes` has them, else
     /// [`Four`](crate::Four), which takes one after the other.

@@ -3,8 +3,8 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::columns;
 use super::routine::{Place, Writer, written_lines};
+use super::sweeps;
 use super::tokens::block;
 use crate::compile::{Compiled, Routines};
 use crate::program::Source;
@@ -55,7 +55,7 @@ pub(super) fn methods(
 /// Writes the results of a routine: the derivative, if it is one of both, and a Jacobian with so many columns.
 fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
     let routine = &compiled.program.routines[routine];
-    let is_written_out = routine.columns.is_empty();
+    let is_written_out = routine.sweeps.is_empty();
     let entries = if is_written_out {
         columns * compiled.states.len()
     } else {
@@ -71,6 +71,6 @@ fn written(compiled: &Compiled, routine: usize, columns: usize) -> TokenStream {
     let places: Vec<_> = rates.chain(entries).collect();
     let writer = Writer::of(compiled, routine);
     let mut lines = written_lines(&writer, routine, &places);
-    lines.extend(columns::write(&writer, routine));
+    lines.extend(sweeps::write(&writer, routine));
     lines
 }

@@ -7,7 +7,6 @@
 //! binds are therefore in the list of `mbg_runtime::__private::locals`, and names with numbers end in `_`.
 
 mod close;
-mod columns;
 mod jacobians;
 mod meta;
 mod parameters;
@@ -15,6 +14,7 @@ mod repeats;
 mod routine;
 mod shell;
 mod sparsity;
+mod sweeps;
 mod system;
 mod tokens;
 

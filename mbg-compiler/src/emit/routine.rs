@@ -12,7 +12,7 @@ use super::parameters;
 use super::repeats::Left;
 use super::tokens::{Tokens, Words, block, element, numbered};
 use crate::compile::Compiled;
-use crate::program::{Columns, Operand, Repeat, Routine, Solve, Solver, Source, Step, angles};
+use crate::program::{Operand, Repeat, Routine, Solve, Solver, Source, Step, Sweep, angles};
 use crate::symbolic::{Kind, Symbol};
 
 /// Where a routine finds what it reads.
@@ -97,9 +97,9 @@ pub(super) fn written_lines(
             _ => known.extend(line),
         }
     }
-    let columns = routine.columns.iter().flat_map(|it| &it.steps);
-    let mut behind: Vec<Made> = columns.filter_map(Made::needed_by).collect();
-    // Values that columns read are kept, and those that are returned are written at once.
+    let swept = routine.sweeps.iter().flat_map(|it| &it.steps);
+    let mut behind: Vec<Made> = swept.filter_map(Made::needed_by).collect();
+    // Values that sweeps read are kept, and those that are returned are written at once.
     let read = Made::read(&routine.read_behind()).into_iter();
     behind.extend(read.filter(|made| matches!(made, Made::Solved(_))));
     let lines = writer.parts(&parts(routine), 0, &behind);
@@ -110,24 +110,26 @@ pub(super) fn written_lines(
     all
 }
 
-/// The bindings of columns of a Jacobian, and the slopes of the rates with these numbers. `whole(value)` makes a scalar one
-/// for all columns, `slopes` holds what changes, and `changing` says in which directions.
-pub(super) fn column_lines(
+/// The bindings of a sweep of a Jacobian, and its results with these numbers. `whole(value)` makes a scalar one for all
+/// directions side by side, `slopes` holds what changes, and `changing` says in which directions.
+pub(super) fn sweep_lines(
     writer: &Writer,
-    columns: &Columns,
-    rows: &[usize],
+    sweep: &Sweep,
+    results: &[usize],
 ) -> (TokenStream, Vec<TokenStream>) {
-    let solved = columns.steps.iter().filter_map(|step| match step {
+    let solved = sweep.steps.iter().filter_map(|step| match step {
         Step::Solve(solve) => Some(solve.number),
         _ => None,
     });
     let writer = Writer {
-        columns: Some((columns.first, solved.collect())),
+        sweep: Some((sweep.first, solved.collect())),
         ..writer.clone()
     };
-    let behind = Made::read(&columns.results);
-    let body = writer.parts(&by_stretches(columns), columns.first, &behind);
-    let results = rows.iter().map(|row| writer.operand(columns.results[*row]));
+    let behind = Made::read(&sweep.results);
+    let body = writer.parts(&by_stretches(sweep), sweep.first, &behind);
+    let results = results
+        .iter()
+        .map(|result| writer.operand(sweep.results[*result]));
     let results = results.map(|result| result.into_token_stream());
     (body, results.collect())
 }
@@ -150,22 +152,22 @@ fn parts(routine: &Routine) -> Vec<Part<'_>> {
     parts
 }
 
-/// The steps of columns by stretches. What changes in all directions is never left out.
-fn by_stretches(columns: &Columns) -> Vec<Part<'_>> {
-    let mut rest = &columns.steps[..];
-    let stretches = columns.stretches().into_iter();
+/// The steps of a sweep by stretches. What changes in all directions is never left out.
+fn by_stretches(sweep: &Sweep) -> Vec<Part<'_>> {
+    let mut rest = &sweep.steps[..];
+    let stretches = sweep.stretches().into_iter();
     let parts = stretches.flat_map(|stretch| {
         let (steps, behind) = rest.split_at(stretch.steps);
         rest = behind;
-        let some = stretch.directions.len() < columns.directions.len();
+        let some = stretch.directions.len() < sweep.coverage.directions.len();
         let changes = some.then(|| stretch.mask());
         Part::straight(steps, changes)
     });
     parts.collect()
 }
 
-/// The place of each value that columns of a Jacobian read. These values are put into one array as soon as they are there,
-/// so that nothing is copied for the columns.
+/// The place of each value that sweeps of a Jacobian read. These values are put into one array as soon as they are there,
+/// so that nothing is copied for the sweeps.
 fn kept(routine: &Routine) -> BTreeMap<usize, usize> {
     let numbered = routine.kept().into_iter().enumerate();
     numbered.map(|(place, value)| (value, place)).collect()
@@ -325,7 +327,7 @@ pub(super) struct Writer<'a> {
     words: Rc<Words>,
     pub(super) names: Rc<[Ident]>,
     setting: Setting,
-    /// The place of each value that is kept for columns of a Jacobian.
+    /// The place of each value that is kept for sweeps of a Jacobian.
     kept: Rc<BTreeMap<usize, usize>>,
     /// What is written as soon as a value is there.
     written: BTreeMap<usize, TokenStream>,
@@ -333,8 +335,8 @@ pub(super) struct Writer<'a> {
     pub(super) left: Rc<Left>,
     /// In a loop, the values that have a name there.
     named: Range<usize>,
-    /// In columns of a Jacobian, the first value that is theirs, and the numbers of their solves.
-    columns: Option<(usize, BTreeSet<usize>)>,
+    /// In a sweep of a Jacobian, the first value that is its own, and the numbers of its solves.
+    sweep: Option<(usize, BTreeSet<usize>)>,
 }
 
 impl<'a> Writer<'a> {
@@ -349,7 +351,7 @@ impl<'a> Writer<'a> {
             written: BTreeMap::new(),
             left: Rc::default(),
             named: 0..0,
-            columns: None,
+            sweep: None,
         }
     }
 
@@ -461,7 +463,7 @@ impl<'a> Writer<'a> {
             Step::Divide(a, b) => between(lines, '/', *a, *b),
             Step::MultiplyAdd(a, b, c) => arithmetic(lines, &|lines| {
                 let mut arguments = Tokens::default();
-                if self.columns.is_some() {
+                if self.sweep.is_some() {
                     self.read(*a, lines);
                     lines.sign('.');
                 } else {
@@ -566,7 +568,7 @@ impl<'a> Writer<'a> {
     /// The same with earlier factors.
     fn slope(&self, solve: &Solve, of: usize) -> TokenStream {
         let (unknowns, factors) = (unknowns(solve.number), factors(of));
-        if self.columns.is_some() {
+        if self.sweep.is_some() {
             let right = solve.results.iter().map(|operand| self.operand(*operand));
             return quote! {
                 let #unknowns = mbg_runtime::__private::by_lane(&[#(#right),*], |right| #factors.solution(right));
@@ -585,7 +587,7 @@ impl<'a> Writer<'a> {
     fn call(&self, name: Option<&Ident>, function: &str, arguments: &[Operand]) -> TokenStream {
         let function = format_ident!("{}", function);
         let mut arguments = arguments.iter().map(|argument| self.operand(*argument));
-        if self.columns.is_some() {
+        if self.sweep.is_some() {
             let first = arguments.next();
             return quote!(let #name = #first.#function(#(#arguments),*););
         }
@@ -599,9 +601,9 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Whether a scalar stands where columns side by side are worked out.
+    /// Whether a scalar stands where directions side by side are worked out.
     fn is_whole(&self, source: Source) -> bool {
-        let Some((first, solved)) = &self.columns else {
+        let Some((first, solved)) = &self.sweep else {
             return false;
         };
         match source {
@@ -648,8 +650,7 @@ impl<'a> Writer<'a> {
             }
         };
         match source {
-            Source::Value(index) => match self.columns.as_ref().and_then(|_| self.kept.get(&index))
-            {
+            Source::Value(index) => match self.sweep.as_ref().and_then(|_| self.kept.get(&index)) {
                 Some(place) => element(tokens, &words.kept, *place),
                 None => match self.left.home(index) {
                     Some(home) if !self.named.contains(&index) => self.left.read(home, tokens),

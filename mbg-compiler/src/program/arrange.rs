@@ -20,7 +20,7 @@ const WINDOW: usize = 128;
 /// How many steps it begins in each cycle: others, as many as there are, for these are few; products; sums.
 const BEGUN: [usize; 3] = [usize::MAX, 2, 2];
 
-/// The routine with the steps before those of its columns in the new order.
+/// The routine with the steps before those of its sweeps in the new order.
 pub(super) fn arrange(routine: &Routine) -> Routine {
     let order = Processor::of(&routine.steps).order();
     let starts = starts(&routine.steps);
@@ -36,7 +36,7 @@ pub(super) fn arrange(routine: &Routine) -> Routine {
     }
     let renumbered = |operand: Operand| operand.renumbered(&numbers);
     let with_numbers = |step: &Step| step.with(&renumbered);
-    let columns = routine.columns.iter();
+    let sweeps = routine.sweeps.iter();
     Routine {
         steps: order
             .iter()
@@ -44,7 +44,7 @@ pub(super) fn arrange(routine: &Routine) -> Routine {
             .collect(),
         names: old.iter().map(|old| routine.names[*old].clone()).collect(),
         results: routine.results.iter().copied().map(renumbered).collect(),
-        columns: columns
+        sweeps: sweeps
             .map(|it| it.with(&with_numbers, &renumbered))
             .collect(),
         repeats: Vec::new(),
@@ -307,7 +307,7 @@ mod tests {
             steps,
             names: ["a", "b", "c", "d"].map(str::to_owned).to_vec(),
             results: vec![value(0), value(1), value(3)],
-            columns: Vec::new(),
+            sweeps: Vec::new(),
             repeats: Vec::new(),
         };
         let arranged = arrange(&routine);

@@ -3,7 +3,7 @@
 //! On a target with a fused multiply-add that is one instruction in place of two, and half of their latency. Of a sum of
 //! two products the one that is ready last is taken in, so that the other does not wait for it.
 
-use super::{Columns, Operand, Routine, Solve, Source, Step, latency};
+use super::{Operand, Routine, Solve, Source, Step, Sweep, latency};
 
 /// The routine with products taken into sums.
 pub(super) fn contract(routine: &Routine) -> Routine {
@@ -17,8 +17,8 @@ pub(super) fn contract(routine: &Routine) -> Routine {
         taken: vec![false; routine.names.len()],
     };
     contraction.choose(&routine.steps, 0);
-    for columns in &routine.columns {
-        contraction.choose(&columns.steps, columns.first);
+    for sweep in &routine.sweeps {
+        contraction.choose(&sweep.steps, sweep.first);
     }
     let mut places = Vec::with_capacity(routine.names.len());
     let mut names = Vec::new();
@@ -38,11 +38,7 @@ pub(super) fn contract(routine: &Routine) -> Routine {
         steps: rewrite.steps(&routine.steps, 0),
         names,
         results: rewrite.operands(&routine.results),
-        columns: routine
-            .columns
-            .iter()
-            .map(|it| rewrite.columns(it))
-            .collect(),
+        sweeps: routine.sweeps.iter().map(|it| rewrite.sweep(it)).collect(),
         repeats: Vec::new(),
     }
 }
@@ -148,12 +144,12 @@ impl Rewrite<'_> {
         kept
     }
 
-    fn columns(&self, columns: &Columns) -> Columns {
-        Columns {
-            directions: columns.directions.clone(),
-            first: self.places[columns.first],
-            steps: self.steps(&columns.steps, columns.first),
-            results: self.operands(&columns.results),
+    fn sweep(&self, sweep: &Sweep) -> Sweep {
+        Sweep {
+            coverage: sweep.coverage.clone(),
+            first: self.places[sweep.first],
+            steps: self.steps(&sweep.steps, sweep.first),
+            results: self.operands(&sweep.results),
         }
     }
 

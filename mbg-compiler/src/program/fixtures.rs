@@ -1,6 +1,6 @@
 //! Operands and directions for tests.
 
-use super::{Column, Direction, Operand, Source};
+use super::{Coverage, Line, Mode, Operand, Source};
 use crate::symbolic::Symbol;
 
 pub(super) fn value(number: usize) -> Operand {
@@ -15,12 +15,20 @@ pub(super) fn slope(variable: usize) -> Operand {
     Operand::plain(Source::Symbol(Symbol::Slope(variable)))
 }
 
-/// That of one variable, which one row depends on.
-pub(super) fn direction(variable: usize) -> Direction {
-    vec![Column {
-        variable,
-        rows: vec![0],
-    }]
+/// So many directions of one variable each, on which one rate depends.
+pub(super) fn coverage(directions: usize) -> Coverage {
+    let direction = |number| {
+        vec![Line {
+            number,
+            entries: vec![0],
+        }]
+    };
+    Coverage {
+        size: [1, directions],
+        mode: Mode::Forward,
+        directions: (0..directions).map(direction).collect(),
+        units: Vec::new(),
+    }
 }
 
 pub(super) fn negative(operand: Operand) -> Operand {

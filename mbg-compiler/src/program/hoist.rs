@@ -1,12 +1,12 @@
-//! What columns of a Jacobian work out although no direction changes it, worked out once, before them.
+//! What sweeps of a Jacobian work out although no direction changes it, worked out once, before them.
 //!
 //! Of a product of several factors those are multiplied first that are ready first, and of such as 2 a δb that may be 2 a.
 
-use super::{Columns, Routine, Step};
+use super::{Routine, Step, Sweep};
 
 /// The routine with such steps behind its own.
 pub(super) fn hoist(routine: &Routine) -> Routine {
-    let Some(first) = routine.columns.first().map(|it| it.first) else {
+    let Some(first) = routine.sweeps.first().map(|it| it.first) else {
         return routine.clone();
     };
     let mut hoist = Hoist {
@@ -15,19 +15,19 @@ pub(super) fn hoist(routine: &Routine) -> Routine {
         numbers: (0..routine.names.len()).collect(),
     };
     let rest: Vec<Rest> = routine
-        .columns
+        .sweeps
         .iter()
         .map(|it| hoist.split(routine, it))
         .collect();
-    let columns = routine.columns.iter().zip(rest);
-    let columns: Vec<Columns> = columns
-        .map(|(columns, rest)| hoist.rest(routine, columns, rest))
+    let sweeps = routine.sweeps.iter().zip(rest);
+    let sweeps: Vec<Sweep> = sweeps
+        .map(|(sweep, rest)| hoist.rest(routine, sweep, rest))
         .collect();
     Routine {
         results: routine.results.clone(),
         steps: hoist.steps,
         names: hoist.names,
-        columns,
+        sweeps,
         repeats: Vec::new(),
     }
 }
@@ -44,11 +44,11 @@ struct Hoist {
 }
 
 impl Hoist {
-    /// Takes those steps of columns that no direction changes, and gives the others.
-    fn split<'a>(&mut self, routine: &Routine, columns: &'a Columns) -> Rest<'a> {
+    /// Takes those steps of a sweep that no direction changes, and gives the others.
+    fn split<'a>(&mut self, routine: &Routine, sweep: &'a Sweep) -> Rest<'a> {
         let mut rest = Vec::new();
-        let mut value = columns.first;
-        for (step, directions) in columns.steps.iter().zip(columns.changes()) {
+        let mut value = sweep.first;
+        for (step, directions) in sweep.steps.iter().zip(sweep.changes()) {
             if directions.len() == 0 {
                 self.append(step, value, &routine.names);
             } else {
@@ -69,17 +69,17 @@ impl Hoist {
         self.steps.push(step);
     }
 
-    /// Columns of the steps that stay.
-    fn rest(&mut self, routine: &Routine, columns: &Columns, rest: Rest<'_>) -> Columns {
+    /// A sweep of the steps that stay.
+    fn rest(&mut self, routine: &Routine, sweep: &Sweep, rest: Rest<'_>) -> Sweep {
         let before = std::mem::take(&mut self.steps);
         let first = self.names.len();
         for (value, step) in rest {
             self.append(step, value, &routine.names);
         }
         let steps = std::mem::replace(&mut self.steps, before);
-        let results = columns.results.iter();
-        Columns {
-            directions: columns.directions.clone(),
+        let results = sweep.results.iter();
+        Sweep {
+            coverage: sweep.coverage.clone(),
             first,
             steps,
             results: results.map(|it| it.renumbered(&self.numbers)).collect(),
@@ -90,12 +90,12 @@ impl Hoist {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::fixtures::{direction, slope, state, value};
+    use crate::program::fixtures::{coverage, slope, state, value};
     use crate::program::{Operand, Source};
 
-    fn columns(first: usize, steps: Vec<Step>, result: usize) -> Columns {
-        Columns {
-            directions: vec![direction(0)],
+    fn sweep(first: usize, steps: Vec<Step>, result: usize) -> Sweep {
+        Sweep {
+            coverage: coverage(1),
             first,
             steps,
             results: vec![value(result)],
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_direction_changes_is_worked_out_before_all_columns() {
+    fn what_no_direction_changes_is_worked_out_before_all_sweeps() {
         let double = |operand| Step::Multiply(Operand::plain(Source::Constant(2.0)), operand);
         let first = vec![
             Step::Multiply(slope(0), value(0)),
@@ -117,7 +117,7 @@ mod tests {
                 .map(str::to_owned)
                 .to_vec(),
             results: vec![value(0)],
-            columns: vec![columns(1, first, 3), columns(4, second, 5)],
+            sweeps: vec![sweep(1, first, 3), sweep(4, second, 5)],
             repeats: Vec::new(),
         };
         let found = hoist(&routine);
@@ -131,10 +131,10 @@ mod tests {
             Step::Multiply(value(1), value(3)),
         ];
         assert_eq!(
-            found.columns,
+            found.sweeps,
             [
-                columns(3, first.to_vec(), 4),
-                columns(5, vec![Step::Multiply(value(2), slope(0))], 5),
+                sweep(3, first.to_vec(), 4),
+                sweep(5, vec![Step::Multiply(value(2), slope(0))], 5),
             ]
         );
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::iterate::{consistent, iterate};
-use super::{Columns, Operand, Program, Routine, Solve, Solver, Source, Step};
+use super::{Operand, Program, Routine, Solve, Solver, Source, Step, Sweep};
 use crate::symbolic::evaluate::regular;
 use crate::symbolic::{Kind, Symbol};
 
@@ -37,7 +37,7 @@ fn run(routine: &Routine, arguments: &Arguments, folded: &[f64]) -> Vec<f64> {
     };
     machine.steps(&routine.steps);
     let mut results = machine.results(&routine.results);
-    results.extend(machine.jacobian(&routine.columns));
+    results.extend(machine.jacobian(&routine.sweeps));
     results
 }
 
@@ -46,7 +46,7 @@ struct Machine<'a> {
     arguments: &'a Arguments<'a>,
     folded: &'a [f64],
     values: Vec<f64>,
-    /// The variables that change.
+    /// The variables that change, or the rates with a weight.
     changing: Vec<usize>,
     /// Unknowns by iteration.
     solved: BTreeMap<usize, Vec<f64>>,
@@ -56,31 +56,41 @@ struct Machine<'a> {
 
 impl Machine<'_> {
     /// A Jacobian by rows.
-    fn jacobian(&self, columns: &[Columns]) -> Vec<f64> {
-        let width: usize = columns.iter().map(Columns::width).sum();
-        let rows = columns.first().map_or(0, |it| it.results.len());
-        let mut entries = vec![0.0; rows * width];
-        for group in columns {
-            let stretches = group.stretches();
-            for (place, direction) in group.directions.iter().enumerate() {
-                let mut inner = self.clone();
-                inner.changing = direction.iter().map(|it| it.variable).collect();
-                inner.values.resize(group.first, f64::NAN);
-                let mut rest = &group.steps[..];
-                for stretch in &stretches {
-                    let (steps, behind) = rest.split_at(stretch.steps);
-                    inner.stretch(steps, stretch.changes_in(place));
-                    rest = behind;
-                }
-                let slopes = inner.results(&group.results);
-                for column in direction {
-                    for row in &column.rows {
-                        entries[row * width + column.variable] = slopes[*row];
+    fn jacobian(&self, sweeps: &[Sweep]) -> Vec<f64> {
+        let [rows, columns] = sweeps.first().map_or([0; 2], |it| it.coverage.size);
+        let mut entries = vec![0.0; rows * columns];
+        for sweep in sweeps {
+            let coverage = &sweep.coverage;
+            for unit in &coverage.units {
+                let one = if unit.negative { -1.0 } else { 1.0 };
+                entries[unit.row * columns + unit.column] = one;
+            }
+            for (place, direction) in coverage.directions.iter().enumerate() {
+                let slopes = self.slopes(sweep, place);
+                for line in direction {
+                    for entry in &line.entries {
+                        let (row, column) = coverage.place(line, *entry);
+                        entries[row * columns + column] = slopes[*entry];
                     }
                 }
             }
         }
         entries
+    }
+
+    /// What a sweep gives in the direction in a place.
+    fn slopes(&self, sweep: &Sweep, place: usize) -> Vec<f64> {
+        let mut inner = self.clone();
+        let direction = sweep.coverage.directions[place].iter();
+        inner.changing = direction.map(|it| it.number).collect();
+        inner.values.resize(sweep.first, f64::NAN);
+        let mut rest = &sweep.steps[..];
+        for stretch in sweep.stretches() {
+            let (steps, behind) = rest.split_at(stretch.steps);
+            inner.stretch(steps, stretch.changes_in(place));
+            rest = behind;
+        }
+        inner.results(&sweep.results)
     }
 
     /// Steps, or zeros for them where nothing changes them.

@@ -5,8 +5,8 @@
 //!
 //! `schedule` makes the steps out of expressions. Six passes follow, none of which changes what a function returns but for
 //! rounding and the signs of zeros: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes
-//! negatives where they save an instruction, `hoist` takes out of columns of a Jacobian what is the same in all, `arrange` puts
-//! the steps in the order in which a processor begins them, and `stretches` those of columns in an order in which some can be
+//! negatives where they save an instruction, `hoist` takes out of sweeps of a Jacobian what is the same in all, `arrange` puts
+//! the steps in the order in which a processor begins them, and `stretches` those of sweeps in an order in which some can be
 //! left out. Of a long routine `repeats` finds the loops; its steps stay in their order.
 
 mod arrange;
@@ -25,6 +25,7 @@ mod repeats;
 mod schedule;
 mod signs;
 mod stretches;
+mod sweep;
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -37,6 +38,7 @@ pub use interpret::{Arguments, evaluate};
 pub use repeats::{Reading, Repeat};
 pub use schedule::build;
 pub use stretches::Stretch;
+pub use sweep::{Coverage, Direction, Line, Mode, Slopes, Sweep, Unit};
 
 /// Where an operand's value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,73 +201,16 @@ pub fn angles(steps: &[Step], value: usize) -> Vec<Operand> {
 pub struct Request {
     /// Its results.
     pub results: Vec<Expression>,
-    /// Columns of a Jacobian that is not among the results.
-    pub columns: Vec<Slopes>,
-}
-
-/// A column of a Jacobian.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// The variable by which it is the derivative.
-    pub variable: usize,
-    /// The rates that depend on it.
-    pub rows: Vec<usize>,
-}
-
-/// Columns of which no two share a row, so that one direction, in which all their variables change, gives them all.
-pub type Direction = Vec<Column>;
-
-/// How rates change along a direction.
-#[derive(Clone, Debug)]
-pub struct Slopes {
-    /// The directions.
-    pub directions: Vec<Direction>,
-    /// Linear in the [`Symbol::Slope`]s of what changes.
-    pub rates: Vec<Expression>,
+    /// Sweeps of a Jacobian that is not among the results.
+    pub sweeps: Vec<Slopes>,
 }
 
 impl From<Vec<Expression>> for Request {
     fn from(results: Vec<Expression>) -> Self {
         Self {
             results,
-            columns: Vec::new(),
+            sweeps: Vec::new(),
         }
-    }
-}
-
-/// Columns of a Jacobian: steps that are run for each direction, or for several at once.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Columns {
-    /// The directions.
-    pub directions: Vec<Direction>,
-    /// Number of the first value.
-    pub first: usize,
-    /// Steps. All are linear in the slopes of the variables; all else that they read is worked out before.
-    pub steps: Vec<Step>,
-    /// The rates' slopes.
-    pub results: Vec<Operand>,
-}
-
-impl Columns {
-    /// How many columns they are.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        self.directions.iter().map(Vec::len).sum()
-    }
-
-    /// The same with other steps and results.
-    fn with(&self, step: &dyn Fn(&Step) -> Step, result: &dyn Fn(Operand) -> Operand) -> Self {
-        Self {
-            directions: self.directions.clone(),
-            first: self.first,
-            steps: self.steps.iter().map(step).collect(),
-            results: self.results.iter().copied().map(result).collect(),
-        }
-    }
-
-    /// What they read or return.
-    fn operands(&self) -> Vec<Operand> {
-        read(&self.steps, &self.results)
     }
 }
 
@@ -297,8 +242,8 @@ pub struct Routine {
     pub names: Vec<String>,
     /// Results.
     pub results: Vec<Operand>,
-    /// Columns of a Jacobian that is returned besides; their values go on from those of the steps.
-    pub columns: Vec<Columns>,
+    /// Sweeps of a Jacobian that is returned besides; their values go on from those of the steps.
+    pub sweeps: Vec<Sweep>,
     /// Steps that are written as loops, in order.
     pub repeats: Vec<Repeat>,
 }
@@ -308,20 +253,20 @@ impl Routine {
     #[must_use]
     pub fn operations(&self) -> usize {
         let count = |steps: &[Step]| -> usize { steps.iter().map(Step::operations).sum() };
-        let columns = self.columns.iter();
-        let columns = columns.map(|it| it.directions.len() * count(&it.steps));
-        count(&self.steps) + columns.sum::<usize>()
+        let sweeps = self.sweeps.iter();
+        let sweeps = sweeps.map(|it| it.coverage.directions.len() * count(&it.steps));
+        count(&self.steps) + sweeps.sum::<usize>()
     }
 
-    /// The values that columns of a Jacobian read, ascending.
+    /// The values that sweeps of a Jacobian read, ascending.
     #[must_use]
     pub fn kept(&self) -> Vec<usize> {
-        let first = self.columns.first().map_or(0, |it| it.first);
+        let first = self.sweeps.first().map_or(0, |it| it.first);
         let value = |operand: Operand| match operand.source {
             Source::Value(value) if value < first => Some(value),
             _ => None,
         };
-        let read = self.columns.iter().flat_map(Columns::operands);
+        let read = self.sweeps.iter().flat_map(Sweep::operands);
         let kept: BTreeSet<usize> = read.filter_map(value).collect();
         kept.into_iter().collect()
     }
@@ -329,7 +274,7 @@ impl Routine {
     /// All that it reads or returns behind its steps.
     #[must_use]
     pub fn read_behind(&self) -> Vec<Operand> {
-        let read = self.columns.iter().flat_map(Columns::operands);
+        let read = self.sweeps.iter().flat_map(Sweep::operands);
         self.results.iter().copied().chain(read).collect()
     }
 

@@ -7,12 +7,12 @@ use proptest::prelude::*;
 
 use super::arrange::arrange;
 use super::contract::contract;
-use super::fixtures::{direction, state, value};
+use super::fixtures::{coverage, state, value};
 use super::hoist::hoist;
 use super::reorder::reorder;
 use super::signs::signs;
 use super::stretches::by_stretches;
-use super::{Columns, Operand, Routine, Source, Step};
+use super::{Operand, Routine, Source, Step, Sweep};
 use crate::symbolic::Symbol;
 
 /// How far back a value may be that a step reads.
@@ -56,7 +56,7 @@ fn run(steps: &[Step], values: &mut Vec<u64>) {
     }
 }
 
-/// What a routine returns, and its columns do.
+/// What a routine returns, and its sweeps do.
 fn results(routine: &Routine) -> Vec<u64> {
     let mut values = Vec::new();
     run(&routine.steps, &mut values);
@@ -66,10 +66,10 @@ fn results(routine: &Routine) -> Vec<u64> {
         .map(|it| read(*it, &values))
         .collect();
     values.resize(routine.names.len(), 0);
-    for columns in &routine.columns {
-        let mut inside = values[..columns.first].to_vec();
-        run(&columns.steps, &mut inside);
-        found.extend(columns.results.iter().map(|it| read(*it, &inside)));
+    for sweep in &routine.sweeps {
+        let mut inside = values[..sweep.first].to_vec();
+        run(&sweep.steps, &mut inside);
+        found.extend(sweep.results.iter().map(|it| read(*it, &inside)));
     }
     found
 }
@@ -151,7 +151,7 @@ fn last(count: usize) -> Vec<Operand> {
     (count.saturating_sub(3)..count).map(value).collect()
 }
 
-/// In columns, every other state is a slope.
+/// In sweeps, every other state is a slope.
 fn slope(operand: Operand) -> Operand {
     match operand.source {
         Source::Symbol(Symbol::State(state)) if !state.is_multiple_of(2) => Operand {
@@ -162,15 +162,15 @@ fn slope(operand: Operand) -> Operand {
     }
 }
 
-fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
+fn routine(share: Share, main: &[Draft], of_sweeps: &[Vec<Draft>]) -> Routine {
     let (main, first) = share.steps(main, 0, &(0..0));
     let mut count = first;
-    let mut columns = Vec::new();
-    for drafts in of_columns {
+    let mut sweeps = Vec::new();
+    for drafts in of_sweeps {
         let begin = count;
         let (steps, end) = share.steps(drafts, begin, &(first..begin));
-        columns.push(Columns {
-            directions: (0..share.states).map(direction).collect(),
+        sweeps.push(Sweep {
+            coverage: coverage(share.states),
             first: begin,
             steps: steps.iter().map(|it| it.with(&slope)).collect(),
             results: vec![Operand::plain(Source::Value(end - 1))],
@@ -181,7 +181,7 @@ fn routine(share: Share, main: &[Draft], of_columns: &[Vec<Draft>]) -> Routine {
         steps: main,
         names: (0..count).map(name).collect(),
         results: last(first),
-        columns,
+        sweeps,
         repeats: Vec::new(),
     }
 }
@@ -193,9 +193,9 @@ proptest! {
     fn passes_keep_what_a_routine_returns(
         share in shares(),
         main in drafts(40),
-        columns in prop::collection::vec(drafts(12), 0..3),
+        sweeps in prop::collection::vec(drafts(12), 0..3),
     ) {
-        let before = routine(share, &main, &columns);
+        let before = routine(share, &main, &sweeps);
         let expected = results(&before);
         let reordered = reorder(&before);
         prop_assert_eq!(&results(&reordered), &expected, "reordered");
@@ -209,8 +209,8 @@ proptest! {
         prop_assert_eq!(&results(&arranged), &expected, "arranged");
         let sorted = by_stretches(&arranged);
         prop_assert_eq!(&results(&sorted), &expected, "in stretches");
-        let mut stretches = sorted.columns.iter().flat_map(Columns::stretches);
-        prop_assert!(stretches.all(|it| it.mask() != 0), "nothing is left out of all columns");
+        let mut stretches = sorted.sweeps.iter().flat_map(Sweep::stretches);
+        prop_assert!(stretches.all(|it| it.mask() != 0), "nothing is left out of all sweeps");
     }
 }
 
@@ -221,7 +221,7 @@ fn assert_kept(steps: &[Step], last: &[usize]) {
         steps: steps.to_vec(),
         names: vec![String::new(); values],
         results: last.iter().copied().map(value).collect(),
-        columns: Vec::new(),
+        sweeps: Vec::new(),
         repeats: Vec::new(),
     };
     assert_eq!(results(&reorder(&before)), results(&before));

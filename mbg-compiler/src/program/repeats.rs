@@ -89,7 +89,7 @@ impl Repeat {
 /// cells, whose loops LLVM vectorises, take 30 to 40 % less.
 pub(super) fn repeats(routine: &Routine) -> Vec<Repeat> {
     let steps = &routine.steps;
-    if steps.len() < FEWEST || !routine.columns.is_empty() {
+    if steps.len() < FEWEST || !routine.sweeps.is_empty() {
         return Vec::new();
     }
     let found = Search::of(steps).all();

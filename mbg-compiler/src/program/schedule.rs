@@ -11,7 +11,7 @@ use super::reorder::reorder;
 use super::repeats::repeats;
 use super::signs::signs;
 use super::stretches::by_stretches;
-use super::{Columns, Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step};
+use super::{Operand, Program, Request, Routine, Slopes, Solve, Solver, Source, Step, Sweep};
 use crate::operands::Operands;
 use crate::symbolic::{Expression, Implicit, Method, Operation, Pool, Rate, Symbol};
 
@@ -51,11 +51,11 @@ fn folded_nodes(pool: &Pool, requests: &[Request]) -> Vec<Expression> {
     let mut seen = vec![false; pool.len()];
     let mut found = Vec::new();
     let roots = requests.iter().flat_map(|request| {
-        let columns = request.columns.iter();
+        let sweeps = request.sweeps.iter();
         request
             .results
             .iter()
-            .chain(columns.flat_map(|it| &it.rates))
+            .chain(sweeps.flat_map(|it| &it.forms))
     });
     for root in roots {
         let mut pending = vec![root.magnitude()];
@@ -180,7 +180,7 @@ struct Common {
     divisors: BTreeSet<usize>,
 }
 
-/// What several columns of a Jacobian have in common.
+/// What several sweeps of a Jacobian have in common.
 #[derive(Default)]
 struct Unchanging {
     /// Expressions.
@@ -202,15 +202,15 @@ impl Context<'_> {
             reciprocals: BTreeMap::new(),
             solved: BTreeSet::new(),
         };
-        let unchanging = self.unchanging(&request.columns);
+        let unchanging = self.unchanging(&request.sweeps);
         self.steps(
             &mut draft,
             &[&roots[..], &unchanging.needed].concat(),
             folding,
         );
         self.prepare(&mut draft, &unchanging);
-        for slopes in &request.columns {
-            self.columns(&mut draft, slopes, &unchanging);
+        for slopes in &request.sweeps {
+            self.sweep(&mut draft, slopes, &unchanging);
         }
         draft.routine.results = roots
             .iter()
@@ -245,15 +245,15 @@ impl Context<'_> {
     }
 
     /// What slopes are worked out from and does not change with the direction.
-    fn unchanging(&self, columns: &[Slopes]) -> Unchanging {
+    fn unchanging(&self, sweeps: &[Slopes]) -> Unchanging {
         let mut found = Unchanging::default();
-        if columns.is_empty() {
+        if sweeps.is_empty() {
             return found;
         }
         let changing = self.changing.get_or_init(|| self.changing());
         let mut seen = vec![false; self.pool.len()];
-        let rates = columns.iter().rev().flat_map(|it| it.rates.iter().rev());
-        let mut pending: Vec<Expression> = rates.copied().collect();
+        let forms = sweeps.iter().rev().flat_map(|it| it.forms.iter().rev());
+        let mut pending: Vec<Expression> = forms.copied().collect();
         while let Some(current) = pending.pop() {
             if std::mem::replace(&mut seen[current.node()], true) {
                 continue;
@@ -292,7 +292,7 @@ impl Context<'_> {
     }
 
     /// Steps for slopes, all that does not change with the direction being there.
-    fn columns(&self, draft: &mut Draft, slopes: &Slopes, unchanging: &Unchanging) {
+    fn sweep(&self, draft: &mut Draft, slopes: &Slopes, unchanging: &Unchanging) {
         let common = Common {
             angles: BTreeMap::new(),
             early: Vec::new(),
@@ -301,17 +301,17 @@ impl Context<'_> {
         let outside = (draft.values.clone(), draft.solved.clone());
         let first = draft.routine.names.len();
         let before = std::mem::take(&mut draft.routine.steps);
-        for rate in &slopes.rates {
-            self.visit(draft, rate.magnitude(), false, &common);
+        for form in &slopes.forms {
+            self.visit(draft, form.magnitude(), false, &common);
         }
-        let columns = Columns {
-            directions: slopes.directions.clone(),
+        let sweep = Sweep {
+            coverage: slopes.coverage.clone(),
             first,
-            results: self.operands(draft, &slopes.rates),
+            results: self.operands(draft, &slopes.forms),
             steps: std::mem::replace(&mut draft.routine.steps, before),
         };
         (draft.values, draft.solved) = outside;
-        draft.routine.columns.push(columns);
+        draft.routine.sweeps.push(sweep);
     }
 
     /// Appends what the roots still need.

@@ -64,11 +64,11 @@ impl<'a> Signs<'a> {
             signs.read(step, made);
             value += step.results();
         }
-        for columns in &routine.columns {
-            columns.steps.iter().for_each(|step| signs.read(step, None));
+        for sweep in &routine.sweeps {
+            sweep.steps.iter().for_each(|step| signs.read(step, None));
         }
-        let of_columns = routine.columns.iter().flat_map(|it| &it.results);
-        for result in routine.results.iter().chain(of_columns) {
+        let of_sweeps = routine.sweeps.iter().flat_map(|it| &it.results);
+        for result in routine.results.iter().chain(of_sweeps) {
             signs.returned(*result);
         }
         signs
@@ -181,13 +181,13 @@ impl<'a> Signs<'a> {
             self.step(step, made)
         });
         let steps = steps.collect();
-        let columns = routine.columns.iter();
-        let columns = columns.map(|it| it.with(&|it| self.step(it, None), &|it| self.operand(it)));
+        let sweeps = routine.sweeps.iter();
+        let sweeps = sweeps.map(|it| it.with(&|it| self.step(it, None), &|it| self.operand(it)));
         Routine {
             steps,
             names: routine.names.clone(),
             results: routine.results.iter().map(|it| self.operand(*it)).collect(),
-            columns: columns.collect(),
+            sweeps: sweeps.collect(),
             repeats: Vec::new(),
         }
     }
@@ -229,7 +229,7 @@ mod tests {
             steps: steps.to_vec(),
             names: vec![String::new(); values],
             results: results.to_vec(),
-            columns: Vec::new(),
+            sweeps: Vec::new(),
             repeats: Vec::new(),
         }
     }

@@ -1,4 +1,4 @@
-//! Columns of a Jacobian in stretches: steps that only some of the variables change.
+//! Sweeps of a Jacobian in stretches: steps that only some of the directions change.
 //!
 //! What moves with the last joints of an arm does not move with the first. Steps come in the order of the last direction in
 //! which something changes them; operands stay before what reads them, since a step changes wherever its operands do.
@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Columns, Direction, Operand, Routine, Source, Step};
+use super::{Direction, Operand, Routine, Source, Step, Sweep};
 use crate::bits::Bits;
 use crate::symbolic::Symbol;
 
@@ -38,7 +38,7 @@ impl Stretch {
     }
 }
 
-impl Columns {
+impl Sweep {
     /// The stretches of the steps.
     #[must_use]
     pub fn stretches(&self) -> Vec<Stretch> {
@@ -63,8 +63,8 @@ impl Columns {
 
     /// The places of the directions in which each step changes. What is solved for counts as changing in all of them.
     pub(super) fn changes(&self) -> Vec<Bits> {
-        let changing = places(&self.directions);
-        let everywhere: Bits = (0..self.directions.len()).collect();
+        let changing = places(&self.coverage.directions);
+        let everywhere: Bits = (0..self.coverage.directions.len()).collect();
         let mut values: Vec<Bits> = Vec::new();
         let mut solved = Vec::new();
         let changes = self.steps.iter().map(|step| {
@@ -96,24 +96,24 @@ impl Columns {
     }
 }
 
-/// The place of the direction in which each variable changes.
+/// The place of the direction in which each variable changes, or each rate has a weight.
 fn places(directions: &[Direction]) -> BTreeMap<usize, usize> {
     let directions = directions.iter().enumerate();
-    let variables = directions
-        .flat_map(|(place, direction)| direction.iter().map(move |it| (it.variable, place)));
-    variables.collect()
+    let lines = directions
+        .flat_map(|(place, direction)| direction.iter().map(move |it| (it.number, place)));
+    lines.collect()
 }
 
-/// The routine with the steps of its columns in order of their stretches.
+/// The routine with the steps of its sweeps in order of their stretches.
 pub(super) fn by_stretches(routine: &Routine) -> Routine {
     let mut numbers: Vec<usize> = (0..routine.names.len()).collect();
-    let orders: Vec<Vec<usize>> = routine.columns.iter().map(order).collect();
-    for (columns, order) in routine.columns.iter().zip(&orders) {
-        let starts = super::starts(&columns.steps);
-        let mut new = columns.first;
+    let orders: Vec<Vec<usize>> = routine.sweeps.iter().map(order).collect();
+    for (sweep, order) in routine.sweeps.iter().zip(&orders) {
+        let starts = super::starts(&sweep.steps);
+        let mut new = sweep.first;
         for step in order {
             for old in starts[*step]..starts[step + 1] {
-                numbers[columns.first + old] = new;
+                numbers[sweep.first + old] = new;
                 new += 1;
             }
         }
@@ -124,25 +124,25 @@ pub(super) fn by_stretches(routine: &Routine) -> Routine {
     for (name, number) in routine.names.iter().zip(&numbers) {
         names[*number].clone_from(name);
     }
-    let columns = routine.columns.iter().zip(orders).map(|(columns, order)| {
-        let steps = order.iter().map(|step| with_numbers(&columns.steps[*step]));
-        Columns {
-            directions: columns.directions.clone(),
-            first: columns.first,
+    let sweeps = routine.sweeps.iter().zip(orders).map(|(sweep, order)| {
+        let steps = order.iter().map(|step| with_numbers(&sweep.steps[*step]));
+        Sweep {
+            coverage: sweep.coverage.clone(),
+            first: sweep.first,
             steps: steps.collect(),
-            results: columns.results.iter().copied().map(renumbered).collect(),
+            results: sweep.results.iter().copied().map(renumbered).collect(),
         }
     });
     Routine {
-        columns: columns.collect(),
+        sweeps: sweeps.collect(),
         names,
         ..routine.clone()
     }
 }
 
 /// The steps by the last direction in which they change.
-fn order(columns: &Columns) -> Vec<usize> {
-    let changes = columns.changes();
+fn order(sweep: &Sweep) -> Vec<usize> {
+    let changes = sweep.changes();
     let mut order: Vec<usize> = (0..changes.len()).collect();
     order.sort_by_key(|step| changes[*step].last());
     order
@@ -151,12 +151,12 @@ fn order(columns: &Columns) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::fixtures::{direction, slope, state, value};
+    use crate::program::fixtures::{coverage, slope, state, value};
 
-    /// Columns of steps that begin with value 0, in directions of one variable each.
-    fn columns(steps: Vec<Step>, directions: usize, results: Vec<Operand>) -> Columns {
-        Columns {
-            directions: (0..directions).map(direction).collect(),
+    /// A sweep of steps that begin with value 0, in directions of one variable each.
+    fn sweep(steps: Vec<Step>, directions: usize, results: Vec<Operand>) -> Sweep {
+        Sweep {
+            coverage: coverage(directions),
             first: 0,
             steps,
             results,
@@ -177,13 +177,13 @@ mod tests {
         ];
         let routine = Routine {
             names: ["b", "a", "sum", "turned"].map(str::to_owned).to_vec(),
-            columns: vec![columns(steps, 2, vec![value(2), value(3)])],
+            sweeps: vec![sweep(steps, 2, vec![value(2), value(3)])],
             ..Routine::default()
         };
         let found = by_stretches(&routine);
         assert_eq!(found.names, ["a", "turned", "b", "sum"]);
-        assert_eq!(found.columns[0].steps[3], Step::Add(value(2), value(0)));
-        assert_eq!(found.columns[0].results, [value(3), value(1)]);
+        assert_eq!(found.sweeps[0].steps[3], Step::Add(value(2), value(0)));
+        assert_eq!(found.sweeps[0].results, [value(3), value(1)]);
     }
 
     #[test]
@@ -194,7 +194,7 @@ mod tests {
         steps.extend((0..FEWEST).map(|it| Step::Multiply(slope(1), value(it))));
         steps.push(Step::Multiply(slope(2), state(0)));
         steps.push(Step::Multiply(slope(3), state(0)));
-        let stretches = columns(steps, 4, Vec::new()).stretches();
+        let stretches = sweep(steps, 4, Vec::new()).stretches();
         let lengths: Vec<usize> = stretches.iter().map(|it| it.steps).collect();
         assert_eq!(lengths, [FEWEST, FEWEST, 2]);
         let directions: Vec<_> = stretches.iter().map(places).collect();
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn places_beyond_the_bits_of_a_mask_share_them() {
         let steps = vec![Step::Multiply(slope(65), state(0))];
-        let stretches = columns(steps, 70, Vec::new()).stretches();
+        let stretches = sweep(steps, 70, Vec::new()).stretches();
         assert_eq!(stretches[0].mask(), 0b10);
     }
 }

@@ -66,7 +66,8 @@ pub enum Symbol {
     Time,
     /// An effort or flow inside the graph, by number, before it is solved for.
     Signal(usize),
-    /// How a state or input changes along a direction, by its place among those that vary.
+    /// How a state or input changes along a direction, by its place among those that vary; in a [sweep](crate::sweeps)
+    /// backwards the weight of a rate, by its place.
     Slope(usize),
     /// An effort or flow that an iteration finds, by number of the unknown; see [`Implicit`](super::Implicit).
     Unknown(usize),

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use mbg_compiler::program::{Columns, Operand, Program, Routine, Solver, Source, Step};
+use mbg_compiler::program::{Operand, Program, Routine, Solver, Source, Step, Sweep};
 use mbg_compiler::symbolic::{Function, Kind, Symbol};
 use mbg_runtime::{Dual, Real};
 
@@ -34,7 +34,7 @@ fn run(routine: &Routine, point: &Point, folded: &[Dual<f64>]) -> Vec<Dual<f64>>
     };
     machine.steps(&routine.steps);
     let mut results = machine.results(&routine.results);
-    results.extend(machine.jacobian(&routine.columns));
+    results.extend(machine.jacobian(&routine.sweeps));
     results
 }
 
@@ -43,7 +43,7 @@ struct Machine<'a> {
     point: &'a Point<'a>,
     folded: &'a [Dual<f64>],
     values: Vec<Dual<f64>>,
-    /// The variables that change.
+    /// The variables that change, or the rates with a weight.
     changing: Vec<usize>,
     /// Unknowns of solves.
     solved: BTreeMap<usize, Vec<Dual<f64>>>,
@@ -53,20 +53,24 @@ struct Machine<'a> {
 
 impl Machine<'_> {
     /// A Jacobian by rows.
-    fn jacobian(&self, columns: &[Columns]) -> Vec<Dual<f64>> {
-        let width: usize = columns.iter().map(Columns::width).sum();
-        let rows = columns.first().map_or(0, |it| it.results.len());
-        let mut entries = vec![Dual::constant(0.0); rows * width];
-        for group in columns {
-            for direction in &group.directions {
+    fn jacobian(&self, sweeps: &[Sweep]) -> Vec<Dual<f64>> {
+        let [rows, columns] = sweeps.first().map_or([0; 2], |it| it.coverage.size);
+        let mut entries = vec![Dual::constant(0.0); rows * columns];
+        for sweep in sweeps {
+            for unit in &sweep.coverage.units {
+                let one = if unit.negative { -1.0 } else { 1.0 };
+                entries[unit.row * columns + unit.column] = Dual::constant(one);
+            }
+            for direction in &sweep.coverage.directions {
                 let mut inner = self.clone();
-                inner.changing = direction.iter().map(|it| it.variable).collect();
-                inner.values.resize(group.first, Dual::constant(f64::NAN));
-                inner.steps(&group.steps);
-                let slopes = inner.results(&group.results);
-                for column in direction {
-                    for row in &column.rows {
-                        entries[row * width + column.variable] = slopes[*row];
+                inner.changing = direction.iter().map(|it| it.number).collect();
+                inner.values.resize(sweep.first, Dual::constant(f64::NAN));
+                inner.steps(&sweep.steps);
+                let slopes = inner.results(&sweep.results);
+                for line in direction {
+                    for entry in &line.entries {
+                        let (row, column) = sweep.coverage.place(line, *entry);
+                        entries[row * columns + column] = slopes[*entry];
                     }
                 }
             }

@@ -10,7 +10,7 @@ mod distribute;
 use rustc_hash::FxHashMap;
 
 use self::distribute::{Factors, factors};
-use super::{Columns, Operand, Routine, Source, Step, latency, read};
+use super::{Operand, Routine, Source, Step, Sweep, latency, read};
 use crate::symbolic::Symbol;
 
 /// The routine with sums and products reordered.
@@ -27,11 +27,11 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
     order.count(routine);
     let steps = order.list(&routine.steps, 0);
     let there = order.products.clone();
-    let columns = routine.columns.iter().map(|columns| {
+    let sweeps = routine.sweeps.iter().map(|sweep| {
         order.products.clone_from(&there);
-        order.list(&columns.steps, columns.first)
+        order.list(&sweep.steps, sweep.first)
     });
-    let columns: Vec<Vec<Numbered>> = columns.collect();
+    let sweeps: Vec<Vec<Numbered>> = sweeps.collect();
     let mut numbers = Numbers {
         new: vec![0; order.uses.len()],
         names: Vec::new(),
@@ -39,20 +39,20 @@ pub(super) fn reorder(routine: &Routine) -> Routine {
     };
     let steps = numbers.steps(steps, &order, &routine.names);
     let common = numbers.made.clone();
-    let columns = routine.columns.iter().zip(columns).map(|(columns, steps)| {
+    let sweeps = routine.sweeps.iter().zip(sweeps).map(|(sweep, steps)| {
         let first = numbers.names.len();
         numbers.made.clone_from(&common);
-        Columns {
+        Sweep {
             first,
             steps: numbers.steps(steps, &order, &routine.names),
-            results: numbers.operands(&columns.results),
-            directions: columns.directions.clone(),
+            results: numbers.operands(&sweep.results),
+            coverage: sweep.coverage.clone(),
         }
     });
-    let columns = columns.collect();
+    let sweeps = sweeps.collect();
     Routine {
         steps,
-        columns,
+        sweeps,
         results: numbers.operands(&routine.results),
         names: numbers.names,
         repeats: Vec::new(),
@@ -357,7 +357,7 @@ impl Numbers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::fixtures::{negative, state, value};
+    use crate::program::fixtures::{coverage, negative, state, value};
 
     fn ordered(steps: &[Step]) -> Vec<Step> {
         let values: usize = steps.iter().map(Step::results).sum();
@@ -365,7 +365,7 @@ mod tests {
             steps: steps.to_vec(),
             names: vec![String::new(); values],
             results: vec![value(values - 1)],
-            columns: Vec::new(),
+            sweeps: Vec::new(),
             repeats: Vec::new(),
         };
         reorder(&routine).steps
@@ -465,16 +465,16 @@ mod tests {
             steps: steps.to_vec(),
             names: vec![String::new(); 5],
             results: vec![value(1), value(4)],
-            columns: Vec::new(),
+            sweeps: Vec::new(),
             repeats: Vec::new(),
         };
         assert_eq!(reorder(&routine).steps, steps);
     }
 
     #[test]
-    fn columns_take_no_product_of_other_columns() {
-        let columns = |first: usize, steps: &[Step]| Columns {
-            directions: Vec::new(),
+    fn sweeps_take_no_product_of_other_sweeps() {
+        let sweep = |first: usize, steps: &[Step]| Sweep {
+            coverage: coverage(0),
             first,
             steps: steps.to_vec(),
             results: vec![value(first + steps.len() - 1)],
@@ -493,10 +493,10 @@ mod tests {
             steps: vec![Step::Sine(state(2))],
             names: vec![String::new(); 7],
             results: vec![value(0)],
-            columns: vec![columns(1, &first), columns(3, &second)],
+            sweeps: vec![sweep(1, &first), sweep(3, &second)],
             repeats: Vec::new(),
         };
-        assert_eq!(reorder(&routine).columns[1].steps, second);
+        assert_eq!(reorder(&routine).sweeps[1].steps, second);
     }
 
     #[test]

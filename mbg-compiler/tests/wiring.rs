@@ -206,3 +206,53 @@ fn an_element_without_a_bond_is_told_with_its_bond() {
       help: an element with two ports stands between two arrows: `… -> MTF g { flow: 2.0 } -> …;`
     ");
 }
+
+/// `a.k` for `a[k]`, and indices where nothing has one.
+#[test]
+fn components_by_number_are_told_in_brackets() {
+    let law = |law: &str| {
+        format!(
+            "component Load(port 1 at) {{ let x = 2.0; at -> R r {{ resistance: x }}; }}
+             model M {{ param c[3] = [1.0, 2.0, 3.0]; let k = 1; 1 a[3] {{ I m {{ inertia: 1.0 }} }} load: Load (a.x);
+             cells: for i in 0..3 {{ let y = 1.0; a[i] -> R r {{ resistance: c[i] * y }}; }} output o =\n{law}; }}"
+        )
+    };
+    for (slip, written) in [
+        ("c.k", "c[k]"),
+        ("c.1", "c[1]"),
+        ("a.f.k", "a.f[k]"),
+        ("a.k.f", "a.f[k]"),
+        ("m.k.p", "m.p[k]"),
+        ("m[1].p", "m.p[1]"),
+        ("load[0].x", "load.x"),
+    ] {
+        assert_eq!(typed(&law(slip)), [written]);
+        assert_eq!(told(&law(written)), "", "{written}");
+    }
+    insta::assert_snapshot!(told(&law("load[0]")), @"
+    4:1 `load` is an instance, which has no value of its own [MBG0213]
+      help: of `load` can be read `x`, `r.e`
+    ");
+    insta::assert_snapshot!(told(&law("cells.k.y")), @"4:1 `cells` is a loop; write `cells[k]` [MBG0203]");
+    assert_eq!(told(&law("cells[k].y")), "");
+    let loops = |bond: &str| {
+        format!("model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }} for k in 0..3 {{ {bond} }} }}")
+    };
+    assert_eq!(typed(&loops("a.k -> R r { resistance: 1.0 };")), ["a[k]"]);
+    assert_eq!(told(&loops("a[k] -> R r { resistance: 1.0 };")), "");
+}
+
+/// What is read of iterations whose number is not known follows from that.
+#[test]
+fn a_loop_over_a_parameter_is_told_alone() {
+    let text = |number: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} {number}\ncells: for k in 0..n {{ 1 b {{ I i {{ inertia: 1.0 }} C c {{ stiffness: 1.0 }} }} }}
+             a -> cells[0].b; output o = cells[1].c.q; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("param n = 3.0;")), @"
+    2:20 expected a whole number that is known while the model is compiled, found `n` [MBG0217]
+      help: a `param` of a model can change after the model is compiled: declare `let n = 3;` in its place
+    ");
+}

@@ -560,3 +560,46 @@ fn attributes_of_rust_are_told_with_where_they_stand() {
       help: it stands on a module around the call: `#[allow(dead_code)] mod models { … mbg! { … } }`
     ");
 }
+
+/// Laws are equations elsewhere, and states are declared.
+#[test]
+fn equations_are_told_as_laws() {
+    let text = |element: &str| {
+        format!(
+            "model M {{ param a = 2.0; param b = 3.0; 1 v {{ I m {{ inertia: a }} R d {{ resistance: b }} {element} }} }}"
+        )
+    };
+    for (slip, written) in [
+        ("R r { 0 = e - a * f }", "effort: a * f"),
+        (
+            "R r { e - a * f - b * powi(f, 3) = 0.0 }",
+            "effort: a * f + b * powi(f, 3)",
+        ),
+        ("R r { e == -a * f }", "effort: -a * f"),
+        ("R r { a * tanh(e) - f - b = 0; }", "flow: a * tanh(e) - b"),
+        ("R r { effort = a * f }", "effort: a * f"),
+        ("R r { e: a * f }", "effort: a * f"),
+        ("C c { e = b * q }", "effort: b * q"),
+        ("C c { stiffness: b, state q = 1.0 }", "initial: 1.0"),
+        ("I i { f = p / a }", "flow: p / a"),
+    ] {
+        let texts = typed(&text(slip));
+        assert!(texts.contains(&written.to_owned()), "{slip}: {texts:?}");
+    }
+    insta::assert_snapshot!(told(&text("R r { 0 = e - a * f }")), @"
+    1:94 expected a word of `R r`, found `0` [MBG0101]
+      help: a law gives the effort: write `effort: a * f`
+    ");
+    insta::assert_snapshot!(told(&text("R r { e * f = a }")), @"
+    1:96 expected `:`, `,` or `}` after `e`, found `*` [MBG0101]
+      help: a law is no equation, but gives one variable: write `effort: …` in `f` or `flow: …` in `e`
+    ");
+    insta::assert_snapshot!(told(&text("C c { der(q) = f; stiffness: b }")), @"
+    1:97 expected `:`, `,` or `}` after `der`, found `(` [MBG0101]
+      help: how `q` changes is known of the element: leave this out
+    ");
+    insta::assert_snapshot!(told(&text("} state charge: C = 1.0; 1 w { I i { inertia: 1.0 } ")), @"
+    1:90 expected a statement, found `state` [MBG0101]
+      help: storages have states of their own, which begin with `initial: 1.0` in their braces; another is an integral: `integral charge: C = …, initial: 1.0;`
+    ");
+}

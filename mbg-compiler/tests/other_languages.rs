@@ -603,3 +603,52 @@ fn equations_are_told_as_laws() {
       help: storages have states of their own, which begin with `initial: 1.0` in their braces; another is an integral: `integral charge: C = …, initial: 1.0;`
     ");
 }
+
+/// Components of other tools are told by their words, and else by what is spelled alike.
+#[test]
+fn unknown_components_are_told_by_the_nearest() {
+    let text = |component: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }} part:\n{component} (a, b); }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("BoxBody")), @"
+    2:1 component `BoxBody` is not declared [MBG0203]
+      help: the library has `Body`, `PlanarBody`, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Valv")), @"
+    2:1 component `Valv` is not declared [MBG0203]
+      help: the library has `Orifice`, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Resistance")), @"
+    2:1 component `Resistance` is not declared [MBG0203]
+      help: the library has `Resistor`, `HeatSource`, `Orifice`, `Prismatic`, `Rack`, `Revolute`, `Bearing`, `Bearings` and 43 more, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Gyrator")), @"
+    2:1 component `Gyrator` is not declared [MBG0203]
+      help: here it is written `a -> GY part { effort: … } -> b;`
+    ");
+}
+
+/// A vector is two parameters in a plane, and two parameters are a vector in space.
+#[test]
+fn vectors_are_told_as_the_component_takes_them() {
+    let planar = |arguments: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[3]; 1 rod[3]; 1 end[3]; Sf fixed[3] {{ flow: 0.0 }} -> ground;
+             hinge: PlanarRevolute (ground, rod); arm: PlanarOffset {{ {arguments} }} (rod, end);
+             bob: PlanarPointMass {{ mass: 2.0 }} (end); }}"
+        )
+    };
+    assert_eq!(typed(&planar("by: [0.0, -0.5]")), ["x: 0.0, y: -0.5"]);
+    assert_eq!(told(&planar("x: 0.0, y: -0.5")), "");
+    let spatial = |arguments: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 rod[6]; 1 end[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             hinge: Revolute {{ axis: 1 }} (ground, rod); arm: Offset {{ {arguments} }} (rod, end);
+             bob: PointMass {{ mass: 2.0 }} (end); }}"
+        )
+    };
+    assert_eq!(typed(&spatial("x: 0.1, z: -0.5")), ["by: [0.1, 0.0, -0.5]"]);
+    assert_eq!(told(&spatial("by: [0.1, 0.0, -0.5]")), "");
+}

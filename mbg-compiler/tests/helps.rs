@@ -729,3 +729,40 @@ fn matrices_of_two_ports_are_transposed() {
         .is_empty()
     );
 }
+
+#[test]
+fn sources_that_are_given_together_are_added() {
+    let text =
+        |junction: &str| format!("model M {{ {junction} 1 b {{ I n {{ inertia: 1.0 }} }} }}");
+    for (together, added) in [
+        (
+            "1 a { Sf one { flow: 1.0 } Sf two { flow: 2.0 } R r { resistance: 1.0 } }",
+            "0 sum { Sf one { flow: … } Sf two { flow: … } } sum -> a;",
+        ),
+        (
+            "0 a[2] { Se one { effort: 1.0 } Se two { effort: 2.0 } R r { resistance: 1.0 } }",
+            "1 sum[2] { Se one { effort: … } Se two { effort: … } } sum -> a;",
+        ),
+    ] {
+        let found = helps(&text(together), codes::SOURCES_CONFLICT);
+        assert_eq!(
+            found,
+            [
+                "remove one of `one`, `two`".to_owned(),
+                format!(
+                    "where their {} add up: `{added}`",
+                    if added.starts_with('0') {
+                        "flows"
+                    } else {
+                        "efforts"
+                    }
+                )
+            ]
+        );
+        let (junction, _) = together.split_once('{').unwrap();
+        compiles(&text(&format!(
+            "{junction} {{ R r {{ resistance: 1.0 }} }} {}",
+            added.replace('…', "1.0")
+        )));
+    }
+}

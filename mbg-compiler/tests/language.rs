@@ -442,8 +442,7 @@ fn mistakes_in_loops_are_told() {
     ");
     insta::assert_snapshot!(mistake("for k in 0..n { 1 b; }"), @"
     2:13 expected a whole number that is known while the model is compiled, found `n` [MBG0217]
-      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
-      help: a `param` of a model is no such number, because it can change after the model is compiled
+      help: a `param` of a model can change after the model is compiled: declare `let n = 3;` in its place
     ");
     insta::assert_snapshot!(mistake("for k in 0..2.0 { 1 b; }"), @"
     2:13 expected a whole number that is known while the model is compiled, found `2.0` [MBG0217]

@@ -560,3 +560,95 @@ fn attributes_of_rust_are_told_with_where_they_stand() {
       help: it stands on a module around the call: `#[allow(dead_code)] mod models { … mbg! { … } }`
     ");
 }
+
+/// Laws are equations elsewhere, and states are declared.
+#[test]
+fn equations_are_told_as_laws() {
+    let text = |element: &str| {
+        format!(
+            "model M {{ param a = 2.0; param b = 3.0; 1 v {{ I m {{ inertia: a }} R d {{ resistance: b }} {element} }} }}"
+        )
+    };
+    for (slip, written) in [
+        ("R r { 0 = e - a * f }", "effort: a * f"),
+        (
+            "R r { e - a * f - b * powi(f, 3) = 0.0 }",
+            "effort: a * f + b * powi(f, 3)",
+        ),
+        ("R r { e == -a * f }", "effort: -a * f"),
+        ("R r { a * tanh(e) - f - b = 0; }", "flow: a * tanh(e) - b"),
+        ("R r { effort = a * f }", "effort: a * f"),
+        ("R r { e: a * f }", "effort: a * f"),
+        ("C c { e = b * q }", "effort: b * q"),
+        ("C c { stiffness: b, state q = 1.0 }", "initial: 1.0"),
+        ("I i { f = p / a }", "flow: p / a"),
+    ] {
+        let texts = typed(&text(slip));
+        assert!(texts.contains(&written.to_owned()), "{slip}: {texts:?}");
+    }
+    insta::assert_snapshot!(told(&text("R r { 0 = e - a * f }")), @"
+    1:94 expected a word of `R r`, found `0` [MBG0101]
+      help: a law gives the effort: write `effort: a * f`
+    ");
+    insta::assert_snapshot!(told(&text("R r { e * f = a }")), @"
+    1:96 expected `:`, `,` or `}` after `e`, found `*` [MBG0101]
+      help: a law is no equation, but gives one variable: write `effort: …` in `f` or `flow: …` in `e`
+    ");
+    insta::assert_snapshot!(told(&text("C c { der(q) = f; stiffness: b }")), @"
+    1:97 expected `:`, `,` or `}` after `der`, found `(` [MBG0101]
+      help: how `q` changes is known of the element: leave this out
+    ");
+    insta::assert_snapshot!(told(&text("} state charge: C = 1.0; 1 w { I i { inertia: 1.0 } ")), @"
+    1:90 expected a statement, found `state` [MBG0101]
+      help: storages have states of their own, which begin with `initial: 1.0` in their braces; another is an integral: `integral charge: C = …, initial: 1.0;`
+    ");
+}
+
+/// Components of other tools are told by their words, and else by what is spelled alike.
+#[test]
+fn unknown_components_are_told_by_the_nearest() {
+    let text = |component: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }} part:\n{component} (a, b); }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("BoxBody")), @"
+    2:1 component `BoxBody` is not declared [MBG0203]
+      help: the library has `Body`, `PlanarBody`, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Valv")), @"
+    2:1 component `Valv` is not declared [MBG0203]
+      help: the library has `Orifice`, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Resistance")), @"
+    2:1 component `Resistance` is not declared [MBG0203]
+      help: the library has `Resistor`, `HeatSource`, `Orifice`, `Prismatic`, `Rack`, `Revolute`, `Bearing`, `Bearings` and 43 more, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Gyrator")), @"
+    2:1 component `Gyrator` is not declared [MBG0203]
+      help: here it is written `a -> GY part { effort: … } -> b;`
+    ");
+}
+
+/// A vector is two parameters in a plane, and two parameters are a vector in space.
+#[test]
+fn vectors_are_told_as_the_component_takes_them() {
+    let planar = |arguments: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[3]; 1 rod[3]; 1 end[3]; Sf fixed[3] {{ flow: 0.0 }} -> ground;
+             hinge: PlanarRevolute (ground, rod); arm: PlanarOffset {{ {arguments} }} (rod, end);
+             bob: PlanarPointMass {{ mass: 2.0 }} (end); }}"
+        )
+    };
+    assert_eq!(typed(&planar("by: [0.0, -0.5]")), ["x: 0.0, y: -0.5"]);
+    assert_eq!(told(&planar("x: 0.0, y: -0.5")), "");
+    let spatial = |arguments: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 rod[6]; 1 end[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             hinge: Revolute {{ axis: 1 }} (ground, rod); arm: Offset {{ {arguments} }} (rod, end);
+             bob: PointMass {{ mass: 2.0 }} (end); }}"
+        )
+    };
+    assert_eq!(typed(&spatial("x: 0.1, z: -0.5")), ["by: [0.1, 0.0, -0.5]"]);
+    assert_eq!(told(&spatial("by: [0.1, 0.0, -0.5]")), "");
+}

@@ -284,8 +284,7 @@ fn remainders_and_whole_parts_in_laws_are_told_to_jump() {
     // Of what stays the same, another cause is told.
     insta::assert_snapshot!(told(&text("n % 2")), @"
     2:16 expected a whole number that is known while the model is compiled, found `n % 2` [MBG0217]
-      help: it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers
-      help: a `param` of a model is no such number, because it can change after the model is compiled
+      help: a `param` of a model can change after the model is compiled: declare `let n = 2;` in its place
     ");
 }
 

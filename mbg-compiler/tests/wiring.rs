@@ -18,8 +18,14 @@ fn mistakes_at_ports_are_told() {
     3:124 `air` is an element, `R`, and a port takes a junction [MBG0208]
       help: write `a`, its junction
     ");
-    insta::assert_snapshot!(told("tie: Tie (a);"), @"3:114 `Tie` has the ports `left[3]`, `right`, found 1 junction [MBG0208]");
-    insta::assert_snapshot!(told("stop: Stop (b, b);"), @"3:114 `Stop` has the port `at`, found 2 junctions [MBG0208]");
+    insta::assert_snapshot!(told("tie: Tie (a);"), @"
+    3:114 `Tie` has the ports `left[3]`, `right`, found 1 junction [MBG0208]
+      help: write `tie: Tie (a, …);`
+    ");
+    insta::assert_snapshot!(told("stop: Stop (b, b);"), @"
+    3:114 `Stop` has the port `at`, found 2 junctions [MBG0208]
+      help: write `stop: Stop (at);`
+    ");
     insta::assert_snapshot!(told("tie: Tie (a.x, b);"), @"3:124 port `left` has dimension 3, and `a.x` has 1 [MBG0204]");
     assert_eq!(told("tie: Tie (a, b);"), "");
 }
@@ -95,7 +101,10 @@ fn names_and_junctions_read_wrongly_are_told_with_what_to_write() {
     insta::assert_snapshot!(told(
         "model M { 0 a { C c { compliance: 1.0 } } 1 shaft { I i { inertia: 1.0 } }
          motor: DcMotor { resistance: 1.0, inductance: 1e-3, constant: 0.1, inertia: 1e-3 } (a, shaft); }"
-    ), @"2:10 `DcMotor` has the ports `a`, `b`, `shaft`, found 2 junctions [MBG0208]");
+    ), @"
+    2:10 `DcMotor` has the ports `a`, `b`, `shaft`, found 2 junctions [MBG0208]
+      help: write `motor: DcMotor { … } (a, …, shaft);` with a junction `0 b`
+    ");
 }
 
 /// A velocity that reaches a frame directly and by a junction between, whose bonds have no names.
@@ -204,5 +213,83 @@ fn an_element_without_a_bond_is_told_with_its_bond() {
     insta::assert_snapshot!(told(&model("MTF g { flow: 2.0 }")), @"
     3:19 expected `->` after `}`, found the end of the braces [MBG0101]
       help: an element with two ports stands between two arrows: `… -> MTF g { flow: 2.0 } -> …;`
+    ");
+}
+
+/// Junctions in another order than the ports are told once, with the order in which all of them fit.
+#[test]
+fn junctions_in_another_order_are_told_in_order() {
+    let text = |junctions: &str| {
+        format!(
+            "model M {{ input u; 0 supply {{ Se s {{ effort: u }} }} 0 ground {{ Se z {{ effort: 0.0 }} }}
+             1 shaft {{ R load {{ resistance: 0.01 }} }}
+             motor: DcMotor {{ resistance: 1.0, inductance: 1e-3, constant: 0.1, inertia: 1e-4 }}\n({junctions});
+             output speed = shaft.f; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("shaft, supply, ground")), @"
+    4:2 port `a` takes a 0-junction, whose effort is common, and `shaft` is a 1-junction [MBG0222]
+      help: write `motor: DcMotor { … } (supply, ground, shaft);`
+    ");
+    assert_eq!(told(&text("supply, ground, shaft")), "");
+    // What fits nowhere is told by itself, and what is missing with its kind.
+    insta::assert_snapshot!(told(&text("supply, shaft, shaft")), @"
+    4:10 port `b` takes a 0-junction, whose effort is common, and `shaft` is a 1-junction [MBG0222]
+      help: declare it as `0 shaft`
+      help: if its flow is common indeed, put one between: `0 b_motor; shaft -> b_motor;`, and give `b_motor`
+    ");
+    insta::assert_snapshot!(told(&text("shaft, shaft")), @"
+    3:14 `DcMotor` has the ports `a`, `b`, `shaft`, found 2 junctions [MBG0208]
+      help: write `motor: DcMotor { … } (a, b, shaft);` with junctions `0 a`, `0 b`, `1 shaft`
+    ");
+}
+
+/// `a.k` for `a[k]`, and indices where nothing has one.
+#[test]
+fn components_by_number_are_told_in_brackets() {
+    let law = |law: &str| {
+        format!(
+            "component Load(port 1 at) {{ let x = 2.0; at -> R r {{ resistance: x }}; }}
+             model M {{ param c[3] = [1.0, 2.0, 3.0]; let k = 1; 1 a[3] {{ I m {{ inertia: 1.0 }} }} load: Load (a.x);
+             cells: for i in 0..3 {{ let y = 1.0; a[i] -> R r {{ resistance: c[i] * y }}; }} output o =\n{law}; }}"
+        )
+    };
+    for (slip, written) in [
+        ("c.k", "c[k]"),
+        ("c.1", "c[1]"),
+        ("a.f.k", "a.f[k]"),
+        ("a.k.f", "a.f[k]"),
+        ("m.k.p", "m.p[k]"),
+        ("m[1].p", "m.p[1]"),
+        ("load[0].x", "load.x"),
+    ] {
+        assert_eq!(typed(&law(slip)), [written]);
+        assert_eq!(told(&law(written)), "", "{written}");
+    }
+    insta::assert_snapshot!(told(&law("load[0]")), @"
+    4:1 `load` is an instance, which has no value of its own [MBG0213]
+      help: of `load` can be read `x`, `r.e`
+    ");
+    insta::assert_snapshot!(told(&law("cells.k.y")), @"4:1 `cells` is a loop; write `cells[k]` [MBG0203]");
+    assert_eq!(told(&law("cells[k].y")), "");
+    let loops = |bond: &str| {
+        format!("model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }} for k in 0..3 {{ {bond} }} }}")
+    };
+    assert_eq!(typed(&loops("a.k -> R r { resistance: 1.0 };")), ["a[k]"]);
+    assert_eq!(told(&loops("a[k] -> R r { resistance: 1.0 };")), "");
+}
+
+/// What is read of iterations whose number is not known follows from that.
+#[test]
+fn a_loop_over_a_parameter_is_told_alone() {
+    let text = |number: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} {number}\ncells: for k in 0..n {{ 1 b {{ I i {{ inertia: 1.0 }} C c {{ stiffness: 1.0 }} }} }}
+             a -> cells[0].b; output o = cells[1].c.q; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("param n = 3.0;")), @"
+    2:20 expected a whole number that is known while the model is compiled, found `n` [MBG0217]
+      help: a `param` of a model can change after the model is compiled: declare `let n = 3;` in its place
     ");
 }

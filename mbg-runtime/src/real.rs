@@ -129,6 +129,7 @@ pub trait Real:
     fn root_of(self, _residual: impl FnMut(Self) -> Self) -> Self {
         self
     }
-    /// `yes` where `self < bound`, else `no`.
+    /// `yes` where `self < bound`, else `no`: one of the two in each lane. Of a scalar that gives what is between them where
+    /// a comparison is not decided, such as an interval, nonlinear loops are not solved.
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self;
 }

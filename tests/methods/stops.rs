@@ -17,6 +17,19 @@ mbg! {
 }
 
 mbg! {
+    /// A flux of a magnet, whose current a diode blocks at the start.
+    model Blocked {
+        input voltage: V;
+        1 wire {
+            Se source { effort: voltage }
+            I coil { flow: (p - 1.0) / 1.0, initial: 1.0 - 1e-9 }
+            R diode { effort: if f < 0.0 { 1e9 * f } else { 1.0 * f } }
+        }
+        output flux: Wb = coil.p;
+    }
+}
+
+mbg! {
     /// A skate at a speed of 10 m/s along itself. Where it has turned by a right angle its states say no more how it slides.
     #[derivative]
     model Skate {
@@ -286,5 +299,22 @@ fn a_step_over_a_singular_set_is_told() {
             stopped.to_string().contains("over its singular set"),
             "{stopped}"
         );
+    }
+}
+
+/// By the slope at the start each sweep is 2e-9 long, of 0.1: what it leaves tells so, and a shorter step is asked for.
+#[test]
+fn sweeps_that_get_nowhere_find_no_stage() {
+    let model = Blocked::new(BlockedParameters::default()).unwrap();
+    let voltage = Constant(SVector::from([1.0]));
+    for sweeps in [2, 3, 10] {
+        let mut end = model.initial_state();
+        let method = ImplicitMidpoint { sweeps };
+        let run = Fixed::new(method, 0.1).integrate(&model, &voltage, 0.0, 1.0, end, |step| {
+            end = *step.state();
+        });
+        assert!(run.unwrap().steps > 10, "{sweeps}");
+        let error = end[0] - 1.0 - (1.0 - f64::exp(-1.0));
+        assert!(error.abs() < 1e-2, "{sweeps}: {error}");
     }
 }

@@ -10,7 +10,7 @@ use super::report::{
     COMPONENTWISE, JACOBIAN, alternatives, may_be_rewritten, own_steps, resistor_help,
 };
 use super::strokes::Site;
-use super::ways::{Between, hold, through, turned};
+use super::ways::{Between, hold, summed, through, turned};
 use super::words;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
@@ -164,6 +164,9 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         }
         _ => format!("attach a resistor that can give the flow: `{place} -> R damper {{ conductance: … }};`"),
     }));
+    if conflict.code == codes::SOURCES_CONFLICT {
+        helps.extend(summed(graph, &elements));
+    }
     if conflict.code == codes::RECTANGULAR_INVERSE {
         helps.extend(elements.iter().find_map(|id| turned(graph, *id)));
     }

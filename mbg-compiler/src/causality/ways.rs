@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use crate::graph::{BondGraph, ElementId, End, JunctionId, JunctionKind, Law, Rule, declaration};
+use crate::graph::{
+    Bond, BondGraph, ElementId, End, JunctionId, JunctionKind, Law, Rule, declaration,
+};
 use crate::symbolic::Expression;
 
 use super::words;
@@ -33,22 +35,58 @@ pub fn through(graph: &BondGraph, id: ElementId, between: Between) -> Option<Str
         (Between::Storage, Rule::FlowOut) => ("spring", "C spring { stiffness: … }"),
         (Between::Storage, _) => ("mass", "I mass { inertia: … }"),
     };
-    let own = End::OnePort(id);
-    let mut bonds = graph.bonds.iter();
-    let bond = bonds.find(|it| it.from == own || it.to == own)?;
-    let far = if bond.from == own {
-        &bond.to
-    } else {
-        &bond.from
-    };
+    let (far, dimension) = beside(graph, id)?;
     let place = graph.end_name(far);
-    let driven = declaration(outer, "driven", bond.dimension);
-    let between = declaration(inner, "between", bond.dimension);
+    let driven = declaration(outer, "driven", dimension);
+    let between = declaration(inner, "between", dimension);
     let name = &element.name;
     Some(format!(
         "remove `{name}`, or let it act through a {word}: bond it to `{driven};` and write \
          `{between} {{ {store} }} driven -> between; between -> {place};`"
     ))
+}
+
+/// How two sources of the user's at one junction, which impose the same on it, are added up.
+#[must_use]
+pub fn summed(graph: &BondGraph, sources: &[ElementId]) -> Option<String> {
+    let [first, second] = sources else {
+        return None;
+    };
+    let (place, dimension) = beside(graph, *first)?;
+    if beside(graph, *second)? != (place, dimension) {
+        return None;
+    }
+    let elements = [first, second].map(|id| &graph.elements[id.0]);
+    let (kind, word) = match elements.map(|element| element.rule) {
+        [Rule::FlowOut, Rule::FlowOut] => (JunctionKind::Zero, "flow"),
+        [Rule::EffortOut, Rule::EffortOut] => (JunctionKind::One, "effort"),
+        _ => return None,
+    };
+    if elements.iter().any(|element| element.instance().is_some()) {
+        return None;
+    }
+    let sum = declaration(kind, &free_name(graph, "sum"), dimension);
+    let written = elements.map(|element| {
+        let (symbol, name) = (words::symbol(element.kind), &element.name);
+        format!("{symbol} {name} {{ {word}: … }}")
+    });
+    Some(format!(
+        "where their {word}s add up: `{sum} {{ {} }} {} -> {};`",
+        written.join(" "),
+        free_name(graph, "sum"),
+        graph.end_name(place)
+    ))
+}
+
+/// Where the bond of a one-port leads, and its dimension.
+fn beside(graph: &BondGraph, id: ElementId) -> Option<(&End, usize)> {
+    let own = End::OnePort(id);
+    let mut bonds = graph.bonds.iter();
+    bonds.find_map(|bond| match bond {
+        Bond { from, to, .. } if *from == own => Some((to, bond.dimension)),
+        Bond { from, to, .. } if *to == own => Some((from, bond.dimension)),
+        _ => None,
+    })
 }
 
 /// How a transformer without an inverse is written whose matrix was meant for the efforts.

@@ -1,11 +1,12 @@
 //! What to write for a path that leads nowhere.
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 
-use super::expressions::{Index, Names, Step};
+use super::expressions::{Index, Names, Result, Step, Value};
 use super::indices::component_index;
 use super::scope::{Entity, Lookup};
-use crate::diagnostics::listing;
+use crate::codes;
+use crate::diagnostics::{error, listing};
 use crate::graph::{ElementId, ElementKind, End, JunctionId, JunctionKind};
 use crate::symbolic::Pool;
 use crate::syntax::words::nearest;
@@ -13,11 +14,16 @@ use crate::syntax::words::nearest;
 impl Lookup<'_, '_> {
     /// A help for a path without a value, if there is one.
     pub(super) fn advice_on(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
+        if let Some(text) = self.with_brackets(pool, path) {
+            return Some(format!("write `{text}`"));
+        }
         match self.scopes.follow(self.scope, path) {
             Ok(Some((Entity::Junction(id, _), count))) => {
                 let id = *id;
                 self.at_junction(pool, path, count, id)
             }
+            Ok(Some((Entity::Element(_), count))) => self.behind_index(pool, path, count, true),
+            Ok(Some((Entity::Instance(_), count))) => self.behind_index(pool, path, count, false),
             Ok(None) => {
                 let in_loop = self.scopes.in_loop(self.scope, path);
                 let known = in_loop.or_else(|| self.in_instance(path));
@@ -34,6 +40,49 @@ impl Lookup<'_, '_> {
         Some(format!(
             "`{name}` is an output, which nothing in the model reads: declare its value besides, `{declared}`, or write `{value}`"
         ))
+    }
+
+    /// `hub.f[k]` for `hub.f.k` or `hub.k.f`, where `k` is a whole number.
+    fn with_brackets(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
+        let constants = &self.scopes[self.scope].constants;
+        let is_number = |step: &Step| step.index.is_none() && constants.named(&step.name).is_some();
+        let place = (1..path.len()).rev().find(|at| is_number(&path[*at]))?;
+        let vector = [&path[..place], &path[place + 1..]].concat();
+        let is_vector =
+            matches!(self.value(pool, &vector), Some(Ok(Value::Matrix(it))) if it.columns() == 1);
+        is_vector.then(|| format!("{}[{}]", text(&vector), path[place].name))
+    }
+
+    /// `mass.f[1]` for `mass[1].f`, of an element, and `arm.angle` for `arm[1].angle`, of an instance, which has no components.
+    fn behind_index(
+        &mut self,
+        pool: &mut Pool,
+        path: &[Step],
+        count: usize,
+        has_components: bool,
+    ) -> Option<String> {
+        let mut plain = path.to_vec();
+        let index = plain[count - 1].index.take()?.number;
+        let text = self.read(pool, &plain)?;
+        Some(match has_components {
+            true => format!("write `{text}[{index}]`"),
+            false => format!("write `{text}`: an instance has no index"),
+        })
+    }
+
+    /// An instance in the place of a value.
+    pub(super) fn no_value_of<T>(&self, inner: usize, path: &[Step]) -> Result<T> {
+        let instance = text(path);
+        let message = format!("`{instance}` is an instance, which has no value of its own");
+        let span = path
+            .last()
+            .map_or_else(Span::call_site, |step| step.name.span());
+        let report = error(codes::EXPRESSION, span, message);
+        let known = self.readable(inner);
+        Err(Box::new(match known.is_empty() {
+            true => report,
+            false => report.help(format!("of `{instance}` can be read {}", listing(known))),
+        }))
     }
 
     /// `hub.x.f`, `hub[1].f`, `hub.spring.q` or `hub.q`, of a junction that is found after `count` steps.

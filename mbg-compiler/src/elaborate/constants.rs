@@ -10,7 +10,8 @@ use syn::spanned::Spanned;
 use syn::{BinOp, Block, Expr, Lit, Stmt, UnOp};
 
 use super::elsewhere;
-use super::expressions::Result;
+use super::expressions::{Result, Step};
+use super::mentions::mentioned;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::syntax::ast::{Choice, Component, Conditional, Instance, Loop, Statement};
@@ -25,6 +26,8 @@ pub(super) struct Constants {
     pub(super) chosen: BTreeMap<String, Chosen>,
     /// The other parameters of a component, and whether the call gives them.
     pub(super) given: BTreeMap<String, bool>,
+    /// Parameters of the model that are a whole number unless a run changes them.
+    changing: BTreeMap<String, i64>,
 }
 
 /// The value of a parameter that is a word.
@@ -47,6 +50,7 @@ impl Constants {
                 constants.chosen.insert(name, chosen(choice, None));
             }
         }
+        constants.changing = statements.iter().filter_map(changing).collect();
         constants.add(Vec::new(), statements);
         constants
     }
@@ -157,12 +161,17 @@ impl Constants {
         Ok(self.evaluate(&repeated.start)?..self.evaluate(&repeated.end)?)
     }
 
+    /// The number that a name stands for.
+    pub(super) fn named(&self, name: &Ident) -> Option<i64> {
+        self.numbers.get(&name.to_string()).copied()
+    }
+
     /// The number that an expression stands for.
     pub(super) fn evaluate(&self, expression: &Expr) -> Result<i64> {
         self.number(expression)
             .ok_or_else(|| match self.broken(expression) {
                 Some(report) => report,
-                None => unknown(expression),
+                None => self.unknown(expression),
             })
     }
 
@@ -204,6 +213,36 @@ impl Constants {
             }
             _ => None,
         }
+    }
+
+    /// Refuses what is not known while the model is compiled, with what makes it known.
+    fn unknown(&self, expression: &Expr) -> Box<Diagnostic> {
+        let message = format!(
+            "expected a whole number that is known while the model is compiled, found `{}`",
+            dump::expression(expression)
+        );
+        let report = error(codes::WHOLE_NUMBER, expression.span(), message);
+        if let Some(help) = without_point(expression) {
+            return Box::new(report.help(help));
+        }
+        let mut named = mentioned(expression).into_iter();
+        let parameter = named.find_map(|path| {
+            let [Step { name, .. }] = &path[..] else {
+                return None;
+            };
+            let number = self.changing.get(&name.to_string())?;
+            Some((name.to_string(), number))
+        });
+        if let Some((name, number)) = parameter {
+            return Box::new(report.help(format!(
+                "a `param` of a model can change after the model is compiled: declare `let {name} = {number};` in its place"
+            )));
+        }
+        Box::new(
+            report
+                .help("it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers")
+                .help("a `param` of a model is no such number, because it can change after the model is compiled"),
+        )
     }
 
     fn number(&self, expression: &Expr) -> Option<i64> {
@@ -299,18 +338,12 @@ pub(super) fn without_point(expression: &Expr) -> Option<String> {
     ))
 }
 
-fn unknown(expression: &Expr) -> Box<Diagnostic> {
-    let message = format!(
-        "expected a whole number that is known while the model is compiled, found `{}`",
-        dump::expression(expression)
-    );
-    let report = error(codes::WHOLE_NUMBER, expression.span(), message);
-    if let Some(help) = without_point(expression) {
-        return Box::new(report.help(help));
-    }
-    Box::new(
-        report
-            .help("it is made of integers, variables of loops, values given by `let`, and parameters of a component that are given as integers")
-            .help("a `param` of a model is no such number, because it can change after the model is compiled"),
-    )
+/// A parameter of a model whose default is whole.
+fn changing(statement: &Statement) -> Option<(String, i64)> {
+    let Statement::Parameter(parameter) = statement else {
+        return None;
+    };
+    let default = elsewhere::number(parameter.default.as_ref()?)?;
+    let is_whole = default.fract() == 0.0 && default.abs() < 1e15;
+    is_whole.then_some((parameter.name.to_string(), default as i64))
 }

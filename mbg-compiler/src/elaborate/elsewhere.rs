@@ -123,6 +123,11 @@ const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
         "resistance",
     ),
     (ElementKind::R, &["admittance", "mobility"], "conductance"),
+    // The variable that a law gives in the place of its word.
+    (ElementKind::R, &["e"], "effort"),
+    (ElementKind::R, &["f"], "flow"),
+    (ElementKind::C, &["e"], "effort"),
+    (ElementKind::I, &["f"], "flow"),
     (
         ElementKind::Se,
         &[

@@ -778,9 +778,13 @@ fn sign(expression: &Expr) -> Option<Span> {
 fn member(field: &syn::ExprField) -> Result<Ident> {
     match &field.member {
         Member::Named(name) => Ok(name.clone()),
-        Member::Unnamed(_) => fail(
-            field.member.span(),
-            "expected a name after `.`; a component is `[0]` or `.x`",
-        ),
+        Member::Unnamed(number) => {
+            let message = "expected a name after `.`; a component is `[0]` or `.x`";
+            let report = error(codes::EXPRESSION, field.member.span(), message);
+            let base = dump::expression(&field.base);
+            Err(Box::new(
+                report.help(format!("write `{base}[{}]`", number.index)),
+            ))
+        }
     }
 }

@@ -3,6 +3,7 @@
 use proc_macro2::Ident;
 
 use super::Builder;
+use super::calls::by_ports;
 use super::conditions::no_word;
 use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
@@ -74,9 +75,14 @@ impl<'a> Builder<'a> {
         component: &'a ast::Component,
     ) {
         let is_counted = instance.connections.len() == component.ports.len();
+        let mut ordered = self.in_order(scope, instance, component);
         if !is_counted {
-            self.tell(scope, wrong_count(instance, component));
+            let call = ordered
+                .take()
+                .unwrap_or_else(|| by_ports(instance, component));
+            self.tell(scope, wrong_count(instance, component).help(call));
         }
+        let mut is_told = false;
         for (position, port) in component.ports.iter().enumerate() {
             let given = instance
                 .connections
@@ -90,31 +96,50 @@ impl<'a> Builder<'a> {
                     self.at_frame(inner, component, port, (id, range.clone()));
                     Entity::Junction(id, range)
                 }
-                Some((end, size)) => {
+                Some(given) => {
                     let reference = &instance.connections[position];
-                    let report = match end {
-                        End::OnePort(id) => self.no_junction(scope, reference, id),
-                        End::Junction(id, _) if size == port.dimension => {
-                            wrong_kind(port, &instance.name, reference, &self.graph.junctions[id.0])
-                        }
-                        End::Junction(id, _) if port.dimension == 1 => {
-                            let rate = self.rate_at(scope, id);
-                            wrong_size(port, reference, size).help(of_a_frame(reference, rate))
-                        }
-                        _ => {
-                            let report = wrong_size(port, reference, size);
-                            match counterpart(&component.name.to_string(), size) {
-                                Some(help) => report.help(help),
-                                None => report,
-                            }
-                        }
-                    };
-                    self.tell(scope, report);
+                    let mut report =
+                        self.misfit(scope, (instance, component), (port, reference), given);
+                    // All of them fit in another order, which is told once.
+                    if let Some(call) = &ordered {
+                        report.helps = vec![call.clone()];
+                    }
+                    if ordered.is_none() || !is_told {
+                        self.tell(scope, report);
+                    }
+                    is_told = true;
                     Entity::Opaque
                 }
                 None => Entity::Opaque,
             };
             self.name(inner, &port.name, entity);
+        }
+    }
+
+    /// What is given for a port that does not take it.
+    fn misfit(
+        &self,
+        scope: usize,
+        (instance, component): (&ast::Instance, &ast::Component),
+        (port, reference): (&ast::Port, &ast::Reference),
+        (end, size): (End, usize),
+    ) -> Diagnostic {
+        match end {
+            End::OnePort(id) => self.no_junction(scope, reference, id),
+            End::Junction(id, _) if size == port.dimension => {
+                wrong_kind(port, &instance.name, reference, &self.graph.junctions[id.0])
+            }
+            End::Junction(id, _) if port.dimension == 1 => {
+                let rate = self.rate_at(scope, id);
+                wrong_size(port, reference, size).help(of_a_frame(reference, rate))
+            }
+            _ => {
+                let report = wrong_size(port, reference, size);
+                match counterpart(&component.name.to_string(), size) {
+                    Some(help) => report.help(help),
+                    None => report,
+                }
+            }
         }
     }
 
@@ -155,6 +180,12 @@ impl<'a> Builder<'a> {
             if !names.iter().any(|known| argument.name == known) {
                 let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
                 let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+                if let Some(vector) = tools::vector(&argument.name, &instance.arguments, &names) {
+                    if let Some(written) = vector {
+                        self.tell(scope, report.help(format!("write `{written}`")));
+                    }
+                    continue;
+                }
                 if let Some(here) = tools::parameter(&argument.name, &names) {
                     let value = elsewhere::value_text(argument.value.as_ref());
                     self.tell(scope, report.help(format!("write `{here}: {value}`")));
@@ -266,8 +297,11 @@ impl<'a> Builder<'a> {
             (None, None) => report.did_you_mean(&name.to_string(), &known),
         };
         if report.helps.is_empty() {
-            let names = listing(library::names().map(str::to_owned));
-            report = report.help(format!("the library has {names}"));
+            let alike = tools::alike(&name.to_string());
+            let names = listing(alike.into_iter().map(str::to_owned));
+            report = report.help(format!(
+                "the library has {names}, see the page `library` of the documentation of `mbg_runtime`"
+            ));
         }
         self.tell(scope, report);
     }

@@ -9,6 +9,7 @@ mod attitude;
 mod blame;
 mod bonds;
 mod branches;
+mod calls;
 mod check;
 pub mod claims;
 mod conditions;

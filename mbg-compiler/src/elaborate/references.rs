@@ -159,6 +159,9 @@ impl Builder<'_> {
             self.step(scope, segment, last)
         });
         let steps: Vec<Step> = steps.collect::<Result<_>>().unwrap_or_default();
+        if let Some(help) = self.by_number(scope, &steps) {
+            return Box::new(report.help(help));
+        }
         let help = self.scopes.in_loop(scope, &steps);
         if let Some(help) = help.or_else(|| self.junctions_inside(scope, &steps)) {
             return Box::new(report.help(help));
@@ -175,6 +178,18 @@ impl Builder<'_> {
         } else {
             report
         })
+    }
+
+    /// `hub[k]` for `hub.k`, where `k` is a whole number.
+    fn by_number(&self, scope: usize, path: &[Step]) -> Option<String> {
+        let (last, front) = path.split_last()?;
+        self.scopes[scope].constants.named(&last.name)?;
+        match self.scopes.follow(scope, front) {
+            Ok(Some((Entity::Junction(..), count))) if count == front.len() => {
+                Some(format!("write `{}[{}]`", text(front), last.name))
+            }
+            _ => None,
+        }
     }
 
     /// The junctions of the instance in which a path ends, but for its ports, which are the caller's.

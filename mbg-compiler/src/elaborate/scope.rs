@@ -175,7 +175,7 @@ impl Scopes {
             let inner = match (entity, &pair[0].index) {
                 (Entity::Instance(inner), None) => *inner,
                 (Entity::Loop(start, scopes), _) => {
-                    self.iteration(scope, &pair[0], *start, scopes)?
+                    self.iteration(scope, [&pair[0], &pair[1]], *start, scopes)?
                 }
                 _ => return Ok(Some((entity, position + 1))),
             };
@@ -227,15 +227,15 @@ impl Names for Lookup<'_, '_> {
             Err(report) => return Some(Err(report)),
         };
         let (last, rest) = (&path[steps - 1], &path[steps..]);
+        if matches!(entity, Entity::Opaque) {
+            *self.missing = Some(Missing::Broken);
+            return Some(fail(last.name.span(), "this is broken"));
+        }
         // Whatever has an index here is no loop.
         if path[steps - 1..].iter().any(|step| step.index.is_some()) {
             return None;
         }
         match (entity, rest) {
-            (Entity::Opaque, _) => {
-                *self.missing = Some(Missing::Broken);
-                Some(fail(last.name.span(), "this is broken"))
-            }
             (Entity::Element(id), [variable]) => self.element_variable(pool, *id, &variable.name),
             (Entity::Junction(id, range), [variable]) => {
                 self.junction_variable(pool, *id, range.clone(), &variable.name)
@@ -250,6 +250,7 @@ impl Names for Lookup<'_, '_> {
                 let message = format!("`{text}` is a {digit}-junction; write `{text}.{variable}`");
                 Some(fail(last.name.span(), message))
             }
+            (Entity::Instance(inner), []) => Some(self.no_value_of(*inner, path)),
             (entity, []) => Some(self.plain(pool, entity, &last.name)),
             _ => None,
         }

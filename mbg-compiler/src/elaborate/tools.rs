@@ -1,9 +1,13 @@
 //! Components of other tools and their parameters, and what is written here instead.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::Ident;
+use syn::Expr;
 
 use super::frames::IN_PLANE;
 use crate::graph::JunctionKind;
+use crate::syntax::words::{by_nearness, nearest};
 use crate::syntax::{ast, dump, library};
 
 /// What components are called elsewhere, without regard to capitals, underscores and the word joint, and in the library.
@@ -44,11 +48,30 @@ const COMPONENTS: &[(&[&str], &str)] = &[
     (&["motor", "dcmachine"], "DcMotor"),
     (&["idealtransformer"], "Transformer"),
     (&["idealdiode"], "Diode"),
-    (&["rackandpinion"], "Rack"),
+    (
+        &[
+            "rackandpinion",
+            "pulley",
+            "drum",
+            "winch",
+            "wheel",
+            "rollingwheel",
+        ],
+        "Rack",
+    ),
+    (&["gearbox"], "Gear"),
     (&["hydrauliccylinder"], "Cylinder"),
     (&["valve"], "Orifice"),
     (&["heatcapacitor", "thermalmass"], "HeatCapacity"),
-    (&["thermalconductor", "thermalresistor"], "Conduction"),
+    (
+        &[
+            "thermalconductor",
+            "thermalresistor",
+            "convection",
+            "heatexchanger",
+        ],
+        "Conduction",
+    ),
     (
         &["heatflow", "fixedheatflow", "prescribedheatflow"],
         "HeatSource",
@@ -64,6 +87,8 @@ enum Stand {
     Between,
     /// At the third of its junctions, by what the first two differ by.
     Across,
+    /// In a bond from the first of its junctions to the second.
+    Through,
 }
 
 /// Components of other tools that are elements here: what stands still has none of its own.
@@ -113,6 +138,27 @@ const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
         &["opamp", "operationalamplifier", "idealopamp"],
         Stand::Across,
         &[("Se", "amplifier", "effort: …")],
+    ),
+    (
+        &["gyrator", "idealgyrator"],
+        Stand::Through,
+        &[("GY", "gyrator", "effort: …")],
+    ),
+    (&["lever"], Stand::Through, &[("TF", "lever", "flow: …")]),
+    (
+        &[
+            "switch",
+            "idealswitch",
+            "idealopeningswitch",
+            "mosfet",
+            "igbt",
+        ],
+        Stand::Between,
+        &[(
+            "R",
+            "switch",
+            "resistance: if closed > 0.5 { 1e-3 } else { 1e6 }",
+        )],
     ),
     (
         &["tank", "reservoir", "vessel"],
@@ -215,6 +261,7 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
         &["damping", "friction"],
     ),
     (&["n"], &["axis", "ratio", "exponent"]),
+    (&LETTERS, &VECTORS),
     (
         &[
             "initial_angular_velocity",
@@ -312,6 +359,42 @@ pub(super) fn component(name: &str) -> Option<&'static str> {
     listed.map(|(_, here)| *here).or_else(of_library)
 }
 
+/// Names of the library for one that is unknown: by what they are called elsewhere, by a word that they share, or else all
+/// in order of their spelling.
+pub(super) fn alike(name: &str) -> Vec<&'static str> {
+    let others = COMPONENTS.iter().flat_map(|(names, _)| names.iter());
+    let others: Vec<&str> = others.copied().collect();
+    if let Some(meant) = nearest(&plain(name), &others).and_then(component) {
+        return vec![meant];
+    }
+    // The last word tells what a thing is, and those before it of which kind.
+    let words = words_of(name).into_iter().rev();
+    let mut found = words.map(|word| {
+        let listed = COMPONENTS.iter();
+        let listed = listed.filter(|(names, _)| names.contains(&word.as_str()));
+        let same = library::names().filter(|known| words_of(known).contains(&word));
+        let found: BTreeSet<&str> = listed.map(|(_, here)| *here).chain(same).collect();
+        found.into_iter().collect::<Vec<_>>()
+    });
+    let shared = found.find(|found| !found.is_empty());
+    shared.unwrap_or_else(|| by_nearness(name, library::names()))
+}
+
+/// The words of a name, from capital to capital or between underscores, in small letters.
+fn words_of(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    for letter in name.chars() {
+        if letter.is_uppercase() || letter == '_' {
+            words.push(String::new());
+        }
+        if let (true, Some(word)) = (letter.is_alphanumeric(), words.last_mut()) {
+            word.extend(letter.to_lowercase());
+        }
+    }
+    words.retain(|word| word.len() > 2);
+    words
+}
+
 /// A name without what tools write differently.
 fn plain(name: &str) -> String {
     let name = name.to_lowercase().replace('_', "");
@@ -333,6 +416,44 @@ pub(super) fn parameter<'a>(word: &Ident, names: &[&'a str]) -> Option<&'a str> 
     })
 }
 
+/// What to type for a vector in the place of its components `x` and `y`, which are parameters of their own, and for
+/// components in the place of their vector: once, at the first of them. None where the word is neither.
+pub(super) fn vector(
+    word: &Ident,
+    arguments: &[ast::Field],
+    names: &[&str],
+) -> Option<Option<String>> {
+    let known = |name: &str| names.contains(&name);
+    let is_vector = word == "by" || parameter(word, &["by"]).is_some();
+    if is_vector && known("x") && known("y") {
+        let argument = arguments.iter().find(|it| it.name == *word)?;
+        let [x, y] = match &argument.value {
+            Some(Expr::Array(entries)) if entries.elems.len() == 2 => {
+                [0, 1].map(|place| dump::expression(&entries.elems[place]))
+            }
+            _ => ["…", "…"].map(str::to_owned),
+        };
+        return Some(Some(format!("x: {x}, y: {y}")));
+    }
+    let vector = VECTORS.iter().find(|vector| known(vector))?;
+    let is_component = |it: &Ident| LETTERS.iter().any(|letter| it == letter && !known(letter));
+    if !is_component(word) {
+        return None;
+    }
+    let first = arguments.iter().find(|it| is_component(&it.name))?;
+    let entries = LETTERS.map(|letter| {
+        let given = arguments.iter().find(|it| it.name == letter);
+        let value = given.and_then(|given| given.value.as_ref());
+        value.map_or_else(|| "0.0".to_owned(), dump::expression)
+    });
+    Some((first.name == *word).then(|| format!("{vector}: [{}]", entries.join(", "))))
+}
+
+/// Vectors in space from one point to another.
+const VECTORS: [&str; 2] = ["by", "offset"];
+
+const LETTERS: [&str; 3] = ["x", "y", "z"];
+
 /// What to type for an instance of a component of another tool that is made of elements here; `end` is the first junction
 /// that it was given, by its kind and dimension.
 pub(super) fn elements(
@@ -353,6 +474,11 @@ pub(super) fn elements(
             format!("Se {name} {{ effort: 1e5 * ({plus}.e - {minus}.e) }} -> {out};")
         }
         (Stand::Across, ..) => return None,
+        (Stand::Through, [from, to], [part]) => {
+            let element = element(*part, &name, "");
+            format!("{from} -> {element} -> {to};")
+        }
+        (Stand::Through, ..) => format!("… -> {} -> …;", element(parts[0], &name, "")),
         (Stand::Between, [_, _], _) if dimension > 1 => return None,
         (Stand::Between, [a, b], _) => between(parts, &name, (kind, [a, b])),
         _ => at_junction(parts, &name, at, dimension),

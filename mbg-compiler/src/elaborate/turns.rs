@@ -35,14 +35,19 @@ impl Scopes {
     pub(super) fn iteration(
         &self,
         scope: usize,
-        step: &Step,
+        [step, next]: [&Step; 2],
         start: i64,
         scopes: &[usize],
     ) -> Result<usize> {
         let name = &step.name;
         let Some(index) = &step.index else {
-            let message =
-                format!("`{name}` is a loop; write `{name}[{start}]` for its first iteration");
+            let constants = &self[scope].constants;
+            let message = match constants.named(&next.name) {
+                Some(_) => format!("`{name}` is a loop; write `{name}[{}]`", next.name),
+                None => {
+                    format!("`{name}` is a loop; write `{name}[{start}]` for its first iteration")
+                }
+            };
             return Err(Box::new(error(codes::UNKNOWN_NAME, name.span(), message)));
         };
         if let Some(scope) = nth(start, scopes, index.number) {

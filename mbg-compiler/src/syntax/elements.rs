@@ -7,7 +7,7 @@ use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
 use super::expressions::expression;
 use super::recovery::Sink;
-use super::{slips, words};
+use super::{equations, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
@@ -42,7 +42,11 @@ pub(super) fn element(
         ))));
     };
     let fields = fields(&group, &format!("{spelling} {name}"), sink);
-    let fields = fields.map_err(|report| {
+    let fields = fields.map_err(|mut report| {
+        if let Some(help) = equations::law(&group, kind) {
+            report.helps = vec![help];
+            return report;
+        }
         let help = slips::without_word(&group, words::law_words(kind)[0]);
         with_help(report, help)
     })?;

@@ -57,11 +57,26 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
                 "what has a rate is declared with it: `integral {name} = {rate};`"
             ))
         }
+        "state" if cursor.ident(1).is_some() => state(cursor),
         _ => {
             let (_, here) = DECLARING.iter().find(|(other, _)| *other == word)?;
             declaration(cursor, here)
         }
     }
+}
+
+/// `state charge: C = 1.0;`
+fn state(cursor: &Cursor) -> Option<String> {
+    let tokens: Vec<TokenTree> = until_end(cursor, 1).into_iter().collect();
+    let mut parts = tokens.splitn(2, |token| is_mark(token, '='));
+    let [declared, value] = [parts.next(), parts.next()]
+        .map(|part| part.map(|part| dump::tokens(part.iter().cloned().collect())));
+    let initial = value.unwrap_or_else(|| "…".to_owned());
+    Some(format!(
+        "storages have states of their own, which begin with `initial: {initial}` in their braces; another is an integral: \
+         `integral {} = …, initial: {initial};`",
+        declared?
+    ))
 }
 
 /// `fn square(x) = x * x;`

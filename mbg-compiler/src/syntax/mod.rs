@@ -18,6 +18,7 @@ mod depth;
 pub mod dump;
 mod elements;
 mod elsewhere;
+mod equations;
 mod expressions;
 mod inclusions;
 mod items;

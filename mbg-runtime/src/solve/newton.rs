@@ -19,6 +19,8 @@ const ROUNDING: f64 = 64.0;
 const SHRINKS: f64 = 0.9;
 /// How often an iteration that came to a point where the Jacobian is singular goes on from beside it.
 const ASIDE: usize = 4;
+/// Points of all lanes at most, of which those of sixteen may go aside one after the other.
+const PASSES: usize = ITERATIONS + 16 * ASIDE;
 /// In units of the precision: what an evaluation leaves of equations, beside their terms, when nothing but rounding is left.
 const LEFT: f64 = 4.0;
 
@@ -130,7 +132,8 @@ impl<T: Real, const K: usize> Found<T, K> {
         let mut size = start.map(Real::abs);
         let mut way = Way::begins();
         self.open = lanes;
-        loop {
+        // A scalar whose comparisons are not decided, such as an interval, ends in no lane by itself.
+        while way.passes < PASSES {
             self.iterations += 1;
             way.passes += 1;
             let factors = Regular::new(point.jacobian);

@@ -111,6 +111,10 @@ const MOST: u32 = 50;
 const NEAR: f64 = 1e-3;
 /// In the same units: or when it leaves less to be changed.
 const LEFT: f64 = 1e-2;
+/// What a sweep leaves of the equations is less than this part of what it found where the slopes on the way are those at the start.
+const SHRINKS: f64 = 0.9;
+/// In units of the precision: sweeps that are shorter may be rounding.
+const ROUNDING: f64 = 64.0;
 
 /// A method of this family.
 pub trait Collocation<const S: usize>: Copy {
@@ -279,23 +283,32 @@ where
         self.sizes.note(&start.x);
         let along = |slope: SVector<T, N>| slope.map(|slope| start.span.length * slope);
         let (mut before, mut last) = (f64::INFINITY, f64::INFINITY);
+        let (mut found, mut left) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..sweeps {
-            before = last;
+            (before, found) = (last, left);
             let known = self.slopes[0];
-            Self::sweep(&mut self.slopes, problem, (start, memories), Some(factors));
+            let mut residual = known;
+            let newton = Some((&*factors, &mut residual));
+            Self::sweep(&mut self.slopes, problem, (start, memories), newton);
             let [change, ahead] = [self.slopes[0] - known, self.slopes[0]].map(along);
-            last = self.sizes.between(&start.x, &ahead).norm(&change);
+            let measure = self.sizes.between(&start.x, &ahead);
+            (last, left) = (measure.norm(&change), measure.norm(&along(residual)));
+        }
+        // Slopes that are far steeper at the start than on the way make sweeps short which leave as much as they found.
+        if left > LEFT && left > SHRINKS * found && last > ROUNDING * T::EPSILON {
+            return false;
         }
         let rate = last / before;
         last <= NEAR || rate < 1.0 && last * rate / (1.0 - rate) <= LEFT
     }
 
-    /// One sweep over all stages; gives the largest change of a stage relative to the state.
+    /// One sweep over all stages; gives the largest change of a stage relative to the state. One of Newton's method leaves what the
+    /// equations of the last stage had left before.
     fn sweep<Y, I, const M: usize, const P: usize>(
         slopes: &mut [SVector<T, N>; S],
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         (start, memories): (&Start<T, N>, &mut [Option<Y::Memory>; S]),
-        newton: Option<&Shifted<T, N>>,
+        mut newton: Option<(&Shifted<T, N>, &mut SVector<T, N>)>,
     ) -> f64
     where
         Y: System<T, N, M, P>,
@@ -310,7 +323,8 @@ where
             let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
             let slope = problem.slope_of_stage(t, &x, &mut memories[stage]);
             let mut change = slope - known[stage];
-            if let Some(factors) = newton {
+            if let Some((factors, residual)) = &mut newton {
+                **residual = change;
                 change = factors.solved::<Y, M, P>(&change);
                 slopes[stage] = known[stage] + change;
             } else {

@@ -374,3 +374,83 @@ fn without_a_solution_it_says_so() {
     });
     assert!(!nan.converged, "{nan:?}");
 }
+
+/// A number that is neither less than another nor not, as an interval may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Undecided(f64);
+
+macro_rules! operators {
+    ($($name:ident $method:ident),*) => { $(
+        impl core::ops::$name for Undecided {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                Self(core::ops::$name::$method(self.0, other.0))
+            }
+        }
+    )* };
+}
+
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl core::ops::Neg for Undecided {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl core::ops::AddAssign for Undecided {
+    fn add_assign(&mut self, other: Self) {
+        self.0 += other.0;
+    }
+}
+
+impl core::ops::SubAssign for Undecided {
+    fn sub_assign(&mut self, other: Self) {
+        self.0 -= other.0;
+    }
+}
+
+macro_rules! functions {
+    ($($name:ident),*; $($pair:ident),*) => {
+        $( fn $name(self) -> Self { Self(Real::$name(self.0)) } )*
+        $( fn $pair(self, other: Self) -> Self { Self(Real::$pair(self.0, other.0)) } )*
+    };
+}
+
+impl Real for Undecided {
+    type Columns = Self;
+    type Stages = crate::Four<Self>;
+
+    const SINGULAR: f64 = <f64 as Real>::SINGULAR;
+    const EPSILON: f64 = <f64 as Real>::EPSILON;
+
+    fn from_f64(value: f64) -> Self {
+        Self(value)
+    }
+
+    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
+        Some(self.0).filter(|number| test(*number))
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        (Self(self.0.sin()), Self(self.0.cos()))
+    }
+
+    functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
+
+    fn select_less(self, _bound: Self, yes: Self, no: Self) -> Self {
+        Self(0.5 * (yes.0 + no.0))
+    }
+}
+
+#[test]
+fn comparisons_that_are_not_decided_end_all_the_same() {
+    let solved = kepler(Undecided(0.3), Undecided(1.0), Undecided(1.0));
+    assert!(
+        !solved.converged && solved.iterations <= PASSES,
+        "{solved:?}"
+    );
+}

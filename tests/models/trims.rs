@@ -238,6 +238,41 @@ fn a_parallelogram_is_held_wherever_it_shall_be() {
     }
 }
 
+/// With its bars in line it may go on as another linkage, and no torque holds both; next to that it is held.
+#[test]
+fn a_parallelogram_in_line_is_refused() {
+    let model = Crank::<f64>::new(CrankParameters::default()).unwrap();
+    for guess in [0.0, 5.0, 14.7, 30.0] {
+        let trim = Trim::new(&model).input(&[guess]);
+        let in_line = [
+            trim.output("angles.x", 0.0).solve(),
+            trim.state(&SVector::zeros())
+                .fix("bars.first.angle")
+                .solve(),
+        ];
+        for found in in_line {
+            assert!(
+                matches!(
+                    found,
+                    Err(Untrimmed::Singular {
+                        input: "torque",
+                        ..
+                    } | Untrimmed::Missed { .. })
+                ),
+                "{guess}: {found:?}"
+            );
+        }
+        for angle in [-1e-2, 1e-3, 1e-4] {
+            let torque = trim.output("angles.x", angle).solve().unwrap().input[0];
+            let expected = 3.0 * 9.81 * 0.5 * f64::cos(angle);
+            assert!(
+                (torque - expected).abs() < 1e-4,
+                "{guess} {angle}: {torque}"
+            );
+        }
+    }
+}
+
 /// A ring is opened, since its coordinates are moved each by itself, unless its gap is asked to be none.
 #[test]
 fn a_ring_is_held_where_its_gap_is_an_output() {

@@ -92,7 +92,8 @@ fn unused_starts(
         })
     });
     let note = |(span, name, given, met): (Span, String, Expression, Expression)| {
-        let [given, value] = [given, met].map(|it| start.value(pool, it));
+        // A zero has no sign here.
+        let [given, value] = [given, met].map(|it| start.value(pool, it) + 0.0);
         let is_met = given == 0.0 || (given - value).abs() <= MET * given.abs();
         let place = if value.is_finite() {
             format!(" but {value:?}")
@@ -108,7 +109,8 @@ fn unused_starts(
     given.filter_map(note).collect()
 }
 
-/// What to type at the only state from which a value follows, so that it starts as it is `given`.
+/// What to type at the only state from which a value follows, so that it starts as it is `given`; of flows of coordinates at the
+/// only one without a start.
 fn leading(
     model: &Elaborated,
     start: &Start,
@@ -122,6 +124,25 @@ fn leading(
             _ => None,
         })
         .collect();
+    let own = |state: usize| {
+        let at = |own: f64| start.changed(pool, value, &BTreeMap::from([(state, own)]));
+        let own = (given - at(0.0)) / (at(1.0) - at(0.0));
+        // In the digits that a value at the start is compared by.
+        let own: f64 = format!("{own:.11e}").parse().ok()?;
+        ((at(own) - given).abs() <= MET * given.abs()).then_some(own)
+    };
+    let is_free_flow = |state: &usize| {
+        let State { rate, initial, .. } = &model.states[*state];
+        matches!(rate, StateRate::Unknown(_)) && *initial == Expression::ZERO
+    };
+    let mut flows = states.iter().copied().filter(is_free_flow);
+    if let (Some(state), None) = (flows.next(), flows.next()) {
+        let name = &model.states[state].variable.name;
+        let own = own(state)?;
+        return Some(format!(
+            "let `{name}`, from which it follows, begin with {own:?}"
+        ));
+    }
     let [state] = states[..] else { return None };
     let State {
         rate: StateRate::Storage(id, _),
@@ -133,13 +154,9 @@ fn leading(
     };
     let element = &model.graph.elements[id.0];
     let is_alone = matches!(&element.law, Law::Storage(storage) if storage.states.len() == 1);
-    let at = |own: f64| start.changed(pool, value, &BTreeMap::from([(state, own)]));
-    let own = (given - at(0.0)) / (at(1.0) - at(0.0));
-    // In the digits that a value at the start is compared by.
-    let own: f64 = format!("{own:.11e}").parse().ok()?;
-    let is_met = (at(own) - given).abs() <= MET * given.abs();
+    let own = own(state)?;
     let name = &element.name;
-    (is_alone && element.instance().is_none() && is_met)
+    (is_alone && element.instance().is_none())
         .then(|| format!("give it to `{name}`, from which it follows: `initial: {own:?}`"))
 }
 

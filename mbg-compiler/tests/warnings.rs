@@ -150,6 +150,14 @@ fn values_at_the_start_that_are_not_used_are_told() {
     insta::assert_snapshot!(rate(", initial: 1.0", linear), @"1:13 `rate.f` is not 3.0 at the start but 0.5: it follows from other states [MBG0405]");
     // Not where the law is none that can be inverted.
     insta::assert_snapshot!(rate("", "flow: pow(wheel.p, 3)"), @"1:13 `rate.f` is not 3.0 at the start but 0.0: it follows from other states [MBG0405]");
+    // Of the flows of two joints that a gear couples one is a state.
+    let geared = "1 a coordinate { I first { inertia: 1.0 } }
+        1 b coordinate, initial_flow: 3.0 { I second { inertia: 2.0 } }
+        a -> TF gear { flow: -2.0 } -> b;";
+    insta::assert_snapshot!(warned(&format!("#[derivative] model M {{ {geared} }}")), @"
+    2:11 `b.f` is not 3.0 at the start but 0.0: it follows from other states [MBG0405]
+      help: let `a.f`, from which it follows, begin with -1.5
+    ");
 }
 
 #[test]

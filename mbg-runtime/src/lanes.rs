@@ -8,6 +8,7 @@
 //! runs.
 //!
 //! A batch is a slice of states of lanes: of each state variable the numbers of some runs lie side by side.
+//! `nalgebra` has no zero of such lanes: `SVector::repeat(f64x4::from_f64(0.0))` is a vector of them.
 //!
 //! ```
 //! use mbg_runtime::lanes::{Lanes, f64x4, pack, unpack};

@@ -388,12 +388,21 @@ impl Trouble {
         meta: &'static Meta,
         u: &SVector<T, M>,
     ) -> Self {
-        match (self, u.iter().position(|input| !is_finite(input))) {
-            (Self::NotFinite { .. }, Some(index)) => Self::InputNotFinite {
-                input: name(meta.inputs, index),
-            },
+        match self {
+            Self::NotFinite { .. } => Self::of_input(meta, u).unwrap_or(self),
             _ => self,
         }
+    }
+
+    /// Of the first input that is infinite or NaN in some lane.
+    pub(crate) fn of_input<T: Real, const M: usize>(
+        meta: &'static Meta,
+        u: &SVector<T, M>,
+    ) -> Option<Self> {
+        let index = u.iter().position(|input| !is_finite(input))?;
+        Some(Self::InputNotFinite {
+            input: name(meta.inputs, index),
+        })
     }
 
     /// Of the first entry of a Jacobian that is infinite or NaN in some lane, whose rows and columns belong to these variables.

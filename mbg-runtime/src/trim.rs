@@ -23,6 +23,12 @@ const ASIDE: f64 = 6e-6;
 const LEFT: f64 = 1e-11;
 /// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
+/// How far beside a state is what tells how exactly it is closed, in units of the state.
+const LITTLE: f64 = 1e-8;
+/// A state is closed to this where constraints do not depend on each other, in its unit.
+const OPEN: f64 = 1e-12;
+/// By what part of itself an input may be in error by what is left open.
+const TORN: f64 = 1e-3;
 /// How many points a few units in the last place away tell what of a condition is rounding.
 const BESIDE: usize = 8;
 /// What is rounding, in units of how far apart its values are there.
@@ -118,6 +124,16 @@ pub enum Untrimmed {
         /// Whether nothing that may be chosen has an influence on it.
         is_fixed: bool,
     },
+    /// Constraints of closed loops depend on each other there, as those of a parallelogram whose bars are in line: which forces
+    /// hold it is not determined. Ask for a point beside it.
+    Singular {
+        /// The input that is not determined.
+        input: &'static str,
+        /// What was found.
+        here: f64,
+        /// By how much another state that is as closed may ask for another one.
+        error: f64,
+    },
     /// The model is in trouble there.
     Trouble(Trouble),
 }
@@ -158,6 +174,11 @@ impl core::fmt::Display for Untrimmed {
                     " there: begin elsewhere, or write `.free(\"{name}\")` where it is to change"
                 )
             }
+            Self::Singular { input, here, error } => write!(
+                formatter,
+                "`{input}` is {here:e}, give or take {error:e}: constraints of closed loops depend on each other there, so that it \
+                 is not determined; ask for a point beside it"
+            ),
             Self::Trouble(trouble) => trouble.fmt(formatter),
         }
     }
@@ -269,8 +290,8 @@ where
     ///
     /// # Errors
     ///
-    /// A name that the model has not, conditions that cannot be met from the guess, and what
-    /// [`System::close`](crate::System::close) and [`System::trouble`](crate::System::trouble) say of a state.
+    /// A name that the model has not, conditions that cannot be met from the guess, a point where constraints depend on each other,
+    /// and what [`System::close`](crate::System::close) and [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
         if let Some(unknown) = self.unknown {
             return Err(unknown);
@@ -290,7 +311,8 @@ where
                 None => break,
             }
         }
-        let mut rows = self.rows(&point, &self.rounding(&point))?;
+        let rounding = self.rounding(&point);
+        let mut rows = self.rows(&point, &rounding)?;
         let seen = rows.seen(&sizes, TINY, &self.tangents(&point));
         // NaN is the worst, whatever its sign.
         let parts = rows.iter().map(|row| row.part_left(&seen).abs());
@@ -300,8 +322,71 @@ where
             Some((row, left)) if !matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) => {
                 Err(self.missed(&point, row, &mut rows))
             }
-            _ => Ok(point),
+            _ => self
+                .singular(&point, (&rows, &rounding))
+                .map_or(Ok(point), Err),
         }
+    }
+
+    /// An input that is as arbitrary as forces are where constraints depend on each other: closing leaves states open by more than
+    /// their last digits, and so much of a condition that no other input can be told from it.
+    #[cold]
+    #[inline(never)]
+    fn singular(
+        &self,
+        point: &Trimmed<N, M>,
+        (rows, rounding): (&Rows<N, M, P>, &Left<N, P>),
+    ) -> Option<Untrimmed> {
+        let tangents = self.tangents(point);
+        let mut open = SVector::<f64, N>::zeros();
+        for number in (0..N).filter(|number| !self.fixed.0[*number]) {
+            let aside = LITTLE * point.state[number].abs().max(1.0);
+            let mut moved = *point;
+            moved.state[number] += aside;
+            // What cannot be closed is open by that.
+            let expected = point.state + aside * tangents.column(number);
+            let left = match self.closed(moved) {
+                Ok(closed) => closed.state - expected,
+                Err(_) => moved.state - point.state,
+            };
+            open.zip_apply(&left, |open: &mut f64, left: f64| {
+                *open = open.max(left.abs())
+            });
+        }
+        open.zip_apply(&point.state, |open, state| {
+            if *open < OPEN * state.abs().max(1.0) {
+                *open = 0.0;
+            }
+        });
+        let sizes = (open, SVector::zeros());
+        let mut inputs = (0..M).filter(|input| !self.fixed.1[*input]);
+        inputs.find_map(|input| {
+            let rounding = rounding.0.iter().chain(&rounding.1);
+            let errors = rows.iter().zip(rounding);
+            let errors = errors.filter_map(|(row, rounding)| row.error(input, &sizes, *rounding));
+            let error = errors.min_by(f64::total_cmp)?;
+            let here = point.input[input];
+            (error > TORN * here.abs()).then(|| Untrimmed::Singular {
+                input: S::META.inputs.get(input).map_or("", |it| it.name),
+                here,
+                error,
+            })
+        })
+    }
+
+    /// Equations at right angles, in units that do not grow.
+    fn straight(
+        &self,
+        point: &Trimmed<N, M>,
+        mut rows: Rows<N, M, P>,
+        units: &mut Sizes<N, M>,
+    ) -> Rows<N, M, P> {
+        let tangents = self.tangents(point);
+        rows.fix(&self.fixed);
+        rows.balance(&tangents);
+        rows.limit(units);
+        rows.straighten(&tangents);
+        rows
     }
 
     /// Why a condition cannot be met.
@@ -499,12 +584,8 @@ where
         (damping, part): (f64, f64),
     ) -> Option<Trimmed<N, M>> {
         let ahead = self.corrected(point, rows, damping, part).ok()?;
-        let mut rows = self.rows(&ahead, rounding).ok()?;
-        let tangents = self.tangents(&ahead);
-        rows.fix(&self.fixed);
-        rows.balance(&tangents);
-        rows.limit(&mut units);
-        rows.straighten(&tangents);
+        let rows = self.rows(&ahead, rounding).ok()?;
+        let rows = self.straight(&ahead, rows, &mut units);
         let back = if damping < 1.0 { PARTS[0] } else { part };
         self.corrected(&ahead, &rows, 1.0, back).ok()
     }

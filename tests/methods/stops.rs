@@ -1,8 +1,9 @@
 //! What runs tell that cannot go on.
 
 use mbg_runtime::{
-    Adaptive, Auto, Cause, Constant, Fixed, Gauss6, ImplicitMidpoint, Integrator, Picked, Radau5,
-    Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Stopped, System, Trouble, Tsit5, Variable, mbg,
+    Adaptive, Auto, Cause, Constant, Dop853, Fixed, Gauss6, ImplicitMidpoint, Integrator, Picked,
+    Pirk8, Pirk16, Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Stopped, System,
+    Trouble, Tsit5, Variable, mbg,
 };
 use nalgebra::SVector;
 
@@ -221,6 +222,49 @@ fn an_input_that_is_no_number_is_told() {
         let next = Rk4::step(&model, 0.0, &start, &input.0, 0.1, &mut ());
         let trouble = System::trouble(&model, 0.1, &next, &input.0, &());
         assert_eq!(trouble, Some(Trouble::InputNotFinite { input: "pull" }));
+    }
+}
+
+/// Adaptive steps come up to that time, those of Rosenbrock's methods too, which look ahead for the rate of the input.
+#[test]
+fn an_input_that_becomes_no_number_is_told() {
+    let model = Pushed::<f64>::new(PushedParameters::default()).unwrap();
+    let start = model.initial_state();
+    let told = |solver: &str, stopped: Stopped, within: f64| {
+        let trouble = Trouble::InputNotFinite { input: "pull" };
+        assert_eq!(stopped.cause, Cause::Trouble(trouble), "{solver}");
+        let early = (stopped.time - 0.503).abs();
+        assert!(early < within, "{solver}: {stopped}");
+    };
+    for no_number in [f64::NAN, f64::INFINITY] {
+        let pull = |t: f64| if t < 0.503 { t.sin() } else { no_number };
+        let input = Smooth(|t: f64| SVector::from([1.0, pull(t)]));
+        macro_rules! fixed {
+            ($($method:expr),*) => { $(
+                let solver = Fixed::new($method, 1e-2);
+                let run = solver.integrate(&model, &input, 0.0, 1.0, start, |_| ());
+                told(stringify!($method), run.unwrap_err(), 1e-2);
+            )* };
+        }
+        macro_rules! adaptive {
+            ($($solver:expr),*) => { $(
+                let run = $solver.integrate(&model, &input, 0.0, 1.0, start, |_| ());
+                told(stringify!($solver), run.unwrap_err(), 1e-12);
+            )* };
+            (of $($method:ident),*) => { adaptive!($(Adaptive::new($method, 1e-6, 1e-6)),*) };
+        }
+        fixed!(
+            Rk4,
+            Tsit5,
+            Dop853,
+            Pirk8,
+            Pirk16,
+            Gauss6::default(),
+            ImplicitMidpoint::default()
+        );
+        fixed!(Radau5, Radau9, Ros2, Rodas4, Rodas5P);
+        adaptive!(of Tsit5, Dop853, Pirk8, Pirk16, Radau5, Radau9, Ros2, Rodas4, Rodas5P);
+        adaptive!(Auto::new(1e-6, 1e-6));
     }
 }
 

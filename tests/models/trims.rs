@@ -27,6 +27,7 @@ mbg! {
         Se air[3] { effort: -drag * sky.f[3..6] } -> sky[3..6];
         output speed[3]: m/s = sky.f[3..6];
         output place[3]: m = free.position;
+        output turning[3]: rad/s = sky.f[0..3];
     }
 
     /// A crank, a rocker and a coupler between them, whose end is to be where the rocker's is.
@@ -183,7 +184,7 @@ fn a_craft_leans_against_its_drag() {
     assert!((flight.input.sum() - force.norm()).abs() < 1e-10);
     let last = settled(&craft, &flight);
     let place = |state: &SVector<f64, 13>, name: &str| {
-        let states = <Quadrotor<f64> as mbg_runtime::System<f64, 13, 4, 6>>::META.states;
+        let states = <Quadrotor<f64> as mbg_runtime::System<f64, 13, 4, 9>>::META.states;
         states
             .iter()
             .zip(state.iter())
@@ -197,6 +198,28 @@ fn a_craft_leans_against_its_drag() {
     );
     for ((before, behind), speed) in before.iter().zip(behind).zip([6.0, -2.0, 1.0]) {
         assert!((behind - before - 0.5 * speed).abs() < 1e-9);
+    }
+}
+
+/// Fast and slow, to either side: what holds it against the air and on its circle.
+#[test]
+fn a_craft_turns_steadily() {
+    let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
+    for turning in [1.0, 0.3, 0.1, -0.1, 1e-2, 1e-3] {
+        for speed in [0.5, 2.0, 6.0] {
+            let turn = Trim::new(&craft)
+                .fix("free.position")
+                .free("free")
+                .output("speed", 0.0)
+                .output("speed.x", speed)
+                .output("turning", 0.0)
+                .output("turning.z", turning)
+                .solve()
+                .unwrap_or_else(|missed| panic!("{turning} {speed}: {missed}"));
+            let force = [0.4 * speed, 1.2 * speed * turning, 1.2 * 9.81];
+            let expected = SVector::from(force).norm();
+            assert!((turn.input.sum() - expected).abs() < 1e-9);
+        }
     }
 }
 
@@ -235,6 +258,41 @@ fn a_parallelogram_is_held_wherever_it_shall_be() {
             "{angle}: {}",
             point.input[0]
         );
+    }
+}
+
+/// With its bars in line it may go on as another linkage, and no torque holds both; next to that it is held.
+#[test]
+fn a_parallelogram_in_line_is_refused() {
+    let model = Crank::<f64>::new(CrankParameters::default()).unwrap();
+    for guess in [0.0, 5.0, 14.7, 30.0] {
+        let trim = Trim::new(&model).input(&[guess]);
+        let in_line = [
+            trim.output("angles.x", 0.0).solve(),
+            trim.state(&SVector::zeros())
+                .fix("bars.first.angle")
+                .solve(),
+        ];
+        for found in in_line {
+            assert!(
+                matches!(
+                    found,
+                    Err(Untrimmed::Singular {
+                        input: "torque",
+                        ..
+                    } | Untrimmed::Missed { .. })
+                ),
+                "{guess}: {found:?}"
+            );
+        }
+        for angle in [-1e-2, 1e-3, 1e-4] {
+            let torque = trim.output("angles.x", angle).solve().unwrap().input[0];
+            let expected = 3.0 * 9.81 * 0.5 * f64::cos(angle);
+            assert!(
+                (torque - expected).abs() < 1e-4,
+                "{guess} {angle}: {torque}"
+            );
+        }
     }
 }
 
@@ -312,7 +370,7 @@ fn more_may_be_chosen_than_is_asked() {
 #[test]
 fn what_cannot_be_is_told() {
     let craft = Quadrotor::<f64>::new(QuadrotorParameters::default()).unwrap();
-    let told = |trim: Trim<'_, _, 13, 4, 6>| trim.solve().unwrap_err().to_string();
+    let told = |trim: Trim<'_, _, 13, 4, 9>| trim.solve().unwrap_err().to_string();
     assert_eq!(
         told(Trim::new(&craft).fix("free.positon").fix("thrusts")),
         "the model has no state or input `free.positon`"

@@ -54,6 +54,12 @@ impl<const N: usize, const M: usize> Row<N, M> {
         self.right.abs() / self.terms(sizes)
     }
 
+    /// How much of an input makes up for what terms of these sizes have beyond rounding, if it has an influence.
+    pub(crate) fn error(&self, input: usize, sizes: &Sizes<N, M>, rounding: f64) -> Option<f64> {
+        let slope = self.by_input.get(input).filter(|slope| **slope != 0.0)?;
+        Some((self.terms(sizes) - rounding).max(0.0) / slope.abs())
+    }
+
     fn largest(&self) -> f64 {
         let entries = self.by_state.iter().chain(self.by_input.iter());
         entries.fold(0.0, |largest, entry| largest.max(entry.abs()))

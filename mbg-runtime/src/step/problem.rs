@@ -8,6 +8,9 @@ use super::probes::Probes;
 use super::{Cause, Statistics, Stopped, check_result, seen};
 use crate::{Columns, Input, Real, System, Trouble};
 
+/// Parts of a failed step at whose ends the input is looked at.
+const LOOKS: u32 = 64;
+
 /// What a run carries from step to step besides the state.
 pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
 where
@@ -217,6 +220,21 @@ where
         Stopped { cause, ..stopped }
     }
 
+    /// What of the input is not finite within a step, of which stages see no more than a few times, or of its rate at the start.
+    #[cold]
+    #[inline(never)]
+    fn trouble_of_input(&self, span: &Span<T>) -> Option<Trouble> {
+        let times =
+            (0..=LOOKS).map(|look| span.at(T::from_f64(f64::from(look) / f64::from(LOOKS))));
+        let mut values = times.map(|t| self.input.value(self.on_piece(t), self.since));
+        values
+            .find_map(|u| Trouble::of_input(S::META, &u))
+            .or_else(|| {
+                let rate = (self.input).rate(self.on_piece(span.start), self.since, span.length);
+                Trouble::of_input(S::META, &rate)
+            })
+    }
+
     /// Why this step failed, which took its Jacobian at `place`: of what is not finite, that which made the rest so.
     #[cold]
     #[inline(never)]
@@ -226,15 +244,21 @@ where
         start: &Start<T, N>,
         place: Option<(T, SVector<T, N>)>,
     ) -> Stopped {
-        let not_finite = matches!(stopped.cause, Cause::Trouble(Trouble::NotFinite { .. }));
-        let Some((t, x)) = place.filter(|_| not_finite) else {
+        if !matches!(stopped.cause, Cause::Trouble(Trouble::NotFinite { .. })) {
             return stopped;
-        };
+        }
         let Span {
             start: time,
             end,
             length,
         } = start.span;
+        if let Some(trouble) = self.trouble_of_input(&start.span) {
+            let cause = Cause::Trouble(trouble);
+            return Stopped { cause, ..stopped };
+        }
+        let Some((t, x)) = place else {
+            return stopped;
+        };
         let slope_at = |problem: &mut Self, t: T, x: &SVector<T, N>| {
             let slope = problem.slope(t, x);
             check_result(problem.system, time, &slope, &problem.memory)

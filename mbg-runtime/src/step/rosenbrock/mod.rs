@@ -16,7 +16,7 @@ use super::method::{
 };
 use super::problem::Problem;
 use super::tolerance::{Sizes, Tolerance};
-use crate::{Input, Real, System};
+use crate::{Input, Real, System, Trouble};
 use rodas4::RODAS4;
 use rodas5p::RODAS5P;
 
@@ -175,8 +175,12 @@ where
         let length = span.length;
         self.is_across = false;
         // Of a part that is tried again the Jacobian is where a step across came to.
-        if !start.again || start.is_part {
+        let is_new = !start.again || start.is_part;
+        if is_new {
             problem.jacobian(span.start, x, &mut self.jacobian);
+        }
+        // A longer step may have looked ahead to where the input is no number.
+        if is_new || Trouble::of_state(Y::META, &self.by_time).is_some() {
             self.by_time = problem.slope_by_time(span.start, x, length);
         }
         let one = T::from_f64(1.0);

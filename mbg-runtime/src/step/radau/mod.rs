@@ -15,7 +15,7 @@ use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combinati
 use super::problem::Problem;
 use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
-use newton::Newton;
+use newton::{FAR, Newton};
 use tableaux::{RADAU5, RADAU9};
 
 /// Radau's method IIA of order 5.
@@ -28,7 +28,7 @@ use tableaux::{RADAU5, RADAU9};
 ///
 /// The stages are found by Newton's method in the coordinates in which the tableau is diagonal; the estimate is
 /// filtered. Coefficients and most decisions follow `radau5`; other than there, the Jacobian is taken at the predicted
-/// middle of the step. At a fixed step the sweeps go to rounding, and the next step keeps a Jacobian with which two came to it. What
+/// middle of the step, and a step is refused whose end another sweep would move as far as the last one did. At a fixed step the sweeps go to rounding, and the next step keeps a Jacobian with which two came to it. What
 /// it takes of the stack, [`Auto`](crate::Auto#stack) tells.
 ///
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.8.
@@ -67,6 +67,27 @@ struct Tableau<const S: usize, const PAIRS: usize> {
     error: [f64; S],
     /// Weights of the stages in the coefficients of the [`Polynomial`] through them.
     dense: [[f64; S]; S],
+}
+
+impl<const S: usize, const PAIRS: usize> Tableau<S, PAIRS> {
+    /// Weights of the stages in the slope of the polynomial through them at its end: the last row of the inverse of the matrix.
+    const fn slope_at_end(&self) -> [f64; S] {
+        let mut weights = [0.0; S];
+        let mut stage = 0;
+        while stage < S {
+            weights[stage] = self.real * self.inverse[0][stage];
+            let mut pair = 0;
+            while pair < PAIRS {
+                // The last row of the vectors has ones at real parts and zeros at imaginary ones.
+                let [real, imaginary] = self.pairs[pair];
+                weights[stage] += real * self.inverse[1 + 2 * pair][stage]
+                    - imaginary * self.inverse[2 + 2 * pair][stage];
+                pair += 1;
+            }
+            stage += 1;
+        }
+        weights
+    }
 }
 
 /// A method of this family.
@@ -191,11 +212,22 @@ where
         let error = tolerance.map_or(0.0, |tolerance| {
             newton.error(&stages, tolerance, self.rejected || self.last().is_none())
         });
+        let mut slope = None;
+        if let Some(tolerance) = tolerance
+            && error <= 1.0
+        {
+            let end = newton.slope_at_end(&stages);
+            if newton.gets_nowhere(&stages, &end, tolerance) {
+                (self.theta, self.rejected, self.rate) = (f64::INFINITY, true, 1.0);
+                return failed(&stages, FAR);
+            }
+            slope = Some(end);
+        }
         self.rejected = error.is_nan() || error > 1.0;
         *self.tried() = (length, transformed(const { &A::TABLEAU.dense }, &stages));
         Trial {
             change: stages[S - 1],
-            slope: None,
+            slope,
             error,
             coarse: error * error,
         }
@@ -442,6 +474,15 @@ mod tests {
         for ahead in [0.3, 1.0] {
             let expected = between.at(1.0 + ahead) - stages[S - 1];
             assert!((beyond(&found, ahead) - expected).norm() < 1e3 * within);
+        }
+        // The slope at the end, of powers of the part of the step.
+        for power in 1..=S as i32 {
+            let terms = tableau.slope_at_end().into_iter().zip(tableau.nodes);
+            let slope: f64 = terms.map(|(weight, node)| weight * node.powi(power)).sum();
+            assert!(
+                (slope - f64::from(power)).abs() < 100.0 * within,
+                "{name}: {slope}"
+            );
         }
         // The estimate is the difference to a quadrature of order S, e = b̂ − b, with a slope at the start.
         let estimate = SVector::from(tableau.error).transpose() * matrix;

@@ -22,7 +22,7 @@ const STAYS: f64 = 0.5;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
-const FAR: f64 = 20.0;
+pub(super) const FAR: f64 = 20.0;
 
 /// The search for the stages of one step.
 pub(super) struct Newton<
@@ -48,6 +48,8 @@ pub(super) struct Newton<
     /// Of loops in the model, at the start of the step and at each stage in the last sweep.
     memory: Y::Memory,
     memories: [Option<Y::Memory>; S],
+    /// The last stage before the last sweep.
+    before: SVector<T, N>,
     method: PhantomData<[A; S]>,
 }
 
@@ -78,6 +80,7 @@ where
         Self {
             memory: problem.memory,
             memories: [None; S],
+            before: SVector::from_element(T::from_f64(0.0)),
             problem,
             start,
             factors,
@@ -103,6 +106,7 @@ where
         for (inner, change) in inner.iter_mut().zip(&changes) {
             *inner += change;
         }
+        self.before = stages[S - 1];
         *stages = transformed(const { &A::TABLEAU.vectors }, inner);
         changes
     }
@@ -229,6 +233,37 @@ where
         } else {
             Ok(f64::INFINITY)
         }
+    }
+
+    /// The slope of the model where the step ends.
+    pub(super) fn slope_at_end(&mut self, stages: &[SVector<T, N>; S]) -> SVector<T, N> {
+        let Start { span, x, .. } = self.start;
+        self.problem.slope(span.end, &(x + stages[S - 1]))
+    }
+
+    /// Whether another sweep would move the end by about as much as the last one did, though it is not where the slope of the model
+    /// there leads to, by more than the tolerance. A Jacobian of before a kink that is far steeper than what follows makes all
+    /// changes small, and the estimate of the error as well.
+    pub(super) fn gets_nowhere(
+        &self,
+        stages: &[SVector<T, N>; S],
+        slope: &SVector<T, N>,
+        tolerance: &Tolerance<N>,
+    ) -> bool {
+        let Start { span, x, .. } = self.start;
+        let end = &stages[S - 1];
+        let measure = tolerance.between(x, end);
+        let way = combination(const { &A::TABLEAU.slope_at_end() }, stages);
+        let left = slope.map(|slope| span.length * slope) - way;
+        if measure.norm(&left) <= 1.0 {
+            return false;
+        }
+        let inverse = T::from_f64(1.0) / span.length;
+        let left = left.map(|left| inverse * left);
+        let ahead = self.factors.real.1.solved::<Y, M, P>(&left);
+        let [ahead, last, whole] =
+            [ahead, end - self.before, *x].map(|change| measure.norm(&change));
+        ahead > STAYS * last && ahead > ROUNDING * T::EPSILON * whole
     }
 
     /// The filtered estimate; a second filter takes care of large ones where `doubtful`.

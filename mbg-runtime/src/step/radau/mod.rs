@@ -217,7 +217,8 @@ where
             && error <= 1.0
         {
             let end = newton.slope_at_end(&stages);
-            if newton.gets_nowhere(&stages, &end, tolerance) {
+            // Of sweeps that are followed by a new Jacobian the next step tells.
+            if self.theta <= FAST && newton.gets_nowhere(&stages, &end, tolerance) {
                 (self.theta, self.rejected, self.rate) = (f64::INFINITY, true, 1.0);
                 return failed(&stages, FAR);
             }

@@ -241,11 +241,11 @@ where
         self.problem.slope(span.end, &(x + stages[S - 1]))
     }
 
-    /// Whether another sweep would move the end by about as much as the last one did, though it is not where the slope of the model
-    /// there leads to, by more than the tolerance. A Jacobian of before a kink that is far steeper than what follows makes all
-    /// changes small, and the estimate of the error as well.
+    /// Whether sweeps lead nowhere: the end is not where the slope of the model there leads to, by more than the tolerance, another
+    /// sweep would move it by about as much as the last one did, and would leave as much. A Jacobian of before a kink that is far
+    /// steeper than what follows makes all changes small, and the estimate of the error as well.
     pub(super) fn gets_nowhere(
-        &self,
+        &mut self,
         stages: &[SVector<T, N>; S],
         slope: &SVector<T, N>,
         tolerance: &Tolerance<N>,
@@ -255,15 +255,23 @@ where
         let measure = tolerance.between(x, end);
         let way = combination(const { &A::TABLEAU.slope_at_end() }, stages);
         let left = slope.map(|slope| span.length * slope) - way;
-        if measure.norm(&left) <= 1.0 {
+        let found = measure.norm(&left);
+        if found <= 1.0 {
             return false;
         }
+        let (shift, factors) = &self.factors.real;
         let inverse = T::from_f64(1.0) / span.length;
-        let left = left.map(|left| inverse * left);
-        let ahead = self.factors.real.1.solved::<Y, M, P>(&left);
-        let [ahead, last, whole] =
+        let ahead = factors.solved::<Y, M, P>(&left.map(|left| inverse * left));
+        let [size, last, whole] =
             [ahead, end - self.before, *x].map(|change| measure.norm(&change));
-        ahead > STAYS * last && ahead > ROUNDING * T::EPSILON * whole
+        if size <= STAYS * last || size <= ROUNDING * T::EPSILON * whole {
+            return false;
+        }
+        let memory = self.problem.memory;
+        let beside = self.problem.slope(span.end, &(x + end + ahead));
+        self.problem.memory = memory;
+        let moved = (beside - slope).zip_map(&ahead, |beside, ahead| beside - *shift * ahead);
+        measure.norm(&(left + moved.map(|moved| span.length * moved))) > STAYS * found
     }
 
     /// The filtered estimate; a second filter takes care of large ones where `doubtful`.

@@ -17,7 +17,7 @@ const TOP: i32 = 56;
 const BAR: i32 = 15;
 const GAP: i32 = 14;
 /// The scale in powers of ten of a nanosecond.
-const DECADES: [i32; 2] = [0, 5];
+const DECADES: [i32; 2] = [-1, 5];
 
 const OUR_COLOUR: RGBColor = RGBColor(196, 62, 28);
 const PEER_COLOUR: RGBColor = RGBColor(120, 140, 160);
@@ -60,10 +60,10 @@ pub(crate) fn draw(report: &Report, path: &Path) -> Result<(), Box<dyn Error>> {
     let title = "Time of one evaluation in ns, fastest variant of each; shorter is better";
     area.draw(&Text::new(title, (WIDTH / 2, 22), style(17, HPos::Center)))?;
     for decade in DECADES[0]..=DECADES[1] {
-        let x = place(10_f64.powi(decade));
+        let time = 10_f64.powi(decade);
+        let x = place(time);
         area.draw(&PathElement::new([(x, TOP - 6), (x, bottom)], GRID_COLOUR))?;
-        let text = format!("{}", 10_i32.pow(decade as u32));
-        area.draw(&Text::new(text, (x, bottom + 14), style(13, HPos::Center)))?;
+        area.draw(&Text::new(time.to_string(), (x, bottom + 14), style(13, HPos::Center)))?;
     }
     let mut y = TOP;
     for (scene, rows) in &scenes {

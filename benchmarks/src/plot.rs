@@ -63,7 +63,11 @@ pub(crate) fn draw(report: &Report, path: &Path) -> Result<(), Box<dyn Error>> {
         let time = 10_f64.powi(decade);
         let x = place(time);
         area.draw(&PathElement::new([(x, TOP - 6), (x, bottom)], GRID_COLOUR))?;
-        area.draw(&Text::new(time.to_string(), (x, bottom + 14), style(13, HPos::Center)))?;
+        area.draw(&Text::new(
+            time.to_string(),
+            (x, bottom + 14),
+            style(13, HPos::Center),
+        ))?;
     }
     let mut y = TOP;
     for (scene, rows) in &scenes {

@@ -24,7 +24,7 @@ pub struct Line {
 /// Columns of which no two share a row, or rows of which no two share a column, so that one run of the steps gives them all.
 pub type Direction = Vec<Line>;
 
-/// An entry that is one or minus one, where its row has no other.
+/// An entry that is one or minus one, the only one of its row in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
     /// The rate.

@@ -1,8 +1,8 @@
 //! Circuits and a motor.
 
 use mbg_runtime::{
-    Adaptive, Cause, Constant, Dop853, Estimating, Input, Integrator, Pulse, Radau5, Real, Rk4,
-    Rodas4, Rodas5P, Smooth, Statistics, Step, Stopped, System, Tsit5, mbg,
+    Adaptive, Auto, Cause, Constant, Dop853, Estimating, Input, Integrator, Pulse, Radau5, Radau9,
+    Real, Rk4, Rodas4, Rodas5P, Smooth, Statistics, Step, Stopped, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -12,6 +12,32 @@ use crate::references::rectifier;
 
 mbg! {
     include "examples/gallery/rectifier.mbg";
+
+    /// A battery that is switched onto one of two coils, and a diode at the other that charges a capacitor.
+    model Coupled {
+        param leak: S = 0.0;
+        input closed;
+        let inductances = [[1e-3, 0.495e-3], [0.495e-3, 0.25e-3]];
+        causality componentwise;
+        0 supply { Se battery { effort: 24.0 } }
+        0 ground { Se earth { effort: 0.0 } }
+        0 drain;
+        0 anode;
+        0 out;
+        1 coils[2] { I core { inertia: inductances } }
+        supply -> coils[0]; coils[0] -> drain;
+        anode -> coils[1]; coils[1] -> ground;
+        1 channel { R switch { conductance: if closed > 0.5 { 20.0 } else { 1e-5 } } }
+        drain -> channel; channel -> ground;
+        1 snub { R snubber { resistance: 1e3 } }
+        drain -> snub; snub -> supply;
+        1 across { R winding { conductance: leak } }
+        anode -> across; across -> ground;
+        diode: Diode (anode, out);
+        smooth: Capacitor { capacitance: 1e-4, initial: 5.0 } (out, ground);
+        resistor: Resistor { resistance: 10.0 } (out, ground);
+        output voltage: V = smooth.voltage;
+    }
 
     /// A DC motor that turns a load through a rigid gear.
     #[derivative]
@@ -591,4 +617,40 @@ fn a_bridge_behind_a_coil_wants_a_snubber() {
         matches!(stopped.cause, Cause::TooManySteps { next } if next < 1e-9),
         "{stopped}"
     );
+}
+
+/// While the diode blocks, a change of its current by 1e-12 A is one of a volt, and makes all others small. Behind the jump it
+/// is to carry 10 A.
+#[test]
+fn a_diode_behind_coupled_coils_begins_to_conduct() {
+    fn voltage(leak: f64, solver: impl Integrator<3>) -> f64 {
+        let model = Coupled::new(CoupledParameters { leak }).unwrap();
+        let closed = Pulse {
+            amplitude: SVector::from([1.0]),
+            start: 2e-5,
+            end: 1.0,
+        };
+        let mut end = model.initial_state();
+        let run = solver.integrate(&model, &closed, 0.0, 2.8e-5, end, |step| {
+            end = *step.state()
+        });
+        run.unwrap();
+        model.output(2.8e-5, &end, &SVector::zeros(), &mut Default::default())[0]
+    }
+    let expected = voltage(1e-7, Adaptive::new(Radau5, 1e-9, 1e-12));
+    for tolerance in [1e-6, 1e-8] {
+        let absolute = 1e-3 * tolerance;
+        let found = [
+            voltage(0.0, Adaptive::new(Radau5, tolerance, absolute)),
+            voltage(0.0, Adaptive::new(Radau9, tolerance, absolute)),
+            voltage(0.0, Auto::new(tolerance, absolute)),
+        ];
+        println!("{tolerance:e}: {found:?}, {expected}");
+        assert!(
+            found
+                .iter()
+                .all(|it| (it - expected).abs() < 100.0 * tolerance),
+            "{found:?}"
+        );
+    }
 }

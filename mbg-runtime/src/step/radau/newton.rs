@@ -19,6 +19,8 @@ const ENOUGH: f64 = 3e-3;
 const MOST: u32 = 20;
 /// Changes that become smaller by no more than this are looked at: they may stay.
 const STAYS: f64 = 0.5;
+/// In units of the precision: a change that is no larger beside the state may be rounding alone.
+const NOISE: f64 = 64.0;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
@@ -48,8 +50,6 @@ pub(super) struct Newton<
     /// Of loops in the model, at the start of the step and at each stage in the last sweep.
     memory: Y::Memory,
     memories: [Option<Y::Memory>; S],
-    /// The last stage before the last sweep.
-    before: SVector<T, N>,
     method: PhantomData<[A; S]>,
 }
 
@@ -80,7 +80,6 @@ where
         Self {
             memory: problem.memory,
             memories: [None; S],
-            before: SVector::from_element(T::from_f64(0.0)),
             problem,
             start,
             factors,
@@ -106,7 +105,6 @@ where
         for (inner, change) in inner.iter_mut().zip(&changes) {
             *inner += change;
         }
-        self.before = stages[S - 1];
         *stages = transformed(const { &A::TABLEAU.vectors }, inner);
         changes
     }
@@ -241,9 +239,9 @@ where
         self.problem.slope(span.end, &(x + stages[S - 1]))
     }
 
-    /// Whether sweeps lead nowhere: the end is not where the slope of the model there leads to, by more than the tolerance, another
-    /// sweep would move it by about as much as the last one did, and would leave as much. A Jacobian of before a kink that is far
-    /// steeper than what follows makes all changes small, and the estimate of the error as well.
+    /// Whether sweeps lead nowhere: the end is not where the slope of the model there leads to, by more than the tolerance, and
+    /// another sweep would leave as much. A Jacobian of before a kink that is far steeper than what follows makes all changes small,
+    /// and the estimate of the error as well.
     pub(super) fn gets_nowhere(
         &mut self,
         stages: &[SVector<T, N>; S],
@@ -262,9 +260,7 @@ where
         let (shift, factors) = &self.factors.real;
         let inverse = T::from_f64(1.0) / span.length;
         let ahead = factors.solved::<Y, M, P>(&left.map(|left| inverse * left));
-        let [size, last, whole] =
-            [ahead, end - self.before, *x].map(|change| measure.norm(&change));
-        if size <= STAYS * last || size <= ROUNDING * T::EPSILON * whole {
+        if measure.norm(&ahead) <= NOISE * T::EPSILON * measure.norm(x) {
             return false;
         }
         let memory = self.problem.memory;

@@ -28,8 +28,9 @@ use tableaux::{RADAU5, RADAU9};
 ///
 /// The stages are found by Newton's method in the coordinates in which the tableau is diagonal; the estimate is
 /// filtered. Coefficients and most decisions follow `radau5`; other than there, the Jacobian is taken at the predicted
-/// middle of the step, and a step with a kept one is refused whose end is not where the slope leads to. At a fixed step the sweeps go to rounding, and the next step keeps a Jacobian with which two came to it. What
-/// it takes of the stack, [`Auto`](crate::Auto#stack) tells.
+/// middle of the step, and a step with a kept one is refused whose end is not where the slope leads to. At a fixed step the
+/// sweeps go to rounding, and the next step keeps a Jacobian with which two came to it. What it takes of the stack,
+/// [`Auto`](crate::Auto#stack) tells.
 ///
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II*, 2nd ed. (1996), IV.8.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -330,13 +330,14 @@ where
 
     /// An input that is as arbitrary as forces are where constraints depend on each other: closing leaves states open by more than
     /// their last digits, and so much of a condition that no other input can be told from it.
-    #[cold]
-    #[inline(never)]
     fn singular(
         &self,
         point: &Trimmed<N, M>,
         (rows, rounding): (&Rows<N, M, P>, &Left<N, P>),
     ) -> Option<Untrimmed> {
+        if S::META.closures.is_empty() {
+            return None;
+        }
         let tangents = self.tangents(point);
         let mut open = SVector::<f64, N>::zeros();
         for number in (0..N).filter(|number| !self.fixed.0[*number]) {
@@ -372,21 +373,6 @@ where
                 error,
             })
         })
-    }
-
-    /// Equations at right angles, in units that do not grow.
-    fn straight(
-        &self,
-        point: &Trimmed<N, M>,
-        mut rows: Rows<N, M, P>,
-        units: &mut Sizes<N, M>,
-    ) -> Rows<N, M, P> {
-        let tangents = self.tangents(point);
-        rows.fix(&self.fixed);
-        rows.balance(&tangents);
-        rows.limit(units);
-        rows.straighten(&tangents);
-        rows
     }
 
     /// Why a condition cannot be met.
@@ -584,8 +570,12 @@ where
         (damping, part): (f64, f64),
     ) -> Option<Trimmed<N, M>> {
         let ahead = self.corrected(point, rows, damping, part).ok()?;
-        let rows = self.rows(&ahead, rounding).ok()?;
-        let rows = self.straight(&ahead, rows, &mut units);
+        let mut rows = self.rows(&ahead, rounding).ok()?;
+        let tangents = self.tangents(&ahead);
+        rows.fix(&self.fixed);
+        rows.balance(&tangents);
+        rows.limit(&mut units);
+        rows.straighten(&tangents);
         let back = if damping < 1.0 { PARTS[0] } else { part };
         self.corrected(&ahead, &rows, 1.0, back).ok()
     }

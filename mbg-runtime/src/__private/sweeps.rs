@@ -90,7 +90,7 @@ fn sweep<T: Real, const L: usize, const R: usize>(
     }
 }
 
-/// Solves linear equations for several columns, one after the other.
+/// Solves linear equations for several directions, one after the other.
 pub fn by_lane<T: Real, const K: usize>(
     right: &[T::Columns; K],
     solution: impl Fn(&SVector<T, K>) -> SVector<T, K>,

@@ -13,7 +13,7 @@ use super::method::{
 };
 use super::problem::Problem;
 use super::seen;
-use super::tolerance::{Sizes, Tolerance};
+use super::tolerance::{NOISE, Sizes, Tolerance};
 use crate::{Input, Real, System};
 
 /// Gauss's method with three stages.
@@ -113,8 +113,6 @@ const NEAR: f64 = 1e-3;
 const LEFT: f64 = 1e-2;
 /// What a sweep leaves of the equations is less than this part of what it found where the slopes on the way are those at the start.
 const SHRINKS: f64 = 0.9;
-/// In units of the precision: sweeps that are shorter may be rounding.
-const ROUNDING: f64 = 64.0;
 
 /// A method of this family.
 pub trait Collocation<const S: usize>: Copy {
@@ -295,7 +293,7 @@ where
             (last, left) = (measure.norm(&change), measure.norm(&along(residual)));
         }
         // Slopes that are far steeper at the start than on the way make sweeps short which leave as much as they found.
-        if left > LEFT && left > SHRINKS * found && last > ROUNDING * T::EPSILON {
+        if left > LEFT && left > SHRINKS * found && last > NOISE * T::EPSILON {
             return false;
         }
         let rate = last / before;

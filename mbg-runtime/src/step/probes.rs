@@ -8,7 +8,7 @@ use super::method::{Family, Start, Trial};
 use super::problem::Problem;
 use super::seen;
 use super::thresholds::{Known, Point, SEVERAL};
-use super::tolerance::Tolerance;
+use super::tolerance::{NOISE, Tolerance};
 use crate::{Input, Real, System};
 
 /// Looks into steps for what their stages may miss: a pulse of a source, within a step over rest.
@@ -43,9 +43,6 @@ const LARGE: f64 = 30.0;
 const FEW: u32 = 4;
 /// The coarsest estimate grows by the fourth power of the length or more; out of that order if its square by so much.
 const SUDDEN: f64 = 25.0;
-
-/// A difference of so many roundings is none.
-const ROUNDING: f64 = 64.0;
 
 impl Probes {
     /// For a run from this time on.
@@ -199,7 +196,7 @@ where
         let slope = self.slope(t, &x);
         let defect = slope.zip_zip_map(&change, &x, |slope, change, x| {
             let expected = known.span.length * slope;
-            let rounding = ROUNDING * T::EPSILON * (x.magnitude() + expected.magnitude());
+            let rounding = NOISE * T::EPSILON * (x.magnitude() + expected.magnitude());
             let defect = expected - change;
             if defect.magnitude() <= rounding {
                 T::from_f64(0.0)

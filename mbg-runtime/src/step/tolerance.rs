@@ -49,6 +49,8 @@ impl<const N: usize> Tolerance<N> {
 
 /// In units of the precision: a state that has been no larger may be rounding.
 pub(super) const ROUNDING: f64 = 4096.0;
+/// In the same units: a change that is no larger beside the state may be rounding alone.
+pub(super) const NOISE: f64 = 64.0;
 
 /// The largest values that states had: what errors are large beside where there is no tolerance.
 pub(super) struct Sizes<const N: usize>([f64; N]);

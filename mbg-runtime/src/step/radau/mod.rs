@@ -205,10 +205,7 @@ where
         };
         match found {
             Ok(theta) => self.theta = theta,
-            Err(left) => {
-                (self.theta, self.rejected, self.rate) = (f64::INFINITY, true, 1.0);
-                return failed(&stages, left);
-            }
+            Err(left) => return self.refuse(&stages, left),
         }
         let error = tolerance.map_or(0.0, |tolerance| {
             newton.error(&stages, tolerance, self.rejected || self.last().is_none())
@@ -220,8 +217,7 @@ where
             let end = newton.slope_at_end(&stages);
             // Of sweeps that are followed by a new Jacobian the next step tells.
             if self.theta <= FAST && newton.gets_nowhere(&stages, &end, tolerance) {
-                (self.theta, self.rejected, self.rate) = (f64::INFINITY, true, 1.0);
-                return failed(&stages, FAR);
+                return self.refuse(&stages, FAR);
             }
             slope = Some(end);
         }
@@ -303,6 +299,17 @@ where
         factors.factorise::<Y, M, P>(*shift, one, &self.jacobian);
     }
 
+    /// Gives up a step whose sweeps would leave so many times what is enough, and with it the Jacobian.
+    fn refuse(&mut self, stages: &[SVector<T, N>; S], left: f64) -> Trial<T, N> {
+        (self.theta, self.rejected, self.rate) = (f64::INFINITY, true, 1.0);
+        Trial {
+            change: stages[S - 1],
+            slope: None,
+            error: left,
+            coarse: left * left,
+        }
+    }
+
     /// The last step.
     fn last(&self) -> Option<&Taken<T, N, S>> {
         let [first, second] = &self.steps;
@@ -363,19 +370,6 @@ fn beyond<T: Real, const N: usize, const S: usize>(
         });
     }
     coefficients[0].zip_map(&sum, |change, sum| ahead * (change - sum))
-}
-
-/// A step whose sweeps would leave so many times what is enough.
-fn failed<T: Real, const N: usize, const S: usize>(
-    stages: &[SVector<T, N>; S],
-    left: f64,
-) -> Trial<T, N> {
-    Trial {
-        change: stages[S - 1],
-        slope: None,
-        error: left,
-        coarse: left * left,
-    }
 }
 
 /// A matrix of numbers times vectors.

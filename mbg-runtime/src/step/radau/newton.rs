@@ -8,7 +8,7 @@ use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, combined, larger, relative, settles};
 use crate::step::problem::Problem;
-use crate::step::tolerance::{ROUNDING, Sizes, Tolerance};
+use crate::step::tolerance::{NOISE, ROUNDING, Sizes, Tolerance};
 use crate::{Input, Real, System};
 
 /// Most sweeps in a step that is controlled by its error.
@@ -19,8 +19,6 @@ const ENOUGH: f64 = 3e-3;
 const MOST: u32 = 20;
 /// Changes that become smaller by no more than this are looked at: they may stay.
 const STAYS: f64 = 0.5;
-/// In units of the precision: a change that is no larger beside the state may be rounding alone.
-const NOISE: f64 = 64.0;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.

@@ -16,7 +16,7 @@ pub use crate::step::{Complex, Element, Shifted, holds, largest};
 pub use crate::{
     Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };
-pub use sweeps::{by_lane, columns, rows};
+pub use sweeps::{columns, rows};
 
 /// What the chosen causality relies on; each condition implies that the value is finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

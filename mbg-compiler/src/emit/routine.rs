@@ -570,9 +570,7 @@ impl<'a> Writer<'a> {
         let (unknowns, factors) = (unknowns(solve.number), factors(of));
         if self.sweep.is_some() {
             let right = solve.results.iter().map(|operand| self.operand(*operand));
-            return quote! {
-                let #unknowns = mbg_runtime::__private::by_lane(&[#(#right),*], |right| #factors.solution(right));
-            };
+            return quote!(let #unknowns = #factors.columns(&[#(#right),*]););
         }
         let right = self.column(&solve.results);
         quote!(let #unknowns = #factors.solution(&#right);)

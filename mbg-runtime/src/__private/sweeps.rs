@@ -1,6 +1,6 @@
 //! Jacobians by sweeps, as many directions at once as a scalar has lanes.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 
 use crate::{Columns, Real};
 
@@ -88,27 +88,4 @@ fn sweep<T: Real, const L: usize, const R: usize>(
             }
         }
     }
-}
-
-/// Solves linear equations for several directions, one after the other.
-pub fn by_lane<T: Real, const K: usize>(
-    right: &[T::Columns; K],
-    solution: impl Fn(&SVector<T, K>) -> SVector<T, K>,
-) -> [T::Columns; K] {
-    let lane = |row: usize, lane: usize| right[row].as_columns()[lane];
-    let mut solved = *right;
-    for column in 0..<T::Columns as Columns<T>>::COUNT {
-        let values = solution(&SVector::from_fn(|row, _| lane(row, column)));
-        for (solved, value) in solved.iter_mut().zip(values.iter()) {
-            let before = *solved;
-            *solved = Columns::<T>::from_columns(|other| {
-                if other == column {
-                    *value
-                } else {
-                    before.as_columns()[other]
-                }
-            });
-        }
-    }
-    solved
 }

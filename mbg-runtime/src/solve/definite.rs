@@ -4,7 +4,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::everywhere;
-use crate::Real;
+use crate::{Columns, Real};
 
 /// `L D Lᵀ` of a symmetric matrix.
 #[derive(Clone, Debug)]
@@ -16,14 +16,15 @@ pub(super) struct Definite<T, const K: usize> {
 }
 
 impl<T: Real, const K: usize> Definite<T, K> {
-    /// Regular are lanes in which each pivot is above a bound for its diagonal element.
+    /// Regular are lanes in which each pivot is above a bound for its diagonal element, both by this sign: one or minus one.
     #[inline]
-    pub(super) fn new(matrix: &SMatrix<T, K, K>, bound: impl Fn(T) -> T) -> Self {
+    pub(super) fn new(matrix: &SMatrix<T, K, K>, sign: T, bound: impl Fn(T) -> T) -> Self {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let mut lower = matrix.transpose().data.0;
         let mut regular = one;
         for k in 0..K {
-            regular = bound(matrix[(k, k)]).select_less(lower[k][k], regular, zero);
+            let (diagonal, pivot) = (sign * matrix[(k, k)], sign * lower[k][k]);
+            regular = bound(diagonal).select_less(pivot, regular, zero);
             lower[k][k] = one / lower[k][k];
             for i in k + 1..K {
                 let factor = lower[i][k] * lower[k][k];
@@ -40,24 +41,25 @@ impl<T: Real, const K: usize> Definite<T, K> {
     }
 
     #[inline]
-    fn solve(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        let mut x = right.data.0[0];
+    fn solve<X: Columns<T>>(&self, right: [X; K]) -> [X; K] {
+        let lower = |row: usize, column: usize| X::whole(self.lower[row][column]);
+        let mut x = right;
         for i in 0..K {
             for k in 0..i {
-                let part = self.lower[i][k] * x[k];
+                let part = lower(i, k) * x[k];
                 x[i] -= part;
             }
         }
-        for (i, (x, row)) in x.iter_mut().zip(&self.lower).enumerate() {
-            *x = *x * row[i];
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = *x * lower(i, i);
         }
         for k in (0..K).rev() {
             for i in 0..k {
-                let part = self.lower[k][i] * x[k];
+                let part = lower(k, i) * x[k];
                 x[i] -= part;
             }
         }
-        SVector::from(x)
+        x
     }
 }
 
@@ -90,17 +92,55 @@ impl<T: Real, Other, const K: usize> Factors<T, Other, K> {
     pub(super) fn solution(
         &self,
         right: &SVector<T, K>,
-        by_other: impl FnOnce(&Other) -> SVector<T, K>,
+        by_other: impl Fn(&Other, &SVector<T, K>) -> SVector<T, K>,
     ) -> SVector<T, K> {
         match self {
-            Self::Definite(definite) => definite.solve(right),
-            Self::Other(other) => by_other(other),
+            Self::Definite(definite) => SVector::from(definite.solve(right.data.0[0])),
+            Self::Other(other) => by_other(other, right),
             Self::Both(definite, other) => {
                 let half = T::from_f64(0.5);
-                by_other(other).zip_map(&definite.solve(right), |other, own| {
+                let own = SVector::from(definite.solve(right.data.0[0]));
+                by_other(other, right).zip_map(&own, |other, own| {
                     definite.regular.select_less(half, other, own)
                 })
             }
         }
     }
+
+    /// The solutions for several right sides, one after the other where not all lanes are regular.
+    #[inline(always)]
+    pub(super) fn columns(
+        &self,
+        right: &[T::Columns; K],
+        by_other: impl Fn(&Other, &SVector<T, K>) -> SVector<T, K>,
+    ) -> [T::Columns; K] {
+        match self {
+            Self::Definite(definite) => definite.solve(*right),
+            _ => one_by_one(right, |right| self.solution(right, &by_other)),
+        }
+    }
+}
+
+/// Solutions for several right sides, one after the other.
+#[cold]
+#[inline(never)]
+fn one_by_one<T: Real, const K: usize>(
+    right: &[T::Columns; K],
+    solution: impl Fn(&SVector<T, K>) -> SVector<T, K>,
+) -> [T::Columns; K] {
+    let mut solved = *right;
+    for column in 0..<T::Columns as Columns<T>>::COUNT {
+        let values = solution(&SVector::from_fn(|row, _| right[row].as_columns()[column]));
+        for (solved, value) in solved.iter_mut().zip(values.iter()) {
+            let before = *solved;
+            *solved = Columns::<T>::from_columns(|other| {
+                if other == column {
+                    *value
+                } else {
+                    before.as_columns()[other]
+                }
+            });
+        }
+    }
+    solved
 }

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Order, dot, everywhere, exchanged, largest};
-use crate::Real;
+use crate::{Columns, Real};
 
 /// A square matrix as `P D A = L U`: rows scaled by `D` to a largest element of one, then exchanged by `P` so that no
 /// multiplier in `L` exceeds one (Golub and Van Loan, *Matrix Computations*, 4th ed., 3.4.1 and 3.5.2).
@@ -57,15 +57,27 @@ impl<T: Real, const K: usize> Regular<T, K> {
     /// The `x` of `A x = right`.
     #[must_use]
     pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        let scaled = core::array::from_fn(|i| right[i] * self.scale[i]);
+        SVector::from(self.solve(&right.data.0[0]))
+    }
+
+    /// The same for several right sides, as many as the scalar takes [columns](Columns) at once.
+    #[must_use]
+    pub fn columns(&self, right: &[T::Columns; K]) -> [T::Columns; K] {
+        self.solve(right)
+    }
+
+    fn solve<X: Columns<T>>(&self, right: &[X; K]) -> [X; K] {
+        let scaled = core::array::from_fn(|i| right[i] * X::whole(self.scale[i]));
         let mut x = self.order.apply(&scaled);
+        let row = |i: usize| self.rows[i].map(X::whole);
         for i in 1..K {
-            x[i] -= dot(&self.rows[i][..i], &x[..i]);
+            x[i] -= dot(&row(i)[..i], &x[..i]);
         }
         for i in (0..K).rev() {
-            x[i] = (x[i] - dot(&self.rows[i][i + 1..], &x[i + 1..])) / self.rows[i][i];
+            let row = row(i);
+            x[i] = (x[i] - dot(&row[i + 1..], &x[i + 1..])) / row[i];
         }
-        SVector::from(x)
+        x
     }
 }
 

@@ -103,7 +103,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         let pivoted = || Pivoted::new(matrix, rank);
         let factors = if K <= SHORT && everywhere(rank, |rank| rank >= K as f64) {
             let bound = T::from_f64(REGULAR) * largest((0..K).map(|i| matrix[(i, i)]));
-            Factors::of(Definite::new(&matrix, |_| bound), pivoted)
+            let one = T::from_f64(1.0);
+            Factors::of(Definite::new(&matrix, one, |_| bound), pivoted)
         } else {
             Factors::Other(pivoted())
         };
@@ -133,8 +134,18 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        let careful = |pivoted: &Pivoted<T, K>| pivoted.refined(&self.matrix, right);
-        self.factors.solution(right, careful)
+        self.factors.solution(right, self.careful())
+    }
+
+    /// The same for several right sides, as many as the scalar takes [columns](crate::Columns) at once.
+    #[must_use]
+    #[inline]
+    pub fn columns(&self, right: &[T::Columns; K]) -> [T::Columns; K] {
+        self.factors.columns(right, self.careful())
+    }
+
+    fn careful(&self) -> impl Fn(&Pivoted<T, K>, &SVector<T, K>) -> SVector<T, K> {
+        |pivoted, right| pivoted.refined(&self.matrix, right)
     }
 }
 

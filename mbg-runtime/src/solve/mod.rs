@@ -26,7 +26,7 @@ pub(crate) use project::{project_from, ranks};
 pub(crate) use rows::{Row, Rows, Sizes};
 pub use symmetric::Symmetric;
 
-use crate::Real;
+use crate::{Columns, Real};
 
 /// Whether a property holds in every lane.
 fn everywhere<T: Real>(number: T, holds: impl Fn(f64) -> bool) -> bool {
@@ -77,12 +77,11 @@ impl<T: Real, const K: usize> Order<T, K> {
     }
 
     /// Elements in this order.
-    fn apply(&self, elements: &[T; K]) -> [T; K] {
-        let zero = T::from_f64(0.0);
+    fn apply<X: Columns<T>>(&self, elements: &[X; K]) -> [X; K] {
+        let zero = X::from_f64(0.0);
         core::array::from_fn(|i| {
             (0..K).fold(zero, |found, place| {
-                self.differs(i, place)
-                    .select_less(zero, elements[place], found)
+                X::whole(self.differs(i, place)).select_less(zero, elements[place], found)
             })
         })
     }
@@ -95,5 +94,40 @@ impl<T: Real, const K: usize> Order<T, K> {
                 self.differs(i, place).select_less(zero, elements[i], found)
             })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{SMatrix, SVector};
+
+    use super::*;
+
+    type Right = [<f64 as Real>::Columns; 3];
+
+    #[test]
+    fn each_of_several_right_sides_has_the_solution_that_it_has_alone() {
+        let mut random = lanes::random();
+        let mut drawn = || <<f64 as Real>::Columns as Columns<f64>>::from_columns(|_| random());
+        let right: Right = core::array::from_fn(|_| drawn());
+        let check = |columns: Right, alone: &dyn Fn(&SVector<f64, 3>) -> SVector<f64, 3>| {
+            for column in 0..<<f64 as Real>::Columns as Columns<f64>>::COUNT {
+                let of = |it: &Right| SVector::from(it.map(|row| row.as_columns()[column]));
+                assert_eq!(of(&columns), alone(&of(&right)), "{column}");
+            }
+        };
+        let definite = SMatrix::from([[3.0, 1.0, 0.5], [1.0, 2.0, -0.4], [0.5, -0.4, 1.0]]);
+        let mixed = SMatrix::from([[0.0, 1.0, 0.5], [1.0, 2.0, -0.4], [0.5, -0.4, -1.0]]);
+        let twice = SMatrix::from([[1.0, 1.0, 0.5], [1.0, 1.0, 0.5], [0.5, 0.5, 1.0]]);
+        for matrix in [definite, -definite, mixed] {
+            let factors = Symmetric::new(matrix);
+            check(factors.columns(&right), &|right| factors.solution(right));
+            let factors = Regular::new(matrix);
+            check(factors.columns(&right), &|right| factors.solution(right));
+        }
+        for matrix in [definite, twice] {
+            let factors = Semidefinite::new(matrix);
+            check(factors.columns(&right), &|right| factors.solution(right));
+        }
     }
 }

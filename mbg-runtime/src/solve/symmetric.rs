@@ -6,23 +6,27 @@ use super::definite::{Definite, Factors};
 use super::dense::Regular;
 use crate::Real;
 
-/// A regular symmetric matrix as `L D Lᵀ` where its pivots in order are positive, which they are where it is positive definite;
-/// otherwise as [`Regular`].
+/// A regular symmetric matrix as `L D Lᵀ` where its pivots in order are all positive or all negative, as they are where it is
+/// positive or negative definite; otherwise as [`Regular`].
 ///
-/// Of a positive definite matrix the factors are as exact as those with exchanges, whatever the units of its rows (Higham,
-/// *Accuracy and Stability of Numerical Algorithms*, 2nd ed., 10.1), and no pivot is looked for. A pivot counts as positive
-/// when it is larger than the square root of the precision times its diagonal element, so that nothing needs to be known of the
-/// matrix beforehand. Each lane has the factors that it would have alone.
+/// Of a definite matrix the factors are as exact as those with exchanges, whatever the units of its rows (Higham, *Accuracy and
+/// Stability of Numerical Algorithms*, 2nd ed., 10.1), and no pivot is looked for. A pivot has the sign of the first
+/// diagonal element when with that sign it is larger than the square root of the precision times its own diagonal element, so
+/// that nothing needs to be known of the matrix beforehand. Each lane has the factors that it would have alone.
 #[derive(Clone, Debug)]
 pub struct Symmetric<T, const K: usize>(Factors<T, Regular<T, K>, K>);
 
 impl<T: Real, const K: usize> Symmetric<T, K> {
-    /// Factorises a matrix, of which only the elements below and on the diagonal count where it is positive definite.
+    /// Factorises a matrix, of which only the elements below and on the diagonal count where it is definite.
     #[must_use]
     #[inline]
     pub fn new(matrix: SMatrix<T, K, K>) -> Self {
-        let singular = T::from_f64(T::SINGULAR);
-        let definite = Definite::new(&matrix, |element| singular * element);
+        let [minus, zero, one, singular] = [-1.0, 0.0, 1.0, T::SINGULAR].map(T::from_f64);
+        let sign = match matrix.get((0, 0)) {
+            Some(first) => first.select_less(zero, minus, one),
+            None => one,
+        };
+        let definite = Definite::new(&matrix, sign, |element| singular * element);
         Self(Factors::of(definite, || general(matrix)))
     }
 
@@ -30,7 +34,14 @@ impl<T: Real, const K: usize> Symmetric<T, K> {
     #[must_use]
     #[inline]
     pub fn solution(&self, right: &SVector<T, K>) -> SVector<T, K> {
-        self.0.solution(right, |general| general.solution(right))
+        self.0.solution(right, Regular::solution)
+    }
+
+    /// The same for several right sides, as many as the scalar takes [columns](crate::Columns) at once.
+    #[must_use]
+    #[inline]
+    pub fn columns(&self, right: &[T::Columns; K]) -> [T::Columns; K] {
+        self.0.columns(right, Regular::solution)
     }
 }
 
@@ -75,10 +86,16 @@ mod tests {
         let x = SVector::from([1.0, -2.0, 3.0]);
         let found = Symmetric::new(matrix).solution(&(matrix * x));
         assert!((found - x).norm() < 1e-14, "{found}");
-        let negative = -definite(&mut random(), 0);
+    }
+
+    #[test]
+    fn a_negative_definite_matrix_is_not_exchanged() {
+        let negative = -definite(&mut random(), 3);
         let right = SVector::from([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let found = Symmetric::new(negative).solution(&right);
-        assert!((negative * found - right).norm() < 1e-12, "{found}");
+        let factors = Symmetric::new(negative);
+        assert!(matches!(factors.0, Factors::Definite(_)));
+        let (found, expected) = (factors.solution(&right), Symmetric::new(-negative));
+        assert_eq!(found, -expected.solution(&right));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/multibody.hpp>
 
@@ -86,4 +87,12 @@ extern "C" void local(Robot *robot, const double *q, const double *v, const doub
 
 extern "C" void world(Robot *robot, const double *q, const double *v, const double *torque, double *result) {
     acceleration<pin::Convention::WORLD>(robot, q, v, torque, result);
+}
+
+// The accelerations with their derivatives by positions, rates and torques, which stay in `data`.
+extern "C" void slopes(Robot *robot, const double *q, const double *v, const double *torque, double *result) {
+    const auto size = robot->model.nv;
+    pin::computeABADerivatives(
+        robot->model, robot->data, Constant(q, robot->model.nq), Constant(v, size), Constant(torque, size));
+    Eigen::Map<Eigen::VectorXd>(result, size) = robot->data.ddq;
 }

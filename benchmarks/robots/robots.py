@@ -7,7 +7,8 @@ models.rs, which includes all models. Damping, friction and joints that mimic ot
 forward dynamics leave them out.
 
 NAME.cases begins with the names of the states, and with how many inputs, positions and rates there are. Each line after it
-has a state, an input and the derivative expected; then the position, the rates and the torques for Pinocchio.
+has a state, an input and the derivative expected; how the first two change, and how the derivative does then; then the
+position, the rates and the torques for Pinocchio.
 """
 
 import re
@@ -106,21 +107,38 @@ class Coordinates:
             both = [np.cos(angle), np.sin(angle)] if joint.nq == 2 else [angle]
             q[joint.idx_q : joint.idx_q + joint.nq] = both
             v[joint.idx_v], tau[joint.idx_v] = rate, torque
-        change = pin.aba(model, model.createData(), q, v, tau)
-        accelerations = [change[joint.idx_v] for joint in self.joints]
-        base, base_change, moved, moved_change = [], [], [], []
+        data = model.createData()
+        pin.computeABADerivatives(model, data, q, v, tau)
+        dq, dv, dtau = random.normal(size=(3, model.nv))
+        dtau[: 6 * self.flies] = 0.0
+        acceleration = data.ddq
+        change = data.ddq_dq @ dq + data.ddq_dv @ dv + data.Minv @ dtau
+        own = lambda vector: [vector[joint.idx_v] for joint in self.joints]
+        state, derivative = [*angles, *rates], [*rates, *own(acceleration)]
+        changed, expected = [*own(dq), *own(dv)], [*own(dv), *own(change)]
         if self.flies:
-            x, y, z, w = q[3:7]
-            turn = pin.Quaternion(q[3:7]).toRotationMatrix()
-            velocity, spin = v[:3], v[3:6]
-            base = [w, x, y, z]
-            half = pin.Quaternion(w, x, y, z) * pin.Quaternion(0.0, *spin)
-            base_change = [half.w / 2, half.x / 2, half.y / 2, half.z / 2]
-            moved = [*(turn @ velocity), *spin]
-            moved_change = [*(turn @ (change[:3] + np.cross(spin, velocity))), *change[3:6]]
-        state = [*base, *angles, *moved, *rates]
-        derivative = [*base_change, *rates, *moved_change, *accelerations]
-        return [*state, *torques, *derivative, *q, *v, *tau]
+            base = self.base(q, v, acceleration, dq, dv, change)
+            lists = zip([state, derivative, changed, expected], base)
+            state, derivative, changed, expected = [[*moved[:4], *it[:count], *moved[4:], *it[count:]] for it, moved in lists]
+        return [*state, *torques, *derivative, *changed, *own(dtau), *expected, *q, *v, *tau]
+
+    def base(self, q, v, acceleration, dq, dv, change):
+        """What flies in four vectors: quaternion, velocity in the world and spin; their rates; how both change."""
+        quaternion, turn = pin.Quaternion(q[3:7]), pin.Quaternion(q[3:7]).toRotationMatrix()
+        half = lambda a, spin: np.array([-a[1:] @ spin, *(a[0] * spin + np.cross(a[1:], spin))]) / 2
+        orientation = np.array([quaternion.w, quaternion.x, quaternion.y, quaternion.z])
+        turned = dq[3:6]
+        (velocity, spin), (dvelocity, dspin) = np.split(v[:6], 2), np.split(dv[:6], 2)
+        (push, spin_rate), (dpush, dspin_rate) = np.split(acceleration[:6], 2), np.split(change[:6], 2)
+        push = push + np.cross(spin, velocity)
+        dpush = dpush + np.cross(dspin, velocity) + np.cross(spin, dvelocity)
+        dorientation = half(orientation, turned)
+        return (
+            [*orientation, *(turn @ velocity), *spin],
+            [*half(orientation, spin), *(turn @ push), *spin_rate],
+            [*dorientation, *(turn @ (np.cross(turned, velocity) + dvelocity)), *dspin],
+            [*(half(dorientation, spin) + half(orientation, dspin)), *(turn @ (np.cross(turned, push) + dpush)), *dspin_rate],
+        )
 
 
 def main():
@@ -142,9 +160,9 @@ def main():
         (folder / f"{name}.cases").write_text("\n".join([*head, *rows]) + "\n")
         modules.append(f'mod {name} {{\n    mbg_runtime::mbg! {{ include "{folder}/{name}.mbg"; }}\n}}\n')
         robot = f"{name}::Robot::new({name}::RobotParameters::default())?"
-        calls.append(f'    comparison.compare("{name}", &{robot}, Default::default())?;\n')
-    head = "fn compare_all(comparison: &Comparison<'_>) -> Result<(), Box<dyn Error>> {\n"
-    (folder / "models.rs").write_text("".join([*modules, head, *calls, "    Ok(())\n}\n"]))
+        calls.append(f'        comparison.compare("{name}", &{robot}, Default::default())?,\n')
+    head = "fn compare_all(comparison: &Comparison<'_>) -> Result<Vec<Row>, Box<dyn Error>> {\n    Ok(vec![\n"
+    (folder / "models.rs").write_text("".join([*modules, head, *calls, "    ])\n}\n"]))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,9 @@ pub struct Case<const N: usize, const M: usize> {
     pub input: SVector<f64, M>,
     /// Of the state, after Pinocchio.
     pub derivative: SVector<f64, N>,
+    /// A change of the state and of the input, and what it changes in the derivative, after Pinocchio.
+    pub change: (SVector<f64, N>, SVector<f64, M>),
+    pub derivative_change: SVector<f64, N>,
     pub position: Vec<f64>,
     pub rates: Vec<f64>,
     pub torques: Vec<f64>,
@@ -55,6 +58,8 @@ impl<const N: usize, const M: usize> Cases<N, M> {
                 state: ordered(take(states)?),
                 input: SVector::from_column_slice(take(M)?),
                 derivative: ordered(take(states)?),
+                change: (ordered(take(states)?), SVector::from_column_slice(take(M)?)),
+                derivative_change: ordered(take(states)?),
                 position: take(positions)?.to_vec(),
                 rates: take(rates)?.to_vec(),
                 torques: take(rates)?.to_vec(),

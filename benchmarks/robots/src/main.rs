@@ -1,4 +1,5 @@
-//! Compares the accelerations of real robots with those of Pinocchio, and times both in turns: `run` says how it is started.
+//! Compares the accelerations of real robots and their derivatives with those of Pinocchio, and times both in turns: `run` says
+//! how it is started.
 
 mod cases;
 mod pinocchio;
@@ -9,9 +10,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use mbg_runtime::System;
+use nalgebra::{SMatrix, SVector};
 
-use cases::Cases;
-use pinocchio::Pinocchio;
+use cases::{Case, Cases};
+use pinocchio::{Pinocchio, Way};
 
 include!(concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -32,13 +34,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         folder: Path::new(&folder),
         rounds: rounds.parse()?,
     };
+    let rows = compare_all(&comparison)?;
+    print_table(rows.iter().map(|row| (row, row.operations[0], &row.rates)));
     println!(
-        "{:<24} {:<6} {:>6} {:>10} {:>8} {:>13} {:>6} {:>10}",
-        "robot", "base", "joints", "operations", "ours/ns", "Pinocchio/ns", "ratio", "difference"
+        "\nForward dynamics at 64 states, medians of {rounds} rounds; difference: of all rates, relative to the largest\n",
+        rounds = comparison.rounds
     );
-    compare_all(&comparison)?;
+    print_table(rows.iter().map(|row| (row, row.operations[1], &row.slopes)));
     println!(
-        "\nForward dynamics at 64 states, medians of {rounds} rounds; difference: of all rates, relative to the largest"
+        "\nThe same with the derivatives by states and by torques; difference: of how the rates change"
     );
     Ok(())
 }
@@ -48,69 +52,140 @@ struct Comparison<'a> {
     rounds: usize,
 }
 
-impl Comparison<'_> {
-    /// Prints one line of the table.
-    fn compare<S: System<f64, N, M, P>, const N: usize, const M: usize, const P: usize>(
-        &self,
-        name: &str,
-        system: &S,
-        memory: S::Memory,
-    ) -> Result<(), Box<dyn Error>> {
-        let names: Vec<&str> = S::META.states.iter().map(|state| state.name).collect();
-        let cases = Cases::<N, M>::read(&self.folder.join(format!("{name}.cases")), &names)?;
-        let mut peer = Pinocchio::new(self.folder, name)?;
-        let mut difference = 0.0_f64;
-        for case in &cases.list {
-            let found = system.derivative(0.0, &case.state, &case.input, &mut memory.clone());
-            let apart = found - case.derivative;
-            let agrees = apart.norm() < DIFFERENCE * case.derivative.norm();
-            if !agrees {
-                return Err(format!("{name}: the rates differ by {apart}").into());
-            }
-            difference = difference.max(apart.amax() / case.derivative.amax());
-        }
-        let mut ours = || {
-            for case in &cases.list {
-                black_box(system.derivative(0.0, &case.state, &case.input, &mut memory.clone()));
-            }
-        };
-        let [ours, local, world] = {
-            let mut local = |world: bool| {
-                for case in &cases.list {
-                    black_box(peer.acceleration(world, &case.position, &case.rates, &case.torques));
-                }
-            };
-            let mut samples = [const { Vec::new() }; 3];
-            for _ in 0..self.rounds {
-                samples[0].push(sample(cases.list.len(), &mut ours));
-                samples[1].push(sample(cases.list.len(), &mut || local(false)));
-                samples[2].push(sample(cases.list.len(), &mut || local(true)));
-            }
-            samples.map(median)
-        };
-        let theirs = local.min(world);
-        let flies = names.iter().any(|name| name.starts_with("float."));
+struct Row {
+    robot: &'static str,
+    flies: bool,
+    joints: usize,
+    /// Of the derivative, and of it with both Jacobians.
+    operations: [usize; 2],
+    rates: Times,
+    slopes: Times,
+}
+
+/// Times in ns, and how far apart results are.
+struct Times {
+    ours: f64,
+    theirs: f64,
+    difference: f64,
+}
+
+fn print_table<'a>(rows: impl Iterator<Item = (&'a Row, usize, &'a Times)>) {
+    println!(
+        "{:<24} {:<6} {:>6} {:>10} {:>8} {:>13} {:>6} {:>10}",
+        "robot", "base", "joints", "operations", "ours/ns", "Pinocchio/ns", "ratio", "difference"
+    );
+    for (row, operations, times) in rows {
         println!(
-            "{name:<24} {:<6} {M:>6} {:>10} {ours:>8.0} {theirs:>13.0} {:>6.2} {difference:>10.1e}",
-            if flies { "flies" } else { "held" },
-            S::META.operations.derivative,
-            ours / theirs,
+            "{:<24} {:<6} {:>6} {operations:>10} {:>8.0} {:>13.0} {:>6.2} {:>10.1e}",
+            row.robot,
+            if row.flies { "flies" } else { "held" },
+            row.joints,
+            times.ours,
+            times.theirs,
+            times.ours / times.theirs,
+            times.difference,
         );
-        Ok(())
     }
 }
 
-/// The time of one state in ns, of as many turns over all as a sample has.
-fn sample(states: usize, run: &mut dyn FnMut()) -> f64 {
-    let time = |turns: usize, run: &mut dyn FnMut()| {
+impl Comparison<'_> {
+    fn compare<S: System<f64, N, M, P>, const N: usize, const M: usize, const P: usize>(
+        &self,
+        robot: &'static str,
+        system: &S,
+        memory: S::Memory,
+    ) -> Result<Row, Box<dyn Error>> {
+        let names: Vec<&str> = S::META.states.iter().map(|state| state.name).collect();
+        let cases = Cases::<N, M>::read(&self.folder.join(format!("{robot}.cases")), &names)?.list;
+        let mut peer = Pinocchio::new(self.folder, robot)?;
+        let rates = |case: &Case<N, M>| {
+            system.derivative(0.0, &case.state, &case.input, &mut memory.clone())
+        };
+        let slopes = |case: &Case<N, M>, by_state: &mut SMatrix<f64, N, N>| {
+            let (state, input, memory) = (&case.state, &case.input, &mut memory.clone());
+            let mut derivative = SVector::zeros();
+            system.derivative_and_jacobian_into(
+                0.0,
+                state,
+                input,
+                memory,
+                &mut derivative,
+                by_state,
+            );
+            let by_input = system.jacobian_input(0.0, state, input, memory);
+            black_box((derivative, by_state));
+            black_box(by_input)
+        };
+        let mut by_state = Box::new(SMatrix::zeros());
+        let mut differences = [0.0_f64; 2];
+        for case in &cases {
+            let by_input = slopes(case, &mut by_state);
+            let change = *by_state * case.change.0 + by_input * case.change.1;
+            let found = [rates(case), change];
+            let expected = [case.derivative, case.derivative_change];
+            for ((found, expected), difference) in found.iter().zip(&expected).zip(&mut differences)
+            {
+                let apart = found - expected;
+                let agrees = apart.norm() < DIFFERENCE * expected.norm();
+                if !agrees {
+                    return Err(format!("{robot}: the results differ by {apart}").into());
+                }
+                *difference = difference.max(apart.amax() / expected.amax());
+            }
+        }
+        let samples = {
+            let mut theirs = |way: Way, case: &Case<N, M>| {
+                black_box(peer.acceleration(way, &case.position, &case.rates, &case.torques));
+            };
+            let mut samples = [const { Vec::new() }; 5];
+            for _ in 0..self.rounds {
+                samples[0].push(sample(&cases, |case| {
+                    black_box(rates(case));
+                }));
+                samples[1].push(sample(&cases, |case| theirs(Way::Local, case)));
+                samples[2].push(sample(&cases, |case| theirs(Way::World, case)));
+                samples[3].push(sample(&cases, |case| {
+                    slopes(case, &mut by_state);
+                }));
+                samples[4].push(sample(&cases, |case| theirs(Way::Slopes, case)));
+            }
+            samples
+        };
+        let [ours, local, world, our_slopes, their_slopes] = samples.map(median);
+        let operations = &S::META.operations;
+        Ok(Row {
+            robot,
+            flies: names.iter().any(|name| name.starts_with("float.")),
+            joints: M,
+            operations: [
+                operations.derivative,
+                operations.derivative_and_jacobian + operations.jacobian_input,
+            ],
+            rates: Times {
+                ours,
+                theirs: local.min(world),
+                difference: differences[0],
+            },
+            slopes: Times {
+                ours: our_slopes,
+                theirs: their_slopes,
+                difference: differences[1],
+            },
+        })
+    }
+}
+
+/// The time of one case in ns, of as many turns over all as a sample has.
+fn sample<C>(cases: &[C], mut run: impl FnMut(&C)) -> f64 {
+    let mut time = |turns: usize| {
         let start = Instant::now();
         for _ in 0..turns {
-            run();
+            cases.iter().for_each(&mut run);
         }
         start.elapsed().as_secs_f64() * 1e9
     };
-    let turns = (SAMPLE / time(1, run)).ceil() as usize;
-    time(turns, run) / (turns * states) as f64
+    let turns = (SAMPLE / time(1)).ceil() as usize;
+    time(turns) / (turns * cases.len()) as f64
 }
 
 fn median(mut samples: Vec<f64>) -> f64 {

@@ -10,9 +10,20 @@ type New = unsafe extern "C" fn(*const c_char) -> *mut c_void;
 /// `acceleration(robot, position, rates, torques, result)`.
 type Acceleration = unsafe extern "C" fn(*mut c_void, *const f64, *const f64, *const f64, *mut f64);
 
+/// What is worked out.
+#[derive(Clone, Copy)]
+pub enum Way {
+    /// Accelerations in axes of the links.
+    Local,
+    /// Accelerations in axes of the world.
+    World,
+    /// Accelerations and their derivatives by positions, rates and torques.
+    Slopes,
+}
+
 pub struct Pinocchio {
     robot: *mut c_void,
-    ways: [Acceleration; 2],
+    ways: [Acceleration; 3],
     result: Vec<f64>,
 }
 
@@ -31,7 +42,11 @@ impl Pinocchio {
         // SAFETY: these functions of the library have these forms.
         let (robot, ways) = unsafe {
             let new: Symbol<New> = library.get("robot")?;
-            let ways: [Symbol<Acceleration>; 2] = [library.get("local")?, library.get("world")?];
+            let ways: [Symbol<Acceleration>; 3] = [
+                library.get("local")?,
+                library.get("world")?,
+                library.get("slopes")?,
+            ];
             (new(path.as_ptr()), ways.map(|it| *it))
         };
         Ok(Self {
@@ -41,16 +56,16 @@ impl Pinocchio {
         })
     }
 
-    /// The accelerations of all joints, worked out in axes of the links or of the world.
+    /// The accelerations of all joints.
     pub fn acceleration(
         &mut self,
-        world: bool,
+        way: Way,
         position: &[f64],
         rates: &[f64],
         torques: &[f64],
     ) -> &[f64] {
         self.result.resize(rates.len(), 0.0);
-        let way = self.ways[usize::from(world)];
+        let way = self.ways[way as usize];
         // SAFETY: the file of cases has as many numbers as the robot of the same name has coordinates.
         unsafe {
             way(

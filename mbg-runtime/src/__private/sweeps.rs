@@ -24,9 +24,8 @@ pub fn columns<T: Real, const N: usize, const K: usize, const R: usize>(
     slopes: &Slopes<T, K, R>,
 ) {
     sweep(directions, rows, slopes, |column, row, slope| {
-        if let Some(entry) = jacobian.get_mut((row, column)) {
-            *entry = slope;
-        }
+        *jacobian.get_mut((row, column))? = slope;
+        Some(())
     });
 }
 
@@ -40,9 +39,8 @@ pub fn rows<T: Real, const N: usize, const K: usize, const R: usize>(
     slopes: &Slopes<T, N, R>,
 ) {
     sweep(directions, columns, slopes, |row, column, slope| {
-        if let Some(entry) = jacobian.get_mut((row, column)) {
-            *entry = slope;
-        }
+        *jacobian.get_mut((row, column))? = slope;
+        Some(())
     });
 }
 
@@ -52,40 +50,50 @@ fn sweep<T: Real, const L: usize, const R: usize>(
     directions: &[Direction<'_>],
     entries: &[usize; R],
     slopes: &Slopes<T, L, R>,
-    mut write: impl FnMut(usize, usize, T),
+    mut write: impl FnMut(usize, usize, T) -> Option<()>,
 ) {
     let count = <T::Columns as Columns<T>>::COUNT;
+    let zero = T::from_f64(0.0);
+    let mut changes = [<T::Columns as Real>::from_f64(0.0); L];
     for (number, together) in directions.chunks(count).enumerate() {
         let places = number * count..number * count + together.len();
         let changing = places.fold(0, |changing, place| changing | 1 << (place % 64));
-        let mut changes = [<T::Columns as Real>::from_f64(0.0); L];
-        for (lane, (first, others)) in together.iter().enumerate() {
-            let others = others.iter().map(|(line, _)| line);
-            for line in [first].into_iter().chain(others) {
-                if let Some(change) = changes.get_mut(*line) {
-                    *change = Columns::<T>::from_columns(|other| {
-                        T::from_f64(if other == lane { 1.0 } else { 0.0 })
-                    });
-                }
-            }
+        for (lane, direction) in together.iter().enumerate() {
+            let one = |other| T::from_f64(if other == lane { 1.0 } else { 0.0 });
+            change(&mut changes, direction, Columns::<T>::from_columns(one));
         }
         let found = slopes(changing, &changes);
-        for (lane, (first, others)) in together.iter().enumerate() {
-            for (entry, slope) in entries.iter().zip(&found) {
-                if let Some(slope) = slope.as_columns().get(lane) {
-                    write(*first, *entry, *slope);
+        for (lane, direction) in together.iter().enumerate() {
+            change(&mut changes, direction, Columns::<T>::whole(zero));
+            let slope = |place: usize| found.get(place)?.as_columns().get(lane).copied();
+            let (first, others) = direction;
+            // Where a loop may end early no compiler makes it write with scattered lanes, which takes longer.
+            for (place, entry) in entries.iter().enumerate() {
+                let written = slope(place).and_then(|slope| write(*first, *entry, slope));
+                if written.is_none() {
+                    break;
                 }
             }
             for (line, own) in *others {
                 for entry in *own {
                     let place = entries.binary_search(entry).ok();
-                    let slope = place.and_then(|place| found.get(place)?.as_columns().get(lane));
-                    if let Some(slope) = slope {
-                        write(*first, *entry, T::from_f64(0.0));
-                        write(*line, *entry, *slope);
+                    if let Some(slope) = place.and_then(slope) {
+                        write(*first, *entry, zero);
+                        write(*line, *entry, slope);
                     }
                 }
             }
+        }
+    }
+}
+
+/// Changes all lines of a direction.
+fn change<C: Copy, const L: usize>(changes: &mut [C; L], direction: &Direction<'_>, by: C) {
+    let (first, others) = direction;
+    let others = others.iter().map(|(line, _)| line);
+    for line in [first].into_iter().chain(others) {
+        if let Some(line) = changes.get_mut(*line) {
+            *line = by;
         }
     }
 }

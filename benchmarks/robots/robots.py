@@ -160,9 +160,9 @@ def main():
         (folder / f"{name}.cases").write_text("\n".join([*head, *rows]) + "\n")
         modules.append(f'mod {name} {{\n    mbg_runtime::mbg! {{ include "{folder}/{name}.mbg"; }}\n}}\n')
         robot = f"{name}::Robot::new({name}::RobotParameters::default())?"
-        calls.append(f'        comparison.compare("{name}", &{robot}, Default::default())?,\n')
-    head = "fn compare_all(comparison: &Comparison<'_>) -> Result<Vec<Row>, Box<dyn Error>> {\n    Ok(vec![\n"
-    (folder / "models.rs").write_text("".join([*modules, head, *calls, "    ])\n}\n"]))
+        calls.append(f'    comparison.compare("{name}", &{robot}, Default::default())?;\n')
+    head = "fn compare_all(comparison: &Comparison<'_>) -> Result<(), Box<dyn Error>> {\n"
+    (folder / "models.rs").write_text("".join([*modules, head, *calls, "    Ok(())\n}\n"]))
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ mod cases;
 mod pinocchio;
 
 use std::error::Error;
+use std::fmt::{self, Display, Formatter};
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
@@ -34,15 +35,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         folder: Path::new(&folder),
         rounds: rounds.parse()?,
     };
-    let rows = compare_all(&comparison)?;
-    print_table(rows.iter().map(|row| (row, row.operations[0], &row.rates)));
     println!(
-        "\nForward dynamics at 64 states, medians of {rounds} rounds; difference: of all rates, relative to the largest\n",
-        rounds = comparison.rounds
+        "{:<24} {:<6} {:>6} {:>10} {}   linearised: {}",
+        "robot",
+        "base",
+        "joints",
+        "operations",
+        Times::HEAD,
+        Times::HEAD.trim_start()
     );
-    print_table(rows.iter().map(|row| (row, row.operations[1], &row.slopes)));
+    compare_all(&comparison)?;
     println!(
-        "\nThe same with the derivatives by states and by torques; difference: of how the rates change"
+        "\nForward dynamics at 64 states, medians of {rounds} rounds; difference: of all rates, relative to the largest\n\
+         linearised: the same with the derivatives by states and by torques; difference: of how the rates change, likewise",
+        rounds = comparison.rounds
     );
     Ok(())
 }
@@ -52,16 +58,6 @@ struct Comparison<'a> {
     rounds: usize,
 }
 
-struct Row {
-    robot: &'static str,
-    flies: bool,
-    joints: usize,
-    /// Of the derivative, and of it with both Jacobians.
-    operations: [usize; 2],
-    rates: Times,
-    slopes: Times,
-}
-
 /// Times in ns, and how far apart results are.
 struct Times {
     ours: f64,
@@ -69,32 +65,28 @@ struct Times {
     difference: f64,
 }
 
-fn print_table<'a>(rows: impl Iterator<Item = (&'a Row, usize, &'a Times)>) {
-    println!(
-        "{:<24} {:<6} {:>6} {:>10} {:>8} {:>13} {:>6} {:>10}",
-        "robot", "base", "joints", "operations", "ours/ns", "Pinocchio/ns", "ratio", "difference"
-    );
-    for (row, operations, times) in rows {
-        println!(
-            "{:<24} {:<6} {:>6} {operations:>10} {:>8.0} {:>13.0} {:>6.2} {:>10.1e}",
-            row.robot,
-            if row.flies { "flies" } else { "held" },
-            row.joints,
-            times.ours,
-            times.theirs,
-            times.ours / times.theirs,
-            times.difference,
-        );
+impl Times {
+    const HEAD: &str = "  ours/ns  Pinocchio/ns  ratio difference";
+}
+
+impl Display for Times {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let ratio = self.ours / self.theirs;
+        write!(
+            formatter,
+            "{:>9.0} {:>13.0} {ratio:>6.2} {:>10.1e}",
+            self.ours, self.theirs, self.difference
+        )
     }
 }
 
 impl Comparison<'_> {
     fn compare<S: System<f64, N, M, P>, const N: usize, const M: usize, const P: usize>(
         &self,
-        robot: &'static str,
+        robot: &str,
         system: &S,
         memory: S::Memory,
-    ) -> Result<Row, Box<dyn Error>> {
+    ) -> Result<(), Box<dyn Error>> {
         let names: Vec<&str> = S::META.states.iter().map(|state| state.name).collect();
         let cases = Cases::<N, M>::read(&self.folder.join(format!("{robot}.cases")), &names)?.list;
         let mut peer = Pinocchio::new(self.folder, robot)?;
@@ -152,26 +144,25 @@ impl Comparison<'_> {
             samples
         };
         let [ours, local, world, our_slopes, their_slopes] = samples.map(median);
-        let operations = &S::META.operations;
-        Ok(Row {
-            robot,
-            flies: names.iter().any(|name| name.starts_with("float.")),
-            joints: M,
-            operations: [
-                operations.derivative,
-                operations.derivative_and_jacobian + operations.jacobian_input,
-            ],
-            rates: Times {
-                ours,
-                theirs: local.min(world),
-                difference: differences[0],
-            },
-            slopes: Times {
-                ours: our_slopes,
-                theirs: their_slopes,
-                difference: differences[1],
-            },
-        })
+        let [difference, difference_of_slopes] = differences;
+        let rates = Times {
+            ours,
+            theirs: local.min(world),
+            difference,
+        };
+        let slopes = Times {
+            ours: our_slopes,
+            theirs: their_slopes,
+            difference: difference_of_slopes,
+        };
+        let flies = names.iter().any(|name| name.starts_with("float."));
+        println!(
+            "{robot:<24} {:<6} {M:>6} {:>10} {rates}   {:>11} {slopes}",
+            if flies { "flies" } else { "held" },
+            S::META.operations.derivative,
+            "",
+        );
+        Ok(())
     }
 }
 

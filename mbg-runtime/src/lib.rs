@@ -25,6 +25,28 @@
 //!
 //! `nalgebra` must have that version; what this crate uses is at [`nalgebra`](mod@nalgebra), too, without a line of its own.
 //!
+//! # Features
+//!
+//! | feature | gives |
+//! |---|---|
+//! | `macros`, on unless it is switched off | the macro `mbg!` |
+//! | `std` | for a desktop: fused multiply-add where the target has it, several columns or rows of a large Jacobian at once, functions of the standard library |
+//! | `lanes` | [`Real`] for several numbers side by side; part of `std` |
+//! | `dispatch` | batches by the widest registers that a processor has; with `std` |
+//! | `reproducible` | the same bits on every target: no fused multiply-add, and elementary functions of the crate `libm` |
+//! | `numeris` | the pair of Verner of order 9(8), with the coefficients of that crate |
+//!
+//! Without `std` nothing of the standard library is linked. What takes time on a desktop is built with it, and for its processor:
+//!
+//! ```toml
+//! # Cargo.toml
+//! mbg-runtime = { path = "../mbg/mbg-runtime", features = ["std"] }
+//!
+//! # .cargo/config.toml
+//! [build]
+//! rustflags = ["-C", "target-cpu=native"]
+//! ```
+//!
 //! Cargo does not optimise macros, in release builds neither. Where a large model takes long to expand, let it, in `Cargo.toml`:
 //!
 //! ```toml

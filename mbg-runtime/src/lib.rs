@@ -25,6 +25,15 @@
 //!
 //! `nalgebra` must have that version; what this crate uses is at [`nalgebra`](mod@nalgebra), too, without a line of its own.
 //!
+//! Cargo does not optimise macros, in release builds neither. Where a large model takes long to expand, let it, in `Cargo.toml`:
+//!
+//! ```toml
+//! [profile.dev.build-override]
+//! opt-level = 3
+//! [profile.release.build-override]
+//! opt-level = 3
+//! ```
+//!
 //! # Features
 //!
 //! | feature | gives |
@@ -45,15 +54,6 @@
 //! # .cargo/config.toml
 //! [build]
 //! rustflags = ["-C", "target-cpu=native"]
-//! ```
-//!
-//! Cargo does not optimise macros, in release builds neither. Where a large model takes long to expand, let it, in `Cargo.toml`:
-//!
-//! ```toml
-//! [profile.dev.build-override]
-//! opt-level = 3
-//! [profile.release.build-override]
-//! opt-level = 3
 //! ```
 #![no_std]
 #[cfg(any(test, feature = "std"))]

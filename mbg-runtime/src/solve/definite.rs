@@ -28,11 +28,11 @@ impl<T: Real, const K: usize> Definite<T, K> {
             lower[k][k] = one / lower[k][k];
             for i in k + 1..K {
                 let factor = lower[i][k] * lower[k][k];
+                let other = -lower[i][k];
                 for j in k + 1..=i {
                     // The rows from i on still hold L D in column k, those above already L.
                     let element = if j < i { lower[j][k] } else { factor };
-                    let other = lower[i][k];
-                    lower[i][j] -= other * element;
+                    lower[i][j] = other.multiply_add(element, lower[i][j]);
                 }
                 lower[i][k] = factor;
             }
@@ -46,8 +46,7 @@ impl<T: Real, const K: usize> Definite<T, K> {
         let mut x = right;
         for i in 0..K {
             for k in 0..i {
-                let part = lower(i, k) * x[k];
-                x[i] -= part;
+                x[i] = lower(i, k).multiply_add(-x[k], x[i]);
             }
         }
         for (i, x) in x.iter_mut().enumerate() {
@@ -55,8 +54,7 @@ impl<T: Real, const K: usize> Definite<T, K> {
         }
         for k in (0..K).rev() {
             for i in 0..k {
-                let part = lower(k, i) * x[k];
-                x[i] -= part;
+                x[i] = lower(k, i).multiply_add(-x[k], x[i]);
             }
         }
         x

@@ -80,6 +80,10 @@ impl Real for Pair {
 
     functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
 
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        Self([0, 1].map(|i| self.0[i].multiply_add(factor.0[i], addend.0[i])))
+    }
+
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         Self([0, 1].map(|i| self.0[i].select_less(bound.0[i], yes.0[i], no.0[i])))
     }

@@ -6,7 +6,7 @@ mod models;
 use std::collections::BTreeMap;
 
 use mbg_compiler::compile::{Compiled, Routines};
-use mbg_compiler::program::{self, Arguments};
+use mbg_compiler::program::{self, Arguments, Step};
 use mbg_runtime::Dual;
 use models::compiled;
 use models::dual::{Point, evaluate};
@@ -188,4 +188,34 @@ fn rings_move_alike_with_and_without_a_weight() {
             assert!(other < 1e-9, "{base} {limb:?}: by {other:e}");
         }
     }
+}
+
+/// What holds the links of a plane in it is zero, and not looked for at every state.
+#[test]
+fn constraints_that_nothing_breaks_are_not_solved_for() {
+    let model = compiled(
+        "#[derivative] model M {
+            causality componentwise;
+            gravity [0.0, -9.81, 0.0];
+            1 ground[6]; 1 crank[6]; 1 joint[6]; 1 coupler[6]; 1 elbow[6]; 1 pivot[6]; 1 rocker[6]; 1 tip[6];
+            Sf fixed[6] { flow: 0.0 } -> ground;
+            first: Revolute { axis: 2, initial: -1.2 } (ground, crank);
+            along_crank: Offset { by: [1.0, 0.0, 0.0] } (crank, joint);
+            second: Revolute { axis: 2, initial: 1.2 } (joint, coupler);
+            body: Body { mass: 2.0, inertia: diag(0.01, 0.3, 0.3), centre: [1.0, 0.0, 0.0] } (coupler);
+            along_coupler: Offset { by: [2.0, 0.0, 0.0] } (coupler, elbow);
+            base: Offset { by: [2.0, 0.0, 0.0] } (ground, pivot);
+            third: Revolute { axis: 2, initial: -1.2 } (pivot, rocker);
+            along_rocker: Offset { by: [1.0, 0.0, 0.0] } (rocker, tip);
+            crank_body: Body { mass: 1.0, inertia: diag(0.01, 0.1, 0.1) } (joint);
+            rocker_body: Body { mass: 1.0, inertia: diag(0.01, 0.1, 0.1) } (tip);
+            cut: Cut { joint: fixed } (elbow, tip);
+        }",
+    );
+    let steps = model.program.routines[Routines::DERIVATIVE].steps.iter();
+    let solves = steps.filter_map(|step| match step {
+        Step::Solve(solve) => Some(solve.size),
+        _ => None,
+    });
+    assert_eq!(solves.collect::<Vec<_>>(), [3]);
 }

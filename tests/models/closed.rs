@@ -59,6 +59,27 @@ mbg! {
         output angles[2]: rad = [first.angle, third.angle];
     }
 
+    /// The first four-bar, of joints in space.
+    #[derivative]
+    pub(crate) model InSpace {
+        causality componentwise;
+        gravity [0.0, -9.81, 0.0];
+        1 base[6]; 1 crank[6]; 1 crank_tip[6]; 1 coupler[6]; 1 coupler_tip[6]; 1 stand[6]; 1 rocker[6]; 1 rocker_tip[6];
+        Sf fixed[6] { flow: 0.0 } -> base;
+        one: Revolute { axis: 2, initial: 1.0 } (base, crank);
+        short: Body { mass: 1.0, inertia: diag(0.001, 0.007, 0.0075), centre: [0.15, 0.0, 0.0] } (crank);
+        first: Offset { by: [0.3, 0.0, 0.0] } (crank, crank_tip);
+        two: Revolute { axis: 2 } (crank_tip, coupler);
+        long: Body { mass: 2.0, inertia: diag(0.001, 0.135, 0.135), centre: [0.45, 0.0, 0.0] } (coupler);
+        second: Offset { by: [0.9, 0.0, 0.0] } (coupler, coupler_tip);
+        apart: Offset { by: [1.0, 0.0, 0.0] } (base, stand);
+        three: Revolute { axis: 2, initial: 1.2 } (stand, rocker);
+        heavy: Body { mass: 1.5, inertia: diag(0.001, 0.06125, 0.06125), centre: [0.35, 0.0, 0.0] } (rocker);
+        third: Offset { by: [0.7, 0.0, 0.0] } (rocker, rocker_tip);
+        cut: Cut { joint: revolute } (coupler_tip, rocker_tip);
+        output angles[3] = [one.angle, two.angle, three.angle];
+    }
+
     /// A four-bar of any length, whose masses go with the cube of it.
     #[derivative]
     pub(crate) model Scaled {
@@ -247,6 +268,31 @@ fn four_bar_stays_closed_and_keeps_its_energy() {
         .unwrap();
     assert!(gap < 1e-12, "{gap:e}");
     assert!(drift < 1e-8 * first.abs(), "{drift:e} of {first}");
+}
+
+/// What the hinges hold across the plane takes part in nothing.
+#[test]
+fn joints_in_space_move_in_a_plane_as_those_of_the_plane_do() {
+    let planar = FourBar::<f64>::new(FourBarParameters::default()).unwrap();
+    let spatial = InSpace::<f64>::new(InSpaceParameters::default()).unwrap();
+    let joints = ["one", "two", "three"];
+    let states = ["angle", "rate.f"].map(|it| joints.map(|joint| format!("{joint}.{it}")));
+    let names = InSpace::<f64>::META.states.iter().map(|it| it.name);
+    assert!(names.eq(states.as_flattened().iter().map(String::as_str)));
+    let start = start(&planar);
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-12);
+    let (mut one, mut other) = (start, start);
+    let input = Constant(SVector::from([]));
+    solver
+        .integrate(&planar, &input, 0.0, 2.0, start, |step| one = *step.state())
+        .unwrap();
+    solver
+        .integrate(&spatial, &input, 0.0, 2.0, start, |step| {
+            other = *step.state()
+        })
+        .unwrap();
+    assert!((one - start).norm() > 1.0, "{one}");
+    assert!((one - other).norm() < 1e-8, "{one} {other}");
 }
 
 #[test]

@@ -31,6 +31,7 @@ impl Solver<'_> {
     ) -> Result<(Rest, Vec<Expression>), Failure> {
         let (rows, columns) = self.constraints(equations, unknowns);
         self.eliminate_others(system, &rows, &columns)?;
+        let (rows, columns) = effective(system, rows, columns);
         let matrix = part(system, &rows, &columns);
         let right = rows.iter().map(|row| system.right(*row)).collect();
         let numbers = columns.iter().map(|column| unknowns[*column]).collect();
@@ -153,6 +154,19 @@ impl Solver<'_> {
             values: values.to_vec(),
         });
     }
+}
+
+/// The constraints that something can break. Multipliers of others, such as those across a linkage in a plane whose joints are
+/// in space, change nothing and are zero: of all solutions that of least norm is wanted.
+fn effective(system: &System, rows: Vec<usize>, columns: Vec<usize>) -> (Vec<usize>, Vec<usize>) {
+    let is_zero = |row: usize, column: usize| system.entry(row, column) == Expression::ZERO;
+    let acts = |(own_row, own_column): &(usize, usize)| {
+        system.right(*own_row) != Expression::ZERO
+            || columns.iter().any(|column| !is_zero(*own_row, *column))
+            || rows.iter().any(|row| !is_zero(*row, *own_column))
+    };
+    let pairs = rows.iter().copied().zip(columns.iter().copied());
+    pairs.filter(acts).unzip()
 }
 
 /// All rows and columns of a matrix.

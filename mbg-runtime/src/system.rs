@@ -366,7 +366,9 @@ impl Trouble {
         x: &SVector<T, N>,
     ) -> Option<Self> {
         // Without a branch per state, since nearly always all are finite.
-        if x.iter().fold(true, |all, state| all & is_finite(state)) {
+        if x.as_slice()
+            .iter()
+            .fold(true, |all, state| all & is_finite(state)) {
             return None;
         }
         Some(Self::of_first_state(meta, x))

@@ -72,8 +72,8 @@ fn remainder<T: Real, const K: usize>(
     right: &SVector<T, K>,
 ) -> SVector<T, K> {
     let mut remainder = *right;
-    for (column, x) in matrix.data.0.iter().zip(solution.iter()) {
-        for (remainder, element) in remainder.iter_mut().zip(column) {
+    for (column, x) in matrix.data.0.iter().zip(solution.as_slice()) {
+        for (remainder, element) in remainder.as_mut_slice().iter_mut().zip(column) {
             *remainder -= *element * *x;
         }
     }
@@ -121,8 +121,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
             Factors::Definite(_) | Factors::Both(..) => K,
         };
         let zero = T::from_f64(0.0);
-        let size = largest(right.iter().copied());
-        let residual = largest(remainder(&self.matrix, &solution, right).iter().copied());
+        let size = largest(right.data.0[0]);
+        let residual = largest(remainder(&self.matrix, &solution, right).data.0[0]);
         LeastNorm {
             solution,
             rank,

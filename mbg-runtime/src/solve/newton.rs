@@ -380,11 +380,14 @@ impl<T: Real, const K: usize> Point<T, K> {
     ) -> Next<T, K> {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let quarter = T::from_f64(0.25);
-        let unit = size.zip_map(correction, |size, step| {
-            size.max(step.abs()) + T::from_f64(ROUNDING * T::EPSILON)
+        let inverse = size.zip_map(correction, |size, step| {
+            one / (size.max(step.abs()) + T::from_f64(ROUNDING * T::EPSILON))
         });
         let square = |step: &SVector<T, K>| {
-            let [relative] = step.zip_map(&unit, |step, unit| step / unit).data.0;
+            let [relative] = step
+                .zip_map(&inverse, |step, inverse| step * inverse)
+                .data
+                .0;
             dot(&relative, &relative)
         };
         let here = square(correction);

@@ -164,13 +164,15 @@ fn size<T: Real, const M: usize, const N: usize>(
     jacobian: &SMatrix<T, M, N>,
     least: f64,
 ) -> f64 {
-    (0..M).fold(0.0, |largest: f64, row| {
-        let terms = (0..N).map(|state| {
-            let least = T::from_f64(least);
-            (jacobian[(row, state)] * x[state].abs().max(least)).magnitude()
-        });
-        largest.max(terms.sum())
-    })
+    let mut sums = [0.0; M];
+    for (column, state) in jacobian.data.0.iter().zip(x.as_slice()) {
+        let least = T::from_f64(least);
+        let state = state.abs().max(least);
+        for (sum, slope) in sums.iter_mut().zip(column) {
+            *sum += (*slope * state).magnitude();
+        }
+    }
+    sums.into_iter().fold(0.0, f64::max)
 }
 
 /// Ranks of the Jacobian of residuals where they are zero, near `start`: of groups of them.
@@ -190,6 +192,29 @@ pub enum Level {
     Positions,
     /// Of rates and momenta, in which they are linear.
     Flows,
+}
+
+/// What a generated model gives for [`System::examined`]: its determinants are worked out once.
+#[inline]
+pub fn examined<T, S, const N: usize, const M: usize, const P: usize>(
+    system: &S,
+    t: T,
+    x: &SVector<T, N>,
+    u: &SVector<T, M>,
+    memory: &S::Memory,
+) -> Result<S::Conditioning, Trouble>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+{
+    if let Some(trouble) = S::stopped_at(x, u, memory) {
+        return Err(trouble);
+    }
+    let conditioning = system.conditioning(t, x, u);
+    match Trouble::of_conditioning(S::META, conditioning.as_ref()) {
+        None => Ok(conditioning),
+        Some(trouble) => Err(trouble),
+    }
 }
 
 /// Projects a state onto residuals, whose closures are numbered in `closures`, with a Jacobian of this rank at most. The last
@@ -216,6 +241,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
             // What drives a loop is no state, and is all there is where rates are zero before.
             Level::Flows => start
                 .0
+                .as_slice()
                 .iter()
                 .fold(size(&x, &start.1, 0.0), |size, it| size + it.magnitude()),
         };

@@ -225,22 +225,37 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         u: &SVector<T, M>,
         memory: &Self::Memory,
     ) -> Option<Trouble> {
+        match Self::stopped_at(x, u, memory) {
+            None => Trouble::of_conditioning(Self::META, self.conditioning(t, x, u).as_ref()),
+            found => found,
+        }
+    }
+
+    /// [`trouble`](Self::trouble), and where there is none the determinants. Unless it is given, these are worked out for each:
+    /// who gives it has the trouble of this trait.
+    #[doc(hidden)]
+    fn examined(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &Self::Memory,
+    ) -> Result<Self::Conditioning, Trouble> {
+        match self.trouble(t, x, u, memory) {
+            None => Ok(self.conditioning(t, x, u)),
+            Some(trouble) => Err(trouble),
+        }
+    }
+
+    /// The trouble that is seen without the determinants.
+    #[doc(hidden)]
+    #[inline]
+    fn stopped_at(x: &SVector<T, N>, u: &SVector<T, M>, memory: &Self::Memory) -> Option<Trouble> {
         if let Some(trouble) = Self::unsolved(memory) {
             return Some(trouble);
         }
-        if let Some(trouble) = Trouble::of_state(Self::META, x) {
-            return Some(trouble.traced(Self::META, u));
-        }
-        let conditioning = self.conditioning(t, x, u);
-        Self::META
-            .conditioning
-            .iter()
-            .zip(conditioning.as_ref())
-            .find_map(|(name, value)| {
-                value
-                    .find(|lane| lane.is_nan() || lane.abs() < T::SINGULAR)
-                    .map(|value| Trouble::Singular { name, value })
-            })
+        let trouble = Trouble::of_state(Self::META, x)?;
+        Some(trouble.traced(Self::META, u))
     }
 
     /// The state next to `x` at which every loop that multipliers close is closed, positions first, then flows, and
@@ -359,6 +374,16 @@ pub enum Trouble {
 }
 
 impl Trouble {
+    /// Of the first determinant that is too small, or no number, in some lane.
+    pub(crate) fn of_conditioning<T: Real>(meta: &'static Meta, values: &[T]) -> Option<Self> {
+        let mut named = meta.conditioning.iter().zip(values);
+        named.find_map(|(name, value)| {
+            value
+                .find(|lane| lane.is_nan() || lane.abs() < T::SINGULAR)
+                .map(|value| Self::Singular { name, value })
+        })
+    }
+
     /// Of the first state that is infinite or NaN in some lane.
     #[inline]
     pub(crate) fn of_state<T: Real, const N: usize>(
@@ -366,7 +391,10 @@ impl Trouble {
         x: &SVector<T, N>,
     ) -> Option<Self> {
         // Without a branch per state, since nearly always all are finite.
-        if x.iter().fold(true, |all, state| all & is_finite(state)) {
+        if x.as_slice()
+            .iter()
+            .fold(true, |all, state| all & is_finite(state))
+        {
             return None;
         }
         Some(Self::of_first_state(meta, x))

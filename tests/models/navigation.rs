@@ -114,12 +114,15 @@ fn the_singular_set_is_the_cosine_of_the_second_angle() {
         let cosine = Real::cos(x[7]);
         assert_eq!(proposed().conditioning(0.0, &x, &u), [cosine]);
         assert_eq!(classic().conditioning(0.0, &x, &u), [cosine]);
+        assert_eq!(proposed().examined(0.0, &x, &u, &()), Ok([cosine]));
     }
     let mut locked = SVector::<f64, 9>::zeros();
     locked[7] = std::f64::consts::FRAC_PI_2;
     let trouble = proposed()
         .trouble(0.0, &locked, &SVector::zeros(), &())
         .unwrap();
+    let examined = proposed().examined(0.0, &locked, &SVector::zeros(), &());
+    assert_eq!(examined, Err(trouble));
     assert!(
         matches!(
             trouble,

@@ -145,6 +145,7 @@ fn system(compiled: &Compiled) -> TokenStream {
         u: &mbg_runtime::__private::SVector<T, #m>
     };
     let jacobians = jacobians::methods(compiled, &arguments, &memory);
+    let examined = examined(compiled, &arguments, &memory);
     quote! {
         #[automatically_derived]
         impl<T: mbg_runtime::Real> mbg_runtime::System<T, #n, #m, #p> for #name<T> {
@@ -180,12 +181,32 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn power(&self, #arguments, memory: &mut #memory) -> mbg_runtime::Power<T> { #power }
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
+            #examined
             #next_change
             #passed
             #close
             #sparsity
         }
     }
+}
+
+/// What takes the determinants both for trouble and for changes of their signs; without any nothing is worked out twice.
+fn examined(
+    compiled: &Compiled,
+    arguments: &TokenStream,
+    memory: &TokenStream,
+) -> Option<TokenStream> {
+    let count = Literal::usize_suffixed(compiled.conditioning.len());
+    (!compiled.conditioning.is_empty()).then(|| {
+        quote! {
+            #[inline]
+            fn examined(
+                &self, #arguments, memory: &#memory,
+            ) -> ::core::result::Result<[T; #count], mbg_runtime::Trouble> {
+                mbg_runtime::__private::examined(self, t, x, u, memory)
+            }
+        }
+    })
 }
 
 /// Where choices by time alone change; none where there are none.

@@ -163,12 +163,17 @@ impl Solver<'_> {
             right.push(self.pool.multiply(part, largest));
         }
         let unknowns: Vec<usize> = (0..size).map(|_| self.pool.fresh_unknown()).collect();
+        let (kind, negated) = match matrix.signs_of_symmetry() {
+            Some(signs) => (Kind::Symmetric, signs),
+            None => (Kind::Regular, vec![false; size]),
+        };
+        let right = right.into_iter().zip(&negated);
         let implicit = Implicit {
             unknowns,
             method: Method::Linear {
-                matrix: matrix.clone(),
-                right,
-                kind: Kind::Regular,
+                matrix: matrix.with_rows_negated(&negated),
+                right: right.map(|(it, negated)| it.flipped(*negated)).collect(),
+                kind,
             },
         };
         let symbols: Vec<Symbol> = implicit.symbols().collect();

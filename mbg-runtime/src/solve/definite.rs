@@ -25,19 +25,30 @@ impl<T: Real, const K: usize> Definite<T, K> {
         for k in 0..K {
             let (diagonal, pivot) = (sign * matrix[(k, k)], sign * lower[k][k]);
             regular = bound(diagonal).select_less(pivot, regular, zero);
-            lower[k][k] = one / lower[k][k];
+            let inverse = one / lower[k][k];
+            lower[k][k] = inverse;
             for i in k + 1..K {
-                let factor = lower[i][k] * lower[k][k];
-                let other = -lower[i][k];
-                for j in k + 1..=i {
-                    // The rows from i on still hold L D in column k, those above already L.
-                    let element = if j < i { lower[j][k] } else { factor };
-                    lower[i][j] = other.multiply_add(element, lower[i][j]);
+                // The rows from i on still hold L D in column k, those above already L.
+                let (above, rest) = lower.split_at_mut(i);
+                let row = &mut rest[0];
+                let (other, factor) = (-row[k], row[k] * inverse);
+                for j in k + 1..i {
+                    row[j] = other.multiply_add(above[j][k], row[j]);
                 }
-                lower[i][k] = factor;
+                row[i] = other.multiply_add(factor, row[i]);
+                row[k] = factor;
             }
         }
         Self { lower, regular }
+    }
+
+    /// The same, regular only in lanes where a flag is 1.
+    #[inline]
+    pub(super) fn where_set(self, flag: T) -> Self {
+        Self {
+            regular: self.regular * flag,
+            ..self
+        }
     }
 
     #[inline]
@@ -46,7 +57,7 @@ impl<T: Real, const K: usize> Definite<T, K> {
         let mut x = right;
         for i in 0..K {
             for k in 0..i {
-                x[i] = lower(i, k).multiply_add(-x[k], x[i]);
+                x[i] = (-lower(i, k)).multiply_add(x[k], x[i]);
             }
         }
         for (i, x) in x.iter_mut().enumerate() {
@@ -54,7 +65,7 @@ impl<T: Real, const K: usize> Definite<T, K> {
         }
         for k in (0..K).rev() {
             for i in 0..k {
-                x[i] = lower(k, i).multiply_add(-x[k], x[i]);
+                x[i] = (-lower(k, i)).multiply_add(x[k], x[i]);
             }
         }
         x

@@ -12,7 +12,7 @@ use crate::{Columns, Real};
 /// have factors without either, which may be complex. Of a singular matrix the solutions are not finite.
 #[derive(Clone, Debug)]
 pub struct Regular<T, const K: usize> {
-    /// `U` on and above the diagonal, `L` without its unit diagonal below.
+    /// `U` above the diagonal, its reciprocals on it, `L` without its unit diagonal below.
     rows: [[T; K]; K],
     scale: [T; K],
     order: Order<T, K>,
@@ -43,8 +43,10 @@ impl<T: Real, const K: usize> Regular<T, K> {
                 order.exchange(sizes, i, k);
             }
             let pivot_row = rows[k];
+            let inverse = T::from_f64(1.0) / pivot_row[k];
+            rows[k][k] = inverse;
             for row in &mut rows[k + 1..] {
-                let factor = row[k] / pivot_row[k];
+                let factor = row[k] * inverse;
                 row[k] = factor;
                 for (element, pivot) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
                     *element -= factor * *pivot;
@@ -75,7 +77,7 @@ impl<T: Real, const K: usize> Regular<T, K> {
         }
         for i in (0..K).rev() {
             let row = row(i);
-            x[i] = (x[i] - dot(&row[i + 1..], &x[i + 1..])) / row[i];
+            x[i] = (x[i] - dot(&row[i + 1..], &x[i + 1..])) * row[i];
         }
         x
     }

@@ -10,7 +10,7 @@ use crate::Real;
 const RANK: f64 = 8.0;
 /// In units of the largest diagonal element: rows below it are brought to its size.
 const SMALL: f64 = 1e-4;
-/// In units of the largest diagonal element: a matrix whose pivots are all above it needs no exchanges.
+/// In units of its own diagonal element: a matrix of which every pivot is above it needs no exchanges.
 const REGULAR: f64 = 1e-4;
 /// Up to this size a regular matrix is factorised without exchanges. Larger ones take their time anyway, and are refined.
 const SHORT: usize = 32;
@@ -72,8 +72,8 @@ fn remainder<T: Real, const K: usize>(
     right: &SVector<T, K>,
 ) -> SVector<T, K> {
     let mut remainder = *right;
-    for (column, x) in matrix.data.0.iter().zip(solution.iter()) {
-        for (remainder, element) in remainder.iter_mut().zip(column) {
+    for (column, x) in matrix.data.0.iter().zip(solution.as_slice()) {
+        for (remainder, element) in remainder.as_mut_slice().iter_mut().zip(column) {
             *remainder -= *element * *x;
         }
     }
@@ -102,9 +102,22 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     pub fn of_rank(matrix: SMatrix<T, K, K>, rank: T) -> Self {
         let pivoted = || Pivoted::new(matrix, rank);
         let factors = if K <= SHORT && everywhere(rank, |rank| rank >= K as f64) {
-            let bound = T::from_f64(REGULAR) * largest((0..K).map(|i| matrix[(i, i)]));
-            let one = T::from_f64(1.0);
-            Factors::of(Definite::new(&matrix, one, |_| bound), pivoted)
+            let [zero, one, part] = [0.0, 1.0, REGULAR].map(T::from_f64);
+            let rounding = T::from_f64(rounding::<T, K>());
+            let mut sizes = [matrix.data.0.first().map_or(one, |column| column[0]); 2];
+            for i in 0..K {
+                // Where an element is no number, its pivot is none either.
+                let [least, most] = sizes;
+                let own = matrix[(i, i)];
+                sizes = [
+                    own.select_less(least, own, least),
+                    most.select_less(own, own, most),
+                ];
+            }
+            let [least, most] = sizes;
+            let count = (rounding * most).select_less(least, one, zero);
+            let definite = Definite::new(&matrix, one, |own| part * own);
+            Factors::of(definite.where_set(count), pivoted)
         } else {
             Factors::Other(pivoted())
         };
@@ -121,8 +134,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
             Factors::Definite(_) | Factors::Both(..) => K,
         };
         let zero = T::from_f64(0.0);
-        let size = largest(right.iter().copied());
-        let residual = largest(remainder(&self.matrix, &solution, right).iter().copied());
+        let size = largest(right.data.0[0]);
+        let residual = largest(remainder(&self.matrix, &solution, right).data.0[0]);
         LeastNorm {
             solution,
             rank,
@@ -156,12 +169,17 @@ pub(super) fn rank<T: Real, const K: usize>(matrix: SMatrix<T, K, K>) -> T {
     kept.fold(T::from_f64(0.0), |rank, kept| rank + *kept)
 }
 
+/// In units of the largest diagonal element: one that is no larger is rounding.
+fn rounding<T: Real, const K: usize>() -> f64 {
+    let part = RANK * K as f64 * T::EPSILON;
+    part * part
+}
+
 /// What brings each row and column that is small, and more than rounding, to the size of the largest.
 fn scales<T: Real, const K: usize>(matrix: &SMatrix<T, K, K>) -> [T; K] {
     let one = T::from_f64(1.0);
-    let rounding = RANK * K as f64 * T::EPSILON;
     let size = largest((0..K).map(|i| matrix[(i, i)]));
-    let [small, lost] = [SMALL, rounding * rounding].map(|bound| T::from_f64(bound) * size);
+    let [small, lost] = [SMALL, rounding::<T, K>()].map(|bound| T::from_f64(bound) * size);
     core::array::from_fn(|i| {
         let own = matrix[(i, i)];
         let needed = own.select_less(small, lost.select_less(own, own, size), size);
@@ -174,6 +192,8 @@ fn scales<T: Real, const K: usize>(matrix: &SMatrix<T, K, K>) -> [T; K] {
 struct Pivoted<T, const K: usize> {
     /// `L`, in the order of the pivots. In lanes that have ended a column is that of the identity.
     lower: [[T; K]; K],
+    /// Reciprocals of its diagonal, zero in the lanes where a pivot does not count.
+    inverse: [T; K],
     order: Order<T, K>,
     /// What rows and columns were multiplied by, in the order of the pivots.
     scale: [T; K],
@@ -202,6 +222,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         }
         let mut factors = Self {
             lower,
+            inverse: [zero; K],
             order: Order::unchanged(),
             scale,
             kept: [zero; K],
@@ -244,9 +265,11 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
             self.kept[k] = kept;
             let root = zero.select_less(kept, pivot, one).sqrt();
             self.lower[k][k] = root;
+            let inverse = kept / root;
+            self.inverse[k] = inverse;
             let mut column = [zero; K];
             for i in k + 1..K {
-                column[i] = kept * self.lower[i][k] / root;
+                column[i] = inverse * self.lower[i][k];
                 self.lower[i][k] = column[i];
                 let factor = column[i];
                 let row = self.lower[i][k + 1..=i].iter_mut();
@@ -307,9 +330,11 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
     /// `L₁₁ᵀ x = y` in place, with zeros for pivots that do not count.
     fn solve_transposed(&self, x: &mut [T; K]) {
         for k in (0..self.rank).rev() {
-            let sum =
-                (k + 1..self.rank).fold(T::from_f64(0.0), |sum, i| sum + self.lower[i][k] * x[i]);
-            x[k] = self.kept[k] * (x[k] - sum) / self.lower[k][k];
+            let (before, behind) = x.split_at_mut(k);
+            behind[0] = self.inverse[k] * behind[0];
+            for (x, element) in before.iter_mut().zip(&self.lower[k]) {
+                *x -= *element * behind[0];
+            }
         }
         x[self.rank..].fill(T::from_f64(0.0));
     }
@@ -335,7 +360,7 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         self.remove_null_space(&mut x);
         self.scale_each(&mut x);
         for k in 0..self.rank {
-            x[k] = self.kept[k] * (x[k] - dot(&self.lower[k][..k], &x[..k])) / self.lower[k][k];
+            x[k] = self.inverse[k] * (x[k] - dot(&self.lower[k][..k], &x[..k]));
         }
         self.solve_transposed(&mut x);
         self.scale_each(&mut x);
@@ -492,6 +517,22 @@ mod tests {
                 "{arm:e} {errors:?}"
             );
         }
+    }
+
+    /// Neither a row that is small nor one large beside it takes an exchange; one that is rounding, or nearly depends on the one
+    /// before, does.
+    #[test]
+    fn sizes_of_rows_do_not_decide_on_exchanges() {
+        let kinds = |length: f64, angle: f64| {
+            let rows = [[1.0, 0.0], [length * angle.cos(), length * angle.sin()]];
+            let matrix = SMatrix::<f64, 2, 2>::from_fn(|i, j| dot(&rows[i], &rows[j]));
+            matches!(Semidefinite::new(matrix).factors, Factors::Definite(_))
+        };
+        for length in [1e-12, 1e-6, 1e-2, 1.0, 1e4, 1e12] {
+            assert!(kinds(length, 1.0) && kinds(length, 0.011), "{length:e}");
+            assert!(!kinds(length, 0.009), "{length:e}");
+        }
+        assert!(!kinds(1e-15, 1.0) && !kinds(1e15, 1.0));
     }
 
     #[test]

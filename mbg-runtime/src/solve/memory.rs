@@ -97,7 +97,11 @@ impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UN
         let zero = SVector::<T, K>::from_element(T::from_f64(0.0));
         let mut start = zero;
         let last = self.unknowns.iter().skip(first);
-        start.iter_mut().zip(last).for_each(|(z, last)| *z = *last);
+        start
+            .as_mut_slice()
+            .iter_mut()
+            .zip(last)
+            .for_each(|(z, last)| *z = *last);
         let mut found = Found::nothing(start);
         found.attempt(start, Flags::all(), &evaluate);
         if !found.converged.and(found.settled).everywhere() {
@@ -112,7 +116,7 @@ impl<T: Real, const LOOPS: usize, const UNKNOWNS: usize> LoopMemory<T, LOOPS, UN
             };
         }
         let next = self.unknowns.iter_mut().skip(first);
-        next.zip(found.solution.iter())
+        next.zip(found.solution.as_slice())
             .for_each(|(next, z)| *next = converged.choose(*z, *next));
         if converged.everywhere() {
             return found.solution;

@@ -144,7 +144,7 @@ impl<T: Real, const K: usize> Found<T, K> {
                 size: &size,
             };
             let finite = |all: Flags<T>, step: &T| all.and(Flags::finite(*step));
-            let finite = correction.iter().fold(Flags::all(), finite);
+            let finite = correction.as_slice().iter().fold(Flags::all(), finite);
             if !finite.or(self.open.not()).everywhere() {
                 match self.aside(&mut way, &end, finite, &evaluate) {
                     ControlFlow::Break(()) => break,
@@ -323,7 +323,8 @@ fn below<T: Real, const K: usize>(
     let zero = T::from_f64(0.0);
     let rounding = T::from_f64(ROUNDING * T::EPSILON);
     let mut all = Flags::all();
-    for (place, (step, size)) in correction.iter().zip(sizes.iter()).enumerate() {
+    let pairs = correction.as_slice().iter().zip(sizes.as_slice());
+    for (place, (step, size)) in pairs.enumerate() {
         let unseen = unknowns.map_or(zero, |x| {
             x[place].abs().select_less(rounding, rounding, zero)
         });
@@ -379,11 +380,14 @@ impl<T: Real, const K: usize> Point<T, K> {
     ) -> Next<T, K> {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let quarter = T::from_f64(0.25);
-        let unit = size.zip_map(correction, |size, step| {
-            size.max(step.abs()) + T::from_f64(ROUNDING * T::EPSILON)
+        let inverse = size.zip_map(correction, |size, step| {
+            one / (size.max(step.abs()) + T::from_f64(ROUNDING * T::EPSILON))
         });
         let square = |step: &SVector<T, K>| {
-            let [relative] = step.zip_map(&unit, |step, unit| step / unit).data.0;
+            let [relative] = step
+                .zip_map(&inverse, |step, inverse| step * inverse)
+                .data
+                .0;
             dot(&relative, &relative)
         };
         let here = square(correction);
@@ -473,7 +477,7 @@ impl<T: Real, const K: usize> Point<T, K> {
         let rows = self.jacobian.transpose().data.0;
         let sizes = self.x.map(Real::abs).data.0[0];
         let mut all = lanes;
-        for (residual, row) in self.residual.iter().zip(rows) {
+        for (residual, row) in self.residual.as_slice().iter().zip(rows) {
             if all.nowhere() {
                 break;
             }
@@ -486,7 +490,8 @@ impl<T: Real, const K: usize> Point<T, K> {
     fn scaled_residual(&self, size: &SVector<T, K>) -> T {
         let zero = T::from_f64(0.0);
         let rows = self.jacobian.transpose().data.0;
-        let relative = self.residual.iter().zip(rows).map(|(residual, row)| {
+        let pairs = self.residual.as_slice().iter().zip(rows);
+        let relative = pairs.map(|(residual, row)| {
             let scale = dot(&row.map(Real::abs), &size.data.0[0]);
             residual.abs() / zero.select_less(scale, scale, T::from_f64(1.0))
         });

@@ -320,7 +320,7 @@ fn descend<T: Real, const M: usize, const N: usize>(
 ) -> Option<(SVector<T, N>, SVector<T, M>)> {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
     let here = square(residual);
-    let open = largest(residual.iter().copied());
+    let open = largest(residual.data.0[0]);
     let mut damping = one;
     for _ in 0..dampings {
         let next = point.zip_map(step, |q, step| q - damping * step);
@@ -337,6 +337,7 @@ fn descend<T: Real, const M: usize, const N: usize>(
 
 fn holds<T: Real, const M: usize>(residual: &SVector<T, M>, tolerance: f64) -> bool {
     residual
+        .as_slice()
         .iter()
         .all(|g| everywhere(*g, |lane| lane.abs() <= tolerance))
 }
@@ -348,7 +349,7 @@ impl<T: Real, const N: usize> Projected<T, N> {
         tolerance: f64,
         iterations: usize,
     ) -> Self {
-        let size = largest(residual.iter().copied());
+        let size = largest(residual.data.0[0]);
         let worst = residual
             .iter()
             .position(|g| !everywhere(g.abs() - size, |difference| difference < 0.0));

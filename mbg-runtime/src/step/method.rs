@@ -385,14 +385,20 @@ pub(super) fn relative<T: Real, const N: usize>(
     x: &SVector<T, N>,
     y: &SVector<T, N>,
 ) -> f64 {
-    let pairs = change.iter().zip(x.iter().zip(y.iter()));
-    pairs.fold(0.0, |largest: f64, (change, (x, y))| {
-        let change = change.magnitude();
-        if change == 0.0 {
-            return largest;
-        }
-        larger(largest, change / (x.magnitude() + y.magnitude()))
+    let [[change], [x], [y]] = [&change.data.0, &x.data.0, &y.data.0];
+    largest_of::<N>(|place| {
+        let change = change[place].magnitude();
+        let quotient = change / (x[place].magnitude() + y[place].magnitude());
+        if change == 0.0 { 0.0 } else { quotient }
     })
+}
+
+/// The largest of `N` sizes, or NaN where one is. Bits of numbers that are not negative have the order of the numbers, and those of
+/// NaN are behind all: so no comparison waits for the one before.
+#[inline]
+fn largest_of<const N: usize>(size: impl Fn(usize) -> f64) -> f64 {
+    let bits = (0..N).map(|place| size(place).abs().to_bits());
+    f64::from_bits(bits.fold(0, u64::max))
 }
 
 #[cfg(test)]
@@ -412,6 +418,24 @@ mod tests {
                 weight.multiply_add(vector[state], sum)
             });
             assert_eq!(sum[state].to_bits(), component.to_bits(), "{state} of {N}");
+        }
+    }
+
+    #[test]
+    fn the_largest_part_of_a_change_counts_and_what_is_no_number_shows() {
+        let x = SVector::<f64, 11>::from_fn(|place, _| place as f64 - 4.0);
+        let mut change = SVector::zeros();
+        assert_eq!(relative(&change, &x, &x), 0.0);
+        // Where nothing changes the size may be zero.
+        change[9] = -1.0;
+        change[1] = 1e-3;
+        assert_eq!(relative(&change, &x, &x), 0.1);
+        change[4] = 1e-300;
+        assert_eq!(relative(&change, &x, &x), f64::INFINITY);
+        for place in [0, 7, 10] {
+            let mut change = change;
+            change[place] = -f64::NAN;
+            assert!(relative(&change, &x, &x).is_nan(), "{place}");
         }
     }
 

@@ -195,14 +195,15 @@ where
     ) -> Result<(), Stopped> {
         let here = self.on_piece(t);
         let u = self.input.value(here, self.since);
-        if let Some(trouble) = self.system.trouble(here, x, &u, &self.memory) {
-            return Err(Stopped::new(t, Cause::Trouble(trouble)));
-        }
-        if !S::META.conditioning.is_empty() {
-            let conditioning = self.system.conditioning(here, x, &u);
+        let stopped = |trouble| Stopped::new(t, Cause::Trouble(trouble));
+        if S::META.conditioning.is_empty() {
+            let trouble = self.system.trouble(here, x, &u, &self.memory);
+            trouble.map_or(Ok(()), |trouble| Err(stopped(trouble)))?;
+        } else {
+            let examined = self.system.examined(here, x, &u, &self.memory);
+            let conditioning = examined.map_err(stopped)?;
             if let Some(before) = self.conditioning.replace(conditioning) {
-                stepped_over::<T, S, N, M, P>(&before, &conditioning)
-                    .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))?;
+                stepped_over::<T, S, N, M, P>(&before, &conditioning).map_err(stopped)?;
             }
         }
         check_result(self.system, t, slope, &self.memory)

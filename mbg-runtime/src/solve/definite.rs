@@ -42,15 +42,6 @@ impl<T: Real, const K: usize> Definite<T, K> {
         Self { lower, regular }
     }
 
-    /// The same, regular only in lanes where a flag is 1.
-    #[inline]
-    pub(super) fn where_set(self, flag: T) -> Self {
-        Self {
-            regular: self.regular * flag,
-            ..self
-        }
-    }
-
     #[inline]
     fn solve<X: Columns<T>>(&self, right: [X; K]) -> [X; K] {
         let lower = |row: usize, column: usize| X::whole(self.lower[row][column]);

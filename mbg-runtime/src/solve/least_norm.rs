@@ -10,7 +10,8 @@ use crate::Real;
 const RANK: f64 = 8.0;
 /// In units of the largest diagonal element: rows below it are brought to its size.
 const SMALL: f64 = 1e-4;
-/// In units of its own diagonal element: a matrix of which every pivot is above it needs no exchanges.
+/// In units of the largest diagonal element: a matrix whose pivots are all above it needs no exchanges. In units of its own: it
+/// needs none either, but a step of refinement.
 const REGULAR: f64 = 1e-4;
 /// Up to this size a regular matrix is factorised without exchanges. Larger ones take their time anyway, and are refined.
 const SHORT: usize = 32;
@@ -84,7 +85,7 @@ fn remainder<T: Real, const K: usize>(
 #[derive(Clone, Debug)]
 pub struct Semidefinite<T, const K: usize> {
     matrix: SMatrix<T, K, K>,
-    factors: Factors<T, Pivoted<T, K>, K>,
+    factors: Factors<T, Careful<T, K>, K>,
 }
 
 impl<T: Real, const K: usize> Semidefinite<T, K> {
@@ -100,26 +101,13 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn of_rank(matrix: SMatrix<T, K, K>, rank: T) -> Self {
-        let pivoted = || Pivoted::new(matrix, rank);
+        let careful = || Careful::new(matrix, rank);
         let factors = if K <= SHORT && everywhere(rank, |rank| rank >= K as f64) {
-            let [zero, one, part] = [0.0, 1.0, REGULAR].map(T::from_f64);
-            let rounding = T::from_f64(rounding::<T, K>());
-            let mut sizes = [matrix.data.0.first().map_or(one, |column| column[0]); 2];
-            for i in 0..K {
-                // Where an element is no number, its pivot is none either.
-                let [least, most] = sizes;
-                let own = matrix[(i, i)];
-                sizes = [
-                    own.select_less(least, own, least),
-                    most.select_less(own, own, most),
-                ];
-            }
-            let [least, most] = sizes;
-            let count = (rounding * most).select_less(least, one, zero);
-            let definite = Definite::new(&matrix, one, |own| part * own);
-            Factors::of(definite.where_set(count), pivoted)
+            let bound = T::from_f64(REGULAR) * largest((0..K).map(|i| matrix[(i, i)]));
+            let one = T::from_f64(1.0);
+            Factors::of(Definite::new(&matrix, one, |_| bound), careful)
         } else {
-            Factors::Other(pivoted())
+            Factors::Other(careful())
         };
         Self { matrix, factors }
     }
@@ -130,8 +118,8 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
         let solution = self.solution(right);
         let rank = match &self.factors {
-            Factors::Other(pivoted) => pivoted.rank,
-            Factors::Definite(_) | Factors::Both(..) => K,
+            Factors::Other(Careful(Factors::Other(pivoted))) => pivoted.rank,
+            _ => K,
         };
         let zero = T::from_f64(0.0);
         let size = largest(right.data.0[0]);
@@ -157,8 +145,38 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
         self.factors.columns(right, self.careful())
     }
 
-    fn careful(&self) -> impl Fn(&Pivoted<T, K>, &SVector<T, K>) -> SVector<T, K> {
-        |pivoted, right| pivoted.refined(&self.matrix, right)
+    fn careful(&self) -> impl Fn(&Careful<T, K>, &SVector<T, K>) -> SVector<T, K> {
+        |careful, right| careful.refined(&self.matrix, right)
+    }
+}
+
+/// Factors of a matrix whose pivots differ much, because of the units of its rows or next to a singular position: without
+/// exchanges where each pivot is large beside its own diagonal element, and that is no rounding.
+#[derive(Clone, Debug)]
+struct Careful<T, const K: usize>(Factors<T, Pivoted<T, K>, K>);
+
+impl<T: Real, const K: usize> Careful<T, K> {
+    #[cold]
+    #[inline(never)]
+    fn new(matrix: SMatrix<T, K, K>, rank: T) -> Self {
+        let pivoted = || Pivoted::new(matrix, rank);
+        if K > SHORT || !everywhere(rank, |rank| rank >= K as f64) {
+            return Self(Factors::Other(pivoted()));
+        }
+        let lost = T::from_f64(rounding::<T, K>()) * largest((0..K).map(|i| matrix[(i, i)]));
+        let [one, part, never] = [1.0, REGULAR, f64::INFINITY].map(T::from_f64);
+        let bound = |own: T| lost.select_less(own, part * own, never);
+        Self(Factors::of(Definite::new(&matrix, one, bound), pivoted))
+    }
+
+    /// The solution of least norm after one step of iterative refinement.
+    #[cold]
+    #[inline(never)]
+    fn refined(&self, matrix: &SMatrix<T, K, K>, right: &SVector<T, K>) -> SVector<T, K> {
+        let first = self.0.solution(right, Pivoted::least_squares);
+        let left = remainder(matrix, &first, right);
+        let refinement = self.0.solution(&left, Pivoted::least_squares);
+        first.zip_map(&refinement, |first, refinement| first + refinement)
     }
 }
 
@@ -209,8 +227,6 @@ struct Pivoted<T, const K: usize> {
 }
 
 impl<T: Real, const K: usize> Pivoted<T, K> {
-    #[cold]
-    #[inline(never)]
     fn new(matrix: SMatrix<T, K, K>, most: T) -> Self {
         let zero = T::from_f64(0.0);
         let scale = scales(&matrix);
@@ -234,15 +250,6 @@ impl<T: Real, const K: usize> Pivoted<T, K> {
         factors.scale = factors.order.apply(&scale);
         factors.span_null_space();
         factors
-    }
-
-    /// The solution of least norm after one step of iterative refinement.
-    #[cold]
-    #[inline(never)]
-    fn refined(&self, matrix: &SMatrix<T, K, K>, right: &SVector<T, K>) -> SVector<T, K> {
-        let first = self.least_squares(right);
-        let refinement = self.least_squares(&remainder(matrix, &first, right));
-        first.zip_map(&refinement, |first, refinement| first + refinement)
     }
 
     /// With `most` pivots at most.
@@ -526,7 +533,10 @@ mod tests {
         let kinds = |length: f64, angle: f64| {
             let rows = [[1.0, 0.0], [length * angle.cos(), length * angle.sin()]];
             let matrix = SMatrix::<f64, 2, 2>::from_fn(|i, j| dot(&rows[i], &rows[j]));
-            matches!(Semidefinite::new(matrix).factors, Factors::Definite(_))
+            matches!(
+                Semidefinite::new(matrix).factors,
+                Factors::Definite(_) | Factors::Other(Careful(Factors::Definite(_)))
+            )
         };
         for length in [1e-12, 1e-6, 1e-2, 1.0, 1e4, 1e12] {
             assert!(kinds(length, 1.0) && kinds(length, 0.011), "{length:e}");

@@ -281,11 +281,19 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
     left: &SMatrix<T, A, B>,
     right: &SMatrix<T, B, C>,
 ) -> SMatrix<T, A, C> {
+    // Column by column: what is next to each other in memory goes through registers side by side.
     let zero = T::from_f64(0.0);
-    SMatrix::from_fn(|row, column| {
-        let pairs = left.row(row).into_iter().zip(right.column(column));
-        pairs.fold(zero, |sum, (a, b)| sum + *a * *b)
-    })
+    let mut product = SMatrix::<T, A, C>::from_element(zero);
+    for (mut sums, weights) in product.column_iter_mut().zip(right.column_iter()) {
+        let mut sum = [zero; A];
+        for (column, weight) in left.data.0.iter().zip(weights.iter()) {
+            for (sum, part) in sum.iter_mut().zip(column) {
+                *sum = *sum + *part * *weight;
+            }
+        }
+        sums.copy_from_slice(&sum);
+    }
+    product
 }
 
 /// The derivatives of a function by each component.

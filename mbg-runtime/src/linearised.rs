@@ -288,7 +288,7 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
         let mut sum = [zero; A];
         for (column, weight) in left.data.0.iter().zip(weights.iter()) {
             for (sum, part) in sum.iter_mut().zip(column) {
-                *sum = *sum + *part * *weight;
+                *sum += *part * *weight;
             }
         }
         sums.copy_from_slice(&sum);

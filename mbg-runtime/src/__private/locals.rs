@@ -12,5 +12,5 @@ macro_rules! functions {
 
 functions! {
     ahead arguments both changing convert derivative entry fixed folded formatter from holds input jacobian kept lasting memory
-    model other parameters ranks right rows slopes stages t to u value whole x zero
+    model other parameters ranks rows slopes stages t to u value whole x zero
 }

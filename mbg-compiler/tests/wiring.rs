@@ -30,6 +30,35 @@ fn mistakes_at_ports_are_told() {
     assert_eq!(told("tie: Tie (a, b);"), "");
 }
 
+/// Chains and ports see what is inside of a component behind its use.
+#[test]
+fn a_bond_into_what_stands_further_down_is_told() {
+    let told = |body: &str| {
+        told(&format!(
+            "component Cart(port 1 at) {{ 1 way; way -> I m {{ inertia: 1.0 }}; at -> way; }}
+             component Stop(port at) {{ at -> R s {{ resistance: 1.0 }}; }}
+             model M {{ 1 a {{ R air {{ resistance: 1.0 }} }} {body} }}"
+        ))
+    };
+    insta::assert_snapshot!(told("a -> cart.way; cart: Cart (a);"), @"
+    3:63 `cart.way` is not declared [MBG0203]
+      help: `cart` stands further down: write this behind it, where its junctions are known
+    ");
+    insta::assert_snapshot!(told("stop: Stop (cart.way); cart: Cart (a);"), @"
+    3:70 `cart.way` is not declared [MBG0203]
+      help: `cart` stands further down: write this behind it, where its junctions are known
+    ");
+    insta::assert_snapshot!(told("for k in 0..1 { stop: Stop (cart.way); } cart: Cart (a);"), @"
+    3:86 `cart.way` is not declared [MBG0203]
+      help: `cart` stands further down: write this behind it, where its junctions are known
+    ");
+    insta::assert_snapshot!(told("cart: Cart (a); stop: Stop (cart.wey);"), @"
+    3:86 `cart.wey` is not declared [MBG0203]
+      help: did you mean `cart.way`?
+    ");
+    assert_eq!(told("cart: Cart (a); stop: Stop (cart.way);"), "");
+}
+
 /// A motor's shaft on a 0-junction and a tank's node on a 1-junction would simulate other physics.
 #[test]
 fn a_port_takes_junctions_of_its_kind() {

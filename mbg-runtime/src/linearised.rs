@@ -14,6 +14,11 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// feedback moves such a pole, and an iteration of Riccati's equation over all states does not end. The rows of both are the
 /// same in `A` and in `B`: leave one state out, and add its columns of `A` and `C` to those of the other.
 ///
+/// Filters and controllers that take rotations by three small angles in axes of the body multiply: with the columns
+/// `½ [-x, w, z, -y]`, `½ [-y, -z, w, x]` and `½ [-z, y, -x, w]` of a quaternion `[w, x, y, z]` as `E`, angles become a change `E δ`
+/// of the quaternion, `4 Eᵀ` takes such a change to angles, and `4 Eᵀ Φ E` has the first `E` after the sample and the second
+/// before it. Behind a correction [`System::close`] makes the quaternion one of length one.
+///
 /// `A` belongs to one state and time. Of a rotor that spins, with its body in axes that turn with it, or on a shaft that is not
 /// round, the states do not rest: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the
 /// rotor is round, write it in axes that do not turn; else take Floquet's multipliers over a turn, of which
@@ -149,6 +154,11 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
     /// `Γ = ∫ exp(A τ) dτ B` of `x(t + h) = Φ x(t) + Γ u`, as discrete controllers and filters are designed with. None where they
     /// are not finite.
     ///
+    /// Where the state does not rest the model is another one at the end of the period, and the error of `Φ` falls with the square of
+    /// that. The exact derivatives of a step, as iterations over a trajectory need them, are those of
+    /// [`Rk4::step`](crate::Rk4::step) with the model `converted(Dual::constant)` on [`Dual`] numbers, one call for each state and
+    /// input.
+    ///
     /// Both are summed for a part of the period that is short enough, whose double is taken as often as needed (scaling and
     /// squaring; Moler and Van Loan, *SIAM Review* 45 (2003), 3–49, method 3), of `Φ − I`, so that slow motions beside fast
     /// ones keep their digits.
@@ -281,11 +291,19 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
     left: &SMatrix<T, A, B>,
     right: &SMatrix<T, B, C>,
 ) -> SMatrix<T, A, C> {
+    // Column by column: what is next to each other in memory goes through registers side by side.
     let zero = T::from_f64(0.0);
-    SMatrix::from_fn(|row, column| {
-        let pairs = left.row(row).into_iter().zip(right.column(column));
-        pairs.fold(zero, |sum, (a, b)| sum + *a * *b)
-    })
+    let mut product = SMatrix::<T, A, C>::from_element(zero);
+    for (mut sums, weights) in product.column_iter_mut().zip(right.column_iter()) {
+        let mut sum = [zero; A];
+        for (column, weight) in left.data.0.iter().zip(weights.iter()) {
+            for (sum, part) in sum.iter_mut().zip(column) {
+                *sum += *part * *weight;
+            }
+        }
+        sums.copy_from_slice(&sum);
+    }
+    product
 }
 
 /// The derivatives of a function by each component.

@@ -33,6 +33,33 @@
 //! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, or within as much as [`Options`] say; lengths
 //!   below 1e-12 m and inertias that the mass would have 1e-8 m beside its centre for zero: what is zero costs nothing.
 //! - What shows or collides is left out. Every other tag without an equation is named with its line.
+//!
+//! # Links, forces and Jacobians
+//!
+//! `robot.hand_position` and `robot.hand_orientation` tell where the link `hand` is, whatever joint it hangs on. A junction
+//! `robot.hand` is the frame of a printed body, which may lie elsewhere along its axis. `--frame hand` adds a junction
+//! `robot.hand_frame` at the place of the link: forces, contacts, sensors and further joints are put there, as
+//! `push: Load { axes: world, force: push } (robot.hand_frame);`, and its flow is the link's angular velocity and velocity in axes
+//! of the link. What is put inside of a robot stands behind it in the model.
+//!
+//! With `output place[3] = robot.hand_position;` and `output twist[6] = robot.hand_frame.f;` rows of `Linearised::output` are
+//! Jacobians of the frame: of the place by angles, of the twist by rates. `jacobian_input` has the inverse of the inertia matrix
+//! in its rows of rates, so that the torques for an acceleration are the inverse of that times the acceleration less that of
+//! `derivative` without torques; `Trim` with the angles fixed gives those that hold against gravity. An angle that nothing
+//! reads is no state: the output of `coordinates` keeps all.
+//!
+//! Rotors behind a gear, elastic drives and stops stand at the `rate` of a joint:
+//!
+//! ```text
+//! robot.elbow.rate -> TF gear { flow: 100.0 } -> rotor;
+//! rotor -> I inertia { inertia: 2e-5 };
+//! robot.elbow.rate -> C stop {
+//!     effort: if q > 2.0 { 1e4 * (q - 2.0) } else if q < -2.0 { 1e4 * (q + 2.0) } else { 0.0 }, displacement: robot.elbow.angle
+//! };
+//! ```
+//!
+//! A base that flies hangs on a `Free`, `float: Free { orientation: quaternion } (world, base);` with
+//! `Sf held[6] { flow: 0.0 } -> world;`. Gains for all joints at once are `diag(…)` where some of them slide.
 
 mod assembly;
 mod geometry;
@@ -59,14 +86,17 @@ pub struct Options<'a> {
     /// Angles this near to a multiple of a right angle, in rad, are taken for it: where a file says 1.5708, 1e-5 leaves
     /// fewer operations.
     pub right_angles: f64,
+    /// Links whose frames are junctions `LINK_frame`, with the place and the axes that the file gives them.
+    pub frames: &'a [&'a str],
 }
 
 impl Default for Options<'_> {
-    /// No model, and 1e-9 rad.
+    /// No model, 1e-9 rad, and no frames.
     fn default() -> Self {
         Self {
             model: None,
             right_angles: geometry::RIGHT,
+            frames: &[],
         }
     }
 }
@@ -94,11 +124,12 @@ impl Default for Options<'_> {
 ///
 /// # Errors
 ///
-/// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of no known type.
+/// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of no known type; a link of
+/// [`Options::frames`] that the robot has not.
 pub fn convert(text: &str, source: &str, options: &Options<'_>) -> Result<Conversion, Remark> {
     let (robot, remarks) = robot::read(text, options.right_angles)?;
     Ok(Conversion {
-        text: print::print(&robot, source, options.model),
+        text: print::print(&robot, source, options)?,
         remarks,
     })
 }

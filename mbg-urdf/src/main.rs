@@ -7,10 +7,11 @@ use mbg_urdf::Options;
 const HELP: &str = "\
 Prints a robot's URDF file as a component in the language of mbg!
 
-usage: mbg-urdf [--model NAME] [--right-angles RAD] FILE
+usage: mbg-urdf [--model NAME] [--frame LINK]… [--right-angles RAD] FILE
 
   FILE                the URDF file; its path is named in the component's documentation
   --model NAME        prints a model of this name too, with the robot's base at rest
+  --frame LINK        adds a junction LINK_frame at the place of this link, for forces, contacts and velocities there
   --right-angles RAD  takes angles this near to a multiple of a right angle for it: 1e-5 where a file says 1.5708,
                       which leaves fewer operations; 1e-9 unless told otherwise
   --help              prints this text
@@ -39,6 +40,7 @@ enum Request {
     Convert {
         file: String,
         model: Option<String>,
+        frames: Vec<String>,
         right_angles: f64,
     },
 }
@@ -52,14 +54,16 @@ fn main() -> ExitCode {
         Ok(Request::Convert {
             file,
             model,
+            frames,
             right_angles,
         }) => {
-            let model = model.as_deref();
+            let frames: Vec<&str> = frames.iter().map(String::as_str).collect();
             converted(
                 &file,
                 &Options {
-                    model,
+                    model: model.as_deref(),
                     right_angles,
+                    frames: &frames,
                 },
             )
         }
@@ -71,7 +75,7 @@ fn main() -> ExitCode {
 }
 
 fn request(mut arguments: impl Iterator<Item = String>) -> Result<Request, String> {
-    let (mut file, mut model) = (None, None);
+    let (mut file, mut model, mut frames) = (None, None, Vec::new());
     let mut right_angles = Options::default().right_angles;
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
@@ -86,6 +90,11 @@ fn request(mut arguments: impl Iterator<Item = String>) -> Result<Request, Strin
                 }
                 model = Some(name);
             }
+            "--frame" => frames.push(
+                arguments
+                    .next()
+                    .ok_or("`--frame` needs the name of a link")?,
+            ),
             "--right-angles" => {
                 let angle = arguments.next().and_then(|it| it.parse().ok());
                 let small = angle.filter(|it| (0.0..0.1).contains(it));
@@ -101,6 +110,7 @@ fn request(mut arguments: impl Iterator<Item = String>) -> Result<Request, Strin
     Ok(Request::Convert {
         file,
         model,
+        frames,
         right_angles,
     })
 }

@@ -6,6 +6,7 @@ use crate::geometry::{
 };
 use crate::names::{Names, component};
 use crate::robot::{Joint, Motion, Robot, shown};
+use crate::{Options, Remark};
 
 /// A frame.
 #[derive(Clone)]
@@ -58,7 +59,7 @@ struct Printer<'a> {
 }
 
 /// The component, and a model of it with its base at rest where that is given a name.
-pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String {
+pub(crate) fn print(robot: &Robot, source: &str, options: &Options<'_>) -> Result<String, Remark> {
     let free = robot.joints.iter().filter(|it| it.is_free());
     let mut printer = Printer {
         robot,
@@ -78,16 +79,19 @@ pub(crate) fn print(robot: &Robot, source: &str, model: Option<&str>) -> String 
     }
     printer.mimics();
     printer.bodies();
+    for link in options.frames {
+        printer.frame(link)?;
+    }
     printer.poses();
     let name = component(&robot.name);
     let mut text = head(robot, &shown(source), &name, &printer.free);
     text += &printer.parameters;
     text += &printer.text;
     text += "}\n";
-    if let Some(model) = model {
+    if let Some(model) = options.model {
         text += &at_rest(&robot.name, &name, model, printer.free.len());
     }
-    text
+    Ok(text)
 }
 
 /// What stands before the joints.
@@ -417,6 +421,35 @@ impl<'a> Printer<'a> {
              {felt} -> I {spin} {{ inertia: diag({weights}) }};\n    \
              {junction}[0..3] -> EJS {whirl} {{ momentum: transpose({axes}) * {spin}.p }};\n"
         );
+    }
+
+    /// A junction at the place of a link, with its axes.
+    fn frame(&mut self, link: &str) -> Result<(), Remark> {
+        let parts = self.robot.links.iter().zip(&self.assembly.parts);
+        let found = parts.filter(|(it, _)| it.name == link);
+        let Some(part) = found.filter_map(|(_, part)| part.as_ref()).next() else {
+            return Err(Remark {
+                line: 1,
+                text: format!("there is no link `{link}`, of which a frame was asked for"),
+            });
+        };
+        let (frame, pose) = (&self.frames[part.rigid], &part.pose);
+        let [junction, mount] =
+            ["frame", "frame_mount"].map(|it| self.names.take(&format!("{link}_{it}")));
+        let mut arguments = Vec::new();
+        if pose.place != [0.0; 3] {
+            arguments.push(format!("offset: {}", column(&pose.place)));
+        }
+        if pose.turn != IDENTITY {
+            arguments.push(format!("tilt: {}", rotation(&pose.turn)));
+        }
+        arguments.extend(frame.all_given().strip_prefix(", ").map(str::to_owned));
+        self.text += &format!(
+            "\n    // The frame of {link}.\n    1 {junction}[6];\n    {mount}: Mount {{ {} }} ({}, {junction});\n",
+            arguments.join(", "),
+            frame.junction
+        );
+        Ok(())
     }
 
     /// Where each link is, and the motion of the joints.

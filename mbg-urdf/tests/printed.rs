@@ -8,6 +8,7 @@ use mbg_urdf::Options;
 const BENCH: Options<'_> = Options {
     model: Some("Bench"),
     right_angles: 1e-9,
+    frames: &[],
 };
 
 /// A file of a pendulum on a slide, with damping and friction, an axis along no coordinate axis and a fixed link.
@@ -234,4 +235,48 @@ fn frames_move_along_hinges_to_where_fewer_lengths_are_left() {
     ] {
         assert!(printed.contains(expected), "{expected}\n{printed}");
     }
+}
+
+/// A frame that was asked for is where its link is, though the frame of the body moves along its axis.
+#[test]
+fn frames_of_links_are_junctions() {
+    let names = ["r", "slide", "hinge", "cart", "rod"];
+    let frames = ["ground", "cart", "tip"];
+    let options = Options {
+        frames: &frames,
+        ..BENCH
+    };
+    let file = pendulum(names).replace(
+        "<joint name=\"end\" type=\"fixed\">",
+        "<joint name=\"end\" type=\"fixed\"><origin xyz=\"0 0 0.5\" rpy=\"0.1 0 0\"/>",
+    );
+    let printed = mbg_urdf::convert(&file, "r.urdf", &options).unwrap().text;
+    let loads: String = frames
+        .map(|it| format!("on_{it}: Load {{ force: [1.0, 2.0, 3.0] }} (robot.{it}_frame);"))
+        .concat();
+    let outputs = "output apart[3] = robot.tip_position - robot.tip_frame_mount.position_b;";
+    let model = printed.replace(
+        "    output coordinates",
+        &format!("    {loads}\n    {outputs}\n    output coordinates"),
+    );
+    for text in [&printed, &model] {
+        let mut diagnostics = Diagnostics::new();
+        let _ = items(text.parse().unwrap(), &mut diagnostics);
+        let told: Vec<_> = diagnostics.list().iter().map(|it| it.text()).collect();
+        // The load on the ground alone does nothing.
+        assert!(
+            told.iter()
+                .all(|it| text == &model && it.contains("on_ground")),
+            "{told:?}\n{text}"
+        );
+    }
+    let options = Options {
+        frames: &["top"],
+        ..BENCH
+    };
+    let missing = mbg_urdf::convert(&file, "r.urdf", &options).unwrap_err();
+    assert_eq!(
+        missing.to_string(),
+        "1: there is no link `top`, of which a frame was asked for"
+    );
 }

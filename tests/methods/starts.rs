@@ -1,8 +1,8 @@
 //! First steps: short runs, and runs that begin next to rest.
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Fixed, Integrator, Method, Radau5, Radau9, Real, Rodas4, Rodas5P, Ros2,
-    System, Tsit5, Variable, mbg,
+    Adaptive, Auto, Dop853, Fixed, Gauss6, Integrator, Method, Radau5, Radau9, Real, Rodas4,
+    Rodas5P, Ros2, System, Tsit5, Variable, mbg,
 };
 use nalgebra::SVector;
 
@@ -117,4 +117,51 @@ fn sweeps_of_radau_settle_from_zero() {
         assert!(end(Radau9, resting, 1.0) < 1e-4);
         assert!(end(Radau9, resting, 0.25) < 4e-10);
     }
+}
+
+mbg! {
+    /// A body with two legs that springs and dampers hold bent falls freely: its joints have nothing to do.
+    #[derivative]
+    pub(crate) model Dropped {
+        causality componentwise;
+        gravity [0.0, 0.0, -9.81];
+        1 world[6]; 1 hull[6];
+        Sf fixed[6] { flow: 0.0 } -> world;
+        free: Free { orientation: quaternion } (world, hull);
+        body: Body { mass: 6.1, inertia: diag(0.016, 0.038, 0.046), centre: [0.01, 0.004, -0.003] } (hull);
+        legs: for k in 0..2 {
+            1 thigh[6]; 1 calf[6];
+            hip: Revolute {
+                axis: 1, offset: [0.0, 0.13 * (1 - 2 * k), 0.0], initial: 0.8, stiffness: 300.0, rest: 0.8, damping: 3.0
+            } (hull, thigh);
+            upper: Body { mass: 1.01, inertia: diag(0.0055, 0.0051, 0.0014), centre: [-0.003, 0.02, -0.027] } (thigh);
+            knee: Revolute {
+                axis: 1, offset: [0.0, 0.0, -0.2], initial: -1.6, stiffness: 300.0, rest: -1.6, damping: 3.0
+            } (thigh, calf);
+            lower: Body { mass: 0.23, inertia: diag(0.0034, 0.0034, 0.00004), centre: [0.005, 0.0, -0.13] } (calf);
+        }
+        output height: m = free.position.z;
+        output knees[2]: rad = [legs[0].knee.angle, legs[1].knee.angle];
+    }
+}
+
+/// Rates of joints are what rounding leaves of weights there, and no sweep makes their changes small beside them.
+#[test]
+fn sweeps_settle_where_states_are_rounding_alone() {
+    fn assert_falls<M: Method>(method: M, step: f64) {
+        let model = Dropped::<f64>::new(DroppedParameters::default()).unwrap();
+        let mut last = model.initial_state();
+        let statistics = Fixed::new(method, step)
+            .integrate(&model, &(), 0.0, 0.3, last, |step| last = *step.state())
+            .unwrap();
+        println!("{} {step}: {statistics:?}", M::NAME);
+        let found = model.output(0.3, &last, &SVector::zeros(), &mut ());
+        let expected = SVector::from([-0.5 * 9.81 * 0.09, -1.6, -1.6]);
+        assert!((found - expected).amax() < 1e-13, "{found}");
+    }
+    for step in [1e-2, 1e-3] {
+        assert_falls(Radau5, step);
+        assert_falls(Radau9, step);
+    }
+    assert_falls(Gauss6::default(), 1e-3);
 }

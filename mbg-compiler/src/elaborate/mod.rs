@@ -283,12 +283,21 @@ impl<'a> Builder<'a> {
 
     fn connect(&mut self, scope: usize, statements: &'a [Statement]) {
         let mut loops = std::mem::take(&mut self.scopes[scope].loops).into_iter();
-        for statement in self.scopes[scope].constants.chosen(statements) {
+        let chosen = self.scopes[scope].constants.chosen(statements);
+        let instances = chosen.iter().rev().filter_map(|it| match it {
+            Statement::Instance(instance) => Some(instance.name.to_string()),
+            _ => None,
+        });
+        self.scopes[scope].later = instances.collect();
+        for statement in chosen {
             match statement {
                 Statement::Junction(junction) => self.fill_junction(scope, junction),
                 Statement::Chain(chain) => self.chain(scope, chain),
                 Statement::Closure(closure) => self.closure(scope, closure),
-                Statement::Instance(instance) => self.instance(scope, instance),
+                Statement::Instance(instance) => {
+                    self.scopes[scope].later.pop();
+                    self.instance(scope, instance);
+                }
                 Statement::Loop(repeated) => {
                     let (_, iterations) = loops.next().unwrap_or_default();
                     for iteration in iterations {

@@ -162,7 +162,8 @@ impl Builder<'_> {
         if let Some(help) = self.by_number(scope, &steps) {
             return Box::new(report.help(help));
         }
-        let help = self.scopes.in_loop(scope, &steps);
+        let help = self.scopes.later(scope, &steps);
+        let help = help.or_else(|| self.scopes.in_loop(scope, &steps));
         if let Some(help) = help.or_else(|| self.junctions_inside(scope, &steps)) {
             return Box::new(report.help(help));
         }

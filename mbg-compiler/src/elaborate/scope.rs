@@ -84,6 +84,8 @@ pub(super) struct Scope {
     pub(super) outputs: BTreeMap<String, [String; 2]>,
     /// In an iteration of a loop: its variable.
     pub(super) variable: Option<String>,
+    /// Components that are used further down, of which nothing is known yet.
+    pub(super) later: Vec<String>,
     /// Loops, for what is said of names inside them.
     pub(super) turns: Vec<Turns>,
     /// Loops in order of declaration: their paths, and the scopes of their iterations.
@@ -109,6 +111,19 @@ impl std::ops::IndexMut<usize> for Scopes {
 }
 
 impl Scopes {
+    /// What to do about a path into a component that is used further down.
+    pub(super) fn later(&self, scope: usize, path: &[Step]) -> Option<String> {
+        let [first, _, ..] = path else { return None };
+        let name = first.name.to_string();
+        let is_later = |scope: usize| self[scope].later.contains(&name);
+        let help = || {
+            format!(
+                "`{name}` stands further down: write this behind it, where its junctions are known"
+            )
+        };
+        self.seen_from(scope).any(is_later).then(help)
+    }
+
     /// Adds a scope.
     pub(super) fn add(&mut self, scope: Scope) -> usize {
         self.0.push(scope);

@@ -134,7 +134,7 @@ impl Scopes {
     }
 
     /// A scope and those around it.
-    fn seen_from(&self, scope: usize) -> impl Iterator<Item = usize> {
+    pub(super) fn seen_from(&self, scope: usize) -> impl Iterator<Item = usize> {
         std::iter::successors(Some(scope), |scope| self[*scope].around)
     }
 

@@ -12,6 +12,7 @@ use super::method::{
     settles,
 };
 use super::problem::Problem;
+use super::rounding::Floor;
 use super::seen;
 use super::tolerance::{NOISE, Sizes, Tolerance};
 use crate::{Input, Real, System};
@@ -107,6 +108,10 @@ enum Solve {
 
 /// Most sweeps to rounding.
 const MOST: u32 = 50;
+/// After so many of them it is looked for states that are rounding alone.
+const MANY: u32 = 16;
+/// Sweeps that bring back what is moved.
+const ONWARD: u32 = 4;
 /// In units of what states have been and become: Newton's sweeps have found a stage when the last one changes it by less.
 const NEAR: f64 = 1e-3;
 /// In the same units: or when it leaves less to be changed.
@@ -183,16 +188,12 @@ where
             Solve::Newton(sweeps) => self.by_newton(problem, (start, &mut memories), sweeps),
             Solve::Sweeps(Some(sweeps)) => {
                 for _ in 0..if first { sweeps + 2 } else { sweeps } {
-                    Self::sweep(&mut self.slopes, problem, (start, &mut memories), None);
+                    let at = (start, &mut memories);
+                    Self::sweep(&mut self.slopes, problem, at, None);
                 }
                 true
             }
-            // The last bits of sweeps that stop early add up over long times.
-            Solve::Sweeps(None) => settles::<T>(
-                MOST,
-                |_before, _last| false,
-                || Self::sweep(&mut self.slopes, problem, (start, &mut memories), None),
-            ),
+            Solve::Sweeps(None) => self.by_sweeps(problem, (start, &mut memories)),
         };
         let length = start.span.length;
         self.length = Some(length);
@@ -300,38 +301,75 @@ where
         last <= NEAR || rate < 1.0 && last * rate / (1.0 - rate) <= LEFT
     }
 
-    /// One sweep over all stages; gives the largest change of a stage relative to the state. One of Newton's method leaves what the
-    /// equations of the last stage had left before.
+    /// Sweeps to rounding; whether they have come to that.
+    ///
+    /// The last bits of sweeps that stop early add up over long times.
+    fn by_sweeps<Y, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        (start, memories): (&Start<T, N>, &mut [Option<Y::Memory>; S]),
+    ) -> bool
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        self.sizes.note(&start.x);
+        let Self { slopes, sizes, .. } = self;
+        let along = |slope: &SVector<T, N>| slope.map(|slope| start.span.length * slope);
+        let (mut sweeps, mut floor) = (0, Floor::new());
+        settles::<T>(
+            MOST,
+            |_before, _last| false,
+            || {
+                let known = *slopes;
+                Self::sweep(slopes, problem, (start, memories), None);
+                let ways = slopes.each_ref().map(along);
+                let changes: [SVector<T, N>; S] =
+                    array::from_fn(|it| along(&(slopes[it] - known[it])));
+                sweeps += 1;
+                if sweeps >= MANY {
+                    floor.look(&changes, (&start.x, &ways, sizes), |way| {
+                        let kept = (*memories, problem.memory);
+                        let steeper = way.map(|way| way / start.span.length);
+                        let mut slopes = slopes.each_ref().map(|slope| slope + steeper);
+                        for _ in 0..ONWARD {
+                            Self::sweep(&mut slopes, problem, (start, memories), None);
+                        }
+                        (*memories, problem.memory) = kept;
+                        slopes.each_ref().map(along)
+                    });
+                }
+                let changes = floor.beyond(changes);
+                let sizes = changes.iter().zip(&ways);
+                let sizes = sizes.map(|(change, way)| relative(change, &start.x, way));
+                sizes.fold(0.0, larger)
+            },
+        )
+    }
+
+    /// One sweep over all stages. One of Newton's method leaves what the equations of the last stage had left before.
     fn sweep<Y, I, const M: usize, const P: usize>(
         slopes: &mut [SVector<T, N>; S],
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         (start, memories): (&Start<T, N>, &mut [Option<Y::Memory>; S]),
         mut newton: Option<(&Shifted<T, N>, &mut SVector<T, N>)>,
-    ) -> f64
-    where
+    ) where
         Y: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let length = start.span.length;
         let known = *slopes;
-        let mut largest = 0.0_f64;
         for stage in 0..S {
             let direction = combination(&A::TABLEAU.matrix[stage], &known);
-            let x = along(&start.x, length, &direction);
+            let x = along(&start.x, start.span.length, &direction);
             let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
             let slope = problem.slope_of_stage(t, &x, &mut memories[stage]);
-            let mut change = slope - known[stage];
             if let Some((factors, residual)) = &mut newton {
-                **residual = change;
-                change = factors.solved::<Y, M, P>(&change);
-                slopes[stage] = known[stage] + change;
+                **residual = slope - known[stage];
+                slopes[stage] = known[stage] + factors.solved::<Y, M, P>(residual);
             } else {
                 slopes[stage] = slope;
             }
-            let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
-            largest = larger(largest, relative(&scaled(change), &start.x, &scaled(slope)));
         }
-        largest
     }
 }
 

@@ -20,6 +20,7 @@ mod probes;
 mod problem;
 mod radau;
 mod rosenbrock;
+mod rounding;
 mod thresholds;
 mod tolerance;
 #[cfg(test)]

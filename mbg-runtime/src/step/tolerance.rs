@@ -81,6 +81,12 @@ impl<const N: usize> Sizes<N> {
         }
     }
 
+    /// Changes of states that may be rounding of other ones are no larger: of a state that has been nothing but rounding its own
+    /// size tells nothing.
+    pub(super) fn most<T: Real>(&self) -> [f64; N] {
+        self.0.map(|size| T::SINGULAR * size.max(1.0))
+    }
+
     /// A tolerance of so large a part of what states have been and are.
     pub(super) fn tolerance(&self, part: f64) -> Tolerance<N> {
         Tolerance::new(part, part, &self.0.map(|size| size.max(f64::MIN_POSITIVE)))

@@ -8,6 +8,7 @@ use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
 use crate::step::method::{Start, combination, combined, larger, relative, settles};
 use crate::step::problem::Problem;
+use crate::step::rounding::Floor;
 use crate::step::tolerance::{NOISE, ROUNDING, Sizes, Tolerance};
 use crate::{Input, Real, System};
 
@@ -21,6 +22,8 @@ const MOST: u32 = 20;
 const STAYS: f64 = 0.5;
 /// So few sweeps to rounding keep the Jacobian.
 const FEW: u32 = 2;
+/// After so many sweeps to rounding it is looked for states that are rounding alone.
+const MANY: u32 = 4;
 /// However far sweeps are from what is enough, no more is believed: over many sweeps a rate tells little.
 pub(super) const FAR: f64 = 20.0;
 
@@ -203,13 +206,22 @@ where
         stages: &mut [SVector<T, N>; S],
         sizes: &Sizes<N>,
     ) -> Result<f64, f64> {
+        let x = &self.start.x;
         let mut inner = transformed(const { &A::TABLEAU.inverse }, stages);
         let before = sizes.before::<T>();
         let mut convergence = Convergence::new();
+        let mut floor = Floor::new();
         let settles = settles::<T>(MOST, is_rounding::<T>, || {
             let old = *stages;
-            let changes = self.sweep(stages, &mut inner);
+            let changes = floor.beyond(self.sweep(stages, &mut inner));
+            let of_stages: [SVector<T, N>; S] = core::array::from_fn(|it| stages[it] - old[it]);
             convergence.note(Real::sqrt(before.squares(&changes)));
+            let is_late = convergence.sweeps >= MANY || convergence.is_hopeless::<T>();
+            let known = (x, &*stages, sizes);
+            if is_late && floor.look(&of_stages, known, |way| self.beside(stages, way)) {
+                convergence = Convergence::new();
+            }
+            let of_stages = floor.beyond(of_stages);
             if convergence.is_hopeless::<T>() {
                 return f64::NAN;
             }
@@ -218,8 +230,8 @@ where
             if convergence.stays::<T>() && is_small::<T>(between().squares(&changes)) {
                 return 0.0;
             }
-            let changes = old.iter().zip(&*stages);
-            let sizes = changes.map(|(old, new)| relative(&(new - old), &self.start.x, new));
+            let changes = of_stages.iter().zip(&*stages);
+            let sizes = changes.map(|(change, new)| relative(change, x, new));
             sizes.fold(0.0, larger)
         });
         if !settles {
@@ -229,6 +241,17 @@ where
         } else {
             Ok(f64::INFINITY)
         }
+    }
+
+    /// The stages behind a sweep from those to which something is added; nothing is kept of it.
+    #[inline(never)]
+    fn beside(&mut self, stages: &[SVector<T, N>; S], way: &SVector<T, N>) -> [SVector<T, N>; S] {
+        let kept = (self.memories, self.problem.memory);
+        let mut stages = stages.each_ref().map(|stage| stage + way);
+        let mut inner = transformed(const { &A::TABLEAU.inverse }, &stages);
+        self.sweep(&mut stages, &mut inner);
+        (self.memories, self.problem.memory) = kept;
+        stages
     }
 
     /// The slope of the model where the step ends.

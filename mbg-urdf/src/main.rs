@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use mbg_urdf::Options;
+use mbg_urdf::{Options, Remark};
 
 const HELP: &str = "\
 Prints a robot's URDF file as a component in the language of mbg!
@@ -125,15 +125,30 @@ fn converted(file: &str, options: &Options<'_>) -> ExitCode {
     };
     match mbg_urdf::convert(&text, file, options) {
         Ok(found) => {
-            for remark in &found.remarks {
-                eprintln!("{file}:{remark}");
-            }
+            tell(file, &found.remarks);
             print!("{}", found.text);
             ExitCode::SUCCESS
         }
         Err(remark) => {
             eprintln!("{file}:{remark}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+/// Writes remarks, each once with the first line that it is about.
+fn tell(file: &str, remarks: &[Remark]) {
+    let is_first = |place: &usize| {
+        let mut before = remarks[..*place].iter();
+        before.all(|it| it.text != remarks[*place].text)
+    };
+    for place in (0..remarks.len()).filter(is_first) {
+        let first = &remarks[place];
+        let alike = remarks[place..].iter().filter(|it| it.text == first.text);
+        match alike.count() - 1 {
+            0 => eprintln!("{file}:{first}"),
+            1 => eprintln!("{file}:{first}, and once more below"),
+            more => eprintln!("{file}:{first}, and {more} times more below"),
         }
     }
 }

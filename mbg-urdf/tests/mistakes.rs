@@ -255,6 +255,23 @@ fn the_command_prints_the_component() {
 }
 
 #[test]
+fn what_is_not_converted_anywhere_is_told_once() {
+    let path = format!("{}/limits.urdf", env!("CARGO_TARGET_TMPDIR"));
+    for (count, told_too) in [
+        (2, ", and once more below"),
+        (4, ", and 3 times more below"),
+    ] {
+        let limits = "<limit/>".repeat(count);
+        std::fs::write(&path, file("<axis ", &format!("{limits}<gazebo/><axis "))).unwrap();
+        let (_, told, _) = run(&[&path]);
+        let expected = format!(
+            "{path}:11: `limit` is not converted{told_too}\n{path}:11: `gazebo` is not converted\n"
+        );
+        assert_eq!(told, expected);
+    }
+}
+
+#[test]
 fn an_angle_beside_a_right_one_is_told_with_what_to_type() {
     let path = format!("{}/beside.urdf", env!("CARGO_TARGET_TMPDIR"));
     std::fs::write(&path, file("rpy=\"0 0 0\"", "rpy=\"1.5708 0 0\"")).unwrap();

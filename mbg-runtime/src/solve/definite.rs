@@ -1,5 +1,4 @@
-//! Symmetric positive definite systems that are far from singular: short code without exchanges, and other factors where they
-//! are not.
+//! Symmetric definite systems that are far from singular: short code without exchanges, and other factors where they are not.
 
 use nalgebra::{SMatrix, SVector};
 

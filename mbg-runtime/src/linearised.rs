@@ -294,14 +294,12 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
     // Column by column: what is next to each other in memory goes through registers side by side.
     let zero = T::from_f64(0.0);
     let mut product = SMatrix::<T, A, C>::from_element(zero);
-    for (mut sums, weights) in product.column_iter_mut().zip(right.column_iter()) {
-        let mut sum = [zero; A];
-        for (column, weight) in left.data.0.iter().zip(weights.iter()) {
-            for (sum, part) in sum.iter_mut().zip(column) {
+    for (sums, weights) in product.data.0.iter_mut().zip(&right.data.0) {
+        for (column, weight) in left.data.0.iter().zip(weights) {
+            for (sum, part) in sums.iter_mut().zip(column) {
                 *sum += *part * *weight;
             }
         }
-        sums.copy_from_slice(&sum);
     }
     product
 }

@@ -67,7 +67,7 @@ fn sweep<T: Real, const L: usize, const R: usize>(
             change(&mut changes, direction, Columns::<T>::whole(zero));
             let slope = |place: usize| found.get(place)?.as_columns().get(lane).copied();
             let (first, others) = direction;
-            // Where a loop may end early no compiler makes it write with scattered lanes, which takes longer.
+            // It may end early, so that compilers write entry by entry: scattered lanes take longer.
             for (place, entry) in entries.iter().enumerate() {
                 let written = slope(place).and_then(|slope| write(*first, *entry, slope));
                 if written.is_none() {

@@ -89,7 +89,7 @@ where
     }
 
     /// One sweep; gives what it changed in the transformed stages.
-    // Called as a function, which compilers choose where it is read in several places, it takes a sixth of a small model's step.
+    // As a function, which compilers make of what is called in several places, it takes much of a small model's step.
     #[inline(always)]
     fn sweep(
         &mut self,

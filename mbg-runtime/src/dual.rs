@@ -1,10 +1,11 @@
 //! Numbers that carry their derivative.
 
+use core::array;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use crate::Real;
+use crate::{Columns, Real};
 
 /// A dual number `value + slope · ε` with `ε² = 0`: a number and its derivative along one direction, exact to rounding.
 ///
@@ -46,12 +47,15 @@ use crate::Real;
 /// let length = tip.dot(&tip).sqrt();
 /// assert!((length.value - 2.0).abs() < 1e-15 && length.slope.abs() < 1e-15);
 /// ```
+///
+/// With [`Columns`] of `T` for the slope a number carries its derivatives along several directions at once, which takes the
+/// functions of the value once for all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Dual<T> {
+pub struct Dual<T, L = T> {
     /// The number.
     pub value: T,
     /// Its derivative.
-    pub slope: T,
+    pub slope: L,
 }
 
 impl<T: Real> Dual<T> {
@@ -72,29 +76,50 @@ impl<T: Real> Dual<T> {
             slope: T::from_f64(1.0),
         }
     }
+}
+
+impl<T: Real, L: Columns<T>> Dual<T, L> {
+    /// A number that changes along no direction.
+    pub(crate) fn unchanging(value: T) -> Self {
+        Self {
+            value,
+            slope: L::from_f64(0.0),
+        }
+    }
 
     /// A function of this number by the chain rule.
     fn chain(self, value: T, derivative: T) -> Self {
         Self {
             value,
-            slope: derivative * self.slope,
+            slope: L::whole(derivative) * self.slope,
         }
     }
 
-    /// The same of a function that is infinitely steep somewhere: where this number does not change the function does not
-    /// either. Without a branch, and with the slopes of slopes, which may change where they are zero.
+    /// The same of a function that is infinitely steep somewhere.
     fn steep_chain(self, value: T, derivative: T) -> Self {
-        let zero = T::from_f64(0.0);
-        let infinite = T::from_f64(f64::INFINITY);
-        let finite = derivative.abs().select_less(infinite, derivative, zero);
-        self.chain(
+        Self {
             value,
-            zero.select_less(self.slope.abs(), derivative, finite),
-        )
+            slope: steep(derivative, self.slope),
+        }
+    }
+
+    /// One of two slopes, as [`Real::select_less`] has it.
+    fn slope_of_less(value: T, bound: T, yes: L, no: L) -> L {
+        L::whole(value).select_less(L::whole(bound), yes, no)
     }
 }
 
-impl<T: Real> Add for Dual<T> {
+/// The slope of a function that is infinitely steep somewhere: where its argument does not change the function does not either.
+/// Without a branch, and with the slopes of slopes, which may change where they are zero.
+fn steep<T: Real, L: Columns<T>>(derivative: T, slope: L) -> L {
+    let zero = T::from_f64(0.0);
+    let infinite = T::from_f64(f64::INFINITY);
+    let finite = derivative.abs().select_less(infinite, derivative, zero);
+    let changes = L::from_f64(0.0).select_less(slope.abs(), L::whole(derivative), L::whole(finite));
+    changes * slope
+}
+
+impl<T: Real, L: Columns<T>> Add for Dual<T, L> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -105,7 +130,7 @@ impl<T: Real> Add for Dual<T> {
     }
 }
 
-impl<T: Real> Sub for Dual<T> {
+impl<T: Real, L: Columns<T>> Sub for Dual<T, L> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -116,30 +141,31 @@ impl<T: Real> Sub for Dual<T> {
     }
 }
 
-impl<T: Real> Mul for Dual<T> {
+impl<T: Real, L: Columns<T>> Mul for Dual<T, L> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
         Self {
             value: self.value * other.value,
-            slope: self.slope * other.value + self.value * other.slope,
+            slope: (self.slope)
+                .multiply_add(L::whole(other.value), L::whole(self.value) * other.slope),
         }
     }
 }
 
-impl<T: Real> Div for Dual<T> {
+impl<T: Real, L: Columns<T>> Div for Dual<T, L> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         Self {
             value,
-            slope: (self.slope - value * other.slope) / other.value,
+            slope: (self.slope - L::whole(value) * other.slope) / L::whole(other.value),
         }
     }
 }
 
-impl<T: Real> Neg for Dual<T> {
+impl<T: Real, L: Columns<T>> Neg for Dual<T, L> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -150,31 +176,31 @@ impl<T: Real> Neg for Dual<T> {
     }
 }
 
-impl<T: Real> AddAssign for Dual<T> {
+impl<T: Real, L: Columns<T>> AddAssign for Dual<T, L> {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<T: Real> SubAssign for Dual<T> {
+impl<T: Real, L: Columns<T>> SubAssign for Dual<T, L> {
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl<T: Real> MulAssign for Dual<T> {
+impl<T: Real, L: Columns<T>> MulAssign for Dual<T, L> {
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-impl<T: Real> DivAssign for Dual<T> {
+impl<T: Real, L: Columns<T>> DivAssign for Dual<T, L> {
     fn div_assign(&mut self, other: Self) {
         *self = *self / other;
     }
 }
 
-impl<T: Real> Zero for Dual<T> {
+impl<T: Real, L: Columns<T>> Zero for Dual<T, L> {
     fn zero() -> Self {
         Self::from_f64(0.0)
     }
@@ -184,13 +210,13 @@ impl<T: Real> Zero for Dual<T> {
     }
 }
 
-impl<T: Real> One for Dual<T> {
+impl<T: Real, L: Columns<T>> One for Dual<T, L> {
     fn one() -> Self {
         Self::from_f64(1.0)
     }
 }
 
-impl<T: Real> Real for Dual<T> {
+impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
     type Columns = Self;
     type Stages = crate::Four<Self>;
 
@@ -198,7 +224,7 @@ impl<T: Real> Real for Dual<T> {
     const EPSILON: f64 = T::EPSILON;
 
     fn from_f64(value: f64) -> Self {
-        Self::constant(T::from_f64(value))
+        Self::unchanging(T::from_f64(value))
     }
 
     fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
@@ -209,9 +235,25 @@ impl<T: Real> Real for Dual<T> {
         self.value.magnitude()
     }
 
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        let of_factor = (factor.slope).multiply_add(L::whole(self.value), addend.slope);
+        Self {
+            value: self.value.multiply_add(factor.value, addend.value),
+            slope: (self.slope).multiply_add(L::whole(factor.value), of_factor),
+        }
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = self.value.sin_cos();
         (self.chain(sine, cosine), self.chain(cosine, -sine))
+    }
+
+    fn sines_cosines<const K: usize>(angles: [Self; K]) -> ([Self; K], [Self; K]) {
+        let (sines, cosines) = T::sines_cosines(angles.map(|it| it.value));
+        (
+            array::from_fn(|place| angles[place].chain(sines[place], cosines[place])),
+            array::from_fn(|place| angles[place].chain(cosines[place], -sines[place])),
+        )
     }
 
     fn tan(self) -> Self {
@@ -237,7 +279,8 @@ impl<T: Real> Real for Dual<T> {
 
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
-        let slope = (x.value * self.slope - self.value * x.slope) / square;
+        let slope =
+            (L::whole(x.value) * self.slope - L::whole(self.value) * x.slope) / L::whole(square);
         Self {
             value: self.value.atan2(x.value),
             slope,
@@ -247,12 +290,11 @@ impl<T: Real> Real for Dual<T> {
     fn pow(self, exponent: Self) -> Self {
         let before = self.value.pow(exponent.value - T::from_f64(1.0));
         let power = self.steep_chain(self.value.pow(exponent.value), exponent.value * before);
-        if exponent.slope == T::from_f64(0.0) {
+        if exponent.slope == L::from_f64(0.0) {
             return power;
         }
-        let by_exponent = power.value * self.value.ln() * exponent.slope;
         Self {
-            slope: power.slope + by_exponent,
+            slope: power.slope + steep(power.value * self.value.ln(), exponent.slope),
             ..power
         }
     }
@@ -283,16 +325,16 @@ impl<T: Real> Real for Dual<T> {
         let zero = T::from_f64(0.0);
         Self {
             value: self.value.abs(),
-            slope: self.value.select_less(zero, -self.slope, self.slope),
+            slope: Self::slope_of_less(self.value, zero, -self.slope, self.slope),
         }
     }
 
     fn sign(self) -> Self {
-        Self::constant(self.value.sign())
+        Self::unchanging(self.value.sign())
     }
 
     fn min(self, other: Self) -> Self {
-        let slope = self.value.select_less(other.value, self.slope, other.slope);
+        let slope = Self::slope_of_less(self.value, other.value, self.slope, other.slope);
         Self {
             value: self.value.min(other.value),
             slope,
@@ -300,7 +342,7 @@ impl<T: Real> Real for Dual<T> {
     }
 
     fn max(self, other: Self) -> Self {
-        let slope = other.value.select_less(self.value, self.slope, other.slope);
+        let slope = Self::slope_of_less(other.value, self.value, self.slope, other.slope);
         Self {
             value: self.value.max(other.value),
             slope,
@@ -313,8 +355,8 @@ impl<T: Real> Real for Dual<T> {
             .value
             .root_of(|value| residual(Self { value, ..self }).value);
         let mut left = |slope| residual(Self { value, slope }).slope;
-        let of_others = left(T::from_f64(0.0));
-        let of_own = left(T::from_f64(1.0)) - of_others;
+        let of_others = left(L::from_f64(0.0));
+        let of_own = left(L::from_f64(1.0)) - of_others;
         Self {
             value,
             slope: -of_others / of_own,
@@ -324,7 +366,7 @@ impl<T: Real> Real for Dual<T> {
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         Self {
             value: self.value.select_less(bound.value, yes.value, no.value),
-            slope: self.value.select_less(bound.value, yes.slope, no.slope),
+            slope: Self::slope_of_less(self.value, bound.value, yes.slope, no.slope),
         }
     }
 }
@@ -419,6 +461,63 @@ mod tests {
         sum += x;
         sum -= y;
         assert!(close(sum.value, x.value) && close(sum.slope, x.slope));
+    }
+
+    /// Slopes along several directions, some of them zero, are those along each alone.
+    #[test]
+    fn several_slopes_at_once_are_those_of_each() {
+        use crate::Four;
+
+        let slopes = [[2.0, 0.0, -1.5, 0.0], [0.0, 3.0, 0.25, 0.0]];
+        let several = |number: usize, value| Dual {
+            value,
+            slope: Four(slopes[number]),
+        };
+        let alone = |number: usize, value, direction: usize| Dual {
+            value,
+            slope: slopes[number][direction],
+        };
+        macro_rules! each {
+            ($($function:expr),*) => { $(
+                for (a, b) in [(0.6, 0.3), (-0.4, 0.7), (0.0, 0.5), (0.7, -0.4), (1.0, 1.0)] {
+                    let found = $function(several(0, a), several(1, b));
+                    for direction in 0..4 {
+                        let expected = $function(alone(0, a, direction), alone(1, b, direction));
+                        let bits = |it: f64| (!it.is_nan()).then_some(it.to_bits());
+                        assert_eq!(bits(found.value), bits(expected.value));
+                        assert_eq!(
+                            bits(found.slope.0[direction]), bits(expected.slope),
+                            "{} of {a} and {b} along {direction}", stringify!($function),
+                        );
+                    }
+                }
+            )* };
+        }
+        each!(
+            |a, b| a + b,
+            |a, b| a - b,
+            |a, b| a * b,
+            |a, b| a / b,
+            |a, _| core::ops::Neg::neg(a),
+            |a, b| Real::multiply_add(a, b, a),
+            |a, _| Real::sin(a),
+            |a, _| Real::cos(a),
+            |a, _| Real::tan(a),
+            |a, _| Real::asin(a),
+            |a, _| Real::acos(a),
+            Real::atan2,
+            Real::pow,
+            |a, _| Real::exp(a),
+            |a, _| Real::ln(a),
+            |a, _| Real::sqrt(a),
+            |a, _| Real::tanh(a),
+            |a, _| Real::abs(a),
+            |a, _| Real::sign(a),
+            Real::min,
+            Real::max,
+            |a, b| Real::select_less(a, b, b, a),
+            |a, b| Real::root_of(a, |x| x * x - a * a + b - b)
+        );
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //! | drive it by a recorded log | [`Sampled`] |
 //! | find where it rests, hovers or turns steadily | [`Trim`] |
 //! | design a controller for it | [`Linearised`]: its matrices, poles and frequency response |
+//! | estimate its state, predict its way | [`Rk4::transition`], [`Convertible::output_jacobian_state`] |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | run batches on any processor | `batch` with the feature `dispatch` |
 //! | find out what went wrong | [`Stopped`], [`Trouble`], [`ParameterError`] |
@@ -113,7 +114,7 @@ pub use step::Verner9;
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
     ImplicitMidpoint, Integrator, Method, Picked, Pirk8, Pirk16, Radau5, Radau9, Reason, Rk4,
-    Rodas4, Rodas5P, Ros2, Statistics, Step, Stopped, Tsit5,
+    Rodas4, Rodas5P, Ros2, Statistics, Step, Stopped, Transition, Tsit5,
 };
 pub use system::{ParameterError, Power, System, Trouble};
 pub use trim::{Trim, Trimmed, Untrimmed};

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, SMatrix, SVector};
 
 use crate::step::{Complex as Number, Element, Factors};
-use crate::{Convertible, Dual, Real, System, Trouble};
+use crate::{Convertible, Real, Trouble};
 
 /// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
 ///
@@ -17,7 +17,7 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// Filters and controllers that take rotations by three small angles in axes of the body multiply: with the columns
 /// `½ [-x, w, z, -y]`, `½ [-y, -z, w, x]` and `½ [-z, y, -x, w]` of a quaternion `[w, x, y, z]` as `E`, angles become a change `E δ`
 /// of the quaternion, `4 Eᵀ` takes such a change to angles, and `4 Eᵀ Φ E` has the first `E` after the sample and the second
-/// before it. Behind a correction [`System::close`] makes the quaternion one of length one.
+/// before it. Behind a correction [`System::close`](crate::System::close) makes the quaternion one of length one.
 ///
 /// `A` belongs to one state and time. Of a rotor that spins, with its body in axes that turn with it, or on a shaft that is not
 /// round, the states do not rest: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the
@@ -60,7 +60,8 @@ use crate::{Convertible, Dual, Real, System, Trouble};
 /// ```
 ///
 /// States and inputs to linearise at, such as those of a hover or of a steady turn, are found by [`Trim`](crate::Trim). A state
-/// from elsewhere must be on closed loops, with quaternions of length one: [`System::close`] leaves it as it is.
+/// from elsewhere must be on closed loops, with quaternions of length one: [`System::close`](crate::System::close) leaves it as
+/// it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearised<T, const N: usize, const M: usize, const P: usize> {
     /// The state matrix `A = ∂f/∂x`.
@@ -74,11 +75,12 @@ pub struct Linearised<T, const N: usize, const M: usize, const P: usize> {
 }
 
 impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M, P> {
-    /// Next to a state, exact but for rounding: the model's own Jacobians, and its outputs on [`Dual`] numbers.
+    /// Next to a state, exact but for rounding: the model's own Jacobians, and its outputs on [`Dual`](crate::Dual) numbers.
     ///
     /// # Errors
     ///
-    /// What [`System::trouble`] says of this state, and an entry that is infinite or NaN, where a law has no finite slope.
+    /// What [`System::trouble`](crate::System::trouble) says of this state, and an entry that is infinite or NaN, where a law has no
+    /// finite slope.
     pub fn of<S>(system: &S, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Result<Self, Trouble>
     where
         S: Convertible<T, N, M, P>,
@@ -107,17 +109,11 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         if let Some(trouble) = system.trouble(t, x, u, &memory) {
             return Err(trouble);
         }
-        let dual = system.converted(Dual::constant);
-        let (time, x0, u0) = (
-            Dual::constant(t),
-            x.map(Dual::constant),
-            u.map(Dual::constant),
-        );
         Ok(Self {
             state,
             input: system.jacobian_input(t, x, u, &mut memory),
-            output: slopes(x0, |x| dual.output(time, x, &u0, &mut Default::default())),
-            feedthrough: slopes(u0, |u| dual.output(time, &x0, u, &mut Default::default())),
+            output: system.output_jacobian_state(t, x, u),
+            feedthrough: system.output_jacobian_input(t, x, u),
         })
     }
 
@@ -156,8 +152,7 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
     ///
     /// Where the state does not rest the model is another one at the end of the period, and the error of `Φ` falls with the square of
     /// that. The exact derivatives of a step, as iterations over a trajectory need them, are those of
-    /// [`Rk4::step`](crate::Rk4::step) with the model `converted(Dual::constant)` on [`Dual`] numbers, one call for each state and
-    /// input.
+    /// [`Rk4::transition`](crate::Rk4::transition).
     ///
     /// Both are summed for a part of the period that is short enough, whose double is taken as often as needed (scaling and
     /// squaring; Moler and Van Loan, *SIAM Review* 45 (2003), 3–49, method 3), of `Φ − I`, so that slow motions beside fast
@@ -281,13 +276,15 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
 const TERMS: u32 = 16;
 
 /// The matrix and the identity.
-fn beside_one<T: Real, const N: usize>(mut matrix: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+pub(crate) fn beside_one<T: Real, const N: usize>(
+    mut matrix: SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
     let diagonal = matrix.iter_mut().step_by(N + 1);
     diagonal.for_each(|it| *it += T::from_f64(1.0));
     matrix
 }
 
-fn product<T: Real, const A: usize, const B: usize, const C: usize>(
+pub(crate) fn product<T: Real, const A: usize, const B: usize, const C: usize>(
     left: &SMatrix<T, A, B>,
     right: &SMatrix<T, B, C>,
 ) -> SMatrix<T, A, C> {
@@ -302,18 +299,4 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
         }
     }
     product
-}
-
-/// The derivatives of a function by each component.
-fn slopes<T: Real, const K: usize, const P: usize>(
-    at: SVector<Dual<T>, K>,
-    function: impl Fn(&SVector<Dual<T>, K>) -> SVector<Dual<T>, P>,
-) -> SMatrix<T, P, K> {
-    let mut matrix = SMatrix::<T, P, K>::from_element(T::from_f64(0.0));
-    for (component, mut column) in matrix.column_iter_mut().enumerate() {
-        let mut at = at;
-        at[component].slope = T::from_f64(1.0);
-        column.copy_from(&function(&at).map(|value| value.slope));
-    }
-    matrix
 }

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use mbg_runtime::{
-    Adaptive, Constant, Dop853, Integrator, Linearised, Real, Smooth, System, Trim, Trouble, mbg,
+    Adaptive, Constant, Convertible, Dop853, Dual, Integrator, Linearised, Real, Rk4, Smooth,
+    System, Trim, Trouble, mbg,
 };
 use nalgebra::{Complex, ComplexField, SMatrix, SVector};
 
@@ -138,6 +139,74 @@ fn matrices_are_slopes() {
 }
 
 /// A run with a small input swings as the response says.
+/// One column after the other, on dual numbers.
+fn columns<const K: usize, const P: usize>(
+    at: &SVector<f64, K>,
+    function: impl Fn(&SVector<Dual<f64>, K>) -> SVector<Dual<f64>, P>,
+) -> SMatrix<f64, P, K> {
+    let mut columns = SMatrix::<f64, P, K>::zeros();
+    for component in 0..K {
+        let mut at = at.map(Dual::constant);
+        at[component].slope = 1.0;
+        columns.set_column(component, &function(&at).map(|it| it.slope));
+    }
+    columns
+}
+
+/// With more states than are taken at once.
+#[test]
+fn matrices_of_outputs_are_their_columns() {
+    let model = Locking::<f64>::new(LockingParameters::default()).unwrap();
+    let (x, u) = (
+        SVector::from_fn(|k, _| 0.2 + 0.1 * k as f64),
+        SVector::from([1.0, 2.0, -0.5]),
+    );
+    let several = model.converted(Dual::constant);
+    let found = model.output_jacobian_state(0.0, &x, &u);
+    let expected = columns(&x, |x| {
+        several.output(Dual::constant(0.0), x, &u.map(Dual::constant), &mut ())
+    });
+    assert!((found - expected).amax() < 1e-15, "{found}{expected}");
+    assert!(expected.amax() > 0.1);
+}
+
+/// The derivatives of a step and those of the same step on dual numbers.
+#[track_caller]
+fn assert_transition<S, const N: usize, const M: usize, const P: usize>(
+    model: &S,
+    x: &SVector<f64, N>,
+    u: &SVector<f64, M>,
+) where
+    S: Convertible<f64, N, M, P>,
+{
+    let h = 0.05;
+    let found = Rk4::transition(model, 0.3, x, u, h, &mut Default::default());
+    let dual = model.converted(Dual::constant);
+    let step = |x: &SVector<Dual<f64>, N>, u: &SVector<Dual<f64>, M>| {
+        let [t, h] = [0.3, h].map(Dual::constant);
+        Rk4::step(&dual, t, x, u, h, &mut Default::default())
+    };
+    let (fixed_x, fixed_u) = (x.map(Dual::constant), u.map(Dual::constant));
+    let end = Rk4::step(model, 0.3, x, u, h, &mut Default::default());
+    let state = columns(x, |x| step(x, &fixed_u));
+    let input = columns(u, |u| step(&fixed_x, u));
+    assert!((found.end - end).amax() < 1e-14 * (1.0 + end.amax()));
+    assert!((found.state - state).amax() < 1e-13 * (1.0 + state.amax()));
+    assert!((found.input - input).amax() < 1e-13 * (1.0 + input.amax()));
+    assert!((state - SMatrix::identity()).amax() > 0.01 && input.amax() > 1e-4);
+}
+
+#[test]
+fn derivatives_of_a_step_are_those_of_dual_numbers() {
+    let vane = Weathervane::new(WeathervaneParameters::default()).unwrap();
+    assert_transition(&vane, &SVector::from([0.4, 0.6]), &SVector::from([1.5]));
+    let flying = Locking::new(LockingParameters::default()).unwrap();
+    let state = SVector::from_fn(|k, _| 0.2 + 0.1 * k as f64);
+    assert_transition(&flying, &state, &SVector::from([1.0, 2.0, -0.5]));
+    let filled = Filled::new(FilledParameters::default()).unwrap();
+    assert_transition(&filled, &SVector::from([1e-4]), &SVector::from([2.0]));
+}
+
 #[test]
 fn a_run_swings_as_the_response_says() {
     let model = Weathervane::<f64>::new(WeathervaneParameters::default()).unwrap();

@@ -375,18 +375,24 @@ where
     T: Real,
     S: System<T, N, M, P>,
 {
-    let (sixth, third) = (T::from_f64(1.0 / 6.0), T::from_f64(1.0 / 3.0));
-    let half = T::from_f64(0.5) * h;
     let mut mean = SVector::from_element(T::from_f64(0.0));
     let (mut stage, mut at) = (*x, t);
-    // One evaluation in a loop takes a quarter of the code of four in a row, and less stack. The last stage is not used.
-    for (weight, ahead) in [(sixth, half), (third, half), (third, h), (sixth, h)] {
+    // One evaluation in a loop takes a quarter of the code of four in a row, and less stack.
+    for (weight, ahead) in stages(h) {
         let slope = system.derivative(at, &stage, u, memory);
         mean = along(&mean, weight, &slope);
         stage = along(x, ahead, &slope);
         at = t + ahead;
     }
     mean
+}
+
+/// The weight of each slope in the mean, and how far ahead the next stage lies, which behind the last is not used.
+#[inline(always)]
+pub(super) fn stages<T: Real>(h: T) -> [(T, T); 4] {
+    let (sixth, third) = (T::from_f64(1.0 / 6.0), T::from_f64(1.0 / 3.0));
+    let half = T::from_f64(0.5) * h;
+    [(sixth, half), (third, half), (third, h), (sixth, h)]
 }
 
 /// Steps of constant length.

@@ -1,6 +1,6 @@
 //! What the methods of integration have in common.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::control::Rule;
 use super::dense::Polynomial;
@@ -328,11 +328,11 @@ pub(super) fn ahead<T: Real, const N: usize>(
 
 /// `x + factor · direction`, rounded twice.
 #[inline]
-pub(super) fn along<T: Real, const N: usize>(
-    x: &SVector<T, N>,
+pub(super) fn along<T: Real, const N: usize, const C: usize>(
+    x: &SMatrix<T, N, C>,
     factor: T,
-    direction: &SVector<T, N>,
-) -> SVector<T, N> {
+    direction: &SMatrix<T, N, C>,
+) -> SMatrix<T, N, C> {
     x.zip_map(direction, |x, direction| x + factor * direction)
 }
 

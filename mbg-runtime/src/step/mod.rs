@@ -23,6 +23,7 @@ mod rosenbrock;
 mod rounding;
 mod thresholds;
 mod tolerance;
+mod transition;
 #[cfg(test)]
 mod trees;
 mod watch;
@@ -50,6 +51,7 @@ pub use method::{Estimating, Method};
 pub use parallel::{Pirk8, Pirk16};
 pub use radau::{Radau5, Radau9};
 pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
+pub use transition::Transition;
 
 /// What a simulation took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -88,11 +88,13 @@ where
         self.statistics.evaluations += 1;
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
-        if self.closes_stages
-            && let Ok(closed) = self.close(t, *x)
-        {
-            return self.system.derivative(t, &closed, &u, &mut self.memory);
-        }
+        let closed = if self.closes_stages {
+            self.close(t, *x).ok()
+        } else {
+            None
+        };
+        let x = closed.as_ref().unwrap_or(x);
+        // In one place, so that a compiler inlines it.
         self.system.derivative(t, x, &u, &mut self.memory)
     }
 

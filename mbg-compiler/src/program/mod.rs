@@ -7,8 +7,7 @@
 //! rounding and the signs of zeros: `reorder` has late terms added last, `contract` takes products into sums, `signs` makes
 //! negatives where they save an instruction, `hoist` takes out of sweeps of a Jacobian what is the same in all, `arrange` puts
 //! the steps in the order in which a processor begins them, and `stretches` those of sweeps in an order in which some can be
-//! left out. Of a long routine `repeats` finds the loops, and `interleave` lets two that wait go on side by side; its steps stay
-//! in their order otherwise.
+//! left out. Of a long routine `repeats` finds the loops; its steps stay in their order.
 
 mod arrange;
 mod contract;
@@ -16,7 +15,6 @@ mod dump;
 #[cfg(test)]
 mod fixtures;
 mod hoist;
-mod interleave;
 mod interpret;
 mod iterate;
 mod latency;
@@ -251,34 +249,6 @@ pub struct Routine {
 }
 
 impl Routine {
-    /// The routine with the steps before those of its sweeps in this order, and without repeats.
-    fn in_order(&self, order: &[usize]) -> Self {
-        let starts = starts(&self.steps);
-        let old = order
-            .iter()
-            .flat_map(|step| starts[*step]..starts[step + 1]);
-        let old: Vec<usize> = old.chain(starts[order.len()]..self.names.len()).collect();
-        let mut numbers = vec![0; old.len()];
-        for (new, old) in old.iter().enumerate() {
-            numbers[*old] = new;
-        }
-        let renumbered = |operand: Operand| operand.renumbered(&numbers);
-        let with_numbers = |step: &Step| step.with(&renumbered);
-        let sweeps = self.sweeps.iter();
-        Self {
-            steps: order
-                .iter()
-                .map(|step| with_numbers(&self.steps[*step]))
-                .collect(),
-            names: old.iter().map(|old| self.names[*old].clone()).collect(),
-            results: self.results.iter().copied().map(renumbered).collect(),
-            sweeps: sweeps
-                .map(|it| it.with(&with_numbers, &renumbered))
-                .collect(),
-            repeats: Vec::new(),
-        }
-    }
-
     /// Operations per call.
     #[must_use]
     pub fn operations(&self) -> usize {

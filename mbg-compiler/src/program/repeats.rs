@@ -92,18 +92,13 @@ pub(super) fn repeats(routine: &Routine) -> Vec<Repeat> {
     if steps.len() < FEWEST || !routine.sweeps.is_empty() {
         return Vec::new();
     }
-    let found = loops(steps);
+    let found = Search::of(steps).all();
     let saved = |it: &Repeat| it.steps.len() - it.width() * it.together;
     let saved: usize = found.iter().map(saved).sum();
     if 4 * saved < 3 * steps.len() {
         return Vec::new();
     }
     found
-}
-
-/// All repeats, whatever they save.
-pub(super) fn loops(steps: &[Step]) -> Vec<Repeat> {
-    Search::of(steps).all()
 }
 
 /// What all steps alike have in common; none for what is in no loop.

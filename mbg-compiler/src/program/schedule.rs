@@ -7,7 +7,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::arrange::arrange;
 use super::contract::contract;
 use super::hoist::hoist;
-use super::interleave::interleave;
 use super::reorder::reorder;
 use super::repeats::repeats;
 use super::signs::signs;
@@ -225,7 +224,7 @@ impl Context<'_> {
         if hoisted.repeats.is_empty() {
             by_stretches(&arrange(&hoisted))
         } else {
-            interleave(hoisted)
+            hoisted
         }
     }
 

@@ -39,6 +39,7 @@ mod models {
     )]
     mod closed;
     mod columns;
+    mod contacts;
     mod curves;
     mod dependent;
     mod energy;

@@ -34,6 +34,11 @@ fn follow(scene: &dyn Fn(&str) -> String, slip: &str, expected: &str) {
 fn what_stands_in_the_place_of_something_else_is_told() {
     let rope = scene("Body { mass: 1.0, inertia: 1.0 }", "Rope { rest: 1.0 }");
     assert_eq!(typed(&rope), ["LineForce"]);
+    let end = scene(
+        "Body { mass: 1.0, inertia: 1.0 }",
+        "HardStop { stiffness: 1.0 }",
+    );
+    assert_eq!(typed(&end), ["Stop"]);
     let driven = scene("Body { mass: 1.0, inertia: 1.0 }", "Revolute { axis: 2 }");
     let driven = |end: &str| {
         driven.replace(

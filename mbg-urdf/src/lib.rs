@@ -32,6 +32,9 @@
 //!   with `slide_slip` on slides.
 //! - Angles within 1e-9 rad of a multiple of a right angle are taken for it, or within as much as [`Options`] say; lengths
 //!   below 1e-12 m and inertias that the mass would have 1e-8 m beside its centre for zero: what is zero costs nothing.
+//! - With `--stops`, `lower` and `upper` of a `limit` become a `Stop` at the rate of the joint. The component has parameters for
+//!   its `stop_stiffness` and `stop_dissipation`, on slides `slide_stop_stiffness` and `slide_stop_dissipation`, whose defaults
+//!   know nothing of the robot. What a `limit` says of efforts and velocities is left out, and all of it without the option.
 //! - What shows or collides is left out. Every other tag without an equation is named with its line.
 //!
 //! # Links, forces and Jacobians
@@ -53,10 +56,10 @@
 //! ```text
 //! robot.elbow.rate -> TF gear { flow: 100.0 } -> rotor;
 //! rotor -> I inertia { inertia: 2e-5 };
-//! robot.elbow.rate -> C stop {
-//!     effort: if q > 2.0 { 1e4 * (q - 2.0) } else if q < -2.0 { 1e4 * (q + 2.0) } else { 0.0 }, displacement: robot.elbow.angle
-//! };
+//! stop: Stop { displacement: robot.elbow.angle, lower: -2.0, upper: 2.0, stiffness: 1e4 } (robot.elbow.rate);
 //! ```
+//!
+//! A foot on the ground is `sole: Contact { stiffness: 1e5, dissipation: 0.5, friction: 0.8 } (robot.foot_frame);`.
 //!
 //! A base that flies hangs on a `Free`, `float: Free { orientation: quaternion } (world, base);` with
 //! `Sf held[6] { flow: 0.0 } -> world;`. Gains for all joints at once are `diag(…)` where some of them slide.
@@ -88,15 +91,18 @@ pub struct Options<'a> {
     pub right_angles: f64,
     /// Links whose frames are junctions `LINK_frame`, with the place and the axes that the file gives them.
     pub frames: &'a [&'a str],
+    /// Whether `lower` and `upper` of the limits of joints become stops.
+    pub stops: bool,
 }
 
 impl Default for Options<'_> {
-    /// No model, 1e-9 rad, and no frames.
+    /// No model, 1e-9 rad, no frames and no stops.
     fn default() -> Self {
         Self {
             model: None,
             right_angles: geometry::RIGHT,
             frames: &[],
+            stops: false,
         }
     }
 }
@@ -127,7 +133,7 @@ impl Default for Options<'_> {
 /// The first line that cannot be converted: no XML, no tree of links, a number that is none, a joint of no known type; a link of
 /// [`Options::frames`] that the robot has not.
 pub fn convert(text: &str, source: &str, options: &Options<'_>) -> Result<Conversion, Remark> {
-    let (robot, remarks) = robot::read(text, options.right_angles)?;
+    let (robot, remarks) = robot::read(text, (options.right_angles, options.stops))?;
     Ok(Conversion {
         text: print::print(&robot, source, options)?,
         remarks,

@@ -7,11 +7,12 @@ use mbg_urdf::{Options, Remark};
 const HELP: &str = "\
 Prints a robot's URDF file as a component in the language of mbg!
 
-usage: mbg-urdf [--model NAME] [--frame LINK]… [--right-angles RAD] FILE
+usage: mbg-urdf [--model NAME] [--frame LINK]… [--stops] [--right-angles RAD] FILE
 
   FILE                the URDF file; its path is named in the component's documentation
   --model NAME        prints a model of this name too, with the robot's base at rest
   --frame LINK        adds a junction LINK_frame at the place of this link, for forces, contacts and velocities there
+  --stops             puts a stop at the lower and the upper limit of each joint that has them; without it, joints turn on
   --right-angles RAD  takes angles this near to a multiple of a right angle for it: 1e-5 where a file says 1.5708,
                       which leaves fewer operations; 1e-9 unless told otherwise
   --help              prints this text
@@ -41,6 +42,7 @@ enum Request {
         file: String,
         model: Option<String>,
         frames: Vec<String>,
+        stops: bool,
         right_angles: f64,
     },
 }
@@ -55,6 +57,7 @@ fn main() -> ExitCode {
             file,
             model,
             frames,
+            stops,
             right_angles,
         }) => {
             let frames: Vec<&str> = frames.iter().map(String::as_str).collect();
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
                     model: model.as_deref(),
                     right_angles,
                     frames: &frames,
+                    stops,
                 },
             )
         }
@@ -76,7 +80,11 @@ fn main() -> ExitCode {
 
 fn request(mut arguments: impl Iterator<Item = String>) -> Result<Request, String> {
     let (mut file, mut model, mut frames) = (None, None, Vec::new());
-    let mut right_angles = Options::default().right_angles;
+    let Options {
+        mut right_angles,
+        mut stops,
+        ..
+    } = Options::default();
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--help" | "-h" => return Ok(Request::Help),
@@ -95,6 +103,7 @@ fn request(mut arguments: impl Iterator<Item = String>) -> Result<Request, Strin
                     .next()
                     .ok_or("`--frame` needs the name of a link")?,
             ),
+            "--stops" => stops = true,
             "--right-angles" => {
                 let angle = arguments.next().and_then(|it| it.parse().ok());
                 let small = angle.filter(|it| (0.0..0.1).contains(it));
@@ -111,6 +120,7 @@ fn request(mut arguments: impl Iterator<Item = String>) -> Result<Request, Strin
         file,
         model,
         frames,
+        stops,
         right_angles,
     })
 }

@@ -61,9 +61,17 @@ struct Printer<'a> {
 /// The component, and a model of it with its base at rest where that is given a name.
 pub(crate) fn print(robot: &Robot, source: &str, options: &Options<'_>) -> Result<String, Remark> {
     let free = robot.joints.iter().filter(|it| it.is_free());
+    let mut names = Names::new();
+    if options.stops {
+        for (_, prefix, ..) in STOPS {
+            for ending in ["stiffness", "dissipation"] {
+                names.take(&format!("{prefix}_{ending}"));
+            }
+        }
+    }
     let mut printer = Printer {
         robot,
-        names: Names::new(),
+        names,
         free: free.map(|it| it.name.as_str()).collect(),
         single: Vec::new(),
         parameters: String::new(),
@@ -122,6 +130,15 @@ fn head(robot: &Robot, source: &str, name: &str, joints: &[&str]) -> String {
         if robot.joints.iter().any(rubs) {
             text += &format!(
                 "    /// The rate at which dry friction of {joints} has three quarters of its value.\n    param {slip}: {unit} = 1e-3;\n"
+            );
+        }
+    }
+    for (motion, prefix, joints, [_, stiffness, dissipation]) in STOPS {
+        let stops = |it: &Joint| it.motion == *motion && it.limit.is_some();
+        if robot.joints.iter().any(stops) {
+            text += &format!(
+                "    /// Of the stops of {joints}, as of `Stop`.\n    param {prefix}_stiffness: {stiffness};\n    \
+                 param {prefix}_dissipation: {dissipation} = 1.0;\n"
             );
         }
     }
@@ -200,6 +217,7 @@ impl<'a> Printer<'a> {
                 slip(joint.motion)
             );
         }
+        self.stop(joint, &name);
         if joint.motion.is_single() {
             self.single.push((joint, name.clone()));
         }
@@ -207,6 +225,18 @@ impl<'a> Printer<'a> {
             junction,
             joint: Some(name),
         });
+    }
+
+    /// The stop of a joint that has limits, and has not been fixed.
+    fn stop(&mut self, joint: &Joint, name: &str) {
+        let own = STOPS.iter().find(|(of, ..)| *of == joint.motion);
+        if let (Some([lower, upper]), Some((_, prefix, _, [coordinate, ..]))) = (joint.limit, own) {
+            let stop = self.names.take(&format!("{name}_stop"));
+            self.text += &format!(
+                "    {stop}: Stop {{\n        displacement: {name}.{coordinate}, lower: {lower:?}, upper: {upper:?},\n        \
+                 stiffness: {prefix}_stiffness, dissipation: {prefix}_dissipation\n    }} ({name}.rate);\n"
+            );
+        }
     }
 
     /// The frame of a rigid body moved to a pose in it, before the joint `name`.
@@ -541,6 +571,22 @@ fn slip(motion: Motion) -> &'static str {
     let own = SLIPS.iter().find(|(of, ..)| *of == motion);
     own.map_or("slip", |(_, slip, ..)| slip)
 }
+
+/// The parameters of stops: what begins their names, what has them, the coordinate, and the unit and the default of the stiffness.
+const STOPS: &[(Motion, &str, &str, [&str; 3])] = &[
+    (
+        Motion::Turn,
+        "stop",
+        "hinges",
+        ["angle", "N*m/rad = 1e3", "s/rad"],
+    ),
+    (
+        Motion::Slide,
+        "slide_stop",
+        "slides",
+        ["travel", "N/m = 1e5", "s/m"],
+    ),
+];
 
 fn has_friction(joint: &Joint) -> bool {
     joint.friction != 0.0 && joint.motion.is_single()

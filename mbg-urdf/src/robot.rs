@@ -87,6 +87,8 @@ pub(crate) struct Joint {
     pub(crate) damping: f64,
     /// Dry friction.
     pub(crate) friction: f64,
+    /// The lower and the upper end of its one coordinate, where stops are wanted.
+    pub(crate) limit: Option<[f64; 2]>,
     pub(crate) line: u32,
 }
 
@@ -143,7 +145,10 @@ impl Load {
 type Checked<T> = Result<T, Remark>;
 
 /// Reads a file, and lists what of it means nothing to the equations of motion.
-pub(crate) fn read(text: &str, right_angles: f64) -> Checked<(Robot, Vec<Remark>)> {
+pub(crate) fn read(
+    text: &str,
+    (right_angles, stops): (f64, bool),
+) -> Checked<(Robot, Vec<Remark>)> {
     // A line `<!DOCTYPE robot>` says nothing more, and is no mistake.
     let options = ParsingOptions {
         allow_dtd: true,
@@ -156,6 +161,7 @@ pub(crate) fn read(text: &str, right_angles: f64) -> Checked<(Robot, Vec<Remark>
     let mut reader = Reader {
         document: &document,
         right_angles,
+        stops,
         remarks: Vec::new(),
     };
     let robot = reader.robot(document.root_element())?;
@@ -167,6 +173,8 @@ struct Reader<'a> {
     document: &'a Document<'a>,
     /// How near to a multiple of a right angle an angle is taken for it.
     right_angles: f64,
+    /// Whether limits of joints are stops.
+    stops: bool,
     remarks: Vec<Remark>,
 }
 
@@ -364,7 +372,9 @@ impl<'a> Reader<'a> {
                 return self.fail(node, text);
             }
         };
-        let known = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
+        let limit = self.limit(node, motion)?;
+        let mut known = vec!["origin", "parent", "child", "axis", "dynamics", "mimic"];
+        known.extend(limit.map(|_| "limit"));
         self.note_others(node, &known);
         let (mut damping, mut friction) = (0.0, 0.0);
         if let Some(dynamics) = child(node, "dynamics") {
@@ -385,9 +395,32 @@ impl<'a> Reader<'a> {
             mimic: self.mimic(node, motion)?,
             damping,
             friction,
+            limit,
             line: self.line(node),
             name,
         })
+    }
+
+    /// Where the coordinate of a joint ends, which a limit of the effort and the velocity alone does not tell.
+    fn limit(&self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<[f64; 2]>> {
+        let ends = motion.is_single() && self.attribute(node, "type")? != "continuous";
+        let (true, true, Some(element)) = (self.stops, ends, child(node, "limit")) else {
+            return Ok(None);
+        };
+        if element.attribute("lower").is_none() && element.attribute("upper").is_none() {
+            return Ok(None);
+        }
+        let [lower, upper] = [
+            self.number_or(element, "lower", 0.0)?,
+            self.number_or(element, "upper", 0.0)?,
+        ];
+        if lower > upper {
+            return self.fail(
+                element,
+                format!("`lower` is above `upper`: {lower} and {upper}"),
+            );
+        }
+        Ok(Some([lower, upper]))
     }
 
     /// The number of the link that a joint names.

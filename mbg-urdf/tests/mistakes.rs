@@ -252,6 +252,15 @@ fn the_command_prints_the_component() {
     assert!(printed.contains("pub model Bench {"));
     assert_eq!(told, format!("{path}:11: `limit` is not converted\n"));
     assert_eq!(code, Some(0));
+    let limited = text.replace("<limit ", "<limit lower=\"-1\" upper=\"1\" ");
+    std::fs::write(&path, &limited).unwrap();
+    let (printed, _, code) = run(&["--stops", &path]);
+    let options = Options {
+        stops: true,
+        ..Options::default()
+    };
+    let expected = mbg_urdf::convert(&limited, &path, &options).unwrap();
+    assert_eq!((printed, code), (expected.text, Some(0)));
 }
 
 #[test]

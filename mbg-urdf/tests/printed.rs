@@ -9,6 +9,7 @@ const BENCH: Options<'_> = Options {
     model: Some("Bench"),
     right_angles: 1e-9,
     frames: &[],
+    stops: false,
 };
 
 /// A file of a pendulum on a slide, with damping and friction, an axis along no coordinate axis and a fixed link.
@@ -91,6 +92,8 @@ const NAMES: &[&str] = &[
     "causality",
     "slip",
     "slide_slip",
+    "stop_stiffness",
+    "slide_stop_dissipation",
     "robot_body",
     "if",
     "inertia",
@@ -278,5 +281,58 @@ fn frames_of_links_are_junctions() {
     assert_eq!(
         missing.to_string(),
         "1: there is no link `top`, of which a frame was asked for"
+    );
+}
+
+/// Limits are stops where these are asked for, and nothing of them is there otherwise.
+#[test]
+fn limits_may_be_stops() {
+    let plain = pendulum(["r", "slide", "hinge", "cart", "rod"]);
+    let limited = plain.replace(
+        "<dynamics",
+        "<limit lower=\"-1.5\" upper=\"2\" effort=\"9\" velocity=\"3\"/><dynamics",
+    );
+    let stops = Options {
+        stops: true,
+        ..BENCH
+    };
+    let printed = |text: &str, options| mbg_urdf::convert(text, "r.urdf", options).unwrap();
+    assert_eq!(printed(&limited, &BENCH).text, printed(&plain, &BENCH).text);
+    assert_eq!(printed(&plain, &stops), printed(&plain, &BENCH));
+    let found = printed(&limited, &stops);
+    assert_eq!(found.remarks, []);
+    for expected in [
+        "displacement: slide.travel, lower: -1.5, upper: 2.0,\n        stiffness: slide_stop_stiffness,",
+        "displacement: hinge.angle, lower: -1.5, upper: 2.0,\n        stiffness: stop_stiffness,",
+        "param stop_stiffness: N*m/rad = ",
+        "param slide_stop_dissipation: s/m = ",
+    ] {
+        assert!(found.text.contains(expected), "{expected}\n{}", found.text);
+    }
+    let mut diagnostics = Diagnostics::new();
+    let _ = items(found.text.parse().unwrap(), &mut diagnostics);
+    assert!(!diagnostics.any(), "{:?}", diagnostics.list());
+    // What turns on has no end, and what limits efforts alone tells none.
+    for other in [
+        limited.replace("revolute", "continuous"),
+        limited.replace("lower=\"-1.5\" upper=\"2\"", ""),
+    ] {
+        let found = printed(&other, &stops);
+        assert!(!found.text.contains("hinge_stop"));
+        assert!(
+            found
+                .remarks
+                .iter()
+                .all(|it| it.text == "`limit` is not converted")
+        );
+        assert!(!found.remarks.is_empty());
+    }
+    let turned = limited.replace("upper=\"2\"", "upper=\"-2\"");
+    let mistake = mbg_urdf::convert(&turned, "r.urdf", &stops).unwrap_err();
+    assert!(
+        mistake
+            .to_string()
+            .ends_with("`lower` is above `upper`: -1.5 and -2"),
+        "{mistake}"
     );
 }

@@ -16,7 +16,7 @@ const MEANINGLESS: [&str; 2] = ["everything.mbg", "mistakes.mbg"];
 const LONGEST: usize = 1100;
 
 /// Joints between the ground and a body.
-const JOINTS: [&str; 12] = [
+const JOINTS: [&str; 13] = [
     "joint: Revolute { axis: 1, initial: 0.3, friction: 0.1 } (ground, tip);",
     "joint: Prismatic { axis: 0, tilt: rot_y(0.4), stiffness: 20.0, damping: 0.3 } (ground, tip);",
     "joint: Cylindrical { axis: 2, initial_turning: 0.5, turn_stiffness: 2.0 } (ground, tip);",
@@ -34,6 +34,9 @@ const JOINTS: [&str; 12] = [
      point: PointMass { mass: 0.5 } (tip);",
     "joint: Free { } (ground, tip);
      cut: Cut {} (ground, tip);",
+    "joint: Prismatic { axis: 2, initial: 0.1 } (ground, tip);
+     end: Stop { displacement: joint.travel, upper: 0.2, stiffness: 50.0 } (joint.rate);
+     floor: Contact { stiffness: 50.0, dissipation: 0.3, friction: 0.5, friction_speed: 0.1, radius: 0.2 } (tip);",
 ];
 
 /// Joints between angular velocities.
@@ -45,7 +48,7 @@ const ROTATIONS: [&str; 4] = [
 ];
 
 /// What hangs on the ground in a plane.
-const PLANAR: [&str; 4] = [
+const PLANAR: [&str; 5] = [
     "hinge: PlanarRevolute { initial: 0.3 } (ground, tip);
      mass: PlanarPointMass { mass: 0.5 } (tip); body: PlanarBody { mass: 1.0, inertia: 0.1 } (tip);",
     "slide: PlanarPrismatic { direction: 0.3, stiffness: 20.0, friction: 0.2 } (ground, tip);
@@ -54,6 +57,9 @@ const PLANAR: [&str; 4] = [
      rod: PlanarOffset { x: 0.5 } (foot, tip); body: PlanarBody { mass: 1.0, inertia: 0.1 } (tip);",
     "left: PlanarLink { mass: 1.0, inertia: 0.1, centre: [0.5, 0.0], end: [1.0, 0.0] } (ground, tip);
      cut: PlanarCut { position_b: [1.0, 0.0] } (tip, ground);",
+    "slide: PlanarPrismatic { direction: 0.3, initial: 0.1 } (ground, tip);
+     mass: PlanarPointMass { mass: 0.5 } (tip);
+     floor: PlanarContact { stiffness: 50.0, friction: 0.5, friction_speed: 0.1, radius: 0.2 } (tip);",
 ];
 
 /// Models of other domains, laws of every function, and a component in a file.

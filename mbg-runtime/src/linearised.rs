@@ -3,7 +3,7 @@
 use nalgebra::{Complex, SMatrix, SVector};
 
 use crate::step::{Complex as Number, Element, Factors};
-use crate::{Convertible, Dual, Real, System, Trouble};
+use crate::{Columns, Convertible, Dual, Real, System, Trouble};
 
 /// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
 ///
@@ -107,17 +107,15 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
         if let Some(trouble) = system.trouble(t, x, u, &memory) {
             return Err(trouble);
         }
-        let dual = system.converted(Dual::constant);
-        let (time, x0, u0) = (
-            Dual::constant(t),
-            x.map(Dual::constant),
-            u.map(Dual::constant),
-        );
+        let several = |value: T| Dual::constant(T::Columns::whole(value));
+        let model = system.converted(several);
+        let (time, x0, u0) = (several(t), x.map(several), u.map(several));
+        let output = |x: &_, u: &_| model.output(time, x, u, &mut Default::default());
         Ok(Self {
             state,
             input: system.jacobian_input(t, x, u, &mut memory),
-            output: slopes(x0, |x| dual.output(time, x, &u0, &mut Default::default())),
-            feedthrough: slopes(u0, |u| dual.output(time, &x0, u, &mut Default::default())),
+            output: slopes(x0, |x| output(x, &u0)),
+            feedthrough: slopes(u0, |u| output(&x0, u)),
         })
     }
 
@@ -304,16 +302,52 @@ fn product<T: Real, const A: usize, const B: usize, const C: usize>(
     product
 }
 
-/// The derivatives of a function by each component.
+/// The derivatives of a function by each component, of as many at once as columns go side by side.
 fn slopes<T: Real, const K: usize, const P: usize>(
-    at: SVector<Dual<T>, K>,
-    function: impl Fn(&SVector<Dual<T>, K>) -> SVector<Dual<T>, P>,
+    at: SVector<Dual<T::Columns>, K>,
+    function: impl Fn(&SVector<Dual<T::Columns>, K>) -> SVector<Dual<T::Columns>, P>,
 ) -> SMatrix<T, P, K> {
-    let mut matrix = SMatrix::<T, P, K>::from_element(T::from_f64(0.0));
-    for (component, mut column) in matrix.column_iter_mut().enumerate() {
-        let mut at = at;
-        at[component].slope = T::from_f64(1.0);
-        column.copy_from(&function(&at).map(|value| value.slope));
+    let [zero, one] = [0.0, 1.0].map(T::from_f64);
+    let mut matrix = SMatrix::<T, P, K>::from_element(zero);
+    let mut columns = matrix.column_iter_mut();
+    for first in (0..K).step_by(T::Columns::COUNT) {
+        let mut moved = at;
+        let numbers = moved.iter_mut().skip(first).take(T::Columns::COUNT);
+        for (own, number) in numbers.enumerate() {
+            number.slope =
+                T::Columns::from_columns(|beside| if beside == own { one } else { zero });
+        }
+        let value = function(&moved);
+        for (beside, mut column) in columns.by_ref().take(T::Columns::COUNT).enumerate() {
+            column.copy_from(&value.map(|value| value.slope.as_columns()[beside]));
+        }
     }
     matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+
+    /// Of more components than go side by side, and no multiple of these.
+    #[test]
+    fn outputs_are_differentiated_by_several_components_at_once() {
+        const COUNT: usize = <<f64 as Real>::Columns as Columns<f64>>::COUNT;
+        let calls = Cell::new(0);
+        let at = SVector::<f64, 11>::from_fn(|row, _| row as f64 - 4.5);
+        let slopes = slopes::<f64, 11, 2>(at.map(|it| Dual::constant(Columns::whole(it))), |x| {
+            calls.set(calls.get() + 1);
+            SVector::from([x.dot(x), x[3] * x[10]])
+        });
+        assert_eq!(calls.get(), 11_usize.div_ceil(COUNT));
+        assert_eq!(slopes.row(0), (2.0 * at).transpose());
+        let product = SVector::<f64, 11>::from_fn(|row, _| match row {
+            3 => at[10],
+            10 => at[3],
+            _ => 0.0,
+        });
+        assert_eq!(slopes.row(1), product.transpose());
+    }
 }

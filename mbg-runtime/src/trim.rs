@@ -80,6 +80,56 @@ const ROUNDING: f64 = 64.0;
 /// assert!((linear.state[(0, 1)] + 20.0 * f64::cos(pushed.state[1])).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # What comes back
+///
+/// The conditions hold at one time. What is free to change, or has a rate, may have an influence on them, and a moment later they
+/// hold no more: blades of a rotor swing in forward flight, and with the angle of its shaft [`free`](Trim::free) a point is found
+/// at which they stand still, which is no flight. Look for a state that comes back after a turn instead: a step on
+/// [`Dual`](crate::Dual) numbers gives what becomes of it, with the exact derivatives that Newton's method needs. Inputs that are
+/// to be found beside it are further columns. The eigenvalues of these derivatives are Floquet's multipliers.
+///
+/// ```
+/// use mbg_runtime::{Convertible, Dual, Rk4, System, mbg};
+/// use nalgebra::{SMatrix, SVector};
+///
+/// mbg! {
+///     /// A blade that flaps in forward flight: the air is faster on the side on which it goes ahead.
+///     model Flapping {
+///         let air = 1.0 + 0.3 * sin(30.0 * t);
+///         1 flap {
+///             I blade { inertia: 500.0 }
+///             C centrifugal { stiffness: 5e5 }
+///             R damping { resistance: 8e3 * air }
+///             Se lift { effort: 2e4 * air * air }
+///         }
+///     }
+/// }
+///
+/// let (model, none) = (Flapping::<f64>::new(FlappingParameters::default())?, SVector::zeros());
+/// let varied = model.converted(Dual::constant);
+/// let (turn, steps) = (2.0 * std::f64::consts::PI / 30.0, 200);
+/// let step = turn / f64::from(steps);
+/// // A start, the state a turn later, and the derivatives of this by that.
+/// let (mut start, mut end, mut by_start) = (model.initial_state(), SVector::zeros(), SMatrix::<f64, 2, 2>::zeros());
+/// for _ in 0..3 {
+///     for (state, mut column) in by_start.column_iter_mut().enumerate() {
+///         let mut x = start.map(Dual::constant);
+///         x[state].slope = 1.0;
+///         for k in 0..steps {
+///             let [t, step] = [f64::from(k) * step, step].map(Dual::constant);
+///             x = Rk4::step(&varied, t, &x, &none, step, &mut ());
+///         }
+///         column.copy_from(&x.map(|it| it.slope));
+///         end = x.map(|it| it.value);
+///     }
+///     start -= (by_start - SMatrix::identity()).try_inverse().unwrap() * (end - start);
+/// }
+/// assert!((end - start).norm() < 1e-9);
+/// // The product of the multipliers, by Liouville: exp(−∫ 8e3 air / 500 dt).
+/// assert!((by_start.determinant() - f64::exp(-16.0 * turn)).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Trim<'a, S, const N: usize, const M: usize, const P: usize> {
     system: &'a S,

@@ -194,6 +194,9 @@ impl core::fmt::Display for Untrimmed {
             Self::Unknown { kind, name } => {
                 write!(formatter, "the model has no {kind} `{name}`")?;
                 formatter.write_str(match kind {
+                    _ if name.ends_with(']') => {
+                        ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
+                    }
                     "state" => ": a position or an angle that nothing reads is none",
                     _ => "",
                 })

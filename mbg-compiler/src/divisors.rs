@@ -5,7 +5,7 @@ use crate::elaborate::Elaborated;
 use crate::equations::Scalars;
 use crate::structure::{Inverted, Solution, block_names};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Pool};
+use crate::symbolic::{Expression, Pool, Symbol};
 
 /// Longest formula that serves as a name.
 const LONGEST: usize = 60;
@@ -20,23 +20,48 @@ pub(crate) fn names(
     solution: &Solution,
     pool: &Pool,
 ) -> Vec<String> {
+    let named = solution.conditioning.iter().map(
+        |Inverted {
+             normalised,
+             unknowns,
+         }| {
+            let name =
+                short(model, scalars, pool, *normalised).unwrap_or_else(|| {
+                    match &block_names(scalars, unknowns)[..] {
+                        [] => read(model, pool, *normalised),
+                        solved => format!("the determinant for {}", list(solved)),
+                    }
+                });
+            (name, *normalised)
+        },
+    );
+    let named: Vec<(String, Expression)> = named.collect();
     let mut names: Vec<String> = Vec::new();
-    for Inverted {
-        normalised,
-        unknowns,
-    } in &solution.conditioning
-    {
-        let name = short(model, scalars, pool, *normalised).unwrap_or_else(|| {
-            match &block_names(scalars, unknowns)[..] {
-                [] => read(model, pool, *normalised),
-                solved => format!("the determinant for {}", list(solved)),
-            }
-        });
+    for (name, normalised) in &named {
+        // What several are for tells none from the others; the states that it reads may.
+        let is_of_many = named.iter().filter(|(other, _)| other == name).count() > 1;
+        let states = if is_of_many {
+            states(model, pool, *normalised)
+        } else {
+            String::new()
+        };
+        let name = format!("{name}{states}");
         let numbered = (2..).map(|number| format!("{name}, number {number}"));
         let mut all = std::iter::once(name.clone()).chain(numbered);
         names.extend(all.find(|name| !names.contains(name)));
     }
     names
+}
+
+/// `, in a, b, c and 3 more`, the states of a formula; nothing of one without.
+fn states(model: &Elaborated, pool: &Pool, formula: Expression) -> String {
+    let read = symbols(pool, &[formula]).into_iter();
+    let states = read.filter(|it| matches!(it, Symbol::State(_)));
+    let names: Vec<String> = states.map(|it| model.symbol_text(it)).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(", in {}", list(&names))
 }
 
 /// The name of a divisor of parameters.

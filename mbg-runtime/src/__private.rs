@@ -63,7 +63,7 @@ pub fn check<T: Real>(
     }
 }
 
-/// The first of these times, of all lanes, that is later than `t`, which is the same in all.
+/// The first of these times, of all lanes, that is later than `t`, which is the same in all; with its slope.
 #[cold]
 pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
     let now = crate::step::seen(t);
@@ -77,8 +77,13 @@ pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
             false
         });
     }
-    let next = next.get();
-    next.is_finite().then(|| T::from_f64(next))
+    let [whole, zero, tiny] = [next.get(), 0.0, f64::from(f32::MIN_POSITIVE)].map(T::from_f64);
+    // What is left of that time itself is its slope alone.
+    let slope = times.iter().fold(zero, |slope, time| {
+        let left = *time - whole;
+        left.abs().select_less(tiny, left, slope)
+    });
+    next.get().is_finite().then(|| whole + slope)
 }
 
 /// An argument of choices at two points so long apart, with its rate at each.

@@ -80,6 +80,50 @@ const ROUNDING: f64 = 64.0;
 /// assert!((linear.state[(0, 1)] + 20.0 * f64::cos(pushed.state[1])).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # What comes back
+///
+/// The conditions hold at one time. What is free to change, or has a rate, may have an influence on them, and a moment later they
+/// hold no more: blades of a rotor swing in forward flight, and with the angle of its shaft [`free`](Trim::free) a point is found
+/// at which they stand still, which is no flight. Look for a state that comes back after a turn instead:
+/// [`Rk4::transition`](crate::Rk4::transition) gives each step with the exact derivatives that Newton's method needs, also by inputs
+/// that are to be found beside it. The eigenvalues of their product over the turn are Floquet's multipliers.
+///
+/// ```
+/// use mbg_runtime::{Rk4, System, mbg};
+/// use nalgebra::{SMatrix, SVector};
+///
+/// mbg! {
+///     /// A blade that flaps in forward flight: the air is faster on the side on which it goes ahead.
+///     model Flapping {
+///         let air = 1.0 + 0.3 * sin(30.0 * t);
+///         1 flap {
+///             I blade { inertia: 500.0 }
+///             C centrifugal { stiffness: 5e5 }
+///             R damping { resistance: 8e3 * air }
+///             Se lift { effort: 2e4 * air * air }
+///         }
+///     }
+/// }
+///
+/// let (model, none) = (Flapping::<f64>::new(FlappingParameters::default())?, SVector::zeros());
+/// let (turn, steps) = (2.0 * std::f64::consts::PI / 30.0, 200);
+/// let h = turn / f64::from(steps);
+/// // A start, the state a turn later, and the derivatives of this by that.
+/// let (mut start, mut end, mut by_start) = (model.initial_state(), SVector::zeros(), SMatrix::<f64, 2, 2>::zeros());
+/// for _ in 0..3 {
+///     (end, by_start) = (start, SMatrix::identity());
+///     for k in 0..steps {
+///         let step = Rk4::transition(&model, f64::from(k) * h, &end, &none, h, &mut ());
+///         (end, by_start) = (step.end, step.state * by_start);
+///     }
+///     start -= (by_start - SMatrix::identity()).try_inverse().unwrap() * (end - start);
+/// }
+/// assert!((end - start).norm() < 1e-9);
+/// // The product of the multipliers, by Liouville: exp(−∫ 8e3 air / 500 dt).
+/// assert!((by_start.determinant() - f64::exp(-16.0 * turn)).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Trim<'a, S, const N: usize, const M: usize, const P: usize> {
     system: &'a S,
@@ -144,6 +188,9 @@ impl core::fmt::Display for Untrimmed {
             Self::Unknown { kind, name } => {
                 write!(formatter, "the model has no {kind} `{name}`")?;
                 formatter.write_str(match kind {
+                    _ if name.ends_with(']') => {
+                        ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
+                    }
                     "state" => ": a position or an angle that nothing reads is none",
                     _ => "",
                 })

@@ -2,8 +2,8 @@
 
 use mbg_runtime::lanes::f64x4;
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Fixed, Gauss6, Integrator, Pirk8, Radau5, Radau9, Real, Rk4, Rodas5P,
-    System, Tsit5, mbg,
+    Adaptive, Auto, Dop853, Dual, Fixed, Gauss6, Integrator, Pirk8, Radau5, Radau9, Real, Rk4,
+    Rodas5P, System, Tsit5, mbg,
 };
 
 mbg! {
@@ -77,6 +77,49 @@ fn changes_of_all_lanes_are_met() {
     }
     let found = at_end(5.0_f32, &Fixed::new(Rk4, 0.1));
     assert!((f64::from(found) - expected(5.0)).abs() < 1e-5, "{found}");
+}
+
+/// How much sooner or later the torque comes.
+#[test]
+fn times_of_changes_have_their_slopes() {
+    let slope = |start: f64| {
+        20.0 * (f64::exp(0.1 * (start + 0.05 - 10.0)) - f64::exp(0.1 * (start - 10.0)))
+    };
+    let close = |found: f64, start: f64| {
+        let error = found - slope(start);
+        assert!(error.abs() < 1e-8, "{start}: {error:e}");
+    };
+    for start in [5.0, 1.0 / 3.0, 9.9] {
+        let varied = Dual::variable(start);
+        close(
+            at_end(varied, &Adaptive::new(Tsit5, 1e-9, 1e-9)).slope,
+            start,
+        );
+        close(
+            at_end(varied, &Adaptive::new(Dop853, 1e-9, 1e-9)).slope,
+            start,
+        );
+        close(
+            at_end(varied, &Adaptive::new(Rodas5P, 1e-9, 1e-9)).slope,
+            start,
+        );
+        close(
+            at_end(varied, &Adaptive::new(Radau9, 1e-9, 1e-9)).slope,
+            start,
+        );
+        close(
+            at_end(varied, &Adaptive::new(Pirk8, 1e-9, 1e-9)).slope,
+            start,
+        );
+        close(at_end(varied, &Auto::new(1e-9, 1e-9)).slope, start);
+        close(at_end(varied, &Fixed::new(Rk4, 0.05)).slope, start);
+    }
+    let starts = [5.0, 0.5, 2.0 / 3.0, 8.0];
+    let varied = Dual::variable(f64x4::from(starts));
+    let found = at_end(varied, &Adaptive::new(Dop853, 1e-9, 1e-9));
+    for (start, found) in starts.into_iter().zip(<[f64; 4]>::from(found.slope)) {
+        close(found, start);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is divided by where frames stand at right angles or at rest: no rounding error, and nothing that vanishes there.
 
-use mbg_runtime::{Adaptive, Constant, Convertible, Dop853, Integrator, System, mbg};
+use mbg_runtime::{Adaptive, Constant, Convertible, Dop853, Integrator, System, Trouble, mbg};
 use nalgebra::SVector;
 
 use crate::references::errors::apart;
@@ -258,4 +258,42 @@ fn small_leaks_of_wires_are_not_divided_by() {
     let model = Leaking::<f32>::new(LeakingParameters::default()).unwrap();
     let found = model.output(0.0, &model.initial_state(), &SVector::zeros(), &mut ())[0];
     assert!((found / 9.934_694 - 1.0).abs() < 1e-5, "{found}");
+}
+
+mbg! {
+    /// Two blades with feather, flap and lag hinges on a hull that flies.
+    #[derivative]
+    pub(crate) model Hubbed {
+        causality componentwise;
+        1 ground[6]; 1 hull[6];
+        Sf fixed[6] { flow: 0.0 } -> ground;
+        free: Free { orientation: quaternion } (ground, hull);
+        body: Body { mass: 20.0, inertia: 10.0 } (hull);
+        rotor: Rotor {
+            count: 2, speed: 30.0, offset: 0.3, mass: 2.0, inertia: diag(0.3, 3.0, 3.1), centre: [1.0, 0.0, 0.0]
+        } (hull);
+    }
+}
+
+/// The determinants are for the same unknowns, and each tells the states that it reads.
+#[test]
+fn what_is_singular_is_told_by_its_states() {
+    let model = Hubbed::<f64>::new(HubbedParameters::default()).unwrap();
+    let meta = Hubbed::<f64>::META;
+    let mut x = model.initial_state();
+    // Flapped to where the lag hinge and the feathering hinge are in line.
+    let flap = "rotor.blades[1].blade.about_y.spring.q";
+    x[meta.state(flap).unwrap()] = core::f64::consts::FRAC_PI_2;
+    let Some(Trouble::Singular { name, .. }) = model.trouble(0.0, &x, &SVector::zeros(), &())
+    else {
+        panic!("it is singular")
+    };
+    let (_, states) = name.split_once(", in ").unwrap();
+    let lag = "rotor.blades[1].blade.about_z.spring.q";
+    assert_eq!(states, [flap, lag].join(", "));
+    let numbered = meta
+        .conditioning
+        .iter()
+        .filter(|it| it.contains(", number "));
+    assert_eq!(numbered.count(), 0, "{:?}", meta.conditioning);
 }

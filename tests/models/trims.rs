@@ -383,6 +383,10 @@ fn what_cannot_be_is_told() {
         told(Trim::new(&craft).output("spee", 1.0)),
         "the model has no output `spee`"
     );
+    assert_eq!(
+        told(Trim::new(&craft).output("place[2]", 1.0)),
+        "the model has no output `place[2]`: components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
+    );
     let fixed = Trim::new(&craft)
         .fix("free.position")
         .output("place.z", 3.0);

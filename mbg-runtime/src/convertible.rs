@@ -24,7 +24,7 @@ pub trait Convertible<T: Real, const N: usize, const M: usize, const P: usize>:
     fn converted<L: Real>(&self, convert: impl Fn(T) -> L) -> Self::With<L>;
 
     /// The output matrix `∂y/∂x`, as observers and filters take it at every sample, exact but for rounding: the outputs on
-    /// [`Dual`] numbers with the slopes along four states at once. A nonlinear algebraic loop is solved from zero.
+    /// [`Dual`] numbers, with the slopes along four states at once in a release build. A nonlinear algebraic loop is solved from zero.
     ///
     /// ```
     /// use mbg_runtime::{Convertible, System, mbg};
@@ -54,7 +54,7 @@ pub trait Convertible<T: Real, const N: usize, const M: usize, const P: usize>:
         u: &SVector<T, M>,
     ) -> SMatrix<T, P, N> {
         let (system, u) = (self.converted(Dual::unchanging), u.map(Dual::unchanging));
-        slopes(x, |x| {
+        slopes::<T, Together<T>, N, P>(x, |x| {
             system.output(Dual::unchanging(t), x, &u, &mut Default::default())
         })
     }
@@ -67,31 +67,33 @@ pub trait Convertible<T: Real, const N: usize, const M: usize, const P: usize>:
         u: &SVector<T, M>,
     ) -> SMatrix<T, P, M> {
         let (system, x) = (self.converted(Dual::unchanging), x.map(Dual::unchanging));
-        slopes(u, |u| {
+        slopes::<T, Together<T>, M, P>(u, |u| {
             system.output(Dual::unchanging(t), &x, u, &mut Default::default())
         })
     }
 }
 
-/// A number with its slopes along several components at once.
-type Several<T> = Dual<T, <T as Real>::Stages>;
+/// Slopes along several components at once. Where nothing is optimised all numbers of a function are on the stack, and there it
+/// is one component after the other.
+#[cfg(not(debug_assertions))]
+type Together<T> = <T as Real>::Stages;
+#[cfg(debug_assertions)]
+type Together<T> = T;
 
-/// The derivatives of a function by each component.
-fn slopes<T: Real, const K: usize, const P: usize>(
+/// The derivatives of a function by each component, of as many at once as `L` has columns.
+fn slopes<T: Real, L: Columns<T>, const K: usize, const P: usize>(
     at: &SVector<T, K>,
-    function: impl Fn(&SVector<Several<T>, K>) -> SVector<Several<T>, P>,
+    function: impl Fn(&SVector<Dual<T, L>, K>) -> SVector<Dual<T, L>, P>,
 ) -> SMatrix<T, P, K> {
-    let mut matrix = SMatrix::<T, P, K>::from_element(T::from_f64(0.0));
-    let together = <T::Stages as Columns<T>>::COUNT;
-    let unchanging: SVector<Several<T>, K> = at.map(Dual::unchanging);
-    for first in (0..K).step_by(together) {
-        let mut at = unchanging;
-        for (direction, component) in at.iter_mut().skip(first).take(together).enumerate() {
-            let unit = |column| T::from_f64(if column == direction { 1.0 } else { 0.0 });
-            component.slope = T::Stages::from_columns(unit);
+    let [zero, one] = [0.0, 1.0].map(T::from_f64);
+    let mut matrix = SMatrix::<T, P, K>::from_element(zero);
+    for first in (0..K).step_by(L::COUNT) {
+        let mut at = at.map(Dual::unchanging);
+        for (direction, component) in at.iter_mut().skip(first).take(L::COUNT).enumerate() {
+            component.slope = L::from_columns(|it| if it == direction { one } else { zero });
         }
         let results = function(&at);
-        let columns = matrix.column_iter_mut().skip(first).take(together);
+        let columns = matrix.column_iter_mut().skip(first).take(L::COUNT);
         for (direction, mut column) in columns.enumerate() {
             for (entry, result) in column.iter_mut().zip(&results) {
                 *entry = *result.slope.as_columns().get(direction).unwrap_or(entry);
@@ -99,4 +101,33 @@ fn slopes<T: Real, const K: usize, const P: usize>(
         }
     }
     matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+    use crate::Four;
+
+    /// Of more components than go side by side, and no multiple of these.
+    #[test]
+    fn slopes_along_several_components_are_those_along_each() {
+        let calls = Cell::new(0);
+        let at = SVector::<f64, 11>::from_fn(|row, _| row as f64 - 4.5);
+        let found = slopes::<_, Four<f64>, 11, 2>(&at, |x| {
+            calls.set(calls.get() + 1);
+            SVector::from([x.dot(x), x[3] * x[10]])
+        });
+        assert_eq!(calls.get(), 3);
+        assert_eq!(found.row(0), (2.0 * at).transpose());
+        let product = SVector::<f64, 11>::from_fn(|row, _| match row {
+            3 => at[10],
+            10 => at[3],
+            _ => 0.0,
+        });
+        assert_eq!(found.row(1), product.transpose());
+        let alone = slopes::<_, f64, 11, 2>(&at, |x| SVector::from([x.dot(x), x[3] * x[10]]));
+        assert_eq!(found, alone);
+    }
 }

@@ -83,19 +83,27 @@ where
         t.max(first).min(last)
     }
 
-    /// The derivative.
+    /// The derivative, of which that of a small model is inlined.
+    #[inline(always)]
     pub(super) fn slope(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
+        if !S::META.closures.is_empty() && self.closes_stages {
+            return self.slope_where_closed(t, x);
+        }
         self.statistics.evaluations += 1;
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
-        let closed = if self.closes_stages {
-            self.close(t, *x).ok()
-        } else {
-            None
-        };
-        let x = closed.as_ref().unwrap_or(x);
-        // In one place, so that a compiler inlines it.
         self.system.derivative(t, x, &u, &mut self.memory)
+    }
+
+    /// The derivative where loops are closed.
+    #[cold]
+    #[inline(never)]
+    fn slope_where_closed(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
+        self.statistics.evaluations += 1;
+        let t = self.on_piece(t);
+        let u = self.input.value(t, self.since);
+        let x = self.close(t, *x).unwrap_or(*x);
+        self.system.derivative(t, &x, &u, &mut self.memory)
     }
 
     /// The derivative at a stage of a method that sweeps over its stages, with what its loops remember from the sweep before; in

@@ -82,7 +82,7 @@ impl<T: Real> Dual<T> {
 }
 
 impl<T: Real, L: Columns<T>> Dual<T, L> {
-    /// A number that changes along no direction.
+    /// A number that changes along no direction, however many there are; `constant` has one, so that nobody needs to say how many.
     pub(crate) fn unchanging(value: T) -> Self {
         Self {
             value,

@@ -357,18 +357,17 @@ where
         Y: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let known = *slopes;
         // All before the first slope: beside a derivative that is inlined a compiler would not write the weights out.
         let stages: [SVector<T, N>; S] = array::from_fn(|stage| {
-            let direction = combination(&A::TABLEAU.matrix[stage], &known);
+            let direction = combination(&A::TABLEAU.matrix[stage], slopes);
             along(&start.x, start.span.length, &direction)
         });
         for stage in 0..S {
             let t = start.span.at(T::from_f64(A::TABLEAU.nodes[stage]));
             let slope = problem.slope_of_stage(t, &stages[stage], &mut memories[stage]);
             if let Some((factors, residual)) = &mut newton {
-                **residual = slope - known[stage];
-                slopes[stage] = known[stage] + factors.solved::<Y, M, P>(residual);
+                **residual = slope - slopes[stage];
+                slopes[stage] += factors.solved::<Y, M, P>(residual);
             } else {
                 slopes[stage] = slope;
             }

@@ -89,21 +89,23 @@ where
         if !S::META.closures.is_empty() && self.closes_stages {
             return self.slope_where_closed(t, x);
         }
+        self.slope_as_it_is(t, x)
+    }
+
+    /// The same where loops are closed.
+    #[cold]
+    #[inline(never)]
+    fn slope_where_closed(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
+        let closed = self.close(self.on_piece(t), *x);
+        self.slope_as_it_is(t, &closed.unwrap_or(*x))
+    }
+
+    #[inline(always)]
+    fn slope_as_it_is(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
         self.statistics.evaluations += 1;
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
         self.system.derivative(t, x, &u, &mut self.memory)
-    }
-
-    /// The derivative where loops are closed.
-    #[cold]
-    #[inline(never)]
-    fn slope_where_closed(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {
-        self.statistics.evaluations += 1;
-        let t = self.on_piece(t);
-        let u = self.input.value(t, self.since);
-        let x = self.close(t, *x).unwrap_or(*x);
-        self.system.derivative(t, &x, &u, &mut self.memory)
     }
 
     /// The derivative at a stage of a method that sweeps over its stages, with what its loops remember from the sweep before; in

@@ -41,6 +41,7 @@ mod models {
     mod columns;
     mod contacts;
     mod curves;
+    mod cycles;
     mod dependent;
     mod energy;
     mod floating;

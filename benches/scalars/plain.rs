@@ -77,7 +77,7 @@ impl<const LIBRARY: bool> Real for Plain<LIBRARY> {
         (Self(sine), Self(cosine))
     }
 
-    functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
+    functions!(tan, asin, acos, exp, ln, sqrt, tanh, fraction, abs, sign; atan2, pow, min, max);
 
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         Self(self.0.select_less(bound.0, yes.0, no.0))

@@ -1,72 +1,118 @@
-//! Stage 5e, changes: where choices in the laws change, as in `if t < start { 0.0 } else { 2.0 }` at the time `start`.
+//! Stage 5e, changes: where choices in the laws change, as in `if t < start { 0.0 } else { 2.0 }` at the time `start`, and where
+//! `mod(t, period)` jumps.
 
 use std::collections::BTreeMap;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 use crate::symbolic::choices::choice_of;
 use crate::symbolic::substitute::{operations, replace, symbols, visit};
-use crate::symbolic::{Differentiator, Expression, Operation, Pool, Rate, Symbol, affine};
+use crate::symbolic::{
+    Differentiator, Expression, Function, Operation, Pool, Rate, Symbol, affine,
+};
 
 /// Most branches of choices within a condition that are tried.
 const MOST: usize = 64;
 
-/// An expression, and the values of it at which choices change; without any it is an angle of which choices are by a wave.
+/// Times, in terms of parameters, at which steps of integration end.
+pub struct Times {
+    /// Each once.
+    pub once: Vec<Expression>,
+    /// Each with the period after which it comes again.
+    pub again: Vec<[Expression; 2]>,
+}
+
+impl Times {
+    /// All of them, one after the other.
+    pub fn listed(&self) -> Vec<Expression> {
+        [&self.once, self.again.as_flattened()].concat()
+    }
+}
+
+/// An expression, and the values of it at which choices change.
 pub struct Argument {
     /// Varying, without what parameters alone add to it or multiply it by.
     pub value: Expression,
     /// How it changes with time and states, in terms of their [`Symbol::Slope`]s; zero for what is long to work out.
     pub rate: Expression,
-    /// In terms of parameters, each once.
+    /// In terms of parameters.
     pub thresholds: Vec<Expression>,
+    /// Whether they come again with every whole number.
+    pub repeats: bool,
 }
 
-/// Times, in terms of parameters, at which steps of integration end.
-///
-/// A choice by more than time, or by a wave of it, has none.
-pub fn times(pool: &mut Pool, rates: &[Expression]) -> Vec<Expression> {
-    let mut times = Vec::new();
-    for difference in differences(pool, rates) {
-        let read = symbols(pool, &[difference]);
-        let is_fixed = |it: &Symbol| matches!(it, Symbol::Time | Symbol::Parameter(_));
-        if read.contains(&Symbol::Time) && read.iter().all(is_fixed) {
-            let zeros: Vec<_> = branches(pool, difference)
-                .into_iter()
-                .filter_map(|branch| zero(pool, branch))
-                .collect();
-            add_new(&mut times, zeros);
+impl Argument {
+    fn new(value: Expression, thresholds: Vec<Expression>, repeats: bool) -> Self {
+        let rate = Expression::ZERO;
+        Self {
+            value,
+            rate,
+            thresholds,
+            repeats,
         }
     }
-    times
+
+    /// How many thresholds it has, and whether they come again.
+    pub fn count(&self) -> (usize, bool) {
+        (self.thresholds.len(), self.repeats)
+    }
+}
+
+/// Of rates whose states are these: when they change, and by what a step may pass more of that than it finds.
+pub fn of(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> (Times, Vec<Argument>) {
+    (times(pool, rates), arguments(pool, rates, states))
+}
+
+/// When what is by time alone changes. A choice by more than time has no such times, nor has one by several waves of it.
+pub fn times(pool: &mut Pool, rates: &[Expression]) -> Times {
+    let (mut once, mut again) = (Vec::new(), Vec::new());
+    for difference in differences(pool, rates) {
+        if is_of_time(pool, difference) {
+            for branch in branches(pool, difference) {
+                add_new(&mut once, zero(pool, branch));
+                add_new(&mut again, zeros(pool, branch));
+            }
+        }
+    }
+    for turns in fractions(pool, rates) {
+        for branch in branches(pool, turns) {
+            add_new(
+                &mut again,
+                repeated(pool, branch, &[Expression::ZERO], Expression::ONE),
+            );
+        }
+    }
+    Times { once, again }
 }
 
 /// What a step may pass more of than it finds: arguments of the state, and waves, which go back over each threshold, with their
-/// angles.
-///
-/// `states` are those of the rates.
-pub fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Argument> {
+/// angles. Steps end at [`times`].
+fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Argument> {
     let mut arguments: Vec<Argument> = Vec::new();
     for difference in differences(pool, rates) {
         for branch in branches(pool, difference) {
             let Some((value, threshold)) = threshold(pool, branch) else {
                 continue;
             };
-            match arguments.iter_mut().find(|it| it.value == value) {
-                Some(known) => add_new(&mut known.thresholds, vec![threshold]),
-                None => arguments.push(Argument {
-                    value,
-                    rate: Expression::ZERO,
-                    thresholds: vec![threshold],
-                }),
+            let is_known = is_of_time(pool, branch) && !zeros(pool, branch).is_empty();
+            if is_known || angles(pool, value).is_empty() && !is_of_state(pool, value) {
+                continue;
             }
+            let (value, repeats) = match *pool.operation(value) {
+                Operation::Call(Function::Fraction, ref turns) => (turns[0], true),
+                _ => (value, false),
+            };
+            add_threshold(&mut arguments, value, threshold, repeats);
+        }
+    }
+    for turns in fractions(pool, rates) {
+        if is_of_state(pool, turns) {
+            add_threshold(&mut arguments, turns, Expression::ZERO, true);
         }
     }
     let mut turning = Vec::new();
-    arguments.retain(|argument| {
-        let angles = angles(pool, argument.value);
-        let is_wave = !angles.is_empty();
-        add_new(&mut turning, angles);
-        is_wave || is_of_state(pool, argument.value)
-    });
+    for argument in &arguments {
+        add_new(&mut turning, angles(pool, argument.value));
+    }
     let mut along = Differentiator::along(slopes(pool, states));
     for argument in &mut arguments {
         let rate = along.derivative(pool, argument.value);
@@ -75,12 +121,28 @@ pub fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Ve
             argument.rate = rate;
         }
     }
-    arguments.extend(turning.into_iter().map(|value| Argument {
-        value,
-        rate: Expression::ZERO,
-        thresholds: Vec::new(),
-    }));
+    // A wave turns at least once in each half turn, behind what it may have passed before.
+    let twice = vec![Expression::ZERO; 2];
+    arguments.extend(
+        turning
+            .into_iter()
+            .map(|value| Argument::new(value, twice.clone(), true)),
+    );
     arguments
+}
+
+/// Adds a threshold that is not there.
+fn add_threshold(
+    arguments: &mut Vec<Argument>,
+    value: Expression,
+    threshold: Expression,
+    repeats: bool,
+) {
+    let is_known = |it: &&mut Argument| it.value == value && it.repeats == repeats;
+    match arguments.iter_mut().find(is_known) {
+        Some(known) => add_new(&mut known.thresholds, [threshold]),
+        None => arguments.push(Argument::new(value, vec![threshold], repeats)),
+    }
 }
 
 /// How time and states change with time.
@@ -90,12 +152,19 @@ fn slopes(pool: &mut Pool, states: &[Symbol]) -> BTreeMap<Symbol, Expression> {
     states.chain([(Symbol::Time, Expression::ONE)]).collect()
 }
 
+/// Whether it changes with time, and with nothing else while a model runs.
+fn is_of_time(pool: &Pool, value: Expression) -> bool {
+    let read = symbols(pool, &[value]);
+    let is_fixed = |it: &Symbol| matches!(it, Symbol::Time | Symbol::Parameter(_));
+    read.contains(&Symbol::Time) && read.iter().all(is_fixed)
+}
+
 fn is_of_state(pool: &Pool, value: Expression) -> bool {
     let is_state = |it: &Symbol| matches!(it, Symbol::State(_) | Symbol::Unknown(_));
     symbols(pool, &[value]).iter().any(is_state)
 }
 
-/// What grows by half a turn from each end of the way of a wave to the next, for waves over time or one state alone.
+/// What grows by one from each end of the way of a wave to the next, for waves over time or one state alone.
 fn angles(pool: &mut Pool, value: Expression) -> Vec<Expression> {
     let mut read = symbols(pool, &[value]);
     read.retain(|it| !matches!(it, Symbol::Parameter(_)));
@@ -109,12 +178,17 @@ fn angles(pool: &mut Pool, value: Expression) -> Vec<Expression> {
         _ => {}
     });
     waves.retain(|(angle, _)| pool.rate(*angle) == Rate::Varying);
-    let quarter = pool.irrational(FRAC_PI_2);
-    let turned = |(angle, is_sine)| match is_sine {
-        true => pool.add(angle, quarter),
-        false => angle,
+    let reciprocal = pool.irrational(FRAC_1_PI);
+    let two = pool.integer(2);
+    let half = pool.divide(Expression::ONE, two);
+    let half_turns = |(angle, is_sine)| {
+        let half_turns = pool.multiply(reciprocal, angle);
+        match is_sine {
+            true => pool.add(half_turns, half.unwrap_or(Expression::ZERO)),
+            false => half_turns,
+        }
     };
-    waves.into_iter().map(turned).collect()
+    waves.into_iter().map(half_turns).collect()
 }
 
 /// Each argument with its rate, followed by its thresholds.
@@ -129,7 +203,7 @@ fn differences(pool: &mut Pool, expressions: &[Expression]) -> Vec<Expression> {
     let mut differences = Vec::new();
     for (_, [a, b, ..]) in choices {
         let difference = pool.subtract(a, b);
-        add_new(&mut differences, vec![difference]);
+        add_new(&mut differences, [difference]);
     }
     differences
 }
@@ -153,7 +227,7 @@ fn branches(pool: &mut Pool, expression: Expression) -> Vec<Expression> {
             break;
         };
         match choices(pool, &[expression]).first().copied() {
-            None => add_new(&mut found, vec![expression]),
+            None => add_new(&mut found, [expression]),
             Some((part, [_, _, c, d])) => {
                 let chosen = [d, c].map(|branch| replace(pool, expression, &[(part, branch)]));
                 open.extend(chosen.into_iter().flatten());
@@ -168,6 +242,70 @@ fn zero(pool: &mut Pool, expression: Expression) -> Option<Expression> {
     let is_time = |symbol: &Symbol| *symbol == Symbol::Time;
     let (slope, rest) = affine(pool, expression, Symbol::Time, is_time)?;
     pool.divide(rest.negated(), slope)
+}
+
+/// The times at which an expression of time and parameters is zero, each with the period after which it is so again, if it is of
+/// one wave or of one fraction of what is a line.
+fn zeros(pool: &mut Pool, expression: Expression) -> Vec<[Expression; 2]> {
+    let Some((value, threshold)) = threshold(pool, expression) else {
+        return Vec::new();
+    };
+    let is_beyond = pool
+        .constant_value(threshold)
+        .is_some_and(|it| it.abs() > 1.0);
+    let turn = pool.irrational(2.0 * PI);
+    match *pool.operation(value) {
+        _ if is_beyond => Vec::new(),
+        Operation::Sine(angle) => {
+            let place = pool.call(Function::Asin, &[threshold]);
+            let half = pool.irrational(PI);
+            let other = pool.subtract(half, place);
+            repeated(pool, angle, &[place, other], turn)
+        }
+        Operation::Cosine(angle) => {
+            let place = pool.call(Function::Acos, &[threshold]);
+            repeated(pool, angle, &[place, place.negated()], turn)
+        }
+        Operation::Call(Function::Fraction, ref turns) => {
+            let turns = turns[0];
+            repeated(pool, turns, &[threshold], Expression::ONE)
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The times at which an argument is at one of some places but for whole periods, each with how long a period lasts, if it is a line
+/// over time.
+fn repeated(
+    pool: &mut Pool,
+    argument: Expression,
+    places: &[Expression],
+    period: Expression,
+) -> Vec<[Expression; 2]> {
+    let is_time = |symbol: &Symbol| *symbol == Symbol::Time;
+    let Some((slope, rest)) = affine(pool, argument, Symbol::Time, is_time) else {
+        return Vec::new();
+    };
+    let Some(lasting) = pool.divide(period, slope) else {
+        return Vec::new();
+    };
+    let lasting = pool.call(Function::Abs, &[lasting]);
+    let times = places.iter().filter_map(|place| {
+        let way = pool.subtract(*place, rest);
+        Some([pool.divide(way, slope)?, lasting])
+    });
+    times.collect()
+}
+
+/// What the fractions in some expressions are of.
+fn fractions(pool: &Pool, expressions: &[Expression]) -> Vec<Expression> {
+    let mut found = Vec::new();
+    visit(pool, expressions, |_, operation| {
+        if let Operation::Call(Function::Fraction, arguments) = operation {
+            found.push(arguments[0]);
+        }
+    });
+    found
 }
 
 /// What has a value of parameters alone where an expression is zero, and that value.
@@ -204,7 +342,7 @@ fn terms(pool: &Pool, sum: Expression) -> (Vec<Expression>, Vec<Expression>) {
 }
 
 /// Adds those that are not there.
-fn add_new(known: &mut Vec<Expression>, found: Vec<Expression>) {
+fn add_new<T: PartialEq>(known: &mut Vec<T>, found: impl IntoIterator<Item = T>) {
     for it in found {
         if !known.contains(&it) {
             known.push(it);

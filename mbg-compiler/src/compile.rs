@@ -57,8 +57,10 @@ pub struct Compiled {
     pub strokes: Vec<bool>,
     /// Where the Jacobian by the states can differ from zero.
     pub pattern: Pattern,
-    /// How many thresholds each argument of choices has; none has an angle of waves.
-    pub thresholds: Vec<usize>,
+    /// How many of the changes by time alone come once; others come again after a period.
+    pub changes_once: usize,
+    /// How many thresholds each argument of choices has, and whether they come again with every whole number.
+    pub thresholds: Vec<(usize, bool)>,
     /// Things worth knowing.
     pub notes: Vec<String>,
 }
@@ -202,8 +204,7 @@ fn finish(
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
-    let changes = changes::times(&mut pool, rates);
-    let arguments = changes::arguments(&mut pool, rates, &by_state);
+    let (times, arguments) = changes::of(&mut pool, rates, &by_state);
     let requests: [Request; 16] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
@@ -217,7 +218,7 @@ fn finish(
         positions.evaluated().into(),
         flows.evaluated().into(),
         jacobian(&mut pool, rates, &[Symbol::Time]).entries.into(),
-        changes.into(),
+        times.listed().into(),
         changes::listed(&arguments).into(),
         positions.values.clone().into(),
         flows.values.clone().into(),
@@ -251,7 +252,8 @@ fn finish(
         dependent: verdict.dependent,
         strokes: verdict.strokes,
         pattern,
-        thresholds: arguments.iter().map(|it| it.thresholds.len()).collect(),
+        changes_once: times.once.len(),
+        thresholds: arguments.iter().map(changes::Argument::count).collect(),
         notes,
         states: answers.states,
         model,

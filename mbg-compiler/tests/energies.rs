@@ -59,6 +59,16 @@ fn coefficients_may_change_with_the_state_they_multiply() {
             "C c { effort: tanh(50.0 * q) }",
             15.0_f64.cosh().ln() / 50.0,
         ),
+        // Saw teeth and a staircase.
+        ("C c { effort: mod(q, 0.2) }", 0.5 * (0.04 + 0.01)),
+        (
+            "C c { effort: floor(q / 0.1 + 0.5) }",
+            0.1 + 0.2 + 3.0 * 0.05,
+        ),
+        (
+            "C c { effort: 4.0 - 20.0 * fraction(1.0 - 10.0 * q) }",
+            0.3 * (4.0 - 10.0),
+        ),
     ];
     for (storage, expected) in cases {
         let found = energy(storage, 0.3);

@@ -74,7 +74,7 @@ fn mistakes_in_laws_are_told() {
       help: its words are `inertia`, `flow`, `energy`, `initial`, `initial_flow`, `gyroscopic`
     2:41 `Sin` is not a function of the language [MBG0203]
       help: did you mean `sin`?
-      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, min, max, pow, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
+      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, mod, floor, fraction, min, max, pow, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
     ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: q } C c { stiffness: p } R r { resistance: p } TF t { flow: 1.0 } MGY g { effort: 1.0 } }"), @"
     2:69 a `TF` has two ports; put it between two arrows [MBG0208]

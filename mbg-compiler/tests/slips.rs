@@ -268,18 +268,26 @@ fn functions_that_laws_lack_are_told_with_what_stands_for_them() {
 }
 
 #[test]
-fn remainders_and_whole_parts_in_laws_are_told_to_jump() {
+fn remainders_and_whole_parts_have_their_functions() {
     let text = |law: &str| {
         format!(
             "model M {{ input r; param n = 2.0; 1 v {{ I m {{ inertia: 1.0 }} C k {{ stiffness: 4.0 }}\nSe s {{ effort: {law} }} }} }}"
         )
     };
-    for name in ["floor(r)", "ceil(r)", "round(r)", "fmod(r, 2)", "rem(r, 2)"] {
-        assert_eq!(typed(&text(name)), ["input", "Pulse"]);
+    for (elsewhere, here) in [
+        ("ceil(r)", "-floor(-r)"),
+        ("round(r)", "floor(r + 0.5)"),
+        ("trunc(r + n)", "(sign(r + n) * floor(abs(r + n)))"),
+        ("fmod(r, 2.0)", "mod(r, 2.0)"),
+        ("r.rem_euclid(2.0 * n)", "mod(r, 2.0 * n)"),
+        ("modulo(r, 2.0)", "mod(r, 2.0)"),
+    ] {
+        assert_eq!(typed(&text(elsewhere)), [here]);
+        assert_eq!(told(&text(here)), "");
     }
     insta::assert_snapshot!(told(&text("if t % 1e-3 < 5e-4 { 24.0 } else { 0.0 }")), @"
-    2:21 `%` stands between whole numbers, and `t` changes while the model runs, so that the remainder jumps [MBG0217]
-      help: what jumps is given from outside, by an `input` that tells when its next jump comes, as a `Pulse` does
+    2:21 `%` stands between whole numbers, and `t` changes while the model runs [MBG0217]
+      help: write `mod(t, 1e-3)`
     ");
     // Of what stays the same, another cause is told.
     insta::assert_snapshot!(told(&text("n % 2")), @"
@@ -704,7 +712,7 @@ fn a_product_without_its_sign_is_told_with_it() {
         assert_eq!(told(&text(&law.replace(&before, after))), "");
     }
     assert_eq!(typed(&text("w t")), ["w * t"]);
-    assert_eq!(typed(&text("mod(r, 2)")), ["input", "Pulse"]);
+    assert_eq!(told(&text("mod(r, 2)")), "");
     // A word of the element lacks its comma alone.
     let mass = |law: &str| format!("model M {{ param m = 1.0; 1 a[3] {{ I i {{ {law} }} }} }}");
     for law in ["inertia: m initial: 2.0", "inertia: m gyroscopic"] {

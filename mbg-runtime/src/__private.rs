@@ -63,12 +63,17 @@ pub fn check<T: Real>(
     }
 }
 
-/// The first of these times, of all lanes, that is later than `t`, which is the same in all; with its slope.
+/// The first of these times, of all lanes, that is later than `t`, which is the same in all; with its slope. Those of `again`
+/// come back, each after its period.
 #[cold]
-pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
+pub fn next_of<T: Real>(t: T, once: &[T], again: &[[T; 2]]) -> Option<T> {
     let now = crate::step::seen(t);
     let next = Cell::new(f64::INFINITY);
-    for time in times {
+    let times = || {
+        let again = again.iter().map(|repeated| next_again(t, *repeated));
+        once.iter().copied().chain(again)
+    };
+    for time in times() {
         // None passes, so that each lane is looked at.
         let _ = time.find(|lane| {
             if lane > now && lane < next.get() {
@@ -79,31 +84,63 @@ pub fn next_of<T: Real>(t: T, times: &[T]) -> Option<T> {
     }
     let [whole, zero, tiny] = [next.get(), 0.0, f64::from(f32::MIN_POSITIVE)].map(T::from_f64);
     // What is left of that time itself is its slope alone.
-    let slope = times.iter().fold(zero, |slope, time| {
-        let left = *time - whole;
+    let slope = times().fold(zero, |slope, time| {
+        let left = time - whole;
         left.abs().select_less(tiny, left, slope)
     });
     next.get().is_finite().then(|| whole + slope)
 }
 
+/// When what comes at a time, and again after each period, comes next; there is no first time of it.
+fn next_again<T: Real>(t: T, [time, period]: [T; 2]) -> T {
+    if crate::step::seen(t) == f64::NEG_INFINITY {
+        return time;
+    }
+    let turns = (t - time) / period;
+    let whole = turns - turns.fraction();
+    let [next, after] = [1.0, 2.0].map(|more| time + (whole + T::from_f64(more)) * period);
+    // Where it comes at `t` itself, the quotient may be rounded down.
+    t.select_less(next, next, after)
+}
+
 /// An argument of choices at two points so long apart, with its rate at each.
 pub type Course<T> = [[T; 2]; 2];
 
-/// How many thresholds an argument goes over between two points, those twice that it goes over and back. One without thresholds
-/// is an angle of a wave: its half turns count twice, since the wave over it turns at least once in each.
+/// How many thresholds an argument goes over between two points, those twice that it goes over and back.
 #[inline]
 pub fn passed<T: Real>(lasting: T, course: Course<T>, thresholds: &[T]) -> u32 {
+    passed_by(lasting, course, thresholds, |argument, threshold| {
+        i64::from(threshold < argument)
+    })
+}
+
+/// The same of thresholds that come again with every whole number.
+#[inline]
+pub fn passed_again<T: Real>(lasting: T, course: Course<T>, thresholds: &[T]) -> u32 {
+    passed_by(lasting, course, thresholds, |argument, threshold| {
+        whole_below(argument - threshold)
+    })
+}
+
+/// The same, where `below` counts how often a threshold lies below an argument.
+#[inline]
+fn passed_by<T: Real>(
+    lasting: T,
+    course: Course<T>,
+    thresholds: &[T],
+    below: impl Fn(f64, f64) -> i64,
+) -> u32 {
     let [from, to] = course.map(|point| point.map(crate::step::seen));
-    if thresholds.is_empty() {
-        return 2 * half_turns(from[0]).abs_diff(half_turns(to[0]));
-    }
-    let below = |argument: f64| {
-        let is_below = |it: &&T| crate::step::seen(**it) < argument;
-        thresholds.iter().filter(is_below).count()
-    };
     let farthest = farthest(crate::step::seen(lasting), from, to);
-    let [first, turning, last] = [from[0], farthest, to[0]].map(below);
-    (first.abs_diff(turning) + turning.abs_diff(last)) as u32
+    let counts = thresholds.iter().map(|threshold| {
+        let threshold = crate::step::seen(*threshold);
+        let [first, turning, last] = [from[0], farthest, to[0]].map(|it| below(it, threshold));
+        let both = first
+            .abs_diff(turning)
+            .saturating_add(turning.abs_diff(last));
+        u32::try_from(both).unwrap_or(u32::MAX)
+    });
+    counts.fold(0, u32::saturating_add)
 }
 
 /// The largest of some counts.
@@ -123,11 +160,10 @@ fn farthest(lasting: f64, [a, rate_a]: [f64; 2], [b, rate_b]: [f64; 2]) -> f64 {
     }
 }
 
-/// The number of half turns of an angle.
-fn half_turns(angle: f64) -> i32 {
-    let turns = angle / core::f64::consts::PI;
-    let whole = turns as i32;
-    whole.saturating_sub(i32::from(f64::from(whole) > turns))
+/// The largest whole number that is not above a number.
+fn whole_below(number: f64) -> i64 {
+    let whole = number as i64;
+    whole.saturating_sub(i64::from(whole as f64 > number))
 }
 
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is fixed stays as it is.

@@ -76,31 +76,48 @@ pub trait Convertible<T: Real, const N: usize, const M: usize, const P: usize>:
 /// Slopes along several components at once. Where nothing is optimised all numbers of a function are on the stack, and there it
 /// is one component after the other.
 #[cfg(not(debug_assertions))]
-type Together<T> = <T as Real>::Stages;
+pub(crate) type Together<T> = <T as Real>::Stages;
 #[cfg(debug_assertions)]
-type Together<T> = T;
+pub(crate) type Together<T> = T;
 
 /// The derivatives of a function by each component, of as many at once as `L` has columns.
 fn slopes<T: Real, L: Columns<T>, const K: usize, const P: usize>(
     at: &SVector<T, K>,
     function: impl Fn(&SVector<Dual<T, L>, K>) -> SVector<Dual<T, L>, P>,
 ) -> SMatrix<T, P, K> {
-    let [zero, one] = [0.0, 1.0].map(T::from_f64);
-    let mut matrix = SMatrix::<T, P, K>::from_element(zero);
+    let mut matrix = SMatrix::<T, P, K>::from_element(T::from_f64(0.0));
     for first in (0..K).step_by(L::COUNT) {
-        let mut at = at.map(Dual::unchanging);
-        for (direction, component) in at.iter_mut().skip(first).take(L::COUNT).enumerate() {
-            component.slope = L::from_columns(|it| if it == direction { one } else { zero });
-        }
-        let results = function(&at);
-        let columns = matrix.column_iter_mut().skip(first).take(L::COUNT);
-        for (direction, mut column) in columns.enumerate() {
-            for (entry, result) in column.iter_mut().zip(&results) {
-                *entry = *result.slope.as_columns().get(direction).unwrap_or(entry);
-            }
-        }
+        let results = function(&along(at, first));
+        keep_slopes(&mut matrix, first, &results);
     }
     matrix
+}
+
+/// A vector with slopes by its components from this one on, as many as there are columns.
+pub(crate) fn along<T: Real, L: Columns<T>, const K: usize>(
+    at: &SVector<T, K>,
+    first: usize,
+) -> SVector<Dual<T, L>, K> {
+    let [zero, one] = [0.0, 1.0].map(T::from_f64);
+    let mut at = at.map(Dual::unchanging);
+    for (direction, component) in at.iter_mut().skip(first).take(L::COUNT).enumerate() {
+        component.slope = L::from_columns(|it| if it == direction { one } else { zero });
+    }
+    at
+}
+
+/// Puts the slopes of results into the columns of a matrix from this one on.
+pub(crate) fn keep_slopes<T: Real, L: Columns<T>, const K: usize, const P: usize>(
+    matrix: &mut SMatrix<T, P, K>,
+    first: usize,
+    results: &SVector<Dual<T, L>, P>,
+) {
+    let columns = matrix.column_iter_mut().skip(first).take(L::COUNT);
+    for (direction, mut column) in columns.enumerate() {
+        for (entry, result) in column.iter_mut().zip(results) {
+            *entry = *result.slope.as_columns().get(direction).unwrap_or(entry);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -322,6 +322,13 @@ impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
         self.chain(tangent, (one - tangent) * (one + tangent))
     }
 
+    fn fraction(self) -> Self {
+        Self {
+            value: self.value.fraction(),
+            ..self
+        }
+    }
+
     /// At zero with the slope above it: its mean with that below is zero, as of what does not change, and would hide that
     /// the root of it is infinitely steep.
     fn abs(self) -> Self {
@@ -412,6 +419,7 @@ mod tests {
             assert_rule(Real::acos, x, x.acos(), -(1.0 - x * x).sqrt().recip());
             assert_rule(Real::exp, x, x.exp(), x.exp());
             assert_rule(Real::tanh, x, x.tanh(), x.cosh().powi(-2));
+            assert_rule(Real::fraction, x, x.rem_euclid(1.0), 1.0);
             assert_rule(Real::abs, x, x.abs(), x.signum());
             assert_rule(Real::sign, x, x.signum(), 0.0);
             assert_rule(|x| -x, x, -x, -1.0);
@@ -514,6 +522,7 @@ mod tests {
             |a, _| Real::ln(a),
             |a, _| Real::sqrt(a),
             |a, _| Real::tanh(a),
+            |a, _| Real::fraction(a),
             |a, _| Real::abs(a),
             |a, _| Real::sign(a),
             Real::min,

@@ -130,7 +130,7 @@ impl<T: Real> Real for Four<T> {
         (Self(sines), Self(cosines))
     }
 
-    one_by_one!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
+    one_by_one!(tan, asin, acos, exp, ln, sqrt, tanh, fraction, abs, sign; atan2, pow, min, max);
 
     #[inline]
     fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
@@ -159,7 +159,7 @@ mod tests {
                 )*
             };
         }
-        each!(sin, cos, tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
+        each!(sin, cos, tan, asin, acos, exp, ln, sqrt, tanh, fraction, abs, sign; atan2, pow, min, max);
         let with = |operator: fn(f64, f64) -> f64| [0, 1, 2, 3].map(|k| operator(a[k], b[k]));
         assert_eq!((first + second).0, with(|a, b| a + b));
         assert_eq!((first - second).0, with(|a, b| a - b));

@@ -171,6 +171,11 @@ macro_rules! lanes {
             }
 
             #[inline]
+            fn fraction(self) -> Self {
+                self - $lanes::floor(self)
+            }
+
+            #[inline]
             fn abs(self) -> Self {
                 $lanes::abs(self)
             }
@@ -254,7 +259,7 @@ pub(crate) mod tests {
     use crate::solve::lanes::random;
 
     /// What is computed of two numbers: every function and every operation.
-    pub(crate) fn everything<T: Real>(a: T, b: T) -> [T; 22] {
+    pub(crate) fn everything<T: Real>(a: T, b: T) -> [T; 23] {
         let mut sum = a;
         sum += b;
         sum -= a;
@@ -277,6 +282,7 @@ pub(crate) mod tests {
             a.ln(),
             a.sqrt(),
             a.tanh(),
+            a.fraction(),
             a.abs() + a.sign(),
             a.min(b),
             a.max(b),

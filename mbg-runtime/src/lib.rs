@@ -9,6 +9,7 @@
 //! | stop it at an event, change its state and go on | [events](language#events), [`Integrator::until`] |
 //! | drive it by a recorded log | [`Sampled`] |
 //! | find where it rests, hovers or turns steadily | [`Trim`] |
+//! | find how it goes when it comes back after a period, and whether it stays so | [`PeriodicTrim`] |
 //! | design a controller for it | [`Linearised`]: its matrices, poles and frequency response |
 //! | estimate its state, predict its way | [`Rk4::transition`], [`Convertible::output_jacobian_state`] |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
@@ -86,9 +87,11 @@ pub mod joints {}
 #[doc = include_str!("library.md")]
 pub mod library {}
 mod meta;
+mod periodic;
 mod poles;
 mod real;
 mod scalar;
+mod selection;
 mod sine;
 pub mod solve;
 mod sparsity;
@@ -97,6 +100,7 @@ mod system;
 mod trim;
 #[cfg(test)]
 mod twofold;
+mod untrimmed;
 
 pub use columns::Columns;
 pub use convertible::Convertible;
@@ -106,6 +110,7 @@ pub use input::{Constant, Differentiable, Input, Pulse, SampleError, Sampled, Sm
 pub use linearised::Linearised;
 pub use meta::{Bond, Eliminated, Loop, LoopClass, Meta, Operations, Solver, Stroke, Variable};
 pub use nalgebra;
+pub use periodic::{Cycle, PeriodicTrim};
 pub use real::{FUSED, Real};
 pub use solve::{LoopMemory, Memory, Outcome};
 pub use sparsity::{Elimination, Sparsity};
@@ -117,7 +122,8 @@ pub use step::{
     Rodas4, Rodas5P, Ros2, Statistics, Step, Stopped, Transition, Tsit5,
 };
 pub use system::{ParameterError, Power, System, Trouble};
-pub use trim::{Trim, Trimmed, Untrimmed};
+pub use trim::{Trim, Trimmed};
+pub use untrimmed::Untrimmed;
 
 /// Compiles multibond graphs into flat, allocation-free state-space code, as [`language`] tells.
 #[cfg(feature = "macros")]

@@ -49,24 +49,28 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
     /// ```
     #[must_use]
     pub fn poles(&self) -> Option<[Complex<f64>; N]> {
-        let matrix = self.state.map(seen);
-        if !matrix.iter().all(|entry| entry.is_finite()) {
-            return None;
-        }
-        let mut sweep = Sweep {
-            matrix,
-            poles: [Complex::new(0.0, 0.0); N],
-            shift: 0.0,
-        };
-        let (first, end) = sweep.isolate();
-        for place in (0..first).chain(end..N) {
-            sweep.poles[place].re = sweep.matrix[(place, place)];
-        }
-        sweep.balance(first, end);
-        sweep.reduce(first, end);
-        sweep.all(first, end)?;
-        Some(sweep.poles)
+        eigenvalues(self.state.map(seen))
     }
+}
+
+/// The eigenvalues of a matrix; none where they are not finite or not found.
+pub(crate) fn eigenvalues<const N: usize>(matrix: SMatrix<f64, N, N>) -> Option<[Complex<f64>; N]> {
+    if !matrix.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let mut sweep = Sweep {
+        matrix,
+        poles: [Complex::new(0.0, 0.0); N],
+        shift: 0.0,
+    };
+    let (first, end) = sweep.isolate();
+    for place in (0..first).chain(end..N) {
+        sweep.poles[place].re = sweep.matrix[(place, place)];
+    }
+    sweep.balance(first, end);
+    sweep.reduce(first, end);
+    sweep.all(first, end)?;
+    Some(sweep.poles)
 }
 
 /// A matrix on its way to a triangle of blocks.

@@ -115,6 +115,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Hyperbolic tangent, within 2.75 units of the last place.
     fn tanh(self) -> Self;
+    /// What is left beyond the next whole number below, in [0, 1] since it is rounded; NaN for an infinite number.
+    fn fraction(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
     /// −1, 0 or 1, and NaN for NaN.

@@ -83,6 +83,14 @@ macro_rules! ordered {
         }
 
         #[inline]
+        fn fraction(self) -> Self {
+            #[cfg(any(test, feature = "std"))]
+            return self - $scalar::floor(self);
+            #[cfg(not(any(test, feature = "std")))]
+            return self - libm::Libm::<$scalar>::floor(self);
+        }
+
+        #[inline]
         fn abs(self) -> Self {
             $scalar::abs(self)
         }

@@ -178,8 +178,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> Power<T>;
 
-    /// The first time later than `t` at which a choice of the laws changes by time alone, such as that of `if t < 1.0 { … }`, or
-    /// a curve over time has a point. Integrators end a step there, as at a jump of the input.
+    /// The first time later than `t` at which a choice of the laws changes by time alone, such as that of `if t < 1.0 { … }` or
+    /// `if mod(t, 1e-3) < 3e-4 { … }`, or a curve over time has a point. Integrators end a step there, as at a jump of the input.
+    /// Of what comes again and again there is no first time: for `t` = −∞ it is any of those.
     #[must_use]
     fn next_change(&self, _t: T) -> Option<T> {
         None

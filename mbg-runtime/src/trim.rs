@@ -4,8 +4,9 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::selection::{Selection, is_named};
 use crate::solve::{Row, Rows, Sizes};
-use crate::{Convertible, Linearised, Trouble};
+use crate::{Convertible, Linearised, Untrimmed};
 
 /// Points at which the model is linearised at most.
 const ITERATIONS: usize = 60;
@@ -85,54 +86,15 @@ const ROUNDING: f64 = 64.0;
 ///
 /// The conditions hold at one time. What is free to change, or has a rate, may have an influence on them, and a moment later they
 /// hold no more: blades of a rotor swing in forward flight, and with the angle of its shaft [`free`](Trim::free) a point is found
-/// at which they stand still, which is no flight. Look for a state that comes back after a turn instead:
-/// [`Rk4::transition`](crate::Rk4::transition) gives each step with the exact derivatives that Newton's method needs, also by inputs
-/// that are to be found beside it. The eigenvalues of their product over the turn are Floquet's multipliers.
-///
-/// ```
-/// use mbg_runtime::{Rk4, System, mbg};
-/// use nalgebra::{SMatrix, SVector};
-///
-/// mbg! {
-///     /// A blade that flaps in forward flight: the air is faster on the side on which it goes ahead.
-///     model Flapping {
-///         let air = 1.0 + 0.3 * sin(30.0 * t);
-///         1 flap {
-///             I blade { inertia: 500.0 }
-///             C centrifugal { stiffness: 5e5 }
-///             R damping { resistance: 8e3 * air }
-///             Se lift { effort: 2e4 * air * air }
-///         }
-///     }
-/// }
-///
-/// let (model, none) = (Flapping::<f64>::new(FlappingParameters::default())?, SVector::zeros());
-/// let (turn, steps) = (2.0 * std::f64::consts::PI / 30.0, 200);
-/// let h = turn / f64::from(steps);
-/// // A start, the state a turn later, and the derivatives of this by that.
-/// let (mut start, mut end, mut by_start) = (model.initial_state(), SVector::zeros(), SMatrix::<f64, 2, 2>::zeros());
-/// for _ in 0..3 {
-///     (end, by_start) = (start, SMatrix::identity());
-///     for k in 0..steps {
-///         let step = Rk4::transition(&model, f64::from(k) * h, &end, &none, h, &mut ());
-///         (end, by_start) = (step.end, step.state * by_start);
-///     }
-///     start -= (by_start - SMatrix::identity()).try_inverse().unwrap() * (end - start);
-/// }
-/// assert!((end - start).norm() < 1e-9);
-/// // The product of the multipliers, by Liouville: exp(−∫ 8e3 air / 500 dt).
-/// assert!((by_start.determinant() - f64::exp(-16.0 * turn)).abs() < 1e-6);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// at which they stand still, which is no flight. [`PeriodicTrim`](crate::PeriodicTrim) finds a motion that comes back after a turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Trim<'a, S, const N: usize, const M: usize, const P: usize> {
     system: &'a S,
     time: f64,
     start: Trimmed<N, M>,
-    fixed: ([bool; N], [bool; M]),
-    rates: [Option<f64>; N],
+    /// With the rate of each state as its change.
+    selection: Selection<N, M>,
     outputs: [Option<f64>; P],
-    unknown: Option<Untrimmed>,
 }
 
 /// An operating point: see [`Trim`].
@@ -143,95 +105,6 @@ pub struct Trimmed<const N: usize, const M: usize> {
     /// The input.
     pub input: SVector<f64, M>,
 }
-
-/// Why there is no operating point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Untrimmed {
-    /// A name that is none of the model's.
-    Unknown {
-        /// Of what it should be the name.
-        kind: &'static str,
-        /// The name.
-        name: &'static str,
-    },
-    /// Conditions that cannot be met from the guess.
-    Missed {
-        /// The state whose rate, or the output, that is farthest from what is wanted beside the terms it is made of.
-        name: &'static str,
-        /// Whether it is an output.
-        is_output: bool,
-        /// What is wanted.
-        wanted: f64,
-        /// What was reached.
-        reached: f64,
-        /// Whether nothing that may be chosen has an influence on it.
-        is_fixed: bool,
-    },
-    /// Constraints of closed loops depend on each other there, as those of a parallelogram whose bars are in line: which forces
-    /// hold it is not determined. Ask for a point beside it.
-    Singular {
-        /// The input that is not determined.
-        input: &'static str,
-        /// What was found.
-        here: f64,
-        /// By how much another state that is as closed may ask for another one.
-        error: f64,
-    },
-    /// The model is in trouble there.
-    Trouble(Trouble),
-}
-
-impl core::fmt::Display for Untrimmed {
-    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match *self {
-            Self::Unknown { kind, name } => {
-                write!(formatter, "the model has no {kind} `{name}`")?;
-                formatter.write_str(match kind {
-                    _ if name.ends_with(']') => {
-                        ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
-                    }
-                    "state" => ": a position or an angle that nothing reads is none",
-                    _ => "",
-                })
-            }
-            Self::Missed {
-                name,
-                is_output,
-                wanted,
-                reached,
-                is_fixed,
-            } => {
-                let of = if is_output { "" } else { "the rate of " };
-                write!(
-                    formatter,
-                    "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
-                )?;
-                if !is_fixed {
-                    return formatter.write_str(
-                        "no choice was found that does better: begin elsewhere, or let more be chosen",
-                    );
-                }
-                formatter.write_str("nothing that may be chosen has an influence on it")?;
-                if is_output {
-                    return Ok(());
-                }
-                write!(
-                    formatter,
-                    " there: begin elsewhere, or write `.free(\"{name}\")` where it is to change"
-                )
-            }
-            Self::Singular { input, here, error } => write!(
-                formatter,
-                "`{input}` is {here:e}, give or take {error:e}: constraints of closed loops depend on each other there, so that it \
-                 is not determined; ask for a point beside it"
-            ),
-            Self::Trouble(trouble) => trouble.fmt(formatter),
-        }
-    }
-}
-
-impl core::error::Error for Untrimmed {}
 
 /// What is left of rates and of outputs.
 type Left<const N: usize, const P: usize> = (SVector<f64, N>, SVector<f64, P>);
@@ -250,10 +123,8 @@ where
                 state: system.initial_state(),
                 input: SVector::zeros(),
             },
-            fixed: ([false; N], [false; M]),
-            rates: [Some(0.0); N],
+            selection: Selection::new(),
             outputs: [None; P],
-            unknown: None,
         }
     }
 
@@ -281,26 +152,22 @@ where
     /// States or inputs that stay as they are in the guess.
     #[must_use]
     pub fn fix(mut self, name: &'static str) -> Self {
-        let mut found = false;
-        let meta = S::META;
-        let names = meta.states.iter().chain(meta.inputs);
-        for (fixed, variable) in self.fixed.0.iter_mut().chain(&mut self.fixed.1).zip(names) {
-            let is_named = is_named(variable.name, name);
-            (*fixed, found) = (*fixed || is_named, found || is_named);
-        }
-        self.known(found, "state or input", name)
+        self.selection.fix(S::META, name);
+        self
     }
 
     /// States whose rates do not matter, such as positions in flight.
     #[must_use]
-    pub fn free(self, name: &'static str) -> Self {
-        self.with_rate(name, None)
+    pub fn free(mut self, name: &'static str) -> Self {
+        self.selection.change(S::META, name, None);
+        self
     }
 
     /// States with another rate than zero, in units of the state per second.
     #[must_use]
-    pub fn rate(self, name: &'static str, rate: f64) -> Self {
-        self.with_rate(name, Some(rate))
+    pub fn rate(mut self, name: &'static str, rate: f64) -> Self {
+        self.selection.change(S::META, name, Some(rate));
+        self
     }
 
     /// Outputs with a wanted value.
@@ -312,24 +179,7 @@ where
                 (*output, found) = (Some(value), true);
             }
         }
-        self.known(found, "output", name)
-    }
-
-    fn with_rate(mut self, name: &'static str, wanted: Option<f64>) -> Self {
-        let mut found = false;
-        for (rate, variable) in self.rates.iter_mut().zip(S::META.states) {
-            if is_named(variable.name, name) {
-                (*rate, found) = (wanted, true);
-            }
-        }
-        self.known(found, "state", name)
-    }
-
-    /// Keeps the first name that is not found.
-    fn known(mut self, found: bool, kind: &'static str, name: &'static str) -> Self {
-        if !found && self.unknown.is_none() {
-            self.unknown = Some(Untrimmed::Unknown { kind, name });
-        }
+        self.selection.know(found, "output", name);
         self
     }
 
@@ -340,9 +190,7 @@ where
     /// A name that the model has not, conditions that cannot be met from the guess, a point where constraints depend on each other,
     /// and what [`System::close`](crate::System::close) and [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
-        if let Some(unknown) = self.unknown {
-            return Err(unknown);
-        }
+        self.selection.check()?;
         let mut point = self.closed(self.start)?;
         let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
         let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
@@ -387,7 +235,7 @@ where
         }
         let tangents = self.tangents(point);
         let mut open = SVector::<f64, N>::zeros();
-        for number in (0..N).filter(|number| !self.fixed.0[*number]) {
+        for number in (0..N).filter(|number| !self.selection.fixed.0[*number]) {
             let aside = LITTLE * point.state[number].abs().max(1.0);
             let mut moved = *point;
             moved.state[number] += aside;
@@ -407,7 +255,7 @@ where
             }
         });
         let sizes = (open, SVector::zeros());
-        let mut inputs = (0..M).filter(|input| !self.fixed.1[*input]);
+        let mut inputs = (0..M).filter(|input| !self.selection.fixed.1[*input]);
         inputs.find_map(|input| {
             let rounding = rounding.0.iter().chain(&rounding.1);
             let errors = rows.iter().zip(rounding);
@@ -425,7 +273,7 @@ where
     /// Why a condition cannot be met.
     fn missed(&self, point: &Trimmed<N, M>, row: usize, rows: &mut Rows<N, M, P>) -> Untrimmed {
         let (rates, outputs) = self.left(point);
-        rows.fix(&self.fixed);
+        rows.fix(&self.selection.fixed);
         let is_output = row >= N;
         let (variables, lefts, wanted, place) = if is_output {
             (
@@ -435,7 +283,12 @@ where
                 row - N,
             )
         } else {
-            (S::META.states, rates.as_slice(), &self.rates[..], row)
+            (
+                S::META.states,
+                rates.as_slice(),
+                &self.selection.changes[..],
+                row,
+            )
         };
         let wanted = wanted.get(place).copied().flatten().unwrap_or(0.0);
         Untrimmed::Missed {
@@ -450,7 +303,7 @@ where
     /// The point with its state on closed loops and attitudes.
     #[inline(never)]
     fn closed(&self, point: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
-        let states = &self.fixed.0;
+        let states = &self.selection.fixed.0;
         // One of them stands for each state that is not fixed: where they are counted, LLVM takes minutes over the count.
         let any = states.iter().position(|is_fixed| *is_fixed);
         let all = core::array::from_fn::<_, N, _>(|state| match states[state] {
@@ -483,7 +336,10 @@ where
         let rates = core::array::from_fn(|row| {
             let by_state = linear.state.row(row).transpose();
             let by_input = linear.input.row(row).transpose();
-            wanted(self.rates[row], Row::new(by_state, by_input, rates[row]))
+            wanted(
+                self.selection.changes[row],
+                Row::new(by_state, by_input, rates[row]),
+            )
         });
         let outputs = core::array::from_fn(|row| {
             let by_state = linear.output.row(row).transpose();
@@ -505,7 +361,7 @@ where
         let outputs = self.system.output(self.time, state, input, &mut memory);
         let left = |value, wanted: Option<f64>| wanted.map_or(0.0, |wanted| value - wanted);
         (
-            rates.zip_map(&SVector::from(self.rates), left),
+            rates.zip_map(&SVector::from(self.selection.changes), left),
             outputs.zip_map(&SVector::from(self.outputs), left),
         )
     }
@@ -546,7 +402,7 @@ where
         units: &mut Sizes<N, M>,
     ) -> Option<Trimmed<N, M>> {
         let tangents = self.tangents(point);
-        rows.fix(&self.fixed);
+        rows.fix(&self.selection.fixed);
         rows.balance(&tangents);
         rows.limit(units);
         let weights = rows.weights();
@@ -619,7 +475,7 @@ where
         let ahead = self.corrected(point, rows, damping, part).ok()?;
         let mut rows = self.rows(&ahead, rounding).ok()?;
         let tangents = self.tangents(&ahead);
-        rows.fix(&self.fixed);
+        rows.fix(&self.selection.fixed);
         rows.balance(&tangents);
         rows.limit(&mut units);
         rows.straighten(&tangents);
@@ -632,7 +488,7 @@ where
     fn tangents(&self, point: &Trimmed<N, M>) -> SMatrix<f64, N, N> {
         let mut tangents = SMatrix::<f64, N, N>::identity();
         for (number, mut tangent) in tangents.column_iter_mut().enumerate() {
-            if self.fixed.0[number] {
+            if self.selection.fixed.0[number] {
                 tangent.fill(0.0);
                 continue;
             }
@@ -667,12 +523,6 @@ fn beyond<const N: usize, const P: usize>(
         rates.zip_map(&rounding.0, beyond),
         outputs.zip_map(&rounding.1, beyond),
     )
-}
-
-/// Whether a name is this one, or begins with it and a part of its own.
-fn is_named(whole: &str, name: &str) -> bool {
-    let rest = whole.strip_prefix(name);
-    !name.is_empty() && rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 #[cfg(all(test, feature = "macros"))]

@@ -133,3 +133,170 @@ fn a_model_tells_its_changes() {
     }
     assert_eq!(times, [5.0, 5.05, 7.0, 9.0]);
 }
+
+mbg! {
+    /// A winding whose supply is on for a part of each period, early or in the middle of it, and what follows waves likewise.
+    pub(crate) model Chopped {
+        param period: s = 1e-3;
+        param duty = 0.3;
+        param level = 0.25;
+        let turn = 6.283185307179586 / period;
+        let early = if mod(t, period) < duty * period { 12.0 } else { 0.0 };
+        let middling = if abs(mod(t, period) / period - 0.5) < 0.5 * duty { 12.0 } else { 0.0 };
+        let waving = if 3.0 * sin(turn * t) > 3.0 * level { 12.0 } else { 0.0 };
+        let late = if cos(1.0 - turn * t) > level { 12.0 } else { 0.0 };
+        1 coil {
+            I winding { inertia: 1e-2 }
+            R copper { resistance: 2.0 }
+            Se supply { effort: 2.0 * early }
+        }
+        integral middle = 200.0 * (middling - middle);
+        integral wave = 200.0 * (waving - wave);
+        integral turned = 200.0 * (late - turned);
+        output current: A = coil.f;
+        output in_the_middle: A = middle;
+        output by_wave: A = wave;
+        output by_turned_wave: A = turned;
+    }
+}
+
+const PERIODS: i32 = 20;
+
+/// What is left at the end of [`PERIODS`] pulses of 12, from one part of each period to another.
+fn chopped(period: f64, [from, to]: [f64; 2]) -> f64 {
+    let end = f64::from(PERIODS);
+    let left = |turns: f64| f64::exp(200.0 * period * (turns.clamp(0.0, end) - end));
+    let pulses = (-1..=PERIODS).map(f64::from);
+    pulses.map(|k| 12.0 * (left(k + to) - left(k + from))).sum()
+}
+
+/// The same for each output of the model.
+fn all_chopped(period: f64, duty: f64, level: f64) -> [f64; 4] {
+    let turns = |angle: f64| angle / std::f64::consts::TAU;
+    let (rise, reach) = (turns(level.asin()), turns(level.acos()));
+    let pulses = [
+        [0.0, duty],
+        [0.5 - 0.5 * duty, 0.5 + 0.5 * duty],
+        [rise, 0.5 - rise],
+        [turns(1.0) - reach, turns(1.0) + reach],
+    ];
+    pulses.map(|pulse| chopped(period, pulse))
+}
+
+/// The outputs behind [`PERIODS`], and how many steps that took and were refused.
+fn chopping<T: Real>(
+    [period, duty, level]: [T; 3],
+    solver: &impl Integrator<4>,
+) -> ([T; 4], [u64; 2]) {
+    let model = Chopped::new(ChoppedParameters {
+        period,
+        duty,
+        level,
+    })
+    .unwrap();
+    let (mut last, mut steps) = (model.initial_state(), 0);
+    let end = T::from_f64(f64::from(PERIODS)) * period;
+    let statistics = solver.integrate(&model, &(), T::from_f64(0.0), end, last, |step| {
+        last = *step.state();
+        steps += 1;
+    });
+    let none = nalgebra::SVector::from([]);
+    let outputs = model.output(end, &last, &none, &mut ());
+    (outputs.into(), [steps, statistics.unwrap().rejected])
+}
+
+#[test]
+fn what_comes_again_is_met_by_all_methods() {
+    for [period, duty, level] in [[1e-3, 0.3, 0.25], [0.7e-3, 0.85, -0.6]] {
+        let expected = all_chopped(period, duty, level);
+        let met = |solver: &dyn Fn([f64; 3]) -> ([f64; 4], [u64; 2])| {
+            let (found, counts) = solver([period, duty, level]);
+            for (found, expected) in found.into_iter().zip(expected) {
+                let error = found - expected;
+                assert!(error.abs() < 3e-9, "{error:e} of {expected}");
+            }
+            counts
+        };
+        // Nine changes in a period.
+        for [steps, refused] in [
+            met(&|it| chopping(it, &Adaptive::new(Tsit5, 1e-9, 1e-9))),
+            met(&|it| chopping(it, &Adaptive::new(Dop853, 1e-9, 1e-9))),
+            met(&|it| chopping(it, &Adaptive::new(Pirk8, 1e-9, 1e-9))),
+            met(&|it| chopping(it, &Auto::new(1e-9, 1e-9))),
+            met(&|it| chopping(it, &Fixed::new(Gauss6::default(), 1e-3))),
+        ] {
+            assert!(
+                steps <= 10 * PERIODS as u64 && refused < 3,
+                "{steps} {refused}"
+            );
+        }
+        met(&|it| chopping(it, &Adaptive::new(Rodas5P, 1e-9, 1e-9)));
+        met(&|it| chopping(it, &Adaptive::new(Radau5, 1e-9, 1e-9)));
+        met(&|it| chopping(it, &Adaptive::new(Radau9, 1e-9, 1e-9)));
+        met(&|it| chopping(it, &Fixed::new(Rk4, 1e-4)));
+    }
+    let duties = [0.1, 0.3, 0.5, 0.99];
+    let lanes = [1e-3, 0.0, 0.25].map(f64x4::from_f64);
+    let lanes = [lanes[0], f64x4::from(duties), lanes[2]];
+    let (found, _) = chopping(lanes, &Adaptive::new(Dop853, 1e-9, 1e-9));
+    for (output, found) in found.into_iter().enumerate() {
+        for (duty, found) in duties.into_iter().zip(<[f64; 4]>::from(found)) {
+            let error = found - all_chopped(1e-3, duty, 0.25)[output];
+            assert!(error.abs() < 3e-9, "{duty}: {error:e}");
+        }
+    }
+}
+
+/// By the period, by the part of it for which the supply is on, and by the level of the waves.
+#[test]
+fn what_comes_again_has_its_slopes() {
+    let parameters = [1e-3, 0.3, 0.25];
+    for (varied, wide) in [1e-8, 1e-4, 1e-4].into_iter().enumerate() {
+        let mut dual = parameters.map(Dual::from_f64);
+        dual[varied] = Dual::variable(parameters[varied]);
+        let expected = |more: f64| {
+            let mut parameters = parameters;
+            parameters[varied] += more;
+            all_chopped(parameters[0], parameters[1], parameters[2])
+        };
+        let (above, below) = (expected(wide), expected(-wide));
+        for (found, solver) in [
+            (
+                chopping(dual, &Adaptive::new(Dop853, 1e-10, 1e-10)).0,
+                "Dop853",
+            ),
+            (
+                chopping(dual, &Adaptive::new(Radau9, 1e-10, 1e-10)).0,
+                "Radau9",
+            ),
+            (chopping(dual, &Fixed::new(Rk4, 2e-5)).0, "Rk4"),
+        ] {
+            for output in 0..4 {
+                let slope = (above[output] - below[output]) / (2.0 * wide);
+                let error = (found[output].slope - slope) / (1.0 + slope.abs());
+                assert!(
+                    error.abs() < 1e-6,
+                    "{solver} {varied} {output}: {error:e} of {slope}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn there_is_a_next_change_from_anywhere() {
+    let model = Chopped::<f64>::new(ChoppedParameters::default()).unwrap();
+    assert!(model.next_change(f64::NEG_INFINITY).is_some());
+    assert_eq!(model.next_change(f64::INFINITY), None);
+    for start in [-1.0, 0.0, 1e3] {
+        let mut time = start;
+        for _ in 0..1000 {
+            let next = model.next_change(time).unwrap();
+            assert!(next > time && next - time < 0.5e-3, "{time}");
+            time = next;
+        }
+        // Two of each, and where the middle of the middling one is.
+        let periods = (time - start) / 1e-3;
+        assert!((periods - 1000.0 / 9.0).abs() < 1.0, "{periods}");
+    }
+}

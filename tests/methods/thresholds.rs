@@ -87,6 +87,28 @@ fn a_cam_is_met_in_each_round() {
 }
 
 #[test]
+fn what_comes_again_with_the_angle_is_met() {
+    let model = Teeth::new(TeethParameters::default()).unwrap();
+    for (method, last) in by_all(&model, 10.0, 1e-8) {
+        let [rate, angle] = [last[0], last[1]];
+        let rounds = (angle / std::f64::consts::TAU).floor();
+        let left = angle - rounds * std::f64::consts::TAU;
+        let pitches = (angle / 0.5).floor();
+        let rubbed = 0.3 * pitches + (angle - 0.5 * pitches - 0.2).max(0.0);
+        assert!(
+            rounds > 20.0 && left > 0.04 && (left - 2.5).abs() > 0.02,
+            "{angle}"
+        );
+        let caught = 0.08 * rounds + 0.04 + if left > 2.5 { 0.04 } else { 0.0 };
+        let expected = (20.0_f64.powi(2) - 2.0 * (2.0 * caught + 0.1 * rubbed)).sqrt();
+        assert!(
+            (rate - expected).abs() < 1e-4,
+            "{method}: {rate} instead of {expected}"
+        );
+    }
+}
+
+#[test]
 fn a_wave_of_time_is_met_at_each_top() {
     let model = Pushed::new(PushedParameters::default()).unwrap();
     let lasting = 2.0 * f64::acos(0.9984) / (4.0 * std::f64::consts::PI);

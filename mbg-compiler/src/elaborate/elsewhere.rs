@@ -10,7 +10,7 @@ use crate::graph::ElementKind;
 use crate::symbolic::LARGEST_POWER;
 use crate::syntax::ast::Element;
 use crate::syntax::dump;
-use crate::syntax::words::{ELEMENTS, JUMPING_INPUT, law_words};
+use crate::syntax::words::{ELEMENTS, law_words};
 
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
@@ -38,6 +38,15 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("arctan2", &["y", "x"], "atan2(y, x)"),
     ("arcsin", &["x"], "asin(x)"),
     ("arccos", &["x"], "acos(x)"),
+    ("ceil", &["x"], "-floor(-x)"),
+    ("round", &["x"], "floor(x + 0.5)"),
+    ("trunc", &["x"], "(sign(x) * floor(abs(x)))"),
+    ("frac", &["x"], "fraction(x)"),
+    ("fract", &["x"], "fraction(x)"),
+    ("fmod", &["x", "y"], "mod(x, y)"),
+    ("rem", &["x", "y"], "mod(x, y)"),
+    ("rem_euclid", &["x", "y"], "mod(x, y)"),
+    ("modulo", &["x", "y"], "mod(x, y)"),
     ("sinh", &["x"], "((exp(x) - exp(-x)) / 2)"),
     ("cosh", &["x"], "((exp(x) + exp(-x)) / 2)"),
     ("asinh", &["x"], ASINH),
@@ -302,17 +311,6 @@ pub(super) fn choice(word: &str) -> Option<&'static str> {
     Some(here)
 }
 
-/// Functions whose value jumps, which a law cannot have.
-const JUMPING: &[&str] = &[
-    "floor",
-    "ceil",
-    "round",
-    "trunc",
-    "rem",
-    "fmod",
-    "rem_euclid",
-];
-
 /// Functions whose values do not follow from their arguments alone.
 const OUTSIDE: &[&str] = &[
     "noise",
@@ -340,11 +338,6 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
                 "what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`"
                     .to_owned(),
             );
-        }
-        _ if JUMPING.contains(&word) => {
-            return Some(format!(
-                "its value jumps, and a law has no such function: {JUMPING_INPUT}"
-            ));
         }
         _ => {}
     }
@@ -503,6 +496,12 @@ pub(super) fn turns(angles: &Expr) -> Option<String> {
         true => "1.0".to_owned(),
         false => turns.join(" * "),
     })
+}
+
+/// A remainder of values that vary.
+pub(super) fn remainder(remainder: &ExprBinary) -> String {
+    let places = [("a", &*remainder.left), ("b", &*remainder.right)];
+    format!("write `{}`", filled("mod(a, b)", &places))
 }
 
 /// The whole part of a quotient of whole numbers.

@@ -1,6 +1,7 @@
 //! Laws: from Rust expressions to the pool.
 
 use proc_macro2::{Ident, Span};
+use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 use syn::{BinOp, Expr, Lit, Member, UnOp, parse_quote};
 
@@ -10,7 +11,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Pool, Product, Rate};
 use crate::syntax::dump;
-use crate::syntax::words::{FUNCTIONS, JUMPING_INPUT, article};
+use crate::syntax::words::{FUNCTIONS, article};
 use crate::units::without_unit;
 
 /// What an expression stands for.
@@ -378,7 +379,7 @@ impl<N: Names> Evaluator<'_, N> {
             return Err(Box::new(report.help(help)));
         }
         if matches!(binary.op, BinOp::Rem(_)) {
-            return self.remainder(binary);
+            return self.whole_remainder(binary);
         }
         if !matches!(
             binary.op,
@@ -430,8 +431,8 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    /// A remainder is one of whole numbers, since that of a value that varies would jump.
-    fn remainder(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
+    /// `%` stands between whole numbers; of values that vary it is a `mod`.
+    fn whole_remainder(&mut self, binary: &syn::ExprBinary) -> Result<Value> {
         let known = self.names.whole(&Expr::Binary(binary.clone()));
         // A name may have two meanings in a law, of which a whole number is one.
         if known.is_ok() {
@@ -445,10 +446,10 @@ impl<N: Names> Evaluator<'_, N> {
         match (known, varying) {
             (Err(_), Some(varying)) => {
                 let message = format!(
-                    "`%` stands between whole numbers, and `{varying}` changes while the model runs, so that the remainder jumps"
+                    "`%` stands between whole numbers, and `{varying}` changes while the model runs"
                 );
                 let report = error(codes::WHOLE_NUMBER, binary.op.span(), message);
-                Err(Box::new(report.help(JUMPING_INPUT)))
+                Err(Box::new(report.help(elsewhere::remainder(binary))))
             }
             (known, _) => Ok(Value::Scalar(self.pool.integer(known?))),
         }
@@ -561,7 +562,7 @@ impl<N: Names> Evaluator<'_, N> {
     }
 
     fn function(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let text = name.to_string();
+        let text = name.unraw().to_string();
         let count = |expected: usize| check_count(name, expected, arguments.len());
         match text.as_str() {
             "sin" | "cos" => {
@@ -572,6 +573,17 @@ impl<N: Names> Evaluator<'_, N> {
                 } else {
                     self.pool.cosine(angle)
                 }))
+            }
+            "mod" => {
+                count(2)?;
+                let [value, period] = [self.scalar(&arguments[0])?, self.scalar(&arguments[1])?];
+                self.remainder(value, (period, &arguments[1]))
+            }
+            "floor" => {
+                count(1)?;
+                let value = self.scalar(&arguments[0])?;
+                let fraction = self.pool.call(Function::Fraction, &[value]);
+                Ok(Value::Scalar(self.pool.subtract(value, fraction)))
             }
             "pow" | "powi" => {
                 count(2)?;
@@ -653,6 +665,20 @@ impl<N: Names> Evaluator<'_, N> {
             .map(|argument| self.scalar(argument))
             .collect();
         Ok(Value::Scalar(self.pool.call(function, &values?)))
+    }
+
+    /// What is left of a value beyond whole periods of it.
+    fn remainder(
+        &mut self,
+        value: Expression,
+        (period, written): (Expression, &Expr),
+    ) -> Result<Value> {
+        let Some(turns) = self.pool.divide(value, period) else {
+            let message = "there is nothing between periods that last for zero";
+            return Err(Box::new(error(codes::NOT_FINITE, written.span(), message)));
+        };
+        let fraction = self.pool.call(Function::Fraction, &[turns]);
+        Ok(Value::Scalar(self.pool.multiply(period, fraction)))
     }
 
     /// `pow`, and `powi`, which takes whole exponents only.

@@ -214,11 +214,11 @@ fn next_change(compiled: &Compiled) -> Option<TokenStream> {
     let is_empty = compiled.program.routines[Routines::CHANGES]
         .results
         .is_empty();
-    let body = body(
-        compiled,
-        Routines::CHANGES,
-        &|times| quote!(mbg_runtime::__private::next_of(t, &[#(#times),*])),
-    );
+    let body = body(compiled, Routines::CHANGES, &|times| {
+        let (once, again) = times.split_at(compiled.changes_once);
+        let again = again.chunks(2).map(|repeated| quote!([#(#repeated),*]));
+        quote!(mbg_runtime::__private::next_of(t, &[#(#once),*], &[#(#again),*]))
+    });
     (!is_empty).then(|| {
         quote! {
             fn next_change(&self, t: T) -> ::core::option::Option<T> { #body }
@@ -236,14 +236,18 @@ fn passed(compiled: &Compiled) -> Option<TokenStream> {
     let mut rest = &results[..];
     let mut arguments = Vec::new();
     let mut counts = Vec::new();
-    for (group, size) in compiled.thresholds.iter().enumerate() {
+    for (group, (size, repeats)) in compiled.thresholds.iter().enumerate() {
         let (own, others) = rest.split_at(2 + size);
         rest = others;
         let (argument, thresholds) = own.split_at(2);
         let group = Literal::usize_suffixed(group);
+        let passed = match repeats {
+            true => quote!(passed_again),
+            false => quote!(passed),
+        };
         arguments.push(quote!([#(#argument),*]));
         counts.push(quote! {
-            mbg_runtime::__private::passed(lasting, [from[#group], to[#group]], &[#(#thresholds),*])
+            mbg_runtime::__private::#passed(lasting, [from[#group], to[#group]], &[#(#thresholds),*])
         });
     }
     let vector = |size| quote!(&mbg_runtime::__private::SVector<T, #size>);

@@ -138,7 +138,9 @@ pub(super) fn warn_of_jumps(
         };
         Evaluation::new(&symbol).value(pool, expression)
     };
-    for time in changes::times(pool, &[law]) {
+    let times = changes::times(pool, &[law]);
+    let again = times.again.into_iter().map(|[first, _]| first);
+    for time in times.once.into_iter().chain(again) {
         let time = value(pool, time, 0.0);
         let difference = |aside: f64| {
             let aside = aside * (1.0 + time.abs());

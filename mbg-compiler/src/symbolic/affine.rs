@@ -52,7 +52,7 @@ pub fn linear_part(
 fn conditions(pool: &Pool, expression: Expression) -> Vec<Expression> {
     let mut found = Vec::new();
     visit(pool, &[expression], |_, operation| match operation {
-        Operation::Call(Function::Sign, arguments) => found.extend(arguments),
+        Operation::Call(Function::Sign | Function::Fraction, arguments) => found.extend(arguments),
         Operation::Call(Function::SelectLess, arguments) => found.extend(&arguments[..2]),
         _ => {}
     });

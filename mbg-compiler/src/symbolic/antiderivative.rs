@@ -275,6 +275,15 @@ impl Integration<'_> {
                 let value = self.pool.call(Function::Abs, &[u]);
                 self.inner(u, value, u)
             }
+            Function::Fraction => {
+                // Of the whole number below, and of the fraction: without a jump.
+                let fraction = self.pool.call(Function::Fraction, &[u]);
+                let square = self.pool.multiply(fraction, fraction);
+                let whole = self.pool.subtract(u, fraction);
+                let sum = self.pool.add(whole, square);
+                let value = self.share(sum, 1, 2)?;
+                self.inner(u, value, Expression::ONE)
+            }
             Function::Tan => {
                 let cosine = self.pool.cosine(u);
                 let size = self.pool.call(Function::Abs, &[cosine]);

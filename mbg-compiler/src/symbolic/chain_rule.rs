@@ -50,11 +50,11 @@ impl Integration<'_> {
 
     /// Whether it has no jumps and no poles, over which the antiderivative would have another constant.
     fn is_continuous(&self, inner: Expression) -> bool {
-        use Function::{Atan2, Pow, SelectLess, Sign, Tan};
+        use Function::{Atan2, Fraction, Pow, SelectLess, Sign, Tan};
         let mut jumping = Vec::new();
         visit(self.pool, &[inner], |_, operation| match operation {
             Operation::Divide(_, divisor) => jumping.push(*divisor),
-            Operation::Call(Sign | Tan | Atan2 | SelectLess, arguments) => {
+            Operation::Call(Sign | Tan | Atan2 | Fraction | SelectLess, arguments) => {
                 jumping.extend(arguments);
             }
             // With an exponent below zero it has a pole.

@@ -399,6 +399,7 @@ fn outer(pool: &mut Pool, whole: Expression, function: Function, a: Expression) 
             let root = pool.call(Function::Sqrt, &[rest]);
             quotient(pool, one, root).flipped(function == Function::Acos)
         }
+        Function::Fraction => one,
         // The derivative of a step is zero wherever it exists; the others are handled by their own rules.
         Function::Sign
         | Function::Min

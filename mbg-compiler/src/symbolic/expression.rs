@@ -98,6 +98,8 @@ pub enum Function {
     Sign,
     /// Hyperbolic tangent.
     Tanh,
+    /// What is left beyond the next whole number below.
+    Fraction,
     /// The smaller.
     Min,
     /// The larger.
@@ -108,7 +110,7 @@ pub enum Function {
 
 impl Function {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Tan,
         Self::Asin,
         Self::Acos,
@@ -120,6 +122,7 @@ impl Function {
         Self::Abs,
         Self::Sign,
         Self::Tanh,
+        Self::Fraction,
         Self::Min,
         Self::Max,
         Self::SelectLess,
@@ -140,6 +143,7 @@ impl Function {
             Self::Abs => "abs",
             Self::Sign => "sign",
             Self::Tanh => "tanh",
+            Self::Fraction => "fraction",
             Self::Min => "min",
             Self::Max => "max",
             Self::SelectLess => "select_less",
@@ -171,6 +175,7 @@ impl Function {
             Self::Abs => a[0].abs(),
             Self::Sign => f64::from(i8::from(a[0] > 0.0) - i8::from(a[0] < 0.0)),
             Self::Tanh => a[0].tanh(),
+            Self::Fraction => a[0] - a[0].floor(),
             Self::Min => a[0].min(a[1]),
             Self::Max => a[0].max(a[1]),
             Self::SelectLess => {

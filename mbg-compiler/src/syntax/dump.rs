@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
+use syn::ext::IdentExt;
 use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, Visibility};
 
 use super::ast::{
@@ -414,12 +415,13 @@ fn spell(tokens: TokenStream, text: &mut String) {
             }
             TokenTree::Ident(ident) => {
                 let word = ident.to_string();
-                let kind = if words::is_reserved(&word) && word != "pub" {
+                let kind = if words::is_reserved(&word) && !["pub", "mod"].contains(&word.as_str())
+                {
                     Last::Keyword
                 } else {
                     Last::Operand
                 };
-                (word, kind)
+                (ident.unraw().to_string(), kind)
             }
             TokenTree::Literal(literal) => (literal.to_string(), Last::Operand),
             TokenTree::Punct(punct) => {

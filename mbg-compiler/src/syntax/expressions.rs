@@ -91,7 +91,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         cursor.advance(length);
         return Err(report);
     }
-    let law = raw::plain_within(cursor.ahead(length).to_vec());
+    let law = raw::functions(raw::plain_within(cursor.ahead(length).to_vec()));
     let tokens: TokenStream = law.iter().cloned().collect();
     let mut unread = 0;
     let parser = |input: ParseStream<'_>| {
@@ -106,7 +106,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         if let Some(report) = slips::without_zero(&law) {
             return report;
         }
-        let slip = slips::remainder(&law).or_else(|| slips::side_by_side(&law));
+        let slip = slips::side_by_side(&law);
         let slip = slip.or_else(|| keyword(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })

@@ -329,30 +329,6 @@ pub(super) fn connective(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
     })
 }
 
-/// A remainder by its name in other languages, which is a keyword of Rust.
-pub(super) fn remainder(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
-    tokens
-        .iter()
-        .enumerate()
-        .find_map(|(at, token)| match token {
-            TokenTree::Ident(word)
-                if word == "mod" && matches!(tokens.get(at + 1), Some(TokenTree::Group(_))) =>
-            {
-                let message = "`mod` is not a function of the language";
-                let report = error(codes::UNKNOWN_NAME, word.span(), message);
-                Some(Box::new(report.help(format!(
-                    "its value jumps, and a law has no such function: {}",
-                    words::JUMPING_INPUT
-                ))))
-            }
-            TokenTree::Group(group) => {
-                let inside: Vec<TokenTree> = group.stream().into_iter().collect();
-                remainder(&inside)
-            }
-            _ => None,
-        })
-}
-
 /// How many rows and columns of a matrix are written out.
 const WRITTEN_OUT: usize = 4;
 

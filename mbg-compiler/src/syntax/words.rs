@@ -45,7 +45,7 @@ pub(crate) const ELEMENTS: &[(&str, ElementKind)] = &[
 ];
 
 /// Functions, as messages list them.
-pub(crate) const FUNCTIONS: [&str; 30] = [
+pub(crate) const FUNCTIONS: [&str; 33] = [
     "sin",
     "cos",
     "tan",
@@ -58,6 +58,9 @@ pub(crate) const FUNCTIONS: [&str; 30] = [
     "abs",
     "sign",
     "tanh",
+    "mod",
+    "floor",
+    "fraction",
     "min",
     "max",
     "pow",
@@ -86,10 +89,6 @@ const RESERVED: &[&str] = &[
     "ref", "return", "self", "Self", "static", "struct", "super", "trait", "true", "try", "type",
     "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
-
-/// Where jumps are told to what runs the model.
-pub(crate) const JUMPING_INPUT: &str = "what jumps is given from outside, by an `input` that tells when its next jump comes, \
-     as a `Pulse` does";
 
 /// Whether this is a keyword of Rust.
 pub(super) fn is_reserved(word: &str) -> bool {

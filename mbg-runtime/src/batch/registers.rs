@@ -234,6 +234,11 @@ macro_rules! registers {
             }
 
             #[inline(always)]
+            fn fraction(self) -> Self {
+                Self(self.0 - self.0.floor())
+            }
+
+            #[inline(always)]
             fn abs(self) -> Self {
                 Self(self.0.abs())
             }

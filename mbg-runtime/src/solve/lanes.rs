@@ -78,7 +78,7 @@ impl Real for Pair {
         (self.each(f64::sin), self.each(f64::cos))
     }
 
-    functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
+    functions!(tan, asin, acos, exp, ln, sqrt, tanh, fraction, abs, sign; atan2, pow, min, max);
 
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         Self([0, 1].map(|i| self.0[i].multiply_add(factor.0[i], addend.0[i])))

@@ -439,7 +439,7 @@ impl Real for Undecided {
         (Self(self.0.sin()), Self(self.0.cos()))
     }
 
-    functions!(tan, asin, acos, exp, ln, sqrt, tanh, abs, sign; atan2, pow, min, max);
+    functions!(tan, asin, acos, exp, ln, sqrt, tanh, fraction, abs, sign; atan2, pow, min, max);
 
     fn select_less(self, _bound: Self, yes: Self, no: Self) -> Self {
         Self(0.5 * (yes.0 + no.0))

@@ -1,0 +1,528 @@
+//! Motions that come back: rotors in forward flight, converters that switch, what swings by itself.
+
+use core::cmp::Ordering;
+
+use nalgebra::{Complex, SMatrix, SVector};
+
+use crate::convertible::{Together, along, keep_slopes};
+use crate::poles::eigenvalues;
+use crate::selection::Selection;
+use crate::solve::{Row, Rows, Sizes};
+use crate::{
+    Columns, Constant, Convertible, Direction, Dual, Integrator, Real, System, Trimmed, Untrimmed,
+};
+
+/// Corrections at most.
+const CORRECTIONS: usize = 40;
+/// Dampings of one correction at most.
+const DAMPINGS: usize = 10;
+/// What is left out of a correction, in units of what matters most: first what may be the rounding of a run.
+const PARTS: [f64; 3] = [1e-10, 1e-6, 1e-3];
+/// What may be left of a condition beside its terms.
+const LEFT: f64 = 1e-6;
+/// What has less influence on a state than this part of it may be the rounding of a run.
+const NOISE: f64 = 1e-9;
+/// A period is divided for its monodromy matrix until that changes by no more, or into so many parts.
+const SAME: f64 = 1e-7;
+const DIVIDED: u32 = 64;
+/// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
+const TINY: f64 = 1e-9;
+
+/// A motion that is the same again after a period: a rotor in forward flight, a converter that switches, an engine, a balance wheel.
+///
+/// Every state is to come back unless something else is said of it: the angle of a shaft [`grows`](PeriodicTrim::grows) by a turn,
+/// a position may be [`free`](PeriodicTrim::free). Each state at the start, and each input, which is constant, may be chosen unless
+/// it is [fixed](PeriodicTrim::fix). What is wanted of a mean is wanted of an integral: `integral lifted = rotor.lift;` in the model
+/// grows by the mean of the lift times the period. States and inputs go by their names, and several at once by what their names
+/// begin with.
+///
+/// Where nothing drives the motion, its period is found, too, and it begins where one state [is as in the
+/// guess](PeriodicTrim::find_period).
+///
+/// The motion is found by shooting: from a start it is followed for a period by the integrator that is given, and the start corrected
+/// by Newton's method with the exact derivatives of the end, which are those of the same steps on [`Dual`] numbers; through jumps
+/// of a law of time, too. Corrections are damped until what is left falls; of those that are as good the one of least norm is taken,
+/// in units of what states and inputs do. So the motion need not be one that others tend to. It is as exact as the integrator.
+///
+/// # Example
+///
+/// ```
+/// use mbg_runtime::{Adaptive, Dop853, PeriodicTrim, System, mbg};
+///
+/// mbg! {
+///     /// A blade that flaps in forward flight: the air is faster on the side on which it goes ahead.
+///     model Flapping {
+///         input pitch: rad;
+///         let air = 1.0 + 0.3 * sin(30.0 * t);
+///         let lift = 1e5 * pitch * air * air;
+///         1 flap {
+///             I blade { inertia: 500.0 }
+///             C centrifugal { stiffness: 5e5 }
+///             R damping { resistance: 8e3 * air }
+///             Se push { effort: lift }
+///         }
+///         integral lifted: N*m*s = lift;
+///         output lifted: N*m*s = lifted;
+///     }
+/// }
+///
+/// let model = Flapping::<f64>::new(FlappingParameters::default())?;
+/// let turn = 2.0 * std::f64::consts::PI / 30.0;
+/// let solver = Adaptive::new(Dop853, 1e-10, 1e-10);
+/// // The pitch at which the mean of the lift is 2e4 N m, and how the blade then flaps.
+/// let cycle = PeriodicTrim::new(&model, &solver, turn).grows("lifted", 2e4 * turn).solve()?;
+/// assert!((cycle.input[0] - 0.2 / (1.0 + 0.3 * 0.3 / 2.0)).abs() < 1e-9);
+/// // Disturbances decay: every multiplier but that of the integral is below one.
+/// let multipliers = cycle.multipliers().unwrap().map(|it| it.re.hypot(it.im));
+/// assert_eq!(multipliers.iter().filter(|size| **size < 1.0).count(), 2);
+/// // By Liouville, their product is exp(−∫ 8e3 air / 500 dt).
+/// assert!((multipliers.iter().product::<f64>() - f64::exp(-16.0 * turn)).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// What swings by itself is found with its period:
+///
+/// ```
+/// use mbg_runtime::{Adaptive, Dop853, PeriodicTrim, System, mbg};
+/// use nalgebra::SVector;
+///
+/// mbg! {
+///     /// The oscillator of van der Pol.
+///     model Valve {
+///         1 circuit {
+///             I coil { inertia: 1.0 }
+///             C capacitor { compliance: 1.0 }
+///             R valve { effort: (capacitor.q * capacitor.q - 1.0) * f }
+///         }
+///     }
+/// }
+///
+/// let model = Valve::<f64>::new(ValveParameters::default())?;
+/// let solver = Adaptive::new(Dop853, 1e-11, 1e-11);
+/// let cycle = PeriodicTrim::new(&model, &solver, 6.0)
+///     .state(&SVector::from([0.5, 2.0]))
+///     .find_period("coil.p")
+///     .solve()?;
+/// assert!((cycle.period - 6.663_286_859_323_13).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Where a motion goes through an event, such as the step of a walker, follow it by
+/// [`Integrator::until`](crate::Integrator::until) on [`Dual`] numbers, and solve for the start by its slopes.
+#[derive(Clone, Copy, Debug)]
+pub struct PeriodicTrim<'a, S, A, const N: usize, const M: usize, const P: usize> {
+    system: &'a S,
+    solver: &'a A,
+    time: f64,
+    period: f64,
+    start: Trimmed<N, M>,
+    /// With what each state grows by as its change.
+    selection: Selection<N, M>,
+    /// The state that tells when the motion is to have come back.
+    section: Option<usize>,
+}
+
+/// A motion that comes back: see [`PeriodicTrim`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cycle<const N: usize, const M: usize> {
+    /// The state at its start.
+    pub state: SVector<f64, N>,
+    /// The input.
+    pub input: SVector<f64, M>,
+    /// The period, s.
+    pub period: f64,
+    /// The monodromy matrix: how the state after a period changes with that at the start.
+    pub monodromy: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize, const M: usize> Cycle<N, M> {
+    /// Floquet's multipliers, the eigenvalues of the monodromy matrix: those below one in size decay with each period. What swings by
+    /// itself has one that is one, along its motion; so has what only integrates. None where they are not finite, or not found in a
+    /// bounded number of sweeps.
+    #[must_use]
+    pub fn multipliers(&self) -> Option<[Complex<f64>; N]> {
+        eigenvalues(self.monodromy)
+    }
+}
+
+/// A number with several slopes, as many as are worked out together.
+type Several = Dual<f64, Together<f64>>;
+const TOGETHER: usize = <Together<f64> as Columns<f64>>::COUNT;
+
+/// A motion from a start on.
+struct Run<const N: usize, const M: usize> {
+    start: Trimmed<N, M>,
+    period: f64,
+    /// What is left of the conditions.
+    left: SVector<f64, N>,
+    /// How large states and inputs become.
+    sizes: Sizes<N, M>,
+    /// How far states go from where they are at the start.
+    strokes: SVector<f64, N>,
+}
+
+/// How its end changes with state and input at the start.
+type Slopes<const N: usize, const M: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, M>);
+
+impl<'a, S, A, const N: usize, const M: usize, const P: usize> PeriodicTrim<'a, S, A, N, M, P>
+where
+    S: Convertible<f64, N, M, P>,
+    A: Integrator<N>,
+{
+    /// A motion of this period in s, followed by this integrator, from the model's initial state with inputs of zero, at time zero:
+    /// every state is to come back, and everything may be chosen.
+    #[must_use]
+    pub fn new(system: &'a S, solver: &'a A, period: f64) -> Self {
+        Self {
+            system,
+            solver,
+            time: 0.0,
+            period,
+            start: Trimmed {
+                state: system.initial_state(),
+                input: SVector::zeros(),
+            },
+            selection: Selection::new(),
+            section: None,
+        }
+    }
+
+    /// From another time on.
+    #[must_use]
+    pub const fn time(mut self, time: f64) -> Self {
+        self.time = time;
+        self
+    }
+
+    /// From another state.
+    #[must_use]
+    pub fn state(mut self, state: &SVector<f64, N>) -> Self {
+        self.start.state = *state;
+        self
+    }
+
+    /// From another input.
+    #[must_use]
+    pub fn input(mut self, input: &[f64; M]) -> Self {
+        self.start.input = SVector::from(*input);
+        self
+    }
+
+    /// States or inputs that stay as they are in the guess.
+    #[must_use]
+    pub fn fix(mut self, name: &'static str) -> Self {
+        self.selection.fix(S::META, name);
+        self
+    }
+
+    /// States that need not come back, such as positions in flight.
+    #[must_use]
+    pub fn free(mut self, name: &'static str) -> Self {
+        self.selection.change(S::META, name, None);
+        self
+    }
+
+    /// States that do not come back but are larger by this after a period, such as an angle by a turn, or an integral.
+    #[must_use]
+    pub fn grows(mut self, name: &'static str, by: f64) -> Self {
+        self.selection.change(S::META, name, Some(by));
+        self
+    }
+
+    /// The period is found, too: after half to twice the one that was given, this state is for the first time what it is in the guess,
+    /// going the same way. A motion that nothing drives may begin at any time, of which this is one; choose a state that the motion
+    /// goes through.
+    #[must_use]
+    pub fn find_period(mut self, state: &'static str) -> Self {
+        self.section = S::META.states.iter().position(|it| it.name == state);
+        self.selection.know(self.section.is_some(), "state", state);
+        if self.section.is_some() {
+            self.selection.fix(S::META, state);
+        }
+        self
+    }
+
+    /// Finds the motion.
+    ///
+    /// # Errors
+    ///
+    /// A name that the model has not, a motion from the guess that cannot go on, one on which the state that tells the period is not
+    /// met again, and one that does not come back: some state differs by more than a millionth of the terms it is made of.
+    pub fn solve(&self) -> Result<Cycle<N, M>, Untrimmed> {
+        self.selection.check()?;
+        let infinite = f64::INFINITY;
+        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
+        let mut run = self.run(self.start)?;
+        let mut sizes = run.sizes;
+        let mut slopes = self.slopes(&run.start, self.section)?;
+        for _ in 0..CORRECTIONS {
+            let Some(next) = self.descend(&run, &slopes, &mut units) else {
+                break;
+            };
+            run = next;
+            sizes.0 = sizes.0.sup(&run.sizes.0);
+            sizes.1 = sizes.1.sup(&run.sizes.1);
+            slopes = self.slopes(&run.start, self.section)?;
+        }
+        if let Some(untrimmed) = self.missed(&run, &slopes, &sizes) {
+            return Err(untrimmed);
+        }
+        Ok(Cycle {
+            state: run.start.state,
+            input: run.start.input,
+            period: run.period,
+            monodromy: self.monodromy(&run)?,
+        })
+    }
+
+    /// The condition that is farthest from being met, if it is not met.
+    fn missed(
+        &self,
+        run: &Run<N, M>,
+        slopes: &Slopes<N, M>,
+        sizes: &Sizes<N, M>,
+    ) -> Option<Untrimmed> {
+        if let Some(place) = self.section
+            && matches!(
+                run.strokes[place].partial_cmp(&(LEFT * sizes.0[place])),
+                None | Some(Ordering::Less)
+            )
+        {
+            return Some(self.away(place));
+        }
+        let mut rows = self.rows(run, slopes);
+        let seen = rows.seen(sizes, TINY, &SMatrix::identity());
+        // NaN is the worst, whatever its sign. What nothing has an influence on is compared with the state itself.
+        let parts = rows
+            .iter()
+            .zip(&run.left)
+            .zip(&sizes.0)
+            .map(|((row, left), size)| {
+                if row.is_empty() && *left != 0.0 {
+                    left.abs() / size
+                } else {
+                    row.part_left(&seen).abs()
+                }
+            });
+        let (row, left) = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        if matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) {
+            return None;
+        }
+        rows.fix(&self.selection.fixed);
+        let wanted = self.wanted(row).unwrap_or(0.0);
+        Some(Untrimmed::Open {
+            name: S::META.states.get(row).map_or("", |it| it.name),
+            wanted,
+            reached: wanted + run.left.get(row).unwrap_or(&0.0),
+            is_fixed: rows.iter().nth(row).is_some_and(Row::is_empty),
+        })
+    }
+
+    /// By how much a state is to grow, unless it need not, or does where the motion ends.
+    fn wanted(&self, state: usize) -> Option<f64> {
+        let wanted = self.selection.changes.get(state).copied().flatten();
+        wanted.filter(|_| self.section != Some(state))
+    }
+
+    /// Follows the motion until it is to come back: when that is, and the state.
+    fn follow<T: Real>(
+        &self,
+        system: &impl System<T, N, M, P>,
+        start: &SVector<T, N>,
+        input: &Constant<T, M>,
+        section: Option<usize>,
+        mut observer: impl FnMut(&SVector<T, N>),
+    ) -> Result<(T, SVector<T, N>), Untrimmed> {
+        let begin = T::from_f64(self.time);
+        let [half, whole, twice] =
+            [0.5, 1.0, 2.0].map(|periods| T::from_f64(self.time + periods * self.period));
+        let mut state = *start;
+        let until = if section.is_some() { half } else { whole };
+        let done = self
+            .solver
+            .integrate(system, input, begin, until, state, |step| {
+                state = *step.state();
+                observer(&state);
+            });
+        done.map_err(Untrimmed::Stopped)?;
+        let Some(place) = section else {
+            return Ok((whole, state));
+        };
+        let slope = system.derivative(begin, start, &input.0, &mut Default::default())[place];
+        let direction = match slope.find(|slope| slope < 0.0) {
+            Some(_) => Direction::Falling,
+            None => Direction::Rising,
+        };
+        let grown = T::from_f64(self.selection.changes[place].unwrap_or(0.0));
+        let guard = |_, state: &SVector<T, N>| state[place] - (start[place] + grown);
+        let arrival = self.solver.until(
+            system,
+            input,
+            half,
+            twice,
+            state,
+            (direction, guard),
+            |step| observer(step.state()),
+        );
+        let arrival = arrival.map_err(Untrimmed::Stopped)?;
+        match arrival.found {
+            true => Ok((arrival.time, arrival.state)),
+            false => Err(self.away(place)),
+        }
+    }
+
+    /// Of a state that is not met again.
+    fn away(&self, place: usize) -> Untrimmed {
+        Untrimmed::Away {
+            name: S::META.states.get(place).map_or("", |it| it.name),
+            value: self.start.state[place],
+        }
+    }
+
+    /// Follows the motion once.
+    fn run(&self, start: Trimmed<N, M>) -> Result<Run<N, M>, Untrimmed> {
+        let mut largest = start.state.abs();
+        let mut strokes = SVector::<f64, N>::zeros();
+        let input = Constant(start.input);
+        let larger = |state: &SVector<f64, N>| {
+            largest = largest.sup(&state.abs());
+            strokes = strokes.sup(&(state - start.state).abs());
+        };
+        let (until, end) = self.follow(self.system, &start.state, &input, self.section, larger)?;
+        let mut left = end - start.state;
+        for (row, left) in left.iter_mut().enumerate() {
+            *left = self.wanted(row).map_or(0.0, |wanted| *left - wanted);
+        }
+        Ok(Run {
+            start,
+            period: until - self.time,
+            left,
+            sizes: (largest, start.input.abs()),
+            strokes,
+        })
+    }
+
+    /// How the end of a motion changes with state and input at its start, by the same steps on dual numbers.
+    fn slopes(
+        &self,
+        start: &Trimmed<N, M>,
+        section: Option<usize>,
+    ) -> Result<Slopes<N, M>, Untrimmed> {
+        let system = self.system.converted(Several::unchanging);
+        let end = |state: SVector<Several, N>, input: SVector<Several, M>| {
+            self.follow(&system, &state, &Constant(input), section, |_| ())
+        };
+        let mut slopes = (SMatrix::zeros(), SMatrix::zeros());
+        for first in (0..N).step_by(TOGETHER) {
+            let (_, end) = end(
+                along(&start.state, first),
+                start.input.map(Dual::unchanging),
+            )?;
+            keep_slopes(&mut slopes.0, first, &end);
+        }
+        for first in (0..M).step_by(TOGETHER) {
+            let (_, end) = end(
+                start.state.map(Dual::unchanging),
+                along(&start.input, first),
+            )?;
+            keep_slopes(&mut slopes.1, first, &end);
+        }
+        Ok(slopes)
+    }
+
+    /// How the state after a period changes with that at the start, part by part: where nothing moves, long steps are as good as short
+    /// ones for the state, and not for its slopes.
+    fn monodromy(&self, run: &Run<N, M>) -> Result<SMatrix<f64, N, N>, Untrimmed> {
+        let in_parts = |count: u32| {
+            let mut whole = SMatrix::identity();
+            let mut start = run.start;
+            for part in 0..count {
+                let period = run.period / f64::from(count);
+                let time = self.time + f64::from(part) * period;
+                let part = Self {
+                    time,
+                    period,
+                    ..*self
+                };
+                let (slopes, _) = part.slopes(&start, None)?;
+                whole = slopes * whole;
+                let input = Constant(start.input);
+                (_, start.state) = part.follow(self.system, &start.state, &input, None, |_| ())?;
+            }
+            Ok(whole)
+        };
+        let mut whole = in_parts(1)?;
+        let mut count = 2;
+        while count <= DIVIDED {
+            let finer = in_parts(count)?;
+            let change = (finer - whole).amax();
+            whole = finer;
+            // NaN does not come to an end by more parts.
+            if !matches!(
+                change.partial_cmp(&(SAME * whole.amax())),
+                Some(Ordering::Greater)
+            ) {
+                break;
+            }
+            count *= 2;
+        }
+        Ok(whole)
+    }
+
+    /// The conditions next to a motion.
+    fn rows(&self, run: &Run<N, M>, slopes: &Slopes<N, M>) -> Rows<N, M, 0> {
+        let mut by_state = slopes.0 - SMatrix::identity();
+        let sizes = &run.sizes.0;
+        for (column, mut slopes) in by_state.column_iter_mut().enumerate() {
+            slopes.zip_apply(sizes, |slope, size| {
+                let influence = slope.abs() * sizes[column];
+                if influence > 0.0 && influence <= NOISE * size {
+                    *slope = 0.0;
+                }
+            });
+        }
+        let rows = core::array::from_fn(|row| match self.wanted(row) {
+            Some(_) => Row::new(
+                by_state.row(row).transpose(),
+                slopes.1.row(row).transpose(),
+                run.left[row],
+            ),
+            None => Row::empty(),
+        });
+        Rows::new(rows, [])
+    }
+
+    /// A motion that comes back better, if there is one.
+    fn descend(
+        &self,
+        run: &Run<N, M>,
+        slopes: &Slopes<N, M>,
+        units: &mut Sizes<N, M>,
+    ) -> Option<Run<N, M>> {
+        let identity = SMatrix::identity();
+        let mut rows = self.rows(run, slopes);
+        rows.fix(&self.selection.fixed);
+        rows.balance(&identity);
+        rows.limit(units);
+        let (weights, _) = rows.weights();
+        let size = |run: &Run<N, M>| run.left.component_mul(&weights).norm_squared();
+        let before = size(run);
+        if before == 0.0 {
+            return None;
+        }
+        rows.straighten(&identity);
+        let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
+        let mut tried = dampings
+            .take(DAMPINGS)
+            .flat_map(|damping| PARTS.map(|part| (damping, part)));
+        tried.find_map(|(damping, part)| {
+            let (by_state, by_input) = rows.solution(part);
+            let next = self.run(Trimmed {
+                state: run.start.state - damping * by_state,
+                input: run.start.input - damping * by_input,
+            });
+            let next = next.ok()?;
+            (size(&next) < (1.0 - 0.5 * damping) * before).then_some(next)
+        })
+    }
+}

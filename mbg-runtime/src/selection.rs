@@ -1,0 +1,62 @@
+//! What is to be found of states and inputs, and what is wanted of each state.
+
+use crate::{Meta, Untrimmed};
+
+/// Which states and inputs stay as they are, and how much each state is to change, if that matters.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Selection<const N: usize, const M: usize> {
+    pub(crate) fixed: ([bool; N], [bool; M]),
+    pub(crate) changes: [Option<f64>; N],
+    unknown: Option<Untrimmed>,
+}
+
+impl<const N: usize, const M: usize> Selection<N, M> {
+    /// Everything is to be found, and no state to change.
+    pub(crate) const fn new() -> Self {
+        Self {
+            fixed: ([false; N], [false; M]),
+            changes: [Some(0.0); N],
+            unknown: None,
+        }
+    }
+
+    /// Nothing, unless a name was none of the model's.
+    pub(crate) fn check(&self) -> Result<(), Untrimmed> {
+        self.unknown.map_or(Ok(()), Err)
+    }
+
+    /// Keeps states or inputs of this name as they are.
+    pub(crate) fn fix(&mut self, meta: &Meta, name: &'static str) {
+        let mut found = false;
+        let names = meta.states.iter().chain(meta.inputs);
+        for (fixed, variable) in self.fixed.0.iter_mut().chain(&mut self.fixed.1).zip(names) {
+            let is_named = is_named(variable.name, name);
+            (*fixed, found) = (*fixed || is_named, found || is_named);
+        }
+        self.know(found, "state or input", name);
+    }
+
+    /// Wants a change of states of this name.
+    pub(crate) fn change(&mut self, meta: &Meta, name: &'static str, wanted: Option<f64>) {
+        let mut found = false;
+        for (change, variable) in self.changes.iter_mut().zip(meta.states) {
+            if is_named(variable.name, name) {
+                (*change, found) = (wanted, true);
+            }
+        }
+        self.know(found, "state", name);
+    }
+
+    /// Keeps the first name that is not found.
+    pub(crate) fn know(&mut self, found: bool, kind: &'static str, name: &'static str) {
+        if !found && self.unknown.is_none() {
+            self.unknown = Some(Untrimmed::Unknown { kind, name });
+        }
+    }
+}
+
+/// Whether a name is this one, or begins with it and a part of its own.
+pub(crate) fn is_named(whole: &str, name: &str) -> bool {
+    let rest = whole.strip_prefix(name);
+    !name.is_empty() && rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}

@@ -1,0 +1,139 @@
+//! Why what is wanted of a model was not found.
+
+use crate::{Stopped, Trouble};
+
+/// Why there is no operating point, or no motion that comes back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Untrimmed {
+    /// A name that is none of the model's.
+    Unknown {
+        /// Of what it should be the name.
+        kind: &'static str,
+        /// The name.
+        name: &'static str,
+    },
+    /// Conditions that cannot be met from the guess.
+    Missed {
+        /// The state whose rate, or the output, that is farthest from what is wanted beside the terms it is made of.
+        name: &'static str,
+        /// Whether it is an output.
+        is_output: bool,
+        /// What is wanted.
+        wanted: f64,
+        /// What was reached.
+        reached: f64,
+        /// Whether nothing that may be chosen has an influence on it.
+        is_fixed: bool,
+    },
+    /// Constraints of closed loops depend on each other there, as those of a parallelogram whose bars are in line: which forces
+    /// hold it is not determined. Ask for a point beside it.
+    Singular {
+        /// The input that is not determined.
+        input: &'static str,
+        /// What was found.
+        here: f64,
+        /// By how much another state that is as closed may ask for another one.
+        error: f64,
+    },
+    /// A motion that does not come back.
+    Open {
+        /// The state that is farthest from what is wanted beside the terms it is made of.
+        name: &'static str,
+        /// By how much it is to grow.
+        wanted: f64,
+        /// By how much it does.
+        reached: f64,
+        /// Whether nothing that may be chosen has an influence on it.
+        is_fixed: bool,
+    },
+    /// A motion on which the state that tells the period is not what it was after half to twice the period that was given, or rests.
+    Away {
+        /// The state.
+        name: &'static str,
+        /// Its value at the start.
+        value: f64,
+    },
+    /// The motion from the guess cannot go on.
+    Stopped(Stopped),
+    /// The model is in trouble there.
+    Trouble(Trouble),
+}
+
+impl core::fmt::Display for Untrimmed {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match *self {
+            Self::Unknown { kind, name } => {
+                write!(formatter, "the model has no {kind} `{name}`")?;
+                formatter.write_str(match kind {
+                    _ if name.ends_with(']') => {
+                        ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
+                    }
+                    "state" => ": a position or an angle that nothing reads is none",
+                    _ => "",
+                })
+            }
+            Self::Missed {
+                name,
+                is_output,
+                wanted,
+                reached,
+                is_fixed,
+            } => {
+                let of = if is_output { "" } else { "the rate of " };
+                write!(
+                    formatter,
+                    "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
+                )?;
+                if !is_fixed {
+                    return formatter.write_str(
+                        "no choice was found that does better: begin elsewhere, or let more be chosen",
+                    );
+                }
+                formatter.write_str("nothing that may be chosen has an influence on it")?;
+                if is_output {
+                    return Ok(());
+                }
+                write!(
+                    formatter,
+                    " there: begin elsewhere, or write `.free(\"{name}\")` where it is to change"
+                )
+            }
+            Self::Singular { input, here, error } => write!(
+                formatter,
+                "`{input}` is {here:e}, give or take {error:e}: constraints of closed loops depend on each other there, so that it \
+                 is not determined; ask for a point beside it"
+            ),
+            Self::Open {
+                name,
+                wanted,
+                reached,
+                is_fixed,
+            } => {
+                write!(
+                    formatter,
+                    "`{name}` grows by {reached:e} instead of {wanted:e}, and "
+                )?;
+                if !is_fixed {
+                    return formatter.write_str(
+                        "no motion was found that does better: begin elsewhere, or let more be chosen",
+                    );
+                }
+                write!(
+                    formatter,
+                    "nothing that may be chosen has an influence on it: write `.grows(\"{name}\", …)`, or `.free(\"{name}\")` \
+                     where it need not come back"
+                )
+            }
+            Self::Away { name, value } => write!(
+                formatter,
+                "`{name}` does not go through {value:e} again after half to twice the period that was given: give another period, or \
+                 a state that the motion goes through"
+            ),
+            Self::Stopped(stopped) => stopped.fmt(formatter),
+            Self::Trouble(trouble) => trouble.fmt(formatter),
+        }
+    }
+}
+
+impl core::error::Error for Untrimmed {}

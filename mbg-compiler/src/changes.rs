@@ -97,16 +97,18 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
             if is_known || angles(pool, value).is_empty() && !is_of_state(pool, value) {
                 continue;
             }
-            let (value, repeats) = match *pool.operation(value) {
-                Operation::Call(Function::Fraction, ref turns) => (turns[0], true),
-                _ => (value, false),
-            };
-            add_threshold(&mut arguments, value, threshold, repeats);
+            match *pool.operation(value) {
+                Operation::Call(Function::Fraction, ref turns) => {
+                    let turns = turns[0];
+                    add_repeated(pool, &mut arguments, turns, threshold);
+                }
+                _ => add_threshold(&mut arguments, value, threshold, false),
+            }
         }
     }
     for turns in fractions(pool, rates) {
         if is_of_state(pool, turns) {
-            add_threshold(&mut arguments, turns, Expression::ZERO, true);
+            add_repeated(pool, &mut arguments, turns, Expression::ZERO);
         }
     }
     let mut turning = Vec::new();
@@ -129,6 +131,20 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
             .map(|value| Argument::new(value, twice.clone(), true)),
     );
     arguments
+}
+
+/// Adds a threshold of what is beyond whole turns; all that count the same turns, from wherever, are thresholds of one argument.
+fn add_repeated(
+    pool: &mut Pool,
+    arguments: &mut Vec<Argument>,
+    turns: Expression,
+    threshold: Expression,
+) {
+    let (varying, fixed) = terms(pool, turns);
+    let [value, ahead] = [varying, fixed].map(|terms| pool.sum(&terms));
+    let threshold = pool.subtract(threshold, ahead);
+    let threshold = threshold.flipped(value.is_negative());
+    add_threshold(arguments, value.magnitude(), threshold, true);
 }
 
 /// Adds a threshold that is not there.

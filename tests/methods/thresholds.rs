@@ -87,6 +87,22 @@ fn a_cam_is_met_in_each_round() {
 }
 
 #[test]
+fn what_lies_between_thresholds_of_two_states_is_met() {
+    let model = Gates::new(GatesParameters::default()).unwrap();
+    // For as long as the twin takes for 0.1 m, at 4 m/s.
+    let expected = 4.0 - 10.0 * 0.1 / 4.0;
+    for (tolerance, error) in [(1e-3, 0.1), (1e-6, 1e-3), (1e-9, 1e-6)] {
+        for (method, last) in by_all(&model, 10.0, tolerance) {
+            assert!(
+                (last[0] - expected).abs() < error,
+                "{method} to {tolerance:e}: {} instead of {expected}",
+                last[0]
+            );
+        }
+    }
+}
+
+#[test]
 fn what_comes_again_with_the_angle_is_met() {
     let model = Teeth::new(TeethParameters::default()).unwrap();
     for (method, last) in by_all(&model, 10.0, 1e-8) {

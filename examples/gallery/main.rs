@@ -10,6 +10,7 @@ mod container;
 mod curve;
 mod double_pendulum;
 mod draw;
+mod forward_flight;
 mod four_bars;
 mod gait;
 mod gimbal_lock;
@@ -41,7 +42,7 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 22] = [
+const SCENES: [(&str, Draw); 23] = [
     ("gimbal_lock", gimbal_lock::draw),
     ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
@@ -57,6 +58,7 @@ const SCENES: [(&str, Draw); 22] = [
     ("arm", arm::draw),
     ("walker", walker::draw),
     ("container", container::draw),
+    ("forward_flight", forward_flight::draw),
     ("quarter_car", quarter_car::draw),
     ("ride", ride::draw),
     ("motor", motor::draw),

@@ -19,6 +19,8 @@ pub struct Times {
     pub once: Vec<Expression>,
     /// Each with the period after which it comes again.
     pub again: Vec<[Expression; 2]>,
+    /// What changes its sign at others, in terms of time and inputs, too.
+    pub sought: Vec<Expression>,
 }
 
 impl Times {
@@ -62,15 +64,28 @@ pub fn of(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> (Times, V
     (times(pool, rates), arguments(pool, rates, states))
 }
 
-/// When what is by time alone changes. A choice by more than time has no such times, nor has one by several waves of it.
+/// When what is by time and inputs changes. Where there is no closed form for it, as of what compares two waves, times at which a
+/// wave turns or goes through zero are among those that come again: between them it hardly changes its sign twice.
 pub fn times(pool: &mut Pool, rates: &[Expression]) -> Times {
-    let (mut once, mut again) = (Vec::new(), Vec::new());
+    let (mut once, mut again, mut sought) = (Vec::new(), Vec::new(), Vec::new());
     for difference in differences(pool, rates) {
-        if is_of_time(pool, difference) {
-            for branch in branches(pool, difference) {
-                add_new(&mut once, zero(pool, branch));
-                add_new(&mut again, zeros(pool, branch));
-            }
+        if !is_driven(pool, difference) {
+            continue;
+        }
+        let mut is_known = is_of_time(pool, difference);
+        let branches = match is_known {
+            true => branches(pool, difference),
+            false => Vec::new(),
+        };
+        for branch in branches {
+            let (zero, zeros) = (zero(pool, branch), zeros(pool, branch));
+            is_known &= zero.is_some() || !zeros.is_empty() || !is_of_time(pool, branch);
+            add_new(&mut once, zero);
+            add_new(&mut again, zeros);
+        }
+        if !is_known {
+            sought.push(difference);
+            add_new(&mut again, quarters(pool, difference));
         }
     }
     for turns in fractions(pool, rates) {
@@ -81,7 +96,11 @@ pub fn times(pool: &mut Pool, rates: &[Expression]) -> Times {
             );
         }
     }
-    Times { once, again }
+    Times {
+        once,
+        again,
+        sought,
+    }
 }
 
 /// What a step may pass more of than it finds: arguments of the state, and waves, which go back over each threshold, with their
@@ -166,6 +185,14 @@ fn slopes(pool: &mut Pool, states: &[Symbol]) -> BTreeMap<Symbol, Expression> {
     let states = states.iter().enumerate();
     let states = states.map(|(place, state)| (*state, pool.symbol(Symbol::Slope(place))));
     states.chain([(Symbol::Time, Expression::ONE)]).collect()
+}
+
+/// Whether it changes with time, and with nothing but that and inputs while a model runs.
+fn is_driven(pool: &Pool, value: Expression) -> bool {
+    let read = symbols(pool, &[value]);
+    let is_given =
+        |it: &Symbol| matches!(it, Symbol::Time | Symbol::Input(_) | Symbol::Parameter(_));
+    read.contains(&Symbol::Time) && read.iter().all(is_given)
 }
 
 /// Whether it changes with time, and with nothing else while a model runs.
@@ -288,6 +315,23 @@ fn zeros(pool: &mut Pool, expression: Expression) -> Vec<[Expression; 2]> {
         }
         _ => Vec::new(),
     }
+}
+
+/// The times at which the waves in an expression turn or are zero, each with its period.
+fn quarters(pool: &mut Pool, expression: Expression) -> Vec<[Expression; 2]> {
+    let mut angles = Vec::new();
+    visit(pool, &[expression], |_, operation| {
+        if let Operation::Sine(angle) | Operation::Cosine(angle) = *operation {
+            add_new(&mut angles, [angle]);
+        }
+    });
+    let quarter = pool.irrational(0.5 * PI);
+    let half = pool.irrational(PI);
+    let places = [Expression::ZERO, quarter];
+    let times = angles.into_iter();
+    times
+        .flat_map(|angle| repeated(pool, angle, &places, half))
+        .collect()
 }
 
 /// The times at which an argument is at one of some places but for whole periods, each with how long a period lasts, if it is a line

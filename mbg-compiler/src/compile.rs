@@ -118,6 +118,7 @@ impl Routines {
     pub const THRESHOLDS: usize = 13;
     pub const RESIDUALS_OF_POSITIONS: usize = 14;
     pub const RESIDUALS_OF_FLOWS: usize = 15;
+    pub const SOUGHT: usize = 16;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -195,17 +196,15 @@ fn finish(
     if diagnostics.any() {
         return None;
     }
-    let initial = answers
-        .states
-        .iter()
-        .map(|state| model.states[*state].initial);
+    let states = answers.states.iter();
+    let initial = states.map(|state| model.states[*state].initial);
     let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let (times, arguments) = changes::of(&mut pool, rates, &by_state);
-    let requests: [Request; 16] = [
+    let requests: [Request; 17] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -222,6 +221,7 @@ fn finish(
         changes::listed(&arguments).into(),
         positions.values.clone().into(),
         flows.values.clone().into(),
+        times.sought.clone().into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);

@@ -103,6 +103,55 @@ fn next_again<T: Real>(t: T, [time, period]: [T; 2]) -> T {
     t.select_less(next, next, after)
 }
 
+/// How far beside a change the sides are looked at, in parts of the way to the next one.
+const BESIDE: f64 = 1e-9;
+/// The same in units of the last place.
+const PLACES: f64 = 4.0;
+/// So often a time is halved until no other number is left.
+const HALVINGS: usize = 64;
+
+/// The first time between two, in any lane, at which one of the differences has changed its sign; with its slope.
+#[cold]
+pub fn change_between<T: Real, const G: usize>(
+    from: T,
+    to: T,
+    differences: impl Fn(T) -> [T; G],
+) -> Option<T> {
+    let [from, to] = [from, to].map(crate::step::seen);
+    let places = PLACES * T::EPSILON * from.abs().max(to.abs());
+    let beside = places.max(BESIDE * (to - from));
+    let (mut before, mut behind) = (from + beside, to - beside);
+    let at = |time: f64| differences(T::from_f64(time));
+    let first = at(before);
+    let has_changed = |differences: [T; G]| {
+        let mut products = first.iter().zip(differences).map(|(a, b)| *a * b);
+        products.any(|product| product.find(|lane| lane < 0.0).is_some())
+    };
+    if before >= behind || !has_changed(at(behind)) {
+        return None;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (before + behind);
+        if !(before < middle && middle < behind) {
+            break;
+        }
+        if has_changed(at(middle)) {
+            behind = middle;
+        } else {
+            before = middle;
+        }
+    }
+    let (whole, zero) = (T::from_f64(behind), T::from_f64(0.0));
+    let slope = at(behind)
+        .into_iter()
+        .enumerate()
+        .fold(zero, |slope, (place, difference)| {
+            let own = whole.root_of(|t| differences(t)[place]) - whole;
+            (first[place] * difference).select_less(zero, own, slope)
+        });
+    Some(whole + slope)
+}
+
 /// An argument of choices at two points so long apart, with its rate at each.
 pub type Course<T> = [[T; 2]; 2];
 

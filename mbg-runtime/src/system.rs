@@ -186,6 +186,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
+    /// Whether a choice of the laws may change at a time that [`change_between`](Self::change_between) finds; `false` unless it is
+    /// given.
+    const SEEKS_CHANGES: bool = false;
+
+    /// The first time between two times, and at neither, at which a choice of the laws changes by time and inputs without a
+    /// [`next_change`](Self::next_change) that tells of it, such as where a sine of time meets a triangle, or `mod(t, period)` an
+    /// input: what is compared has changed its sign there. Two such times between changes that are told are not found. Integrators
+    /// end a step there.
+    #[must_use]
+    fn change_between(&self, _from: T, _to: T, _input: impl Fn(T) -> SVector<T, M>) -> Option<T> {
+        None
+    }
+
     /// How many thresholds are passed between two points, each a time, a state, its derivative and an input: by all arguments of
     /// choices in the laws, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's points over
     /// `q`. Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice

@@ -2,9 +2,10 @@
 
 use mbg_runtime::lanes::f64x4;
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Dual, Fixed, Gauss6, Integrator, Pirk8, Radau5, Radau9, Real, Rk4,
-    Rodas5P, System, Tsit5, mbg,
+    Adaptive, Auto, Constant, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pirk8, Radau5,
+    Radau9, Real, Rk4, Rodas5P, Sampled, Smooth, System, Tsit5, mbg,
 };
+use nalgebra::SVector;
 
 mbg! {
     /// A wheel that a short torque drives, from some time on, and one that rises for a while.
@@ -200,7 +201,7 @@ fn chopping<T: Real>(
         last = *step.state();
         steps += 1;
     });
-    let none = nalgebra::SVector::from([]);
+    let none = SVector::from([]);
     let outputs = model.output(end, &last, &none, &mut ());
     (outputs.into(), [steps, statistics.unwrap().rejected])
 }
@@ -299,4 +300,132 @@ fn there_is_a_next_change_from_anywhere() {
         let periods = (time - start) / 1e-3;
         assert!((periods - 1000.0 / 9.0).abs() < 1.0, "{periods}");
     }
+}
+
+mbg! {
+    /// A winding that is switched where a sine is above a triangle, and one whose supply is on for the part of each period that an
+    /// input tells.
+    pub(crate) model Driven {
+        param period: s = 1e-4;
+        param depth = 0.8;
+        input duty;
+        let triangle = 4.0 * abs(mod(t, period) / period - 0.5) - 1.0;
+        integral phase = 200.0 * ((if depth * sin(314.1592653589793 * t) > triangle { 1.0 } else { -1.0 }) - phase);
+        integral current = 200.0 * ((if mod(t, period) < duty * period { 1.0 } else { 0.0 }) - current);
+        output both[2] = [phase, current];
+    }
+}
+
+/// What follows `u` with a time constant of 5 ms, from one switching to the next.
+fn followed(x: f64, u: f64, lasting: f64) -> f64 {
+    u + (x - u) * f64::exp(-200.0 * lasting)
+}
+
+/// The phase at 20 ms, switched at the zeros of a difference between two corners of the triangle.
+fn phase(depth: f64) -> f64 {
+    let (half, end) = (0.5e-4, 0.02);
+    let (mut x, mut since) = (0.0, 0.0);
+    for k in 0..400 {
+        // The triangle falls from 1 in the first half of each period, and rises in the second.
+        let start = half * f64::from(k);
+        let falling = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let difference = |t: f64| {
+            depth * f64::sin(100.0 * std::f64::consts::PI * t)
+                - falling * (1.0 - 2.0 * (t - start) / half)
+        };
+        let (mut low, mut high) = (start, start + half);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if (difference(middle) > 0.0) == (falling < 0.0) {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        x = followed(x, -falling, low - since);
+        since = low;
+    }
+    followed(x, -1.0, end - since)
+}
+
+/// The current behind periods with these duties.
+fn current(duties: impl IntoIterator<Item = f64>) -> f64 {
+    let period =
+        |x: f64, duty: f64| followed(followed(x, 1.0, 1e-4 * duty), 0.0, 1e-4 * (1.0 - duty));
+    duties.into_iter().fold(0.0, period)
+}
+
+fn driven<T: Real>(depth: T, input: &impl Input<T, 1>, solver: &impl Integrator<2>) -> [T; 2] {
+    let model = Driven::new(DrivenParameters {
+        depth,
+        period: T::from_f64(1e-4),
+    })
+    .unwrap();
+    let mut last = model.initial_state();
+    let (begin, end) = (T::from_f64(0.0), T::from_f64(0.02));
+    solver
+        .integrate(&model, input, begin, end, last, |step| last = *step.state())
+        .unwrap();
+    last.into()
+}
+
+#[test]
+fn what_two_waves_or_an_input_switch_is_met() {
+    let near = |found: f64, expected: f64| {
+        let error = found - expected;
+        assert!(error.abs() < 1e-10, "{error:e} of {expected}");
+    };
+    let times: Vec<f64> = (0..200).map(|k| 1e-4 * f64::from(k)).collect();
+    let duties: Vec<f64> = (0..200)
+        .map(|k| 0.5 + 0.4 * f64::sin(0.1 * f64::from(k)))
+        .collect();
+    let values: Vec<_> = duties.iter().map(|it| SVector::from([*it])).collect();
+    let sampled = Sampled::held(&times, &values).unwrap();
+    // A duty that rises while a pulse lasts, which ends at t where (t − start) = 1e-4 (0.1 + 30 t).
+    let rising = Smooth(|t: f64| SVector::from([0.1 + 30.0 * t]));
+    let risen = (0..200).map(|k| (0.1 + 30.0 * 1e-4 * f64::from(k)) / (1.0 - 3e-3));
+    let risen = current(risen);
+    macro_rules! by {
+        ($($solver:expr),*) => { $({
+            let solver = $solver;
+            let [phase_found, held] = driven(0.8, &Constant(SVector::from([0.3])), &solver);
+            near(phase_found, phase(0.8));
+            near(held, current([0.3; 200]));
+            near(driven(0.3, &sampled, &solver)[0], phase(0.3));
+            near(driven(0.3, &sampled, &solver)[1], current(duties.clone()));
+            near(driven(0.8, &rising, &solver)[1], risen);
+        })* };
+    }
+    by!(
+        Adaptive::new(Tsit5, 1e-10, 1e-10),
+        Adaptive::new(Dop853, 1e-10, 1e-10),
+        Adaptive::new(Radau9, 1e-10, 1e-10),
+        Auto::new(1e-10, 1e-10),
+        Fixed::new(Rk4, 1e-5),
+        Fixed::new(Gauss6::default(), 1e-3)
+    );
+    let duties = [0.2, 0.3, 0.999, 0.0];
+    let lanes = Constant(SVector::from([f64x4::from(duties)]));
+    let found = driven(f64x4::from_f64(0.8), &lanes, &Fixed::new(Rk4, 1e-5))[1];
+    for (duty, found) in duties.into_iter().zip(<[f64; 4]>::from(found)) {
+        near(found, current([duty; 200]));
+    }
+    // With slopes by the depth of the sine and by the duty.
+    let dual = |depth, duty| {
+        driven(
+            depth,
+            &Constant(SVector::from([duty])),
+            &Fixed::new(Rk4, 1e-5),
+        )
+    };
+    let by_depth = dual(Dual::variable(0.8), Dual::constant(0.3))[0].slope;
+    near(
+        1e-4 * by_depth,
+        1e-4 * (phase(0.80001) - phase(0.79999)) / 2e-5,
+    );
+    let by_duty = dual(Dual::constant(0.8), Dual::variable(0.3))[1].slope;
+    near(
+        1e-4 * by_duty,
+        1e-4 * (current([0.30001; 200]) - current([0.29999; 200])) / 2e-5,
+    );
 }

@@ -37,8 +37,8 @@ mbg! {
 
     /// A winding behind a switch.
     model Chopper {
-        param duty = 0.3;
         input supply: V;
+        input duty;
         1 coil {
             I winding { inertia: 1e-2 }
             R copper { resistance: 2.0 }
@@ -227,23 +227,28 @@ fn a_pendulum_swings_as_far_as_it_is_told() {
 
 #[test]
 fn a_converter_is_found_as_it_runs_for_ever() {
+    let model = Chopper::<f64>::new(ChopperParameters::default()).unwrap();
+    let (exact, mean) = (exact(), 4.0);
     for duty in [0.1, 0.5, 0.93] {
-        let model = Chopper::<f64>::new(ChopperParameters { duty }).unwrap();
-        let mean = 4.0;
-        let cycle = PeriodicTrim::new(&model, &exact(), 1e-3)
-            .grows("charge", 1e-3 * mean)
-            .solve()
-            .unwrap();
         // The mean current is the mean voltage over the resistance.
         let supply = 2.0 * mean / duty;
-        assert!((cycle.input[0] / supply - 1.0).abs() < 1e-9, "{duty}");
         let decay = |part: f64| f64::exp(-200.0 * 1e-3 * part);
         let least = 0.5 * supply * (1.0 - decay(duty)) * decay(1.0 - duty) / (1.0 - decay(1.0));
-        assert!(
-            (0.01 * cycle.state[0] / least - 0.01 * 0.01).abs() < 1e-9,
-            "{duty}"
-        );
-        assert!((sizes(&cycle)[1] - decay(1.0)).abs() < 1e-9, "{duty}");
+        let carried = PeriodicTrim::new(&model, &exact, 1e-3).grows("charge", 1e-3 * mean);
+        for trim in [
+            carried.input(&[0.0, duty]).fix("duty"),
+            carried.input(&[supply, 0.4]).fix("supply"),
+        ] {
+            let cycle = trim.solve().unwrap();
+            let [found_supply, found_duty] = cycle.input.into();
+            assert!((found_supply / supply - 1.0).abs() < 1e-9, "{duty}");
+            assert!((found_duty - duty).abs() < 1e-9, "{duty}");
+            assert!(
+                (100.0 * cycle.state[0] / least - 1.0).abs() < 1e-9,
+                "{duty}"
+            );
+            assert!((sizes(&cycle)[1] - decay(1.0)).abs() < 1e-9, "{duty}");
+        }
     }
 }
 
@@ -349,14 +354,18 @@ fn what_cannot_be_is_told() {
     let model = Chopper::<f64>::new(ChopperParameters::default()).unwrap();
     let exact = exact();
     let chopper = PeriodicTrim::new(&model, &exact, 1e-3);
-    let told = |trim: PeriodicTrim<'_, _, _, 2, 1, 1>| trim.solve().unwrap_err().to_string();
+    let told = |trim: PeriodicTrim<'_, _, _, 2, 2, 1>| trim.solve().unwrap_err().to_string();
     assert_eq!(
         told(chopper.fix("voltage")),
         "the model has no state or input `voltage`"
     );
     assert!(told(chopper.grows("current", 1.0)).starts_with("the model has no state `current`"));
     assert!(told(chopper.find_period("supply")).starts_with("the model has no state `supply`"));
-    let still = chopper.input(&[24.0]).fix("supply").fix("winding");
+    let still = chopper
+        .input(&[24.0, 0.3])
+        .fix("supply")
+        .fix("duty")
+        .fix("winding");
     let open = told(still);
     assert!(
         open.starts_with("`winding.p` grows by 6") && open.ends_with("where it need not come back"),

@@ -6,6 +6,7 @@
 //! It stands among items of the user, where a constant `t` would be what each binding `t` is compared with. Words that it
 //! binds are therefore in the list of `mbg_runtime::__private::locals`, and names with numbers end in `_`.
 
+mod changes;
 mod close;
 mod jacobians;
 mod meta;

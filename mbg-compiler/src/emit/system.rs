@@ -3,6 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::changes::{change_between, next_change, passed};
 use super::close::{self, close};
 use super::routine::{Place, Setting, Writer, lines, written_lines};
 use super::tokens::block;
@@ -136,6 +137,7 @@ fn system(compiled: &Compiled) -> TokenStream {
         .map(|routine| cold_memory(compiled, routine, &quote!(Self::Memory)));
     let next_change = next_change(compiled);
     let passed = passed(compiled);
+    let change_between = change_between(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
@@ -183,6 +185,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
             #examined
             #next_change
+            #change_between
             #passed
             #close
             #sparsity
@@ -204,65 +207,6 @@ fn examined(
                 &self, #arguments, memory: &#memory,
             ) -> ::core::result::Result<[T; #count], mbg_runtime::Trouble> {
                 mbg_runtime::__private::examined(self, t, x, u, memory)
-            }
-        }
-    })
-}
-
-/// Where choices by time alone change; none where there are none.
-fn next_change(compiled: &Compiled) -> Option<TokenStream> {
-    let is_empty = compiled.program.routines[Routines::CHANGES]
-        .results
-        .is_empty();
-    let body = body(compiled, Routines::CHANGES, &|times| {
-        let (once, again) = times.split_at(compiled.changes_once);
-        let again = again.chunks(2).map(|repeated| quote!([#(#repeated),*]));
-        quote!(mbg_runtime::__private::next_of(t, &[#(#once),*], &[#(#again),*]))
-    });
-    (!is_empty).then(|| {
-        quote! {
-            fn next_change(&self, t: T) -> ::core::option::Option<T> { #body }
-        }
-    })
-}
-
-/// How many thresholds lie between two points; none where no step can pass more than it finds.
-fn passed(compiled: &Compiled) -> Option<TokenStream> {
-    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
-    let memory = memory(compiled);
-    let groups = Literal::usize_suffixed(compiled.thresholds.len());
-    let routine = &compiled.program.routines[Routines::THRESHOLDS];
-    let (steps, results) = lines(compiled, routine, Setting::Method);
-    let mut rest = &results[..];
-    let mut arguments = Vec::new();
-    let mut counts = Vec::new();
-    for (group, (size, repeats)) in compiled.thresholds.iter().enumerate() {
-        let (own, others) = rest.split_at(2 + size);
-        rest = others;
-        let (argument, thresholds) = own.split_at(2);
-        let group = Literal::usize_suffixed(group);
-        let passed = match repeats {
-            true => quote!(passed_again),
-            false => quote!(passed),
-        };
-        arguments.push(quote!([#(#argument),*]));
-        counts.push(quote! {
-            mbg_runtime::__private::#passed(lasting, [from[#group], to[#group]], &[#(#thresholds),*])
-        });
-    }
-    let vector = |size| quote!(&mbg_runtime::__private::SVector<T, #size>);
-    let [state, input] = [&n, &m].map(vector);
-    let point = quote!((T, #state, #state, #input));
-    (!compiled.thresholds.is_empty()).then(|| {
-        quote! {
-            fn passed(&self, from: #point, to: #point, memory: &mut #memory) -> ::core::primitive::u32 {
-                let lasting = to.0 - from.0;
-                let mut arguments = |(t, x, slopes, u): #point| -> [[T; 2]; #groups] {
-                    #steps
-                    [#(#arguments),*]
-                };
-                let (from, to) = (arguments(from), arguments(to));
-                mbg_runtime::__private::all([#(#counts),*])
             }
         }
     })
@@ -335,7 +279,7 @@ fn convertible(compiled: &Compiled) -> TokenStream {
 type Build<'a> = &'a dyn Fn(&[TokenStream]) -> TokenStream;
 
 /// Steps and result of a function.
-fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
+pub(super) fn body(compiled: &Compiled, routine: usize, build: Build) -> TokenStream {
     let routine = &compiled.program.routines[routine];
     let (steps, results) = lines(compiled, routine, Setting::Method);
     let result = build(&results);
@@ -359,7 +303,7 @@ fn derivative(compiled: &Compiled) -> TokenStream {
 }
 
 /// The type of what is remembered: nothing, or the unknowns of all iterations.
-fn memory(compiled: &Compiled) -> TokenStream {
+pub(super) fn memory(compiled: &Compiled) -> TokenStream {
     let sizes: Vec<usize> = compiled.iterations().collect();
     if sizes.is_empty() {
         return quote!(());

@@ -167,16 +167,23 @@ where
         Some(change) if less(change, end) && !is_met(change, (from, end)) => change,
         _ => end,
     };
-    match input.next_jump(from) {
-        Some(jump) if !less(from, jump) => Err(Stopped::new(
-            from,
-            Cause::Argument(
-                "the input's next jump is not later than the one before, or not a number",
-            ),
-        )),
-        Some(jump) if less(jump, end) && !is_met(jump, (from, end)) => Ok(jump),
-        _ => Ok(end),
+    let end = match input.next_jump(from) {
+        Some(jump) if !less(from, jump) => {
+            return Err(Stopped::new(
+                from,
+                Cause::Argument(
+                    "the input's next jump is not later than the one before, or not a number",
+                ),
+            ));
+        }
+        Some(jump) if less(jump, end) && !is_met(jump, (from, end)) => jump,
+        _ => end,
+    };
+    if !S::SEEKS_CHANGES {
+        return Ok(end);
     }
+    let change = system.change_between(from, end, |t| input.value(t, from));
+    Ok(change.filter(|it| !is_met(*it, (from, end))).unwrap_or(end))
 }
 
 /// Whether a jump is the end of the run but for rounding: then the piece before it goes on to the end, and no tiny step is

@@ -63,10 +63,10 @@ where
         self.closes_stages = false;
         self.inside = (since, T::from_f64(f64::INFINITY));
         let changes = !S::AUTONOMOUS
-            && self
-                .system
-                .next_change(T::from_f64(f64::NEG_INFINITY))
-                .is_some();
+            && (S::SEEKS_CHANGES
+                || (self.system)
+                    .next_change(T::from_f64(f64::NEG_INFINITY))
+                    .is_some());
         if changes {
             // A law says for one side alone what it is where it changes.
             let aside = |t: T| T::from_f64(T::EPSILON * (4.0 * t.magnitude()).max(T::EPSILON));

@@ -466,8 +466,8 @@ fn functions_and_assertions_are_told_as_what_stands_for_them() {
       help: functions are not declared: write `let square = x * x;` with what is read in the place of `x`, or give elements with one law to a `component`
     ");
     insta::assert_snapshot!(told(&masses("assert(v.f < 2.0);")), @"
-    2:1 expected a statement, found `assert` [MBG0101]
-      help: a model asserts nothing: what runs it checks an output that is positive while all is well, `output margin = 2.0 - v.f;`
+    2:8 `v.f < 2.0` may change while the model runs [MBG0213]
+      help: an assertion is of numbers and parameters: what runs the model checks an output that is positive while all is well, `output margin = 2.0 - v.f;`
     ");
     assert_eq!(told(&masses("output margin = 2.0 - v.f;")), "");
     for (slip, here) in [

@@ -27,6 +27,8 @@ pub enum Condition {
     NonZero,
     /// Finite and larger than zero; so is the reciprocal.
     Positive,
+    /// Finite and not below zero.
+    NotNegative,
 }
 
 /// Why a value is refused that is infinite or NaN, whatever else is asked of it.
@@ -50,6 +52,7 @@ pub fn check<T: Real>(
         _ if !lane.is_finite() => Some(FINITE),
         Condition::NonZero if lane == 0.0 => Some(reason),
         Condition::Positive if lane <= 0.0 => Some(reason),
+        Condition::NotNegative if lane < 0.0 => Some(reason),
         Condition::NonZero | Condition::Positive if !has_reciprocal(lane) => Some(RECIPROCAL),
         _ => None,
     };

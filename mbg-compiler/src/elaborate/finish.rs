@@ -188,6 +188,9 @@ impl<'a> Builder<'a> {
                 Ok(())
             }
             Pending::Output { scope, output } => self.output(scope, output),
+            Pending::Assertion { scope, assertion } => {
+                self.assertion(scope, &assertion.name, &assertion.condition)
+            }
             Pending::Displacement {
                 scope,
                 closure,

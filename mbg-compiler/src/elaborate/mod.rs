@@ -5,6 +5,7 @@
 //! `MBG0601`.
 
 mod advice;
+mod assertions;
 mod attitude;
 mod blame;
 mod bonds;
@@ -135,6 +136,10 @@ enum Pending<'a> {
         closure: &'a ast::Closure,
         number: usize,
     },
+    Assertion {
+        scope: usize,
+        assertion: &'a ast::Assertion,
+    },
 }
 
 impl Pending<'_> {
@@ -146,7 +151,8 @@ impl Pending<'_> {
             | Self::Attitude { scope, .. }
             | Self::Coordinate { scope, .. }
             | Self::Output { scope, .. }
-            | Self::Displacement { scope, .. } => *scope,
+            | Self::Displacement { scope, .. }
+            | Self::Assertion { scope, .. } => *scope,
         }
     }
 
@@ -169,6 +175,7 @@ impl Pending<'_> {
             Self::Coordinate { value, .. } => vec![value],
             Self::Output { output, .. } => vec![&output.value],
             Self::Displacement { closure, .. } => closure.displacement.iter().collect(),
+            Self::Assertion { assertion, .. } => vec![&assertion.condition],
         }
     }
 }
@@ -294,6 +301,9 @@ impl<'a> Builder<'a> {
                 Statement::Junction(junction) => self.fill_junction(scope, junction),
                 Statement::Chain(chain) => self.chain(scope, chain),
                 Statement::Closure(closure) => self.closure(scope, closure),
+                Statement::Assertion(assertion) => {
+                    self.pending.push(Pending::Assertion { scope, assertion });
+                }
                 Statement::Instance(instance) => {
                     self.scopes[scope].later.pop();
                     self.instance(scope, instance);

@@ -133,6 +133,8 @@ pub enum Condition {
     NonZero,
     /// Greater than zero.
     Positive,
+    /// Zero or greater.
+    NotNegative,
 }
 
 /// An inequality that the equations rely on.

@@ -87,6 +87,7 @@ fn assumptions(compiled: &Compiled) -> Vec<String> {
             let must = match check.condition {
                 Condition::NonZero => "not be zero",
                 Condition::Positive => "be positive",
+                Condition::NotNegative => "not be negative",
             };
             format!("`{}` must {must}: {}.", check.name, check.reason)
         })

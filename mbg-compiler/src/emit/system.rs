@@ -64,6 +64,7 @@ fn constructor(compiled: &Compiled) -> TokenStream {
         let (condition, must) = match check.condition {
             Condition::NonZero => (quote!(NonZero), "not be zero"),
             Condition::Positive => (quote!(Positive), "be positive"),
+            Condition::NotNegative => (quote!(NotNegative), "not be negative"),
         };
         let (text, reason) = (&check.name, format!("it must {must}: {}", check.reason));
         quote! {

@@ -46,6 +46,16 @@ impl<'a> Printer<'a> {
         if depth == 0 {
             return ("…".to_owned(), Binding::Atom);
         }
+        if let Operation::Add(a, b) = self.pool.operation(expression)
+            && expression.is_negative()
+            && b.is_negative()
+        {
+            let (b, a) = (
+                self.operand(b.magnitude(), Binding::Sum, depth - 1),
+                self.operand(*a, Binding::Product, depth - 1),
+            );
+            return (format!("{b} - {a}"), Binding::Sum);
+        }
         if expression.is_negative() {
             return (
                 format!(

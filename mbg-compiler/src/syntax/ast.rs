@@ -99,6 +99,8 @@ pub enum Statement {
     Conditional(Conditional),
     /// `close a -> b by multipliers, displacement: r;`
     Closure(Closure),
+    /// `assert lower < upper;`
+    Assertion(Assertion),
     /// `causality componentwise;`
     Causality(Causality, Span),
     /// A statement that could not be read; its error is reported. It keeps the name, when one was seen, so that
@@ -199,6 +201,14 @@ pub struct Gravity {
     pub name: Ident,
     /// The acceleration of free fall.
     pub value: Expr,
+}
+
+/// `assert lower < upper;`
+pub struct Assertion {
+    /// The word.
+    pub name: Ident,
+    /// What is to hold.
+    pub condition: Expr,
 }
 
 /// `label: for variable in start..end { statements }`

@@ -166,6 +166,7 @@ fn write_statement(text: &mut String, statement: &Statement) -> fmt::Result {
         Statement::Loop(it) => write_loop(text, it),
         Statement::Conditional(it) => write_conditional(text, it),
         Statement::Closure(it) => write_closure(text, it),
+        Statement::Assertion(it) => writeln!(text, "  assert {}", expression(&it.condition)),
         Statement::Causality(it, _) => {
             writeln!(text, "  causality {}", format!("{it:?}").to_lowercase())
         }

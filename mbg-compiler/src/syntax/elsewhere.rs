@@ -1,7 +1,6 @@
 //! Statements of other languages, and what is written here instead.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
-use syn::{BinOp, Expr, ExprBinary};
 
 use super::cursor::Cursor;
 use super::dump;
@@ -33,7 +32,6 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             ))
         }
         "fn" | "function" | "def" => function(cursor),
-        "assert" => Some(assertion(arguments()?)),
         "pub" => {
             let behind = 1 + usize::from(arguments().is_some());
             cursor.ident(behind)?;
@@ -92,30 +90,6 @@ fn function(cursor: &Cursor) -> Option<String> {
          with one law to a `component`",
         dump::tokens(parameters.stream())
     ))
-}
-
-/// `assert(a > b);`
-fn assertion(condition: &Group) -> String {
-    let condition = syn::parse2::<ExprBinary>(condition.stream());
-    let sides = condition.ok().and_then(|it| match it.op {
-        BinOp::Gt(_) | BinOp::Ge(_) => Some((it.left, it.right)),
-        BinOp::Lt(_) | BinOp::Le(_) => Some((it.right, it.left)),
-        _ => None,
-    });
-    let margin = match sides {
-        Some((large, small)) => {
-            let small = match *small {
-                Expr::Binary(_) | Expr::If(_) => format!("({})", dump::expression(&small)),
-                _ => dump::expression(&small),
-            };
-            format!("{} - {small}", dump::expression(&large))
-        }
-        None => "…".to_owned(),
-    };
-    format!(
-        "a model asserts nothing: what runs it checks an output that is positive while all is well, \
-         `output margin = {margin};`"
-    )
 }
 
 /// `parameter Real mass(min = 0) = 1.0 "of it";` as it is declared here, without its type, its attributes and its comment.

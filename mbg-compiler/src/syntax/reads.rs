@@ -13,6 +13,7 @@ impl Statement {
             Self::Output(it) => vec![&it.value],
             Self::Let(it) => vec![&it.value],
             Self::Gravity(it) => vec![&it.value],
+            Self::Assertion(it) => vec![&it.condition],
             Self::Integral(it) => it.initial.iter().chain([&it.rate]).collect(),
             Self::Attitude(it) => it.initial.iter().chain([&it.angular_velocity]).collect(),
             Self::Junction(it) => {

@@ -208,7 +208,7 @@ fn name_at(tokens: &[TokenTree], first: bool) -> Option<&Ident> {
 
 /// Whether a statement that begins with this word declares no name of its own.
 fn is_nameless(word: &Ident) -> bool {
-    ["causality", "gravity", "for", "if", "close"]
+    ["causality", "gravity", "for", "if", "close", "assert"]
         .iter()
         .any(|nameless| word == nameless)
         || word == words::INCLUDE

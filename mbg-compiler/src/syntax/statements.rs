@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, Group, Ident, TokenTree};
 use syn::Expr;
 
 use super::ast::{
-    Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let,
+    Assertion, Attitude, Causality, Closure, Gravity, Input, Integral, Junction, JunctionKind, Let,
     Orientation, Output, Parameter, Statement, Unit,
 };
 use super::attributes::Attributes;
@@ -220,6 +220,7 @@ fn declaration(
         "gravity" => gravity(cursor, word, sink).map(Statement::Gravity),
         "for" => repetition(cursor, None, sink).map(Statement::Loop),
         "close" => closure(cursor, word, sink).map(Statement::Closure),
+        "assert" => assertion(cursor, word, sink).map(Statement::Assertion),
         _ => causality(cursor, sink),
     }
 }
@@ -396,6 +397,12 @@ fn gravity(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Grav
     let value = expression(cursor, what)?;
     finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
     Ok(Gravity { name, value })
+}
+
+fn assertion(cursor: &mut Cursor, name: Ident, sink: &mut Sink<'_>) -> Parsed<Assertion> {
+    let condition = expression(cursor, "a comparison after `assert`")?;
+    finish(cursor, sink, &format!("`;` after {}", cursor.previous()))?;
+    Ok(Assertion { name, condition })
 }
 
 fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Integral> {

@@ -15,6 +15,7 @@ pub(super) const STATEMENTS: &[&str] = &[
     "gravity",
     "for",
     "close",
+    "assert",
     "causality",
 ];
 

@@ -143,10 +143,10 @@ fn passed_by<T: Real>(
     counts.fold(0, u32::saturating_add)
 }
 
-/// The largest of some counts.
+/// The sum of some counts: what one argument begins another may end, as two legs of a bridge do.
 #[inline]
-pub fn most<const G: usize>(counts: [u32; G]) -> u32 {
-    counts.into_iter().max().unwrap_or(0)
+pub fn total<const G: usize>(counts: [u32; G]) -> u32 {
+    counts.into_iter().fold(0, u32::saturating_add)
 }
 
 /// What an argument does not go beyond between two points, given with their rates: where it turns, the place at which the

@@ -186,9 +186,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
-    /// How many thresholds are passed between two points, each a time, a state, its derivative and an input: the most by one
-    /// argument of choices in the laws, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's
-    /// points over `q`. Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
+    /// How many thresholds are passed between two points, each a time, a state, its derivative and an input: by all arguments of
+    /// choices in the laws together, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's points
+    /// over `q`, or where one leg of a bridge switches after the other. Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
     /// that it may go over and back: those on this side of where its tangents at both points meet.
     ///
     /// [`Adaptive`](crate::Adaptive) looks into a step with any, of which its estimate of the error may be small by chance, and

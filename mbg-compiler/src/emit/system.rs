@@ -262,7 +262,7 @@ fn passed(compiled: &Compiled) -> Option<TokenStream> {
                     [#(#arguments),*]
                 };
                 let (from, to) = (arguments(from), arguments(to));
-                mbg_runtime::__private::most([#(#counts),*])
+                mbg_runtime::__private::total([#(#counts),*])
             }
         }
     })

@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::tolerance::Measure;
 use crate::{Input, Real, System};
 
-/// So many thresholds of one argument have something between them; what is behind a single one is at the end of the step, too.
+/// So many thresholds have something between them; what is behind a single one is at the end of the step, too.
 pub(super) const SEVERAL: u32 = 2;
 
 /// What lasts a smaller part of a step is not found.

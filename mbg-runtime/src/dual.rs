@@ -13,8 +13,8 @@ use crate::{Columns, Real};
 /// component's slope to 1 and read the slopes of the result. It serves to check symbolic Jacobians, and gives
 /// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
 /// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event. So have the times at which an
-/// input jumps or a law does that compares `t`, a `mod` or one wave of it with numbers and parameters. A law that jumps where a state,
-/// an input or several waves of time go through a threshold changes earlier or later with it, of which a run over the jump knows
+/// input jumps or a law does that compares `t`, or a `mod` or one wave of it, with numbers and parameters. A law that jumps where a
+/// state, an input or several waves go through a threshold changes earlier or later with it, of which a run over the jump knows
 /// nothing: end the run there, at an event, and begin the next from its time and state.
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope

@@ -13,6 +13,9 @@ use crate::symbolic::{
 /// Most branches of choices within a condition that are tried.
 const MOST: usize = 64;
 
+/// So many operations are next to nothing.
+const LITTLE: usize = 24;
+
 /// Times, in terms of parameters, at which steps of integration end.
 pub struct Times {
     /// Each once.
@@ -137,8 +140,8 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
     let mut along = Differentiator::along(slopes(pool, states));
     for argument in &mut arguments {
         let rate = along.derivative(pool, argument.value);
-        // A step is not to take longer for it than for an evaluation of the model.
-        if operations(pool, &[rate]) <= operations(pool, rates) {
+        // A step is not to take longer for it than for an evaluation of the model, unless that takes next to nothing.
+        if operations(pool, &[rate]) <= operations(pool, rates).max(LITTLE) {
             argument.rate = rate;
         }
     }

@@ -55,6 +55,12 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "`sin` takes a pure number or an angle, and `way` is `m`",
     ),
     (
+        "param way: m = 1.0; Se s { effort: 3.0 * floor(way) } -> a;",
+        "floor(way)",
+        "`mod` takes two values of one unit, `floor` and `fraction` a pure number or an angle: whole multiples are counted of `way`, \
+         which is `m`",
+    ),
+    (
         "param w: rad/s = 1.0; Se s { effort: 3.0 * exp(w) } -> a;",
         "exp(w)",
         "`exp` takes a pure number or an angle, and `w` is `1/s`",

@@ -195,9 +195,9 @@ fn passed_by<T: Real>(
     counts.fold(0, u32::saturating_add)
 }
 
-/// The sum of some counts.
+/// The sum of some counts: what one argument begins another may end, as two legs of a bridge do.
 #[inline]
-pub fn all<const G: usize>(counts: [u32; G]) -> u32 {
+pub fn total<const G: usize>(counts: [u32; G]) -> u32 {
     counts.into_iter().fold(0, u32::saturating_add)
 }
 

@@ -9,7 +9,8 @@ use crate::poles::eigenvalues;
 use crate::selection::Selection;
 use crate::solve::{Row, Rows, Sizes};
 use crate::{
-    Columns, Constant, Convertible, Direction, Dual, Integrator, Real, System, Trimmed, Untrimmed,
+    Cause, Columns, Constant, Convertible, Direction, Dual, Integrator, Real, Stopped, System,
+    Trimmed, Untrimmed,
 };
 
 /// Corrections at most.
@@ -25,6 +26,11 @@ const NOISE: f64 = 1e-9;
 /// A period is divided for its monodromy matrix until that changes by no more, or into so many parts.
 const SAME: f64 = 1e-7;
 const DIVIDED: u32 = 64;
+/// At so many times of each step laws are compared with those a period later.
+const COMPARED: u32 = 16;
+/// By how much slopes along a motion may miss it, beside what they are made of: they are less exact than states where lines of a
+/// curve meet.
+const ASIDE: f64 = 1e-2;
 /// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
 
@@ -107,6 +113,12 @@ const TINY: f64 = 1e-9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// Slopes know nothing of when a law jumps by a state, as in dry friction or a relay. Such a motion is found, if more slowly, but its
+/// monodromy matrix is not that of its neighbours: let the law rise over a small width, as `tanh(v / width)` does.
+///
+/// Newton's method may end between two motions. Where others tend to the motion that is wanted, begin at the state to which a run
+/// of some periods comes.
+///
 /// Where a motion goes through an event, such as the step of a walker, follow it by
 /// [`Integrator::until`](crate::Integrator::until) on [`Dual`] numbers, and solve for the start by its slopes.
 #[derive(Clone, Copy, Debug)]
@@ -131,7 +143,8 @@ pub struct Cycle<const N: usize, const M: usize> {
     pub input: SVector<f64, M>,
     /// The period, s.
     pub period: f64,
-    /// The monodromy matrix: how the state after a period changes with that at the start.
+    /// The monodromy matrix: how the state after a period changes with that at the start. NaN for a motion that swings
+    /// by itself and along which it does not lead, since a law jumps at a state on the way.
     pub monodromy: SMatrix<f64, N, N>,
 }
 
@@ -153,6 +166,8 @@ const TOGETHER: usize = <Together<f64> as Columns<f64>>::COUNT;
 struct Run<const N: usize, const M: usize> {
     start: Trimmed<N, M>,
     period: f64,
+    /// The state where it ends.
+    end: SVector<f64, N>,
     /// What is left of the conditions.
     left: SVector<f64, N>,
     /// How large states and inputs become.
@@ -247,16 +262,28 @@ where
     /// # Errors
     ///
     /// A name that the model has not, a motion from the guess that cannot go on, one on which the state that tells the period is not
-    /// met again, and one that does not come back: some state differs by more than a millionth of the terms it is made of.
+    /// met again, one that does not come back: some state differs by more than a millionth of the terms it is made of, and one whose
+    /// laws do not come back with it, since what drives it has another period.
     pub fn solve(&self) -> Result<Cycle<N, M>, Untrimmed> {
         self.selection.check()?;
+        if self.period <= 0.0 {
+            return Err(Untrimmed::Stopped(Stopped {
+                time: self.time,
+                cause: Cause::Argument("the period must be larger than zero"),
+            }));
+        }
         let infinite = f64::INFINITY;
         let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
         let mut run = self.run(self.start)?;
         let mut sizes = run.sizes;
         let mut slopes = self.slopes(&run.start, self.section)?;
         for _ in 0..CORRECTIONS {
-            let Some(next) = self.descend(&run, &slopes, &mut units) else {
+            // What comes back already is left by whole corrections, which square what is left, or not at all: the rest is rounding.
+            let dampings = match self.missed(&run, &slopes, &sizes) {
+                Some(_) => DAMPINGS,
+                None => 1,
+            };
+            let Some(next) = self.descend(&run, &slopes, &mut units, dampings) else {
                 break;
             };
             run = next;
@@ -267,11 +294,18 @@ where
         if let Some(untrimmed) = self.missed(&run, &slopes, &sizes) {
             return Err(untrimmed);
         }
+        if let Some(untrimmed) = self.driven_otherwise(&run)? {
+            return Err(untrimmed);
+        }
+        let mut monodromy = self.monodromy(&run)?;
+        if !self.leads_along(&run, &monodromy) {
+            monodromy.fill(f64::NAN);
+        }
         Ok(Cycle {
             state: run.start.state,
             input: run.start.input,
             period: run.period,
-            monodromy: self.monodromy(&run)?,
+            monodromy,
         })
     }
 
@@ -318,6 +352,46 @@ where
         })
     }
 
+    /// Whether the laws are others a period later, at states that are larger by their growth: then the next period is another one.
+    fn driven_otherwise(&self, run: &Run<N, M>) -> Result<Option<Untrimmed>, Untrimmed> {
+        let grown = SVector::from(self.selection.changes.map(|by| by.unwrap_or(0.0)));
+        if S::AUTONOMOUS && grown.iter().all(|by| *by == 0.0) {
+            return Ok(None);
+        }
+        let Trimmed { state, input } = run.start;
+        // By how much each state would change otherwise within a period: laws need not jump at the same times to a rounding.
+        let mut changes = SVector::<f64, N>::zeros();
+        let add = |[start, end]: [f64; 2], state: &SVector<f64, N>| {
+            let part = (end - start) / f64::from(COMPARED);
+            for number in 0..COMPARED {
+                let time = start + (f64::from(number) + 0.5) * part;
+                let [now, later] = [(time, *state), (time + run.period, state + grown)]
+                    .map(|(time, state)| self.derivative(time, &state, &input));
+                changes += part * (later - now).abs();
+            }
+        };
+        self.follow(self.system, &state, &Constant(input), self.section, add)?;
+        let parts = changes.zip_map(&run.sizes.0, |change, size| change / size);
+        let worst = parts.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        Ok(worst.and_then(|(place, part)| {
+            (*part > LEFT).then(|| Untrimmed::Driven {
+                name: S::META.states.get(place).map_or("", |it| it.name),
+                period: run.period,
+                change: changes[place],
+            })
+        }))
+    }
+
+    fn derivative(
+        &self,
+        time: f64,
+        state: &SVector<f64, N>,
+        input: &SVector<f64, M>,
+    ) -> SVector<f64, N> {
+        self.system
+            .derivative(time, state, input, &mut Default::default())
+    }
+
     /// By how much a state is to grow, unless it need not, or does where the motion ends.
     fn wanted(&self, state: usize) -> Option<f64> {
         let wanted = self.selection.changes.get(state).copied().flatten();
@@ -331,7 +405,7 @@ where
         start: &SVector<T, N>,
         input: &Constant<T, M>,
         section: Option<usize>,
-        mut observer: impl FnMut(&SVector<T, N>),
+        mut observer: impl FnMut([T; 2], &SVector<T, N>),
     ) -> Result<(T, SVector<T, N>), Untrimmed> {
         let begin = T::from_f64(self.time);
         let [half, whole, twice] =
@@ -342,7 +416,7 @@ where
             .solver
             .integrate(system, input, begin, until, state, |step| {
                 state = *step.state();
-                observer(&state);
+                observer([step.start(), step.end()], &state);
             });
         done.map_err(Untrimmed::Stopped)?;
         let Some(place) = section else {
@@ -362,7 +436,7 @@ where
             twice,
             state,
             (direction, guard),
-            |step| observer(step.state()),
+            |step| observer([step.start(), step.end()], step.state()),
         );
         let arrival = arrival.map_err(Untrimmed::Stopped)?;
         match arrival.found {
@@ -379,12 +453,13 @@ where
         }
     }
 
-    /// Follows the motion once.
+    /// Follows the motion once, from a start on closed loops and attitudes.
     fn run(&self, start: Trimmed<N, M>) -> Result<Run<N, M>, Untrimmed> {
+        let start = self.selection.closed(self.system, self.time, start)?;
         let mut largest = start.state.abs();
         let mut strokes = SVector::<f64, N>::zeros();
         let input = Constant(start.input);
-        let larger = |state: &SVector<f64, N>| {
+        let larger = |_, state: &SVector<f64, N>| {
             largest = largest.sup(&state.abs());
             strokes = strokes.sup(&(state - start.state).abs());
         };
@@ -396,6 +471,7 @@ where
         Ok(Run {
             start,
             period: until - self.time,
+            end,
             left,
             sizes: (largest, start.input.abs()),
             strokes,
@@ -410,7 +486,7 @@ where
     ) -> Result<Slopes<N, M>, Untrimmed> {
         let system = self.system.converted(Several::unchanging);
         let end = |state: SVector<Several, N>, input: SVector<Several, M>| {
-            self.follow(&system, &state, &Constant(input), section, |_| ())
+            self.follow(&system, &state, &Constant(input), section, |_, _| ())
         };
         let mut slopes = (SMatrix::zeros(), SMatrix::zeros());
         for first in (0..N).step_by(TOGETHER) {
@@ -447,7 +523,8 @@ where
                 let (slopes, _) = part.slopes(&start, None)?;
                 whole = slopes * whole;
                 let input = Constant(start.input);
-                (_, start.state) = part.follow(self.system, &start.state, &input, None, |_| ())?;
+                (_, start.state) =
+                    part.follow(self.system, &start.state, &input, None, |_, _| ())?;
             }
             Ok(whole)
         };
@@ -467,6 +544,21 @@ where
             count *= 2;
         }
         Ok(whole)
+    }
+
+    /// Whether slopes take how a motion that swings by itself begins to how it goes on, as they do if no law jumps at a state.
+    fn leads_along(&self, run: &Run<N, M>, monodromy: &SMatrix<f64, N, N>) -> bool {
+        let Trimmed { state, input } = run.start;
+        let first = self.derivative(self.time, &state, &input);
+        let last = self.derivative(self.time + run.period, &run.end, &input);
+        let terms = monodromy.abs() * first.abs() + last.abs() + run.strokes / run.period;
+        let aside = (monodromy * first - last).abs();
+        let is_known = S::AUTONOMOUS && self.section.is_some();
+        !is_known
+            || aside
+                .iter()
+                .zip(&terms)
+                .all(|(aside, terms)| *aside <= ASIDE * terms)
     }
 
     /// The conditions next to a motion.
@@ -498,6 +590,7 @@ where
         run: &Run<N, M>,
         slopes: &Slopes<N, M>,
         units: &mut Sizes<N, M>,
+        dampings: usize,
     ) -> Option<Run<N, M>> {
         let identity = SMatrix::identity();
         let mut rows = self.rows(run, slopes);
@@ -511,9 +604,9 @@ where
             return None;
         }
         rows.straighten(&identity);
-        let dampings = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
-        let mut tried = dampings
-            .take(DAMPINGS)
+        let halves = core::iter::successors(Some(1.0), |damping| Some(0.5 * damping));
+        let mut tried = halves
+            .take(dampings)
             .flat_map(|damping| PARTS.map(|part| (damping, part)));
         tried.find_map(|(damping, part)| {
             let (by_state, by_input) = rows.solution(part);

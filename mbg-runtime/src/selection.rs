@@ -1,6 +1,6 @@
 //! What is to be found of states and inputs, and what is wanted of each state.
 
-use crate::{Meta, Untrimmed};
+use crate::{Meta, System, Trimmed, Untrimmed};
 
 /// Which states and inputs stay as they are, and how much each state is to change, if that matters.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,29 @@ impl<const N: usize, const M: usize> Selection<N, M> {
     /// Nothing, unless a name was none of the model's.
     pub(crate) fn check(&self) -> Result<(), Untrimmed> {
         self.unknown.map_or(Ok(()), Err)
+    }
+
+    /// The point with its state on closed loops and attitudes, on which what stays as it is does so.
+    #[inline(never)]
+    pub(crate) fn closed<const P: usize>(
+        &self,
+        system: &impl System<f64, N, M, P>,
+        time: f64,
+        point: Trimmed<N, M>,
+    ) -> Result<Trimmed<N, M>, Untrimmed> {
+        let states = &self.fixed.0;
+        // One of them stands for each state that is not fixed: where they are counted, LLVM takes minutes over the count.
+        let any = states.iter().position(|is_fixed| *is_fixed);
+        let all = core::array::from_fn::<_, N, _>(|state| match states[state] {
+            true => state,
+            false => any.unwrap_or(state),
+        });
+        let fixed = if any.is_some() { &all[..] } else { &[] };
+        let Trimmed { state, input } = point;
+        match system.close(time, state, &input, fixed) {
+            Ok(state) => Ok(Trimmed { state, input }),
+            Err(trouble) => Err(Untrimmed::Trouble(trouble)),
+        }
     }
 
     /// Keeps states or inputs of this name as they are.

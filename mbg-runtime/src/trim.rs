@@ -303,19 +303,7 @@ where
     /// The point with its state on closed loops and attitudes.
     #[inline(never)]
     fn closed(&self, point: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
-        let states = &self.selection.fixed.0;
-        // One of them stands for each state that is not fixed: where they are counted, LLVM takes minutes over the count.
-        let any = states.iter().position(|is_fixed| *is_fixed);
-        let all = core::array::from_fn::<_, N, _>(|state| match states[state] {
-            true => state,
-            false => any.unwrap_or(state),
-        });
-        let fixed = if any.is_some() { &all[..] } else { &[] };
-        let Trimmed { state, input } = point;
-        match self.system.close(self.time, state, &input, fixed) {
-            Ok(state) => Ok(Trimmed { state, input }),
-            Err(trouble) => Err(Untrimmed::Trouble(trouble)),
-        }
+        self.selection.closed(self.system, self.time, point)
     }
 
     /// How the conditions change beside a point, and by how much they fail there.

@@ -54,6 +54,15 @@ pub enum Untrimmed {
         /// Its value at the start.
         value: f64,
     },
+    /// A motion that comes back, but not for ever: laws that depend on time, or on what has grown, are others a period later.
+    Driven {
+        /// The state on which that has the largest effect.
+        name: &'static str,
+        /// The period, s.
+        period: f64,
+        /// By how much it would change otherwise within the next period.
+        change: f64,
+    },
     /// The motion from the guess cannot go on.
     Stopped(Stopped),
     /// The model is in trouble there.
@@ -129,6 +138,15 @@ impl core::fmt::Display for Untrimmed {
                 formatter,
                 "`{name}` does not go through {value:e} again after half to twice the period that was given: give another period, or \
                  a state that the motion goes through"
+            ),
+            Self::Driven {
+                name,
+                period,
+                change,
+            } => write!(
+                formatter,
+                "the motion comes back after {period:e} s, but its laws do not: within the next period `{name}` would change \
+                 otherwise by {change:e}; give a whole period of what drives it, and growths that leave laws as they are"
             ),
             Self::Stopped(stopped) => stopped.fmt(formatter),
             Self::Trouble(trouble) => trouble.fmt(formatter),

@@ -429,3 +429,67 @@ fn what_two_waves_or_an_input_switch_is_met() {
         1e-4 * (current([0.30001; 200]) - current([0.29999; 200])) / 2e-5,
     );
 }
+
+mbg! {
+    /// A winding between the two legs of a bridge, each of which compares a sine with the same carrier.
+    model Bridge {
+        param depth = 0.1;
+        let ramp = mod(1000.0 * t, 1.0);
+        let carrier = if ramp < 0.5 { 4.0 * ramp - 1.0 } else { 3.0 - 4.0 * ramp };
+        let reference = depth * sin(314.1592653589793 * t);
+        let first = if reference > carrier { 1.0 } else { 0.0 };
+        let second = if -reference > carrier { 1.0 } else { 0.0 };
+        1 coil {
+            I winding { inertia: 1e-2 }
+            Se bridge { effort: 100.0 * (first - second) }
+        }
+    }
+
+    /// A narrow pulse at the top of a product of two waves.
+    model Product {
+        1 way {
+            I mass { inertia: 1.0 }
+            Se push { effort: if sin(7.0 * t) * cos(7.0 * t) > 0.49 { 1.0 } else { 0.0 } }
+        }
+    }
+}
+
+/// By the rule of rectangles, whose error is that of as many jumps as there are.
+fn summed(law: impl Fn(f64) -> f64, end: f64) -> f64 {
+    const COUNT: i32 = 4_000_000;
+    let part = end / f64::from(COUNT);
+    let middles = (0..COUNT).map(|place| (f64::from(place) + 0.5) * part);
+    middles.map(law).sum::<f64>() * part
+}
+
+fn pushed(model: &impl System<f64, 1, 0, 0>, end: f64) -> f64 {
+    let mut last = model.initial_state();
+    Adaptive::new(Dop853, 1e-9, 1e-11)
+        .integrate(model, &(), 0.0, end, last, |step| last = *step.state())
+        .unwrap();
+    last[0]
+}
+
+/// What one argument begins another ends.
+#[test]
+fn pulses_between_the_legs_of_a_bridge_are_met() {
+    for depth in [0.8, 0.1, 0.01] {
+        let model = Bridge::<f64>::new(BridgeParameters { depth }).unwrap();
+        let law = |t: f64| {
+            let ramp = (1000.0 * t).rem_euclid(1.0);
+            let carrier = (4.0 * ramp - 1.0).min(3.0 - 4.0 * ramp);
+            let reference = depth * f64::sin(314.159_265_358_979_3 * t);
+            100.0 * (f64::from(reference > carrier) - f64::from(-reference > carrier))
+        };
+        let error = pushed(&model, 0.0154) - summed(law, 0.0154);
+        assert!(error.abs() < 2e-5, "{depth}: {error:e}");
+    }
+}
+
+#[test]
+fn pulses_at_the_top_of_a_product_of_waves_are_met() {
+    let model = Product::<f64>::new(ProductParameters::default()).unwrap();
+    let law = |t: f64| f64::from(f64::sin(7.0 * t) * f64::cos(7.0 * t) > 0.49);
+    let error = pushed(&model, 10.0) - summed(law, 10.0);
+    assert!(error.abs() < 2e-5, "{error:e}");
+}

@@ -70,6 +70,24 @@ mbg! {
         output sums[3] = [lifted / 1.0, back / 1.0, aside / 1.0];
     }
 
+    /// A clock, whose escapement pushes the way that it goes.
+    model Clock {
+        param push = 0.1;
+        1 balance {
+            I wheel { inertia: 1.0 }
+            C spring { stiffness: 1.0 }
+            R bearing { resistance: 0.2 }
+            R escapement { effort: -push * sign(f) }
+        }
+    }
+
+    /// A top without weight.
+    model Top {
+        1 turning[3] { I body { inertia: diag(1.0, 2.0, 3.0), gyroscopic, initial_flow: [0.1, 5.0, 0.2] } }
+        attitude q = quaternion(turning.f);
+        output up[3] = matrix_of(q) * [0.0, 0.0, 1.0];
+    }
+
     /// A crank that a torque turns, with a flywheel, and the coupler and the rocker that it drives.
     #[derivative]
     model Engine {
@@ -349,6 +367,69 @@ fn a_crank_turns_as_fast_as_its_torque_drives_it() {
     assert!((end[1] - cycle.state[1] - TAU).abs() < 1e-9, "{end}");
 }
 
+/// What is the same again after some time, while its laws are not, is no motion that comes back.
+#[test]
+fn laws_come_back_with_the_motion() {
+    let exact = exact();
+    let model = Chopper::<f64>::new(ChopperParameters::default()).unwrap();
+    for (period, is_whole) in [(1e-3, true), (3e-3, true), (1.5e-3, false), (0.9e-3, false)] {
+        let chopper = PeriodicTrim::new(&model, &exact, period).input(&[24.0]);
+        let found = chopper.fix("supply").free("charge").solve();
+        match found {
+            Ok(_) => assert!(is_whole, "{period}"),
+            Err(Untrimmed::Driven { name, .. }) => {
+                assert!(!is_whole && name == "winding.p", "{period} {name}");
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+    // A pendulum that goes over its lowest place is as fast on the other side, but does not go on as it has come.
+    let model = Pendulum::<f64>::new(PendulumParameters::default()).unwrap();
+    let over = |by| {
+        PeriodicTrim::new(&model, &exact, 0.35 * by)
+            .state(&SVector::from([3.0, -1.0]))
+            .grows("weight.q", by)
+            .find_period("weight.q")
+            .solve()
+    };
+    assert!(matches!(over(2.0), Err(Untrimmed::Driven { .. })));
+    over(TAU).unwrap();
+}
+
+/// Half a swing takes an amplitude a to (a + push) e + push with e = exp(−0.1 π / ω).
+#[test]
+fn no_multipliers_are_told_that_know_nothing_of_a_jump() {
+    let model = Clock::<f64>::new(ClockParameters::default()).unwrap();
+    let omega = 0.99_f64.sqrt();
+    let decay = f64::exp(-0.1 * PI / omega);
+    let amplitude = 0.1 * (1.0 + decay) / (1.0 - decay);
+    for (start, section) in [([0.0, 0.5], "wheel.p"), ([0.7, 0.0], "spring.q")] {
+        let cycle = PeriodicTrim::new(&model, &exact(), 6.0)
+            .state(&SVector::from(start))
+            .find_period(section)
+            .solve()
+            .unwrap();
+        assert!((cycle.period - TAU / omega).abs() < 1e-9, "{cycle:?}");
+        let is_aside = section == "wheel.p" && (cycle.state[1] - amplitude).abs() > 1e-9;
+        assert!(!is_aside, "{cycle:?}");
+        // They are 1 and e², and slopes tell e² twice.
+        assert_eq!(cycle.multipliers(), None);
+    }
+}
+
+#[test]
+fn a_motion_begins_on_its_attitude() {
+    let model = Top::<f64>::new(TopParameters::default()).unwrap();
+    let cycle = PeriodicTrim::new(&model, &exact(), 6.0)
+        .state(&SVector::from([0.1, 9.0, 0.6, 2.0, 1.0, 0.0, 0.0]))
+        .find_period("body.p.x")
+        .free("q")
+        .solve()
+        .unwrap();
+    let quaternion = cycle.state.fixed_rows::<4>(3);
+    assert!((quaternion.norm() - 1.0).abs() < 1e-15, "{quaternion}");
+}
+
 #[test]
 fn what_cannot_be_is_told() {
     let model = Chopper::<f64>::new(ChopperParameters::default()).unwrap();
@@ -370,6 +451,10 @@ fn what_cannot_be_is_told() {
     assert!(
         open.starts_with("`winding.p` grows by 6") && open.ends_with("where it need not come back"),
         "{open}"
+    );
+    assert_eq!(
+        told(PeriodicTrim::new(&model, &exact, 0.0)),
+        "stopped at t = 0: the period must be larger than zero"
     );
     // Nothing says what gathers in the charge, but that the current comes back does not hang on it.
     let stopped = told(PeriodicTrim::new(&model, &exact, f64::NAN));

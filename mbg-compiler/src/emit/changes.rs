@@ -60,7 +60,7 @@ pub(super) fn passed(compiled: &Compiled) -> Option<TokenStream> {
                     [#(#arguments),*]
                 };
                 let (from, to) = (arguments(from), arguments(to));
-                mbg_runtime::__private::all([#(#counts),*])
+                mbg_runtime::__private::total([#(#counts),*])
             }
         }
     })

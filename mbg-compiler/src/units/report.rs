@@ -146,9 +146,18 @@ impl<'a> Reporter<'a> {
             Mismatch::Argument(function, argument, unit) => {
                 let argument = self.text(*argument, "its argument");
                 let unit = unit_text(unit);
-                let message = format!(
-                    "`{function}` takes a pure number or an angle, and {argument} is {unit}"
-                );
+                // Of whichever of the three was written.
+                let message = match *function == Function::Fraction.name() {
+                    true => format!(
+                        "`mod` takes two values of one unit, `floor` and `fraction` a pure number or an angle: whole multiples are \
+                         counted of {argument}, which is {unit}"
+                    ),
+                    false => {
+                        format!(
+                            "`{function}` takes a pure number or an angle, and {argument} is {unit}"
+                        )
+                    }
+                };
                 (message, true)
             }
         };

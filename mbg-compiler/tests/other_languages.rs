@@ -734,4 +734,10 @@ fn displacements_that_are_no_states_are_told_as_integrals() {
         assert_eq!(told(&masses(&typed)), "");
     }
     assert_eq!(typed(&masses("output y = k.q;"))[0], "c.q");
+    // The rate of an integral is written where it is declared.
+    let rate = told(&masses("integral way = v.f; output y = der(way);"));
+    assert!(
+        rate.contains("an integral has the rate that it is declared with; where `way` is an input"),
+        "{rate}"
+    );
 }

@@ -37,6 +37,31 @@ fn an_affine_law_starts_at_the_flow_that_is_given() {
     assert_eq!(pool.constant_value(start), Some(1.5));
 }
 
+/// What pseudo bonds store is no energy: a gas by its mass and heat has pressure and temperature of no common energy.
+#[test]
+fn laws_of_pseudo_bonds_need_no_energy() {
+    let gas = |word: &str| {
+        format!(
+            "model M {{ input flow; 0 gas[2] {word} {{ C chamber {{ effort: [2.0 * q.y, q.y / q.x], initial: [1.0, 2.0] }} Sf valve {{ flow: \
+             flow }} }}
+             1 rod {{ I mass {{ inertia: 2.0, initial_flow: 3.0 }} }} output pressure = chamber.e.x; }}"
+        )
+    };
+    let compiled = compiled(&gas("pseudo"));
+    assert_eq!(compiled.notes.len(), 0, "{:?}", compiled.notes);
+    let told = told(&gas(""));
+    assert!(
+        told.contains("the law of `chamber` would create energy"),
+        "{told}"
+    );
+    assert_eq!(
+        mistake(
+            "0 stored[2] pseudo { C c { compliance: [[2.0, 1.0], [0.5, 3.0]] } R r { resistance: 1.0 } }"
+        ),
+        ""
+    );
+}
+
 #[test]
 fn mistakes_in_laws_are_told() {
     insta::assert_snapshot!(mistake("1 v[2] { EJS wheel { momentum: [0.0, 1.0] } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 2 [MBG0204]");
@@ -48,6 +73,7 @@ fn mistakes_in_laws_are_told() {
     insta::assert_snapshot!(mistake("1 v[2] { C c { effort: [q.x + q.y, 2.0 * q.y] } I b { inertia: 1.0 } }"), @"
     2:24 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
       help: write `energy: …`, from which the law follows by differentiation
+      help: or where effort times flow is no power write `pseudo` behind the name of its junction
     ");
     insta::assert_snapshot!(mistake("1 v { C c { stiffness: 1.0 + f } I b { inertia: 2.0 + e * e } }"), @"
     2:30 `c` stores energy by its own `q` alone, and its law reads `f` [MBG0213]
@@ -58,6 +84,7 @@ fn mistakes_in_laws_are_told() {
     insta::assert_snapshot!(mistake("1 v[2] { C c { stiffness: diag(1.0 + q.y, 1.0) } I b { inertia: 1.0 } }"), @"
     2:27 the law of `c` would create energy: its component x changes with y otherwise than its component y with x [MBG0213]
       help: write `energy: …`, from which the law follows by differentiation
+      help: or where effort times flow is no power write `pseudo` behind the name of its junction
     ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: 1.0, initial: 2.0, initial_flow: 3.0 } }"), @"
     2:41 `b` is given both a momentum and a flow at the start [MBG0104]

@@ -652,3 +652,92 @@ fn vectors_are_told_as_the_component_takes_them() {
     assert_eq!(typed(&spatial("x: 0.1, z: -0.5")), ["by: [0.1, 0.0, -0.5]"]);
     assert_eq!(told(&spatial("by: [0.1, 0.0, -0.5]")), "");
 }
+
+/// Elements that bond graphs elsewhere have, and sizes before names.
+#[test]
+fn elements_of_other_tools_are_told_as_they_are_written_here() {
+    let within = |element: &str| {
+        told(&masses(&format!(
+            "1 x {{ {element} x_d {{ effort: 1.0 }} }}"
+        )))
+    };
+    let behind = |element: &str| told(&masses(&format!("v -> {element} x_d {{ effort: 1.0 }};")));
+    insta::assert_snapshot!(["MR", "De", "Df", "SS", "RS", "IC", "R[2]"].map(within).join("\n"), @"
+    2:7 expected an element, found `MR` [MBG0101]
+      help: write `R`: any law may be modulated by what it reads
+    2:7 expected an element, found `De` [MBG0101]
+      help: what is measured is read, and needs no detector: `output name = node.e;` of a 0-junction `node`
+    2:7 expected an element, found `Df` [MBG0101]
+      help: what is measured is read, and needs no detector: `output name = rod.f;` of a 1-junction `rod`
+    2:7 expected an element, found `SS` [MBG0101]
+      help: a source and what it measures are written apart: `Se name { effort: … }` and `output measured = name.f;`, or `Sf` and `name.e`
+    2:7 expected an element, found `RS` [MBG0101]
+      help: write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: `Sf entropy { flow: name.e * name.f / node.e }`
+    2:7 expected an element, found `IC` [MBG0101]
+      help: write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`
+    2:8 expected the name of the element after `R`, found `[` [MBG0101]
+      help: an element has the size of its junction: write `R x_d`
+    ");
+    for element in ["MSe", "MR", "RS"] {
+        let help = |text: String| text.split_once("help: ").map(|(_, help)| help.to_owned());
+        assert_eq!(help(behind(element)), help(within(element)));
+    }
+}
+
+/// Junctions by the names of the ports.
+#[test]
+fn ports_are_told_to_have_an_order() {
+    let piston = |ports: &str| {
+        format!(
+            "component Piston(port oil, port 1 rod) {{ param area = 1.0; oil -> TF t {{ flow: 1.0 / area }} -> rod; }} {}",
+            masses(&format!("piston: Piston {{ area: 2.0 }} ({ports});"))
+        )
+    };
+    for ports in ["oil: k, rod: v", "oil = k, rod = v"] {
+        let help = typed(&piston(ports)).remove(0);
+        assert_eq!(help, "piston: Piston { area: 2.0 } (k, v);");
+    }
+    assert_eq!(told(&piston("k, v")), "");
+}
+
+/// What an element in the place of a value is read by.
+#[test]
+fn variables_of_elements_are_told_by_their_kind() {
+    let read = |name: &str| {
+        told(&masses(&format!(
+            "v -> GY g {{ effort: 1.0 }} -> k; k -> R r {{ resistance: 1.0 }}; output y = {name};"
+        )))
+    };
+    insta::assert_snapshot!(["m", "c", "r", "g"].map(read).join("\n"), @"
+    2:74 `m` is an element; write `m.p`, `.e` or `.f` [MBG0213]
+    2:74 `c` is an element; write `c.q`, `.e` or `.f` [MBG0213]
+    2:74 `r` is an element; write `r.e` or `.f` [MBG0213]
+    2:74 `g` is an element; a two-port has two efforts and two flows; read them at a junction [MBG0213]
+    ");
+}
+
+/// Displacements of masses and junctions, and momenta of springs, are integrals.
+#[test]
+fn displacements_that_are_no_states_are_told_as_integrals() {
+    for (read, integral) in [
+        ("m.q", "integral q_m = m.f, initial: 0.0;"),
+        ("n.q", "integral q_n[3] = n.f;"),
+        ("v.q", "integral q_v = v.f, initial: 0.0;"),
+        ("w.q", "integral q_w[3] = w.f;"),
+        ("c.p", "integral p_c = c.e, initial: 0.0;"),
+        ("k.p", "integral p_k = k.e, initial: 0.0;"),
+    ] {
+        let helps = typed(&masses(&format!("output y = {read};")));
+        assert_eq!(helps[0], integral);
+        let size = if helps[0].contains('[') { "[3]" } else { "" };
+        let typed = format!("{} output y{size} = {};", helps[0], helps[1]);
+        assert_eq!(told(&masses(&typed)), "");
+    }
+    assert_eq!(typed(&masses("output y = k.q;"))[0], "c.q");
+    // The rate of an integral is written where it is declared.
+    let rate = told(&masses("integral way = v.f; output y = der(way);"));
+    assert!(
+        rate.contains("an integral has the rate that it is declared with; where `way` is an input"),
+        "{rate}"
+    );
+}

@@ -662,3 +662,69 @@ fn units_of_other_trades_are_told_with_their_factors() {
     // These are as large as those of SI.
     assert!(diagnose(&mass("param _x: mM = 1.0; param _y: kat = 1.0;")).is_empty());
 }
+
+/// What all units behind a converter tell, far from it, is told of it.
+#[test]
+fn a_converter_that_is_another_one_is_told() {
+    let helps = |text: &str| {
+        let found = diagnose(text);
+        let helps = found.iter().flat_map(|it| it.helps.clone());
+        helps.collect::<Vec<_>>().join("; ")
+    };
+    let speaker = |converter: &str| {
+        format!(
+            "model M {{ param bl: N/A = 7.0; input v: V; 1 wire {{ Se amplifier {{ effort: v }} R winding {{ resistance: 6.0 }} }}
+             wire -> {converter} -> cone; 1 cone {{ I mass {{ inertia: 0.1 }} C edge {{ stiffness: 10.0 }} }}
+             output way: m = edge.q; output speed: m/s = cone.f; }}"
+        )
+    };
+    assert_eq!(
+        helps(&speaker("TF motor { flow: bl }")),
+        "all units agree with `GY motor { effort: bl }`"
+    );
+    assert_eq!(helps(&speaker("GY motor { effort: bl }")), "");
+    let cylinder = |law: &str| {
+        format!(
+            "model M {{ param area: m^2 = 0.1; param length: m = 0.5; input supply: Pa; 0 line {{ Se source {{ effort: supply }} }}
+             line -> TF piston {{ flow: {law} }} -> rod; 1 rod {{ I mass {{ inertia: 0.1 }} }} output speed: m/s = rod.f; }}"
+        )
+    };
+    for (slip, told, meant) in [
+        ("area", "1 / area", "1 / area"),
+        ("length * length", "1 / (…)", "1 / (length * length)"),
+    ] {
+        assert_eq!(
+            helps(&cylinder(slip)),
+            format!("all units agree with `TF piston {{ flow: {told} }}`")
+        );
+        assert_eq!(helps(&cylinder(meant)), "");
+    }
+    // Where a loop repeats it, all of them are meant.
+    let row = |law: &str| {
+        format!(
+            "model M {{ param radius: m = 0.1; param force: N = 2.0; 1 shaft {{ I rotor {{ inertia: 0.1 }} C spring {{ stiffness: 1.0 }} }}
+             rows: for k in 0..3 {{ shaft -> TF wheel {{ flow: {law} }} -> rod; 1 rod {{ Se load {{ effort: force }} }} }}
+             output angle: rad = spring.q; }}"
+        )
+    };
+    assert_eq!(
+        helps(&row("1 / radius")),
+        "all units agree with `TF wheel { flow: radius }`"
+    );
+    assert_eq!(helps(&row("radius")), "");
+}
+
+/// A source that waves without an amplitude is looked at last, though its rate has a unit.
+#[test]
+fn a_wave_without_an_amplitude_is_told_at_its_law() {
+    let (place, text) = told(
+        "model M { param k: N/m = 1.0; param w: rad/s = 3.0; 1 a { I m { inertia: 1.0 } }
+         0 z { C d { stiffness: k } } Sf road { flow: sin(w * t) } -> z; z -> a; }",
+    );
+    assert!(place.starts_with("sin(w * t)"), "{place}");
+    assert!(
+        text.contains("`flow` of `road` must be `m/s` here, and this is a pure number"),
+        "{text}"
+    );
+    assert!(text.contains("`1.0 * …`"), "{text}");
+}

@@ -20,9 +20,13 @@ impl Lookup<'_, '_> {
         match self.scopes.follow(self.scope, path) {
             Ok(Some((Entity::Junction(id, _), count))) => {
                 let id = *id;
-                self.at_junction(pool, path, count, id)
+                let known = self.at_junction(pool, path, count, id);
+                known.or_else(|| self.as_integral(pool, path, count))
             }
-            Ok(Some((Entity::Element(_), count))) => self.behind_index(pool, path, count, true),
+            Ok(Some((Entity::Element(_), count))) => {
+                let known = self.behind_index(pool, path, count, true);
+                known.or_else(|| self.as_integral(pool, path, count))
+            }
             Ok(Some((Entity::Instance(_), count))) => self.behind_index(pool, path, count, false),
             Ok(None) => {
                 let in_loop = self.scopes.in_loop(self.scope, path);
@@ -31,6 +35,36 @@ impl Lookup<'_, '_> {
             }
             _ => None,
         }
+    }
+
+    /// The displacement of what has a flow, or the momentum of what has an effort, where that is no state.
+    fn as_integral(&mut self, pool: &mut Pool, path: &[Step], count: usize) -> Option<String> {
+        let (front, rest) = path.split_at(count);
+        let [Step { name, index: None }] = rest else {
+            return None;
+        };
+        let rate = match name.to_string().as_str() {
+            "q" => "f",
+            "p" => "e",
+            _ => return None,
+        };
+        let rate = Step {
+            name: Ident::new(rate, name.span()),
+            index: None,
+        };
+        let rate = [front, &[rate][..]].concat();
+        let Some(Ok(value)) = self.value(pool, &rate) else {
+            return None;
+        };
+        let (size, start) = match value.entries(pool)?.len() {
+            1 => (String::new(), ", initial: 0.0"),
+            size => (format!("[{size}]"), ""),
+        };
+        let owner = &front.last()?.name;
+        Some(format!(
+            "write `integral {name}_{owner}{size} = {}{start};`, and read `{name}_{owner}`",
+            text(&rate)
+        ))
     }
 
     /// Outputs are for the surroundings; a law reads the value behind one.

@@ -370,8 +370,8 @@ fn rate(of: &Expr) -> String {
     }
     match plain_name(of) {
         Some(name) => format!(
-            "{rule}: where `{name}` is an input, give its rate in its place, `input {name}_rate; integral {name} = \
-             {name}_rate;`, and read `{name}_rate`"
+            "{rule}: an integral has the rate that it is declared with; where `{name}` is an input, give its rate in its place, \
+             `input {name}_rate; integral {name} = {name}_rate;`, and read `{name}_rate`"
         ),
         None => format!("{rule}: read the flow `….f` or the effort `….e` that is this rate"),
     }

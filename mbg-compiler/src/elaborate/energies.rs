@@ -20,12 +20,15 @@ const NEAR: f64 = 1e-12;
 
 impl Reader<'_, '_, '_> {
     /// The energy of a law that is no multiple of the state, and how it is found: in closed form as far as there is one, by a
-    /// quadrature of what is left.
+    /// quadrature of what is left. What is stored by pseudo bonds is no energy, so that their laws need none.
     pub(super) fn potential(
         &mut self,
         law: &[Expression],
         span: Span,
     ) -> Result<(Expression, Integral)> {
+        if self.is_pseudo() {
+            return Ok((Expression::ZERO, Integral::Exact));
+        }
         self.check_potential(law, span)?;
         let zero = vec![Expression::ZERO; law.len()];
         if quadrature::is_exact(self.pool, &self.own.states, law) {
@@ -55,6 +58,11 @@ impl Reader<'_, '_, '_> {
             return self.has_no_integral(span);
         };
         Ok((self.pool.add(closed, rest), integral))
+    }
+
+    /// Whether effort times flow is no power at the storage.
+    pub(super) fn is_pseudo(&self) -> bool {
+        self.lookup.graph.is_pseudo(self.own.element)
     }
 
     fn quadrature(
@@ -237,8 +245,12 @@ impl Reader<'_, '_, '_> {
             self.element.name
         );
         let report = error(codes::EXPRESSION, span, message);
-        Err(Box::new(report.help(
-            "write `energy: …`, from which the law follows by differentiation",
-        )))
+        Err(Box::new(
+            report
+                .help("write `energy: …`, from which the law follows by differentiation")
+                .help(
+                    "or where effort times flow is no power write `pseudo` behind the name of its junction",
+                ),
+        ))
     }
 }

@@ -319,7 +319,9 @@ impl Reader<'_, '_, '_> {
         let (coenergy, (energy, integral)) = match word {
             "inertia" | "compliance" | "stiffness" => {
                 let matrix = self.coefficient(value)?;
-                check_symmetry(self.pool, &matrix, value.span())?;
+                if !self.is_pseudo() {
+                    check_symmetry(self.pool, &matrix, value.span())?;
+                }
                 if word == "inertia" {
                     assumptions = self.positive(&matrix, value.span())?;
                 }

@@ -382,12 +382,20 @@ impl Lookup<'_, '_> {
                     "`{name}` is a loop; read what is inside an iteration, `{name}[{start}].…`"
                 ),
             ),
-            Entity::Element(_) => fail(
-                name.span(),
-                format!("`{name}` is an element; write `{name}.q`, `.p`, `.e` or `.f`"),
-            ),
+            Entity::Element(id) => fail(name.span(), self.is_element(*id, name)),
             _ => fail(name.span(), format!("`{name}` has no value here")),
         }
+    }
+
+    /// What to write where an element stands in the place of a value.
+    fn is_element(&self, id: ElementId, name: &Ident) -> String {
+        let known = match self.graph.elements[id.0].kind {
+            ElementKind::I => format!("write `{name}.p`, `.e` or `.f`"),
+            ElementKind::C => format!("write `{name}.q`, `.e` or `.f`"),
+            kind if is_two_port(kind) => TWO_PORT_VARIABLE.to_owned(),
+            _ => format!("write `{name}.e` or `.f`"),
+        };
+        format!("`{name}` is an element; {known}")
     }
 
     /// Whether a name is declared as something with a value.

@@ -234,10 +234,16 @@ pub(super) fn instance(
     let name = cursor.name("the name of an instance")?;
     cursor.take_punct(':');
     let component = cursor.name(&format!("the name of a component after `{name}:`"))?;
-    let arguments = match cursor.take_group(Delimiter::Brace) {
-        Some(group) => fields(&group, &format!("{name}: {component}"), sink)?,
+    let braces = cursor.take_group(Delimiter::Brace);
+    let arguments = match &braces {
+        Some(group) => fields(group, &format!("{name}: {component}"), sink)?,
         None => Vec::new(),
     };
+    if let Some(braces) = &braces
+        && let Some(help) = elsewhere::ports(cursor, &name, &component, braces)
+    {
+        return Err(Box::new(cursor.expected("junctions alone").help(help)));
+    }
     if let Some(help) = elsewhere::parameters(cursor, 0, &name, &component) {
         return Err(Box::new(
             (*cursor.expected(&format!("`{{` after `{component}`"))).help(help),

@@ -7,7 +7,7 @@ use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
 use super::expressions::expression;
 use super::recovery::Sink;
-use super::{equations, slips, words};
+use super::{elsewhere, equations, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
@@ -30,7 +30,10 @@ pub(super) fn element(
     let span = cursor.span();
     cursor.advance(1);
     let name = cursor.name(&format!("the name of the element after `{spelling}`"));
-    let name = name.map_err(|report| with_help(report, slips::without_colon(cursor, spelling)))?;
+    let name = name.map_err(|report| {
+        let help = slips::without_colon(cursor, spelling);
+        with_help(report, help.or_else(|| slips::size_first(cursor, spelling)))
+    })?;
     let dimension = cursor.dimension()?;
     let Some(group) = cursor.take_group(Delimiter::Brace) else {
         let brackets = if dimension.is_none() { "`[` or " } else { "" };
@@ -180,6 +183,9 @@ fn with_help(mut report: Box<Diagnostic>, help: Option<String>) -> Box<Diagnosti
 pub(super) fn no_element(cursor: &Cursor, what: &str) -> Diagnostic {
     let mut error = *cursor.expected(what);
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
+    if let Some(help) = elsewhere::element(&word) {
+        return error.help(help);
+    }
     match words::nearest(&word, &words::element_names()) {
         Some(near) => error = error.help(format!("did you mean `{near}`?")),
         None => {

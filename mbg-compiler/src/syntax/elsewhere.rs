@@ -19,6 +19,41 @@ const DECLARING: &[(&str, &str)] = &[
 /// Words for types, which declarations do not name here.
 const TYPES: &[&str] = &["Real", "Integer", "float", "double", "f64"];
 
+/// What to type for an element of bond graphs that has another name here, or none.
+pub(super) fn element(word: &str) -> Option<String> {
+    let modulated = |kind| format!("write `{kind}`: any law may be modulated by what it reads");
+    Some(match word {
+        "MSe" => modulated("Se"),
+        "MSf" => modulated("Sf"),
+        "MI" => modulated("I"),
+        "MC" => modulated("C"),
+        "MR" => modulated("R"),
+        "De" => {
+            "what is measured is read, and needs no detector: `output name = node.e;` of a 0-junction `node`"
+                .to_owned()
+        }
+        "Df" => {
+            "what is measured is read, and needs no detector: `output name = rod.f;` of a 1-junction `rod`"
+                .to_owned()
+        }
+        "SS" => {
+            "a source and what it measures are written apart: `Se name { effort: … }` and `output measured = name.f;`, or `Sf` and \
+             `name.e`"
+                .to_owned()
+        }
+        "RS" => {
+            "write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: \
+             `Sf entropy { flow: name.e * name.f / node.e }`"
+                .to_owned()
+        }
+        "IC" => {
+            "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`"
+                .to_owned()
+        }
+        _ => return None,
+    })
+}
+
 /// What to type for the statement that begins here, if another language has it.
 pub(super) fn statement(cursor: &Cursor) -> Option<String> {
     let word = cursor.ident(0)?.to_string();
@@ -195,6 +230,28 @@ pub(super) fn parameters(
     let ports = ports.map_or_else(|| "…".to_owned(), |ports| dump::tokens(ports.stream()));
     Some(format!(
         "parameters stand in braces: `{name}: {component} {{ {parameters} }} ({ports});`"
+    ))
+}
+
+/// What to type for `piston: Piston { … } (p: line, x: rod);`, with the names of the ports.
+pub(super) fn ports(
+    cursor: &Cursor,
+    name: &Ident,
+    component: &Ident,
+    braces: &Group,
+) -> Option<String> {
+    let given = cursor.group(0, Delimiter::Parenthesis)?;
+    let given = divided(given.stream(), ',');
+    let junctions = given.iter().map(|it| {
+        let (port, junction) = it.split_once([':', '='])?;
+        let is_name = syn::parse_str::<Ident>(port.trim()).is_ok();
+        is_name.then(|| junction.trim().to_owned())
+    });
+    let junctions: Option<Vec<_>> = junctions.collect();
+    let parameters = dump::tokens(braces.stream());
+    Some(format!(
+        "junctions are given in the order of the ports: `{name}: {component} {{ {parameters} }} ({});`",
+        junctions?.join(", ")
     ))
 }
 

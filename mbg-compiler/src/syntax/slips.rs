@@ -56,6 +56,15 @@ pub(super) fn without_colon(cursor: &Cursor, kind: &str) -> Option<String> {
     Some(format!("write `{kind} {name}`, without the colon"))
 }
 
+/// What to type for `R[2] valve { … }`, with the size behind the kind.
+pub(super) fn size_first(cursor: &Cursor, kind: &str) -> Option<String> {
+    cursor.group(0, Delimiter::Bracket)?;
+    let name = cursor.ident(1)?;
+    Some(format!(
+        "an element has the size of its junction: write `{kind} {name}`"
+    ))
+}
+
 /// What to type for a value in the braces of an element that has no word before it.
 pub(super) fn without_word(fields: &Group, law: &str) -> Option<String> {
     let inside = Cursor::inside(fields);

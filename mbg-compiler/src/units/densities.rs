@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::dimension::Dimension;
 use super::report::unit_text;
-use super::{checked, pseudo, watt};
+use super::{Inverted, checked, pseudo, watt};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::Elaborated;
@@ -63,6 +63,14 @@ fn agreeing(
         model.graph.junctions[id.0].pseudo = true;
     }
     let mut told = Diagnostics::new();
-    let units = checked(&model, claims, pool, declared.clone(), &mut told);
+    let as_written = Inverted::default();
+    let units = checked(
+        &model,
+        claims,
+        pool,
+        declared.clone(),
+        &as_written,
+        &mut told,
+    );
     (!told.any()).then_some(units)
 }

@@ -8,6 +8,7 @@
 //! they first contradict each other. A number with a decimal point may carry any unit; a whole number counts, and is pure
 //! as a factor. A model that declares no unit at all is not looked at.
 
+mod converters;
 mod densities;
 mod dimension;
 mod inference;
@@ -25,6 +26,7 @@ use self::dimension::{Dimension, Ratio, Unknowns};
 use self::inference::{Inference, Measure};
 use self::ports::Ports;
 use self::report::Reporter;
+use crate::causality::report::alternatives;
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::claims::{self, Claim, Claims, Subject};
 use crate::elaborate::{Elaborated, Quantity};
@@ -60,25 +62,44 @@ pub fn check(
         return;
     };
     let mut found = Diagnostics::new();
-    checked(elaborated, &claims, &pool, declared.clone(), &mut found);
+    let as_written = Inverted::default();
+    checked(
+        elaborated,
+        &claims,
+        &pool,
+        declared.clone(),
+        &as_written,
+        &mut found,
+    );
     if !found.any() {
         return;
     }
-    match densities::report(elaborated, &claims, &pool, &declared) {
-        Some(report) => diagnostics.report(report),
-        None => found
-            .list()
-            .iter()
-            .for_each(|report| diagnostics.report(report.clone())),
+    // One converter that is another one explains more than effort times flow that is no power.
+    let converters = converters::advice(elaborated, &claims, &pool, &declared);
+    if converters.is_empty()
+        && let Some(report) = densities::report(elaborated, &claims, &pool, &declared)
+    {
+        return diagnostics.report(report);
+    }
+    for (position, report) in found.list().iter().enumerate() {
+        let mut report = report.clone();
+        if position == 0 && !converters.is_empty() {
+            report.helps = alternatives(converters.clone());
+        }
+        diagnostics.report(report);
     }
 }
 
-/// Checks units of which these are declared; the result has the effort and the flow of the first component of each junction.
+/// Two-ports whose laws are taken for their inverses, to see whether units agree then.
+type Inverted = std::collections::BTreeSet<ElementId>;
+
+/// Checks units of which these are declared, with the laws of some two-ports inverted; the result has the effort and the flow of the first component of each junction.
 fn checked(
     model: &Elaborated,
     claims: &Claims,
     pool: &Pool,
     declared: BTreeMap<Symbol, Dimension>,
+    inverted: &Inverted,
     diagnostics: &mut Diagnostics,
 ) -> Vec<[Dimension; 2]> {
     let mut reporter = Reporter::new(model, claims, pool, diagnostics);
@@ -90,6 +111,7 @@ fn checked(
         model,
         ports,
         inference,
+        inverted,
         reporter,
     };
     checker.run(&claims.list);
@@ -218,6 +240,7 @@ struct Checker<'a> {
     model: &'a Elaborated,
     ports: Ports,
     inference: Inference<'a>,
+    inverted: &'a Inverted,
     reporter: Reporter<'a>,
 }
 
@@ -395,7 +418,10 @@ impl Checker<'_> {
                 .wanted(&self.model.graph, id, word, place, found.len())
             {
                 measures.push(measure.clone());
-                wanted.push(unit);
+                wanted.push(match self.inverted.contains(&id) {
+                    true => Dimension::pure().over(&unit),
+                    false => unit,
+                });
             }
         }
         if let Some((wanted, found)) = self.first_other(&measures, &wanted) {

@@ -102,9 +102,20 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// Whether a law is one of numbers alone: it reads no name with a declared unit.
+    /// Whether a law is one of numbers alone: it reads no name with a declared unit, but for what becomes a pure number by a
+    /// function, as a rate does in a sine of time.
     pub(super) fn is_numeric(&self, claim: &Claim) -> bool {
-        matches!(claim.subject, Subject::Word(..)) && self.read_by(claim).is_empty()
+        let mut open = claim.entries.clone();
+        while let Some(current) = open.pop() {
+            let operation = self.pool.operation(current);
+            match operation {
+                Operation::Symbol(symbol) if self.declared.contains(symbol) => return false,
+                Operation::Sine(_) | Operation::Cosine(_) => {}
+                Operation::Call(Function::Exp | Function::Ln | Function::Tanh, _) => {}
+                _ => open.extend_from_slice(&operation.operands()),
+            }
+        }
+        matches!(claim.subject, Subject::Word(..))
     }
 
     /// The names with a declared unit that are read.

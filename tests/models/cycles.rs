@@ -373,8 +373,8 @@ fn laws_come_back_with_the_motion() {
     let exact = exact();
     let model = Chopper::<f64>::new(ChopperParameters::default()).unwrap();
     for (period, is_whole) in [(1e-3, true), (3e-3, true), (1.5e-3, false), (0.9e-3, false)] {
-        let chopper = PeriodicTrim::new(&model, &exact, period).input(&[24.0]);
-        let found = chopper.fix("supply").free("charge").solve();
+        let chopper = PeriodicTrim::new(&model, &exact, period).input(&[24.0, 0.3]);
+        let found = chopper.fix("supply").fix("duty").free("charge").solve();
         match found {
             Ok(_) => assert!(is_whole, "{period}"),
             Err(Untrimmed::Driven { name, .. }) => {

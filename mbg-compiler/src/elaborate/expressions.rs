@@ -1,7 +1,6 @@
 //! Laws: from Rust expressions to the pool.
 
 use proc_macro2::{Ident, Span};
-use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 use syn::{BinOp, Expr, Lit, Member, UnOp, parse_quote};
 
@@ -9,9 +8,9 @@ use super::elsewhere;
 use super::model::Assumption;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Pool, Product, Rate};
+use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate};
 use crate::syntax::dump;
-use crate::syntax::words::{FUNCTIONS, article};
+use crate::syntax::words::article;
 use crate::units::without_unit;
 
 /// What an expression stands for.
@@ -542,177 +541,6 @@ impl<N: Names> Evaluator<'_, N> {
         }
     }
 
-    fn call(&mut self, call: &syn::ExprCall) -> Result<Value> {
-        let Expr::Path(path) = &*call.func else {
-            return fail(call.func.span(), "expected the name of a function");
-        };
-        let arguments: Vec<Expr> = call.args.iter().cloned().collect();
-        let Some(name) = path.path.get_ident() else {
-            let mut report = no_plain_name(&path.path, &arguments);
-            let last = path.path.segments.last().map(|last| &last.ident);
-            // `f64::sin(t)`
-            if let Some(last) = last.filter(|last| self.function(last, &arguments).is_ok()) {
-                let arguments = arguments.iter().map(dump::expression);
-                let arguments = arguments.collect::<Vec<_>>().join(", ");
-                report.helps.push(format!("write `{last}({arguments})`"));
-            }
-            return Err(report);
-        };
-        self.function(name, &arguments)
-    }
-
-    fn function(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let text = name.unraw().to_string();
-        let count = |expected: usize| check_count(name, expected, arguments.len());
-        match text.as_str() {
-            "sin" | "cos" => {
-                count(1)?;
-                let angle = self.scalar(&arguments[0])?;
-                Ok(Value::Scalar(if text == "sin" {
-                    self.pool.sine(angle)
-                } else {
-                    self.pool.cosine(angle)
-                }))
-            }
-            "mod" => {
-                count(2)?;
-                let [value, period] = [self.scalar(&arguments[0])?, self.scalar(&arguments[1])?];
-                self.remainder(value, (period, &arguments[1]))
-            }
-            "floor" => {
-                count(1)?;
-                let value = self.scalar(&arguments[0])?;
-                let fraction = self.pool.call(Function::Fraction, &[value]);
-                Ok(Value::Scalar(self.pool.subtract(value, fraction)))
-            }
-            "pow" | "powi" => {
-                count(2)?;
-                self.power(name, arguments)
-            }
-            "interpolate" => {
-                let [x, places, values] = arguments else {
-                    return fail(name.span(), "expected `interpolate(x, places, values)`");
-                };
-                self.curve(x, places, values)
-            }
-            "transpose" => {
-                count(1)?;
-                match self.evaluate(&arguments[0])? {
-                    Value::Matrix(product) => Ok(Value::Matrix(product.transpose())),
-                    Value::Scalar(_) if self.names.is_by_component() => whole_vector(name.span()),
-                    scalar @ Value::Scalar(_) => Ok(scalar),
-                }
-            }
-            "diag" => {
-                if let [vector] = arguments {
-                    self.check_entries(vector)?;
-                }
-                let entries: Result<Vec<_>> = arguments
-                    .iter()
-                    .map(|argument| self.scalar(argument))
-                    .collect();
-                Ok(Value::Matrix(Product::of(Factor::Dense(Matrix::diagonal(
-                    &entries?,
-                )))))
-            }
-            "skew" => {
-                count(1)?;
-                let [x, y, z] = self.column(&arguments[0])?;
-                let zero = Expression::ZERO;
-                let rows = [
-                    zero,
-                    z.negated(),
-                    y,
-                    z,
-                    zero,
-                    x.negated(),
-                    y.negated(),
-                    x,
-                    zero,
-                ];
-                let matrix = Matrix::new(3, 3, rows.to_vec());
-                Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
-            }
-            _ => match self.orientation(name, arguments) {
-                Some(value) => value,
-                None => self.elementary(name, arguments),
-            },
-        }
-    }
-
-    fn elementary(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let known = Function::ALL
-            .into_iter()
-            .find(|function| name == function.name());
-        let Some(function) = known.filter(|function| *function != Function::SelectLess) else {
-            let report = error(
-                codes::UNKNOWN_NAME,
-                name.span(),
-                format!("`{name}` is not a function of the language"),
-            );
-            let text = name.to_string();
-            return Err(Box::new(match elsewhere::instead(&text, arguments) {
-                Some(help) => report.help(help),
-                None => {
-                    let known = format!("functions are {}", FUNCTIONS.join(", "));
-                    report.did_you_mean(&text, &FUNCTIONS).help(known)
-                }
-            }));
-        };
-        check_count(name, function.arity(), arguments.len())?;
-        let values: Result<Vec<_>> = arguments
-            .iter()
-            .map(|argument| self.scalar(argument))
-            .collect();
-        Ok(Value::Scalar(self.pool.call(function, &values?)))
-    }
-
-    /// What is left of a value beyond whole periods of it.
-    fn remainder(
-        &mut self,
-        value: Expression,
-        (period, written): (Expression, &Expr),
-    ) -> Result<Value> {
-        let Some(turns) = self.pool.divide(value, period) else {
-            let message = "there is nothing between periods that last for zero";
-            return Err(Box::new(error(codes::NOT_FINITE, written.span(), message)));
-        };
-        let fraction = self.pool.call(Function::Fraction, &[turns]);
-        Ok(Value::Scalar(self.pool.multiply(period, fraction)))
-    }
-
-    /// `pow`, and `powi`, which takes whole exponents only.
-    fn power(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let base = self.scalar(&arguments[0])?;
-        let exponent = self.exponent(&arguments[1])?;
-        let value = self.pool.constant_value(exponent);
-        let is_whole = value.is_some_and(|it| it.fract() == 0.0 && it.abs() <= LARGEST_POWER);
-        if name == "powi" && !is_whole {
-            let message = "expected an integer exponent between -64 and 64";
-            let report = error(codes::EXPRESSION, arguments[1].span(), message);
-            let help = elsewhere::power(&arguments[0], &arguments[1]);
-            return Err(Box::new(report.help(help)));
-        }
-        match self.pool.real_power(base, exponent) {
-            Some(power) => Ok(Value::Scalar(power)),
-            None => Err(Box::new(error(
-                codes::NOT_FINITE,
-                arguments[0].span(),
-                "this divides by zero, whatever the state",
-            ))),
-        }
-    }
-
-    /// The exponent of a power. One that is written as a number has no unit, whatever other numbers may carry.
-    fn exponent(&mut self, exponent: &Expr) -> Result<Expression> {
-        let number = elsewhere::number(exponent);
-        let literal = number.and_then(|it| self.pool.literal(&format!("{:?}", it.abs())));
-        match (number, literal) {
-            (Some(number), Some(literal)) => Ok(literal.flipped(number < 0.0)),
-            _ => self.scalar(exponent),
-        }
-    }
-
     fn array(&mut self, array: &syn::ExprArray) -> Result<Value> {
         if array.elems.is_empty() {
             return mismatch(array.span(), "expected at least one entry".to_owned());
@@ -735,22 +563,8 @@ impl<N: Names> Evaluator<'_, N> {
     }
 }
 
-/// A function takes so many arguments.
-fn check_count(name: &Ident, expected: usize, found: usize) -> Result<()> {
-    if expected == found {
-        return Ok(());
-    }
-    let noun = if expected == 1 {
-        "argument"
-    } else {
-        "arguments"
-    };
-    let message = format!("`{name}` takes {expected} {noun}, found {found}");
-    fail(name.span(), message)
-}
-
 /// A path where a name should stand; of another language's constant or function it says what is written here.
-fn no_plain_name(path: &syn::Path, arguments: &[Expr]) -> Box<Diagnostic> {
+pub(super) fn no_plain_name(path: &syn::Path, arguments: &[Expr]) -> Box<Diagnostic> {
     let report = error(codes::EXPRESSION, path.span(), "expected a plain name");
     let last = path.segments.last().map(|last| last.ident.to_string());
     Box::new(
@@ -762,7 +576,7 @@ fn no_plain_name(path: &syn::Path, arguments: &[Expr]) -> Box<Diagnostic> {
 }
 
 /// A law that takes the whole vector is read as a law of the vector, whatever this says.
-fn whole_vector<T>(span: Span) -> Result<T> {
+pub(super) fn whole_vector<T>(span: Span) -> Result<T> {
     mismatch(
         span,
         "expected a vector, found one component of it".to_owned(),

@@ -23,6 +23,7 @@ mod energies;
 pub mod expressions;
 mod finish;
 mod frames;
+mod functions;
 mod idle;
 mod indices;
 mod instances;

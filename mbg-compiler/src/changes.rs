@@ -82,9 +82,9 @@ pub fn times(pool: &mut Pool, rates: &[Expression]) -> Times {
         };
         for branch in branches {
             let (zero, zeros) = (zero(pool, branch), zeros(pool, branch));
-            is_known &= zero.is_some() || !zeros.is_empty() || !is_of_time(pool, branch);
+            is_known &= zero.is_some() || zeros.is_some() || !is_of_time(pool, branch);
             add_new(&mut once, zero);
-            add_new(&mut again, zeros);
+            add_new(&mut again, zeros.unwrap_or_default());
         }
         if !is_known {
             sought.push(difference);
@@ -115,7 +115,7 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
             let Some((value, threshold)) = threshold(pool, branch) else {
                 continue;
             };
-            let is_known = is_of_time(pool, branch) && !zeros(pool, branch).is_empty();
+            let is_known = is_of_time(pool, branch) && zeros(pool, branch).is_some();
             if is_known || angles(pool, value).is_empty() && !is_of_state(pool, value) {
                 continue;
             }
@@ -291,17 +291,15 @@ fn zero(pool: &mut Pool, expression: Expression) -> Option<Expression> {
 }
 
 /// The times at which an expression of time and parameters is zero, each with the period after which it is so again, if it is of
-/// one wave or of one fraction of what is a line.
-fn zeros(pool: &mut Pool, expression: Expression) -> Vec<[Expression; 2]> {
-    let Some((value, threshold)) = threshold(pool, expression) else {
-        return Vec::new();
-    };
+/// one wave or of one fraction of what is a line; a wave may never come so far.
+fn zeros(pool: &mut Pool, expression: Expression) -> Option<Vec<[Expression; 2]>> {
+    let (value, threshold) = threshold(pool, expression)?;
     let is_beyond = pool
         .constant_value(threshold)
         .is_some_and(|it| it.abs() > 1.0);
     let turn = pool.irrational(2.0 * PI);
-    match *pool.operation(value) {
-        _ if is_beyond => Vec::new(),
+    let found = match *pool.operation(value) {
+        Operation::Sine(_) | Operation::Cosine(_) if is_beyond => return Some(Vec::new()),
         Operation::Sine(angle) => {
             let place = pool.call(Function::Asin, &[threshold]);
             let half = pool.irrational(PI);
@@ -316,8 +314,9 @@ fn zeros(pool: &mut Pool, expression: Expression) -> Vec<[Expression; 2]> {
             let turns = turns[0];
             repeated(pool, turns, &[threshold], Expression::ONE)
         }
-        _ => Vec::new(),
-    }
+        _ => return None,
+    };
+    (!found.is_empty()).then_some(found)
 }
 
 /// The times at which the waves in an expression turn or are zero, each with its period.

@@ -284,6 +284,24 @@ fn what_comes_again_has_its_slopes() {
     }
 }
 
+mbg! {
+    /// What a wave would switch if it came so far.
+    model Unmoved {
+        1 way {
+            I mass { inertia: 1.0 }
+            R friction { resistance: 1.0 }
+            Se push { effort: if sin(3.0 * t) > 1.5 { 1.0 } else { 0.5 } }
+        }
+    }
+}
+
+#[test]
+fn a_wave_that_never_comes_so_far_ends_no_step() {
+    let model = Unmoved::<f64>::new(UnmovedParameters::default()).unwrap();
+    assert_eq!(model.next_change(0.0), None);
+    assert_eq!(model.change_between(0.0, 10.0, |_| SVector::from([])), None);
+}
+
 #[test]
 fn there_is_a_next_change_from_anywhere() {
     let model = Chopped::<f64>::new(ChoppedParameters::default()).unwrap();

@@ -93,7 +93,8 @@ pub fn check(
 /// Two-ports whose laws are taken for their inverses, to see whether units agree then.
 type Inverted = std::collections::BTreeSet<ElementId>;
 
-/// Checks units of which these are declared, with the laws of some two-ports inverted; the result has the effort and the flow of the first component of each junction.
+/// Checks units of which these are declared, with the laws of some two-ports inverted; the result has the effort and the flow of
+/// the first component of each junction.
 fn checked(
     model: &Elaborated,
     claims: &Claims,

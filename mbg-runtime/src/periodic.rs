@@ -47,8 +47,9 @@ const TINY: f64 = 1e-9;
 ///
 /// The motion is found by shooting: from a start it is followed for a period by the integrator that is given, and the start corrected
 /// by Newton's method with the exact derivatives of the end, which are those of the same steps on [`Dual`] numbers; through jumps
-/// of a law of time, too. Corrections are damped until what is left falls; of those that are as good the one of least norm is taken,
-/// in units of what states and inputs do. So the motion need not be one that others tend to. It is as exact as the integrator.
+/// of laws by time and inputs, too. Corrections are damped until what is left falls; of those that are as good the one of least
+/// norm is taken, in units of what states and inputs do. So the motion need not be one that others tend to. It is as exact as
+/// the integrator.
 ///
 /// # Example
 ///

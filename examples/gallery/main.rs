@@ -17,6 +17,7 @@ mod gimbal_lock;
 mod governor;
 mod heat;
 mod hydraulic_drive;
+mod inverter;
 mod motor;
 #[path = "../../tests/orientation/reference.rs"]
 #[allow(dead_code, reason = "two scenes show some of it")]
@@ -42,7 +43,7 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 23] = [
+const SCENES: [(&str, Draw); 24] = [
     ("gimbal_lock", gimbal_lock::draw),
     ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
@@ -63,6 +64,7 @@ const SCENES: [(&str, Draw); 23] = [
     ("ride", ride::draw),
     ("motor", motor::draw),
     ("rectifier", rectifier::draw),
+    ("inverter", inverter::draw),
     ("amplifier", amplifier::draw),
     ("hydraulic_drive", hydraulic_drive::draw),
     ("heat", heat::draw),

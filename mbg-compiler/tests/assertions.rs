@@ -42,6 +42,7 @@ fn parameters_are_checked_by_new_and_numbers_while_compiling() {
     let expected = expected.map(|(name, condition, reason)| (name, condition.to_owned(), reason));
     assert_eq!(checks.collect::<Vec<_>>(), expected);
     insta::assert_snapshot!(told(&text("", "2.0", "1.0")), @"1:63 `lower < upper` is asserted of `limits`, and these are 2.0 and 1.0 [MBG0213]");
+    insta::assert_snapshot!(told(&text("assert 2 > 3;", "0.0", "1.0")), @"4:55 `2 > 3` is asserted, and these are 2.0 and 3.0 [MBG0213]");
     insta::assert_snapshot!(told(&text("assert 2 < 1;", "0.0", "1.0")), @"4:55 `2 < 1` is asserted, and these are 2.0 and 1.0 [MBG0213]");
 }
 

@@ -741,3 +741,32 @@ fn displacements_that_are_no_states_are_told_as_integrals() {
         "{rate}"
     );
 }
+
+#[test]
+fn remainders_and_whole_parts_have_their_functions() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ input r; param n = 2.0; 1 v {{ I m {{ inertia: 1.0 }} C k {{ stiffness: 4.0 }}\nSe s {{ effort: {law} }} }} }}"
+        )
+    };
+    for (elsewhere, here) in [
+        ("ceil(r)", "-floor(-r)"),
+        ("round(r)", "floor(r + 0.5)"),
+        ("trunc(r + n)", "(sign(r + n) * floor(abs(r + n)))"),
+        ("fmod(r, 2.0)", "mod(r, 2.0)"),
+        ("r.rem_euclid(2.0 * n)", "mod(r, 2.0 * n)"),
+        ("modulo(r, 2.0)", "mod(r, 2.0)"),
+    ] {
+        assert_eq!(typed(&text(elsewhere)), [here]);
+        assert_eq!(told(&text(here)), "");
+    }
+    insta::assert_snapshot!(told(&text("if t % 1e-3 < 5e-4 { 24.0 } else { 0.0 }")), @"
+    2:21 `%` stands between whole numbers, and `t` changes while the model runs [MBG0217]
+      help: write `mod(t, 1e-3)`
+    ");
+    // Of what stays the same, another cause is told.
+    insta::assert_snapshot!(told(&text("n % 2")), @"
+    2:16 expected a whole number that is known while the model is compiled, found `n % 2` [MBG0217]
+      help: a `param` of a model can change after the model is compiled: declare `let n = 2;` in its place
+    ");
+}

@@ -22,8 +22,7 @@ use crate::{Convertible, Real, Trouble};
 /// `A` belongs to one state and time. Of a rotor that spins, with its body in axes that turn with it, or on a shaft that is not
 /// round, the states do not rest: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the
 /// rotor is round, write it in axes that do not turn; else take Floquet's multipliers over a turn, of which
-/// [`Linearised::held`] gives one part after the other, or [`Rk4::transition`](crate::Rk4::transition), as next to
-/// [what comes back](crate::Trim#what-comes-back).
+/// [`Linearised::held`] gives one part after the other, or [`Rk4::transition`](crate::Rk4::transition).
 ///
 /// A nonlinear algebraic loop is solved from zero, as at the start of a run: of several solutions it may find another one than
 /// a run has found.

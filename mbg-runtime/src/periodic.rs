@@ -485,26 +485,41 @@ where
         start: &Trimmed<N, M>,
         section: Option<usize>,
     ) -> Result<Slopes<N, M>, Untrimmed> {
-        let system = self.system.converted(Several::unchanging);
-        let end = |state: SVector<Several, N>, input: SVector<Several, M>| {
-            self.follow(&system, &state, &Constant(input), section, |_, _| ())
-        };
-        let mut slopes = (SMatrix::zeros(), SMatrix::zeros());
-        for first in (0..N).step_by(TOGETHER) {
-            let (_, end) = end(
-                along(&start.state, first),
-                start.input.map(Dual::unchanging),
-            )?;
-            keep_slopes(&mut slopes.0, first, &end);
-        }
+        let (by_state, _) = self.slopes_by_state(start, section)?;
+        let mut by_input = SMatrix::zeros();
+        let state = start.state.map(Dual::unchanging);
         for first in (0..M).step_by(TOGETHER) {
-            let (_, end) = end(
-                start.state.map(Dual::unchanging),
-                along(&start.input, first),
-            )?;
-            keep_slopes(&mut slopes.1, first, &end);
+            let end = self.end_with_slopes(&state, along(&start.input, first), section)?;
+            keep_slopes(&mut by_input, first, &end);
         }
-        Ok(slopes)
+        Ok((by_state, by_input))
+    }
+
+    /// How it changes with the state alone, and the end itself.
+    fn slopes_by_state(
+        &self,
+        start: &Trimmed<N, M>,
+        section: Option<usize>,
+    ) -> Result<(SMatrix<f64, N, N>, SVector<f64, N>), Untrimmed> {
+        let (mut by_state, mut last) = (SMatrix::zeros(), start.state);
+        let input = start.input.map(Dual::unchanging);
+        for first in (0..N).step_by(TOGETHER) {
+            let end = self.end_with_slopes(&along(&start.state, first), input, section)?;
+            keep_slopes(&mut by_state, first, &end);
+            last = end.map(|it| it.value);
+        }
+        Ok((by_state, last))
+    }
+
+    fn end_with_slopes(
+        &self,
+        state: &SVector<Several, N>,
+        input: SVector<Several, M>,
+        section: Option<usize>,
+    ) -> Result<SVector<Several, N>, Untrimmed> {
+        let system = self.system.converted(Several::unchanging);
+        let (_, end) = self.follow(&system, state, &Constant(input), section, |_, _| ())?;
+        Ok(end)
     }
 
     /// How the state after a period changes with that at the start, part by part: where nothing moves, long steps are as good as short
@@ -521,11 +536,9 @@ where
                     period,
                     ..*self
                 };
-                let (slopes, _) = part.slopes(&start, None)?;
+                let (slopes, end) = part.slopes_by_state(&start, None)?;
                 whole = slopes * whole;
-                let input = Constant(start.input);
-                (_, start.state) =
-                    part.follow(self.system, &start.state, &input, None, |_, _| ())?;
+                start.state = end;
             }
             Ok(whole)
         };

@@ -276,3 +276,31 @@ fn resistances_of_any_size_are_taken_in_single_precision() {
         assert!((current * resistance - 0.5).abs() < 1e-6, "{resistance:e}");
     }
 }
+
+mbg! {
+    /// A slide between two ends.
+    model Range {
+        param lower: m = -1.0;
+        param upper: m = 2.0;
+        param count = 1.0;
+        assert lower < upper && count >= 1.0;
+        1 way { I mass { inertia: count } C ends { effort: 1e3 * (min(q - lower, 0.0) + max(q - upper, 0.0)) } }
+    }
+}
+
+#[test]
+fn what_is_asserted_of_parameters_is_asked_by_new() {
+    let of = |lower, upper, count| {
+        Range::new(RangeParameters {
+            lower,
+            upper,
+            count,
+        })
+    };
+    assert!(of(-1.0, 2.0, 1.0).is_ok());
+    let reason = "it must be positive: `lower < upper` is asserted";
+    refused(of(2.0, 2.0, 1.0), "upper - lower", 0.0, reason);
+    refused(of(3.0, 2.0, 1.0), "upper - lower", -1.0, reason);
+    let reason = "it must not be negative: `count >= 1.0` is asserted";
+    refused(of(-1.0, 2.0, 0.5), "count - 1", -0.5, reason);
+}

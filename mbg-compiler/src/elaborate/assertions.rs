@@ -29,21 +29,21 @@ impl Builder<'_> {
 
     fn comparison(&mut self, scope: usize, word: &Ident, comparison: &ExprBinary) -> Result<()> {
         let whole = Expr::Binary(comparison.clone());
+        let [left, right] = [
+            self.vector(scope, &comparison.left, 1, word)?[0],
+            self.vector(scope, &comparison.right, 1, word)?[0],
+        ];
         let (smaller, larger, condition) = match comparison.op {
-            BinOp::Lt(_) => (&comparison.left, &comparison.right, Condition::Positive),
-            BinOp::Gt(_) => (&comparison.right, &comparison.left, Condition::Positive),
-            BinOp::Le(_) => (&comparison.left, &comparison.right, Condition::NotNegative),
-            BinOp::Ge(_) => (&comparison.right, &comparison.left, Condition::NotNegative),
-            BinOp::Ne(_) => (&comparison.right, &comparison.left, Condition::NonZero),
+            BinOp::Lt(_) => (left, right, Condition::Positive),
+            BinOp::Gt(_) => (right, left, Condition::Positive),
+            BinOp::Le(_) => (left, right, Condition::NotNegative),
+            BinOp::Ge(_) => (right, left, Condition::NotNegative),
+            BinOp::Ne(_) => (right, left, Condition::NonZero),
             _ => return Err(no_comparison(&whole)),
         };
-        let [smaller, larger] = [
-            self.vector(scope, smaller, 1, word)?[0],
-            self.vector(scope, larger, 1, word)?[0],
-        ];
         let difference = self.pool.subtract(larger, smaller);
         let text = dump::expression(&whole);
-        let compared = [smaller, larger, Expression::ONE, Expression::ZERO];
+        let compared = [left, right, Expression::ONE, Expression::ZERO];
         let compared = self.pool.call(Function::SelectLess, &compared);
         self.claim_value(scope, word, None, &[compared], whole.span());
         match (
@@ -59,7 +59,7 @@ impl Builder<'_> {
                 match holds {
                     true => Ok(()),
                     false => {
-                        let values = [smaller, larger].map(|it| self.pool.constant_value(it));
+                        let values = [left, right].map(|it| self.pool.constant_value(it));
                         let instance = self.scopes[scope].prefix.trim_end_matches('.');
                         Err(Box::new(broken(&whole, &text, instance, values)))
                     }
@@ -92,8 +92,8 @@ fn broken(whole: &Expr, text: &str, instance: &str, values: [Option<f64>; 2]) ->
         _ => format!(" of `{instance}`"),
     };
     let message = match values {
-        [Some(smaller), Some(larger)] => {
-            format!("`{text}` is asserted{of}, and these are {smaller:?} and {larger:?}")
+        [Some(left), Some(right)] => {
+            format!("`{text}` is asserted{of}, and these are {left:?} and {right:?}")
         }
         _ => format!("`{text}` is asserted{of}, and does not hold"),
     };

@@ -13,6 +13,8 @@ mod changes;
 mod events;
 #[path = "methods/hard.rs"]
 mod hard;
+#[path = "methods/jumps.rs"]
+mod jumps;
 #[path = "methods/kinks.rs"]
 mod kinks;
 #[path = "methods/orders.rs"]

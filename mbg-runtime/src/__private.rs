@@ -155,69 +155,6 @@ pub fn change_between<T: Real, const G: usize>(
     Some(whole + slope)
 }
 
-/// An argument of choices at two points so long apart, with its rate at each.
-pub type Course<T> = [[T; 2]; 2];
-
-/// How many thresholds an argument goes over between two points, those twice that it goes over and back.
-#[inline]
-pub fn passed<T: Real>(lasting: T, course: Course<T>, thresholds: &[T]) -> u32 {
-    passed_by(lasting, course, thresholds, |argument, threshold| {
-        i64::from(threshold < argument)
-    })
-}
-
-/// The same of thresholds that come again with every whole number.
-#[inline]
-pub fn passed_again<T: Real>(lasting: T, course: Course<T>, thresholds: &[T]) -> u32 {
-    passed_by(lasting, course, thresholds, |argument, threshold| {
-        whole_below(argument - threshold)
-    })
-}
-
-/// The same, where `below` counts how often a threshold lies below an argument.
-#[inline]
-fn passed_by<T: Real>(
-    lasting: T,
-    course: Course<T>,
-    thresholds: &[T],
-    below: impl Fn(f64, f64) -> i64,
-) -> u32 {
-    let [from, to] = course.map(|point| point.map(crate::step::seen));
-    let farthest = farthest(crate::step::seen(lasting), from, to);
-    let counts = thresholds.iter().map(|threshold| {
-        let threshold = crate::step::seen(*threshold);
-        let [first, turning, last] = [from[0], farthest, to[0]].map(|it| below(it, threshold));
-        let both = first
-            .abs_diff(turning)
-            .saturating_add(turning.abs_diff(last));
-        u32::try_from(both).unwrap_or(u32::MAX)
-    });
-    counts.fold(0, u32::saturating_add)
-}
-
-/// The sum of some counts: what one argument begins another may end, as two legs of a bridge do.
-#[inline]
-pub fn total<const G: usize>(counts: [u32; G]) -> u32 {
-    counts.into_iter().fold(0, u32::saturating_add)
-}
-
-/// What an argument does not go beyond between two points, given with their rates: where it turns, the place at which the
-/// tangents meet, else an end. It holds for what is convex, as a distance from a place is along a line.
-fn farthest(lasting: f64, [a, rate_a]: [f64; 2], [b, rate_b]: [f64; 2]) -> f64 {
-    if rate_a * rate_b < 0.0 {
-        let time = (b - a - rate_b * lasting) / (rate_a - rate_b);
-        a + rate_a * time.max(0.0).min(lasting)
-    } else {
-        b
-    }
-}
-
-/// The largest whole number that is not above a number.
-fn whole_below(number: f64) -> i64 {
-    let whole = number as i64;
-    whole.saturating_sub(i64::from(whole as f64 > number))
-}
-
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is fixed stays as it is.
 #[inline]
 pub fn orthonormal<T: Real, const N: usize, const R: usize, const C: usize>(

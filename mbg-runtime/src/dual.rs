@@ -13,9 +13,10 @@ use crate::{Columns, Real};
 /// component's slope to 1 and read the slopes of the result. It serves to check symbolic Jacobians, and gives
 /// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
 /// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event. So have the times at which an
-/// input jumps, or a law by time, parameters and inputs. A law that jumps where a state goes through a threshold changes earlier or
-/// later with it, of which a run over the jump knows nothing: end the run there, at an event, and begin the next from its time
-/// and state.
+/// input jumps, or a law by time, parameters and inputs, and at which a law jumps since a state goes through a threshold: a step
+/// ends there, of constant length as well, so that a run on dual numbers may have more steps than one of the values alone. Slopes of
+/// slopes do not know how the motion bends at such a threshold, and no slopes are known where a motion stays on one, as a block
+/// does that dry friction by [`sign`](Real::sign) holds.
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope
 /// zero, and at a kink ([`Real::abs`] at zero, equal arguments of [`Real::min`]) the slope is that of one side.
@@ -225,6 +226,7 @@ impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
 
     const SINGULAR: f64 = T::SINGULAR;
     const EPSILON: f64 = T::EPSILON;
+    const HAS_SLOPES: bool = true;
 
     fn from_f64(value: f64) -> Self {
         Self::unchanging(T::from_f64(value))

@@ -70,6 +70,7 @@ pub mod batch;
 mod called;
 mod columns;
 mod convertible;
+mod course;
 mod dual;
 mod exponential;
 mod four;
@@ -104,6 +105,7 @@ mod untrimmed;
 
 pub use columns::Columns;
 pub use convertible::Convertible;
+pub use course::Course;
 pub use dual::Dual;
 pub use four::Four;
 pub use input::{Constant, Differentiable, Input, Pulse, SampleError, Sampled, Smooth, Sum};

@@ -26,6 +26,9 @@ const NOISE: f64 = 1e-9;
 /// A period is divided for its monodromy matrix until that changes by no more, or into so many parts.
 const SAME: f64 = 1e-7;
 const DIVIDED: u32 = 64;
+/// A start that is nearer to a threshold, in periods, is on it, and later by such a part.
+const BESIDE: f64 = 1e-9;
+const LATER: f64 = 1e-6;
 /// At so many times of each step laws are compared with those a period later.
 const COMPARED: u32 = 16;
 /// By how much slopes along a motion may miss it, beside what they are made of: they are less exact than states where lines of a
@@ -114,8 +117,8 @@ const TINY: f64 = 1e-9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Slopes know nothing of when a law jumps by a state, as in dry friction or a relay. Such a motion is found, if more slowly, but its
-/// monodromy matrix is not that of its neighbours: let the law rise over a small width, as `tanh(v / width)` does.
+/// A law may jump at a state, as dry friction and a relay do. Where the motion stays on a jump, as what friction holds does, its
+/// slopes are not known: let the law rise over a small width there, as `tanh(v / width)` does.
 ///
 /// Newton's method may end between two motions. Where others tend to the motion that is wanted, begin at the state to which a run
 /// of some periods comes.
@@ -144,8 +147,8 @@ pub struct Cycle<const N: usize, const M: usize> {
     pub input: SVector<f64, M>,
     /// The period, s.
     pub period: f64,
-    /// The monodromy matrix: how the state after a period changes with that at the start. NaN for a motion that swings
-    /// by itself and along which it does not lead, since a law jumps at a state on the way.
+    /// The monodromy matrix: how the state after a period changes with that at the start, of a start at which a law jumps with that
+    /// right behind. NaN for a motion that swings by itself and along which it does not lead.
     pub monodromy: SMatrix<f64, N, N>,
 }
 
@@ -167,8 +170,6 @@ const TOGETHER: usize = <Together<f64> as Columns<f64>>::COUNT;
 struct Run<const N: usize, const M: usize> {
     start: Trimmed<N, M>,
     period: f64,
-    /// The state where it ends.
-    end: SVector<f64, N>,
     /// What is left of the conditions.
     left: SVector<f64, N>,
     /// How large states and inputs become.
@@ -298,8 +299,14 @@ where
         if let Some(untrimmed) = self.driven_otherwise(&run)? {
             return Err(untrimmed);
         }
-        let mut monodromy = self.monodromy(&run)?;
-        if !self.leads_along(&run, &monodromy) {
+        let (time, start) = self.off_thresholds(&run)?;
+        let from = Self {
+            time,
+            period: run.period,
+            ..*self
+        };
+        let (mut monodromy, end) = from.monodromy(start)?;
+        if !from.leads_along((&start, &end), &run.strokes, &monodromy) {
             monodromy.fill(f64::NAN);
         }
         Ok(Cycle {
@@ -472,7 +479,6 @@ where
         Ok(Run {
             start,
             period: until - self.time,
-            end,
             left,
             sizes: (largest, start.input.abs()),
             strokes,
@@ -524,12 +530,15 @@ where
 
     /// How the state after a period changes with that at the start, part by part: where nothing moves, long steps are as good as short
     /// ones for the state, and not for its slopes.
-    fn monodromy(&self, run: &Run<N, M>) -> Result<SMatrix<f64, N, N>, Untrimmed> {
+    fn monodromy(
+        &self,
+        start: Trimmed<N, M>,
+    ) -> Result<(SMatrix<f64, N, N>, SVector<f64, N>), Untrimmed> {
         let in_parts = |count: u32| {
             let mut whole = SMatrix::identity();
-            let mut start = run.start;
+            let mut start = start;
             for part in 0..count {
-                let period = run.period / f64::from(count);
+                let period = self.period / f64::from(count);
                 let time = self.time + f64::from(part) * period;
                 let part = Self {
                     time,
@@ -540,14 +549,14 @@ where
                 whole = slopes * whole;
                 start.state = end;
             }
-            Ok(whole)
+            Ok((whole, start.state))
         };
-        let mut whole = in_parts(1)?;
+        let (mut whole, mut end) = in_parts(1)?;
         let mut count = 2;
         while count <= DIVIDED {
-            let finer = in_parts(count)?;
+            let (finer, last) = in_parts(count)?;
             let change = (finer - whole).amax();
-            whole = finer;
+            (whole, end) = (finer, last);
             // NaN does not come to an end by more parts.
             if !matches!(
                 change.partial_cmp(&(SAME * whole.amax())),
@@ -557,15 +566,45 @@ where
             }
             count *= 2;
         }
-        Ok(whole)
+        Ok((whole, end))
     }
 
-    /// Whether slopes take how a motion that swings by itself begins to how it goes on, as they do if no law jumps at a state.
-    fn leads_along(&self, run: &Run<N, M>, monodromy: &SMatrix<f64, N, N>) -> bool {
+    /// The start, or where it is a little later if it is on a threshold of a law: that is then met at the end, and only there.
+    fn off_thresholds(&self, run: &Run<N, M>) -> Result<(f64, Trimmed<N, M>), Untrimmed> {
         let Trimmed { state, input } = run.start;
-        let first = self.derivative(self.time, &state, &input);
-        let last = self.derivative(self.time + run.period, &run.end, &input);
-        let terms = monodromy.abs() * first.abs() + last.abs() + run.strokes / run.period;
+        let slope = self.derivative(self.time, &state, &input);
+        let [before, behind] = [-1.0, 1.0].map(|sign| {
+            let way = sign * BESIDE * run.period;
+            (self.time + way, state + way * slope)
+        });
+        let mut is_on = false;
+        self.system.courses(
+            (before.0, &before.1, &slope, &input),
+            (behind.0, &behind.1, &slope, &input),
+            &mut Default::default(),
+            |course| is_on |= course.reached(behind.0 - before.0).is_some(),
+        );
+        if !is_on {
+            return Ok((self.time, run.start));
+        }
+        let begin = Self {
+            period: LATER * run.period,
+            ..*self
+        };
+        let (time, state) = begin.follow(self.system, &state, &Constant(input), None, |_, _| ())?;
+        Ok((time, Trimmed { state, input }))
+    }
+
+    /// Whether slopes take how a motion that swings by itself begins to how it goes on, as they do unless it stays where a law jumps.
+    fn leads_along(
+        &self,
+        (start, end): (&Trimmed<N, M>, &SVector<f64, N>),
+        strokes: &SVector<f64, N>,
+        monodromy: &SMatrix<f64, N, N>,
+    ) -> bool {
+        let first = self.derivative(self.time, &start.state, &start.input);
+        let last = self.derivative(self.time + self.period, end, &start.input);
+        let terms = monodromy.abs() * first.abs() + last.abs() + strokes / self.period;
         let aside = (monodromy * first - last).abs();
         let is_known = S::AUTONOMOUS && self.section.is_some();
         !is_known

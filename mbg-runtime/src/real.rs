@@ -52,6 +52,9 @@ pub trait Real:
     /// Distance from 1 to the next number.
     const EPSILON: f64;
 
+    /// Whether it carries slopes, as [`Dual`](crate::Dual) does.
+    const HAS_SLOPES: bool = false;
+
     /// The nearest number to a constant of the model.
     fn from_f64(value: f64) -> Self;
     /// The first lane, seen as `f64`, for which `test` holds.

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::input::quotient;
 use crate::step::Element;
-use crate::{Columns, Loop, Memory, Meta, Real, Solver, Sparsity, Variable};
+use crate::{Columns, Course, Loop, Memory, Meta, Real, Solver, Sparsity, Variable};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -199,23 +199,25 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
-    /// How many thresholds are passed between two points, each a time, a state, its derivative and an input: by all arguments of
-    /// choices in the laws, such as 2 where `q` goes over both ends of `if q > 1.0 && q < 1.1 { … }`, or a curve's points over
-    /// `q`. Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
-    /// that it may go over and back: those on this side of where its tangents at both points meet.
+    /// Tells of each argument of choices in the laws how it goes between two points, each a time, a state, its derivative and an
+    /// input: that of `if q > 1.0 && q < 1.1 { … }` has two thresholds, that of a curve over `q` one at each of its points.
     ///
-    /// [`Adaptive`](crate::Adaptive) looks into a step with any, of which its estimate of the error may be small by chance, and
+    /// [`Adaptive`](crate::Adaptive) looks into a step that passes any, of which its estimate of the error may be small by chance, and
     /// between them where there are several, since something may be there that neither ends nor stages of the step meet.
+    /// Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
+    /// that it may go over and back: those on this side of where its tangents at both points meet. On
+    /// [`Dual`](crate::Dual) numbers steps end at the thresholds at which a law jumps.
+    ///
     /// Generated models give it, for arguments that the state has a part in. Waves over time or one state, such as `cos(q) > 0.9`,
-    /// turn often, so half turns of their angles are counted as well, twice each. Zero unless it is given.
-    #[must_use]
-    fn passed(
+    /// turn often, so half turns of their angles are told as well, with two thresholds each. None unless it is given.
+    #[inline]
+    fn courses(
         &self,
         _from: (T, &SVector<T, N>, &SVector<T, N>, &SVector<T, M>),
         _to: (T, &SVector<T, N>, &SVector<T, N>, &SVector<T, M>),
         _memory: &mut Self::Memory,
-    ) -> u32 {
-        0
+        _each: impl FnMut(Course<'_, T>),
+    ) {
     }
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the

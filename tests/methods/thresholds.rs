@@ -172,6 +172,26 @@ fn what_is_touched_at_the_top_of_the_way_is_met() {
     }
 }
 
+type Point<'a> = (
+    f64,
+    &'a SVector<f64, 2>,
+    &'a SVector<f64, 2>,
+    &'a SVector<f64, 0>,
+);
+
+/// How many thresholds all arguments of a model pass between two points.
+fn passed_over<const P: usize>(
+    model: &impl System<f64, 2, 0, P, Memory = ()>,
+    from: Point<'_>,
+    to: Point<'_>,
+) -> u32 {
+    let mut count = 0;
+    model.courses(from, to, &mut (), |course| {
+        count += course.passed(to.0 - from.0)
+    });
+    count
+}
+
 #[test]
 fn thresholds_between_two_points_are_counted() {
     let model = Slide::<f64>::new(SlideParameters::default()).unwrap();
@@ -180,7 +200,7 @@ fn thresholds_between_two_points_are_counted() {
         let [from, to] = [from, to].map(|gone| SVector::from([4.0, gone]));
         let slope = SVector::from([0.0, to[1] - from[1]]);
         let points = [&from, &to].map(|x| (x[1], x, &slope, &none));
-        model.passed(points[0], points[1], &mut ())
+        passed_over(&model, points[0], points[1])
     };
     // Two of the range, three of the hat and of the curve.
     assert_eq!(passed(0.0, 100.0), 8);
@@ -190,10 +210,10 @@ fn thresholds_between_two_points_are_counted() {
     let passed = |from: f64, to: f64| {
         let [from, to] = [from, to].map(|angle| SVector::from([20.0, angle]));
         let slope = SVector::from([0.0, 20.0]);
-        model.passed(
+        passed_over(
+            &model,
             (0.0, &from, &slope, &none),
             (1.0, &to, &slope, &none),
-            &mut (),
         )
     };
     // Half turns count twice.

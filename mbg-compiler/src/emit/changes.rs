@@ -24,8 +24,8 @@ pub(super) fn next_change(compiled: &Compiled) -> Option<TokenStream> {
     })
 }
 
-/// How many thresholds lie between two points; none where no step can pass more than it finds.
-pub(super) fn passed(compiled: &Compiled) -> Option<TokenStream> {
+/// How the arguments of choices go between two points; none where no step can pass more than it finds.
+pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
     let memory = memory(compiled);
     let groups = Literal::usize_suffixed(compiled.thresholds.len());
@@ -33,19 +33,17 @@ pub(super) fn passed(compiled: &Compiled) -> Option<TokenStream> {
     let (steps, results) = lines(compiled, routine, Setting::Method);
     let mut rest = &results[..];
     let mut arguments = Vec::new();
-    let mut counts = Vec::new();
+    let mut calls = Vec::new();
     for (group, (size, repeats)) in compiled.thresholds.iter().enumerate() {
         let (own, others) = rest.split_at(2 + size);
         rest = others;
         let (argument, thresholds) = own.split_at(2);
         let group = Literal::usize_suffixed(group);
-        let passed = match repeats {
-            true => quote!(passed_again),
-            false => quote!(passed),
-        };
         arguments.push(quote!([#(#argument),*]));
-        counts.push(quote! {
-            mbg_runtime::__private::#passed(lasting, [from[#group], to[#group]], &[#(#thresholds),*])
+        calls.push(quote! {
+            each(mbg_runtime::Course {
+                from: from[#group], to: to[#group], thresholds: &[#(#thresholds),*], repeats: #repeats,
+            });
         });
     }
     let vector = |size| quote!(&mbg_runtime::__private::SVector<T, #size>);
@@ -53,14 +51,16 @@ pub(super) fn passed(compiled: &Compiled) -> Option<TokenStream> {
     let point = quote!((T, #state, #state, #input));
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
-            fn passed(&self, from: #point, to: #point, memory: &mut #memory) -> ::core::primitive::u32 {
-                let lasting = to.0 - from.0;
+            fn courses(
+                &self, from: #point, to: #point, memory: &mut #memory,
+                mut each: impl ::core::ops::FnMut(mbg_runtime::Course<'_, T>),
+            ) {
                 let mut arguments = |(t, x, slopes, u): #point| -> [[T; 2]; #groups] {
                     #steps
                     [#(#arguments),*]
                 };
                 let (from, to) = (arguments(from), arguments(to));
-                mbg_runtime::__private::total([#(#counts),*])
+                #(#calls)*
             }
         }
     })

@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::changes::{change_between, next_change, passed};
+use super::changes::{change_between, courses, next_change};
 use super::close::{self, close};
 use super::routine::{Place, Setting, Writer, lines, written_lines};
 use super::tokens::block;
@@ -137,7 +137,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let [cold_energy, cold_conditioning] = [Routines::ENERGY, Routines::CONDITIONING]
         .map(|routine| cold_memory(compiled, routine, &quote!(Self::Memory)));
     let next_change = next_change(compiled);
-    let passed = passed(compiled);
+    let courses = courses(compiled);
     let change_between = change_between(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
@@ -187,7 +187,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #examined
             #next_change
             #change_between
-            #passed
+            #courses
             #close
             #sparsity
         }

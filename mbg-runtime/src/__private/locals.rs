@@ -11,6 +11,6 @@ macro_rules! functions {
 }
 
 functions! {
-    ahead arguments both changing convert derivative entry fixed folded formatter from holds input jacobian kept lasting memory
+    ahead arguments both changing convert derivative each entry fixed folded formatter from holds input jacobian kept memory
     model other parameters ranks rows slopes stages t to u value whole x zero
 }

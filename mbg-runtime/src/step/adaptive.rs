@@ -41,7 +41,7 @@ use crate::{Input, Real, System};
 /// most. At steps of much the same length there are none after a while. Checked at three points is each step behind a refused
 /// one of a driven model, and of any model each whose estimate of the error has grown by more than its length explains: an
 /// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance. So are steps behind whose
-/// ends a choice in the laws is another one ([`System::passed`]); between two such thresholds, such as the ends of
+/// ends a choice in the laws is another one ([`System::courses`]); between two such thresholds, such as the ends of
 /// a bump over the way of what rolls at rest, each step is looked into that passes both, for what lasts longer than its ten
 /// millionth part, and each in which the argument may come to one and go back, as the distance from a place does that is passed by.
 ///

@@ -21,9 +21,14 @@ pub struct Polynomial<T, const N: usize> {
 impl<T: Real, const N: usize> Polynomial<T, N> {
     /// The straight line between two states.
     pub(super) fn line(start: &SVector<T, N>, end: &SVector<T, N>) -> Self {
+        Self::straight(start, end.zip_map(start, |end, start| end - start))
+    }
+
+    /// The straight line over a change of a state.
+    pub(super) fn straight(start: &SVector<T, N>, change: SVector<T, N>) -> Self {
         let zero = SVector::from_element(T::from_f64(0.0));
         let mut coefficients = [zero; DEGREE];
-        coefficients[0] = end.zip_map(start, |end, start| end - start);
+        coefficients[0] = change;
         Self {
             start: *start,
             coefficients,

@@ -6,6 +6,7 @@ use nalgebra::SVector;
 
 use super::dense::Step;
 use super::event::Direction;
+use super::jumps::piece_over_jumps;
 use super::problem::Problem;
 use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
@@ -77,7 +78,10 @@ pub trait Integrator<const N: usize> {
         while less(since, t1) {
             let end = piece_end(problem.system, problem.input, since, t1)?;
             problem.enter((since, end));
-            let done = self.piece(problem, (since, end), x, observer);
+            let done = match T::HAS_SLOPES {
+                true => piece_over_jumps(self, problem, (since, end), x, observer),
+                false => self.piece(problem, (since, end), x, observer),
+            };
             match done.map_err(|stopped| problem.of_input(stopped))? {
                 ControlFlow::Continue(next) => x = next,
                 ControlFlow::Break(()) => return Ok(()),

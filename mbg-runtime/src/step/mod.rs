@@ -11,6 +11,7 @@ mod explicit;
 mod fixed;
 mod gauss;
 mod integrator;
+mod jumps;
 mod linear;
 mod method;
 #[cfg(test)]

@@ -74,6 +74,15 @@ where
         }
     }
 
+    /// The same problem, to be asked what the run itself is not to remember.
+    pub(super) fn beside(&self) -> Self {
+        Self {
+            probes: self.probes,
+            conditioning: None,
+            ..*self
+        }
+    }
+
     /// The nearest time on the present piece.
     fn on_piece(&self, t: T) -> T {
         if S::AUTONOMOUS {

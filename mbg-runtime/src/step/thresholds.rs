@@ -57,11 +57,15 @@ where
     pub(super) fn passed(&self, from: &Point<T, N>, to: &Point<T, N>) -> u32 {
         let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
         let mut memory = self.memory;
-        self.system.passed(
+        let lasting = to.time - from.time;
+        let mut count = 0_u32;
+        self.system.courses(
             (from.time, &from.state, &from.slope, &inputs[0]),
             (to.time, &to.state, &to.slope, &inputs[1]),
             &mut memory,
-        )
+            |course| count = count.saturating_add(course.passed(lasting)),
+        );
+        count
     }
 
     /// Up to which fraction of a step nothing is missed, where something is.

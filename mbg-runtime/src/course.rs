@@ -1,0 +1,166 @@
+//! How the arguments of choices go from one point to another.
+
+use crate::Real;
+use crate::step::seen;
+
+/// How an argument of choices in the laws goes between two points, as [`System::courses`](crate::System::courses) tells it.
+#[derive(Clone, Copy, Debug)]
+pub struct Course<'a, T> {
+    /// The argument at the first point, and how fast it changes there; zero where that is long to work out.
+    pub from: [T; 2],
+    /// The same at the second one.
+    pub to: [T; 2],
+    /// The values of it at which choices change.
+    pub thresholds: &'a [T],
+    /// Whether they come again with every whole number.
+    pub repeats: bool,
+}
+
+impl<T: Real> Course<'_, T> {
+    /// How many thresholds the argument goes over in so much time, those twice that it may go over and back: where it turns, those on
+    /// this side of where its tangents at both points meet.
+    #[must_use]
+    #[inline]
+    pub fn passed(&self, lasting: T) -> u32 {
+        let [from, to] = [self.from, self.to].map(|point| point.map(seen));
+        let farthest = farthest(seen(lasting), from, to);
+        let counts = self.thresholds.iter().map(|threshold| {
+            let [first, turning, last] = [from[0], farthest, to[0]];
+            let below = |argument| self.below(argument, *threshold);
+            let both = below(first)
+                .abs_diff(below(turning))
+                .saturating_add(below(turning).abs_diff(below(last)));
+            u32::try_from(both).unwrap_or(u32::MAX)
+        });
+        counts.fold(0, u32::saturating_add)
+    }
+
+    /// How long behind the first point the first threshold is that lies between the values at both, or at the first, if any does: by the
+    /// rate there, or
+    /// by that between the points where it is not known. On [`Dual`](crate::Dual) numbers with its slopes.
+    #[must_use]
+    pub fn reached(&self, lasting: T) -> Option<T> {
+        let [from, to] = [self.from[0], self.to[0]];
+        let rate = match self.from[1] == T::from_f64(0.0) {
+            true => (to - from) / lasting,
+            false => self.from[1],
+        };
+        let times = self.thresholds.iter().filter_map(|threshold| {
+            let [first, last] = [from, to].map(|it| seen(it) - seen(*threshold));
+            let turns = match self.repeats {
+                true if first < last => whole_below(-first).saturating_neg(),
+                true => whole_below(first),
+                false => 0,
+            };
+            let whole = turns as f64;
+            let is_between = (first <= whole && whole < last) || (first >= whole && whole > last);
+            is_between.then(|| (*threshold + T::from_f64(whole) - from) / rate)
+        });
+        times.reduce(sooner)
+    }
+
+    /// How often a threshold lies below an argument.
+    #[inline]
+    fn below(&self, argument: f64, threshold: T) -> i64 {
+        let threshold = seen(threshold);
+        match self.repeats {
+            true => whole_below(argument - threshold),
+            false => i64::from(threshold < argument),
+        }
+    }
+}
+
+/// The smaller of two times.
+pub(crate) fn sooner<T: Real>(a: T, b: T) -> T {
+    if seen(b) < seen(a) { b } else { a }
+}
+
+/// What an argument does not go beyond between two points, given with their rates: where it turns, the place at which the
+/// tangents meet, else an end. It holds for what is convex, as a distance from a place is along a line.
+fn farthest(lasting: f64, [a, rate_a]: [f64; 2], [b, rate_b]: [f64; 2]) -> f64 {
+    if rate_a * rate_b < 0.0 {
+        let time = (b - a - rate_b * lasting) / (rate_a - rate_b);
+        a + rate_a * time.max(0.0).min(lasting)
+    } else {
+        b
+    }
+}
+
+/// The largest whole number that is not above a number.
+fn whole_below(number: f64) -> i64 {
+    let whole = number as i64;
+    whole.saturating_sub(i64::from(whole as f64 > number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dual;
+
+    fn course(from: [f64; 2], to: [f64; 2], repeats: bool) -> Course<'static, f64> {
+        let thresholds = if repeats { &[0.25] } else { &[1.0, 2.0][..] };
+        Course {
+            from,
+            to,
+            thresholds,
+            repeats,
+        }
+    }
+
+    #[test]
+    fn the_first_threshold_between_two_values_is_reached() {
+        let reached = |from, to, repeats| course(from, to, repeats).reached(2.0);
+        assert_eq!(reached([0.5, 1.0], [0.75, 0.0], false), None);
+        assert_eq!(reached([0.5, 1.0], [3.0, 0.0], false), Some(0.5));
+        assert_eq!(reached([3.5, -1.0], [0.5, 0.0], false), Some(1.5));
+        // By the rate between both.
+        assert_eq!(reached([0.5, 0.0], [1.5, 0.0], false), Some(1.0));
+        assert_eq!(reached([5.0, 0.5], [6.0, 0.0], true), Some(0.5));
+        assert_eq!(reached([6.0, -0.5], [4.0, 0.0], true), Some(1.5));
+        assert_eq!(reached([-0.5, -1.0], [-1.0, 0.0], true), Some(0.25));
+        assert_eq!(reached([-0.5, 1.0], [-0.625, 0.0], true), None);
+        // What is at a threshold is met behind it, and by what begins there.
+        for repeats in [false, true] {
+            let place = if repeats { 5.25 } else { 2.0 };
+            assert_eq!(reached([place - 0.5, 1.0], [place, 1.0], repeats), None);
+            assert_eq!(reached([place + 0.5, -1.0], [place, -1.0], repeats), None);
+            assert_eq!(
+                reached([place, 1.0], [place + 0.5, 1.0], repeats),
+                Some(0.0)
+            );
+            assert_eq!(
+                reached([place, -1.0], [place - 0.5, -1.0], repeats),
+                Some(0.0)
+            );
+            assert_eq!(reached([place, 1.0], [place, 1.0], repeats), None);
+        }
+    }
+
+    #[test]
+    fn when_a_threshold_is_reached_has_slopes() {
+        let threshold = Dual {
+            value: 1.0,
+            slope: 3.0,
+        };
+        let from = [
+            Dual {
+                value: 0.0,
+                slope: 1.0,
+            },
+            Dual::constant(0.5),
+        ];
+        let course = Course {
+            from,
+            to: [Dual::constant(2.0); 2],
+            thresholds: &[threshold],
+            repeats: false,
+        };
+        assert_eq!(
+            course.reached(Dual::constant(1.0)),
+            Some(Dual {
+                value: 2.0,
+                slope: 4.0
+            })
+        );
+    }
+}

@@ -1,0 +1,319 @@
+//! Slopes of runs over thresholds at which a law jumps.
+
+use mbg_runtime::{
+    Adaptive, Auto, Direction, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Integrator, Pirk8,
+    Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, System, Tsit5, mbg,
+};
+use nalgebra::SVector;
+
+mbg! {
+    /// A mass between two fields that push it to a place between them.
+    model Valley {
+        param below = 2.0;
+        param place = 0.0;
+        1 motion {
+            I body { inertia: 1.0 }
+            C field { effort: if q < place { -below } else { 1.0 }, initial: 1.0 }
+        }
+        output speed = body.p;
+    }
+
+    /// A wheel whose teeth push it, each for the first quarter of its way.
+    model Teeth {
+        param part = 0.25;
+        1 axis {
+            I wheel { inertia: 1.0, initial: 1.0 }
+            C teeth { effort: if fraction(q) < part { -2.0 } else { 0.5 } }
+        }
+        output angle = teeth.q;
+    }
+
+    /// A mass that a spring holds, on a floor, and a force.
+    model Rubbing {
+        param friction = 0.2;
+        input force: N;
+        1 motion {
+            I block { inertia: 1.0, initial: 0.5 }
+            C spring { stiffness: 3.0, initial: 0.1 }
+            R floor { effort: 0.3 * f + friction * sign(f) }
+            Se push { effort: force }
+        }
+        output speed = block.f;
+    }
+}
+
+type Slope = Dual<f64>;
+
+/// The parameters of [`Valley`]: where the mass starts, the place between the fields, and the field below it.
+const VALLEY: [f64; 3] = [1.0, 0.0, 2.0];
+
+/// Momentum and place after a time, the slopes by one of these.
+fn valley(solver: &impl Integrator<2>, by: usize, end: f64) -> SVector<Slope, 2> {
+    let (model, start) = variable_valley(by);
+    last(solver, &model, &(), start, (Dual::constant(0.0), end))
+}
+
+fn variable_valley(by: usize) -> (Valley<Slope>, SVector<Slope, 2>) {
+    let mut numbers = VALLEY.map(Dual::constant);
+    numbers[by] = Dual::variable(VALLEY[by]);
+    let [start, place, below] = numbers;
+    let model = Valley::new(ValleyParameters { below, place }).unwrap();
+    (model, SVector::from([Dual::constant(0.0), start]))
+}
+
+fn last<T: Real, const N: usize, const M: usize, const P: usize>(
+    solver: &impl Integrator<N>,
+    model: &impl System<T, N, M, P>,
+    input: &impl mbg_runtime::Input<T, M>,
+    start: SVector<T, N>,
+    (begin, end): (T, f64),
+) -> SVector<T, N> {
+    let mut last = start;
+    solver
+        .integrate(model, input, begin, T::from_f64(end), start, |step| {
+            last = *step.state()
+        })
+        .unwrap();
+    last
+}
+
+/// The same in closed form, before the mass comes back to where it began: the slopes by all three.
+fn exact(end: f64) -> ([f64; 2], [[f64; 3]; 2]) {
+    let [start, place, below] = VALLEY;
+    let fallen = f64::sqrt(2.0 * (start - place));
+    let lasting = 2.0 * fallen / below;
+    // How the time of the fall changes, and how long the mass stays below.
+    let fall = [1.0 / fallen, -1.0 / fallen, 0.0];
+    let stay = [
+        2.0 / (below * fallen),
+        -2.0 / (below * fallen),
+        -lasting / below,
+    ];
+    let since = end - fallen;
+    if since < lasting {
+        let speed = below * since - fallen;
+        let moved = core::array::from_fn(|by| {
+            let own = if by == 2 { since } else { 0.0 };
+            own - below * fall[by] - fall[by]
+        });
+        let place_moved = core::array::from_fn(|by| {
+            let own = [0.0, 1.0, 0.5 * since * since][by];
+            own - fall[by] * since - speed * fall[by]
+        });
+        let at = place - fallen * since + 0.5 * below * since * since;
+        ([speed, at], [moved, place_moved])
+    } else {
+        let since = since - lasting;
+        let left = |by: usize| fall[by] + stay[by];
+        let speed = fallen - since;
+        let moved = core::array::from_fn(|by| fall[by] + left(by));
+        let place_moved = core::array::from_fn(|by| {
+            let own = if by == 1 { 1.0 } else { 0.0 };
+            own + fall[by] * since - speed * left(by)
+        });
+        (
+            [speed, place + fallen * since - 0.5 * since * since],
+            [moved, place_moved],
+        )
+    }
+}
+
+fn assert_valley(name: &str, error: f64, found: impl Fn(usize, f64) -> SVector<Slope, 2>) {
+    for end in [1.0, 2.0, 4.0] {
+        let (states, slopes) = if end > 1.5 {
+            exact(end)
+        } else {
+            ([-1.0, 0.5], [[0.0; 3], [1.0, 0.0, 0.0]])
+        };
+        for by in 0..3 {
+            let found = found(by, end);
+            for row in 0..2 {
+                let [value, slope] = [
+                    found[row].value - states[row],
+                    found[row].slope - slopes[row][by],
+                ];
+                assert!(
+                    value.abs() < error && slope.abs() < error,
+                    "{name}, state {row} by {by} at {end}: {value:e}, {slope:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn all_methods_know_when_a_law_jumps() {
+    macro_rules! adaptive {
+        ($($method:ident $tolerance:literal),*) => {
+            $(
+                let solver = Adaptive::new($method, $tolerance, $tolerance);
+                assert_valley(stringify!($method), 1e-9, |by, end| valley(&solver, by, end));
+            )*
+        };
+    }
+    adaptive!(Tsit5 1e-8, Dop853 1e-10, Pirk8 1e-9, Ros2 1e-5, Rodas4 1e-8, Rodas5P 1e-8, Radau5 1e-8, Radau9 1e-9);
+    assert_valley("Auto", 1e-9, |by, end| {
+        valley(&Auto::new(1e-8, 1e-8), by, end)
+    });
+}
+
+/// Within the fields a step of any length is exact, so that what is left is how exactly the jumps are met.
+#[test]
+fn so_do_steps_of_constant_length() {
+    for step in [0.3, 0.1, 0.07] {
+        assert_valley("Rk4", 1e-8, |by, end| {
+            valley(&Fixed::new(Rk4, step), by, end)
+        });
+        assert_valley("Gauss6", 1e-8, |by, end| {
+            valley(&Fixed::new(Gauss6::default(), step), by, end)
+        });
+        assert_valley("ImplicitMidpoint", 1e-8, |by, end| {
+            valley(&Fixed::new(ImplicitMidpoint::default(), step), by, end)
+        });
+    }
+}
+
+/// A run may end where the law jumps, by an event, and the next begin there.
+#[test]
+fn a_run_that_ends_at_the_jump_has_its_slopes_once() {
+    for tolerance in [1e-7, 1e-10] {
+        let solver = Adaptive::new(Dop853, tolerance, tolerance);
+        assert_valley("in two runs", 1e-8, |by, end| {
+            let (model, start) = variable_valley(by);
+            let place = model.parameters().place;
+            let arrival = solver
+                .until(
+                    &model,
+                    &(),
+                    Dual::constant(0.0),
+                    Dual::constant(end),
+                    start,
+                    (Direction::Falling, |_, x: &SVector<Slope, 2>| x[1] - place),
+                    |_| (),
+                )
+                .unwrap();
+            last(&solver, &model, &(), arrival.state, (arrival.time, end))
+        });
+    }
+}
+
+/// Pieces of a run may end at the jump to a rounding, at either side of it.
+#[test]
+fn a_run_that_ends_beside_the_jump_has_its_slopes_once() {
+    let solver = Adaptive::new(Dop853, 1e-10, 1e-10);
+    let meets = 2.0_f64.sqrt();
+    for units in -20..=20 {
+        let middle = meets + f64::from(units) * f64::EPSILON;
+        let at_middle = |by| valley(&solver, by, middle);
+        let (states, slopes) = exact(4.0);
+        for by in 0..3 {
+            let (model, _) = variable_valley(by);
+            let end = last(
+                &solver,
+                &model,
+                &(),
+                at_middle(by),
+                (Dual::constant(middle), 4.0),
+            );
+            for row in 0..2 {
+                let [value, slope] = [
+                    end[row].value - states[row],
+                    end[row].slope - slopes[row][by],
+                ];
+                assert!(
+                    value.abs() < 1e-9 && slope.abs() < 1e-9,
+                    "{units} {by} {row}: {value:e} {slope:e}"
+                );
+            }
+        }
+    }
+}
+
+/// Each tooth adds to the square of the speed, the gap behind it takes from it.
+#[test]
+fn teeth_that_come_again_are_met_each_time() {
+    let part = Dual::variable(0.25);
+    let model = Teeth::new(TeethParameters { part }).unwrap();
+    let solver = Adaptive::new(Dop853, 1e-10, 1e-10);
+    let end = last(
+        &solver,
+        &model,
+        &(),
+        model.initial_state(),
+        (Dual::constant(0.0), 6.0),
+    );
+    let [speed, angle] = [end[0], end[1]];
+    let rounds = f64::floor(angle.value);
+    let beyond = angle.value - rounds;
+    assert!(rounds > 3.0 && beyond > 0.3, "{angle:?}");
+    // 0.5 v² = 0.5 + 2.5 part (rounds + 1) − 0.5 angle, whatever the time.
+    let left =
+        speed * speed - Dual::constant(1.0) - Dual::constant(5.0 * (rounds + 1.0)) * part + angle;
+    assert!(
+        left.value.abs() < 1e-8 && left.slope.abs() < 1e-8,
+        "{left:?}"
+    );
+    let h = 1e-5;
+    let ends = [-h, h].map(|more| {
+        let model = Teeth::<f64>::new(TeethParameters { part: 0.25 + more }).unwrap();
+        last(
+            &Adaptive::new(Dop853, 1e-12, 1e-12),
+            &model,
+            &(),
+            model.initial_state(),
+            (0.0, 6.0),
+        )
+    });
+    let slope = (ends[1] - ends[0]) / (2.0 * h);
+    for row in 0..2 {
+        assert!(
+            (slope[row] - end[row].slope).abs() < 1e-5,
+            "{slope} {end:?}"
+        );
+    }
+}
+
+/// Slopes by friction, an initial state and the force against quotients of runs, in double and with some digits in single precision.
+#[test]
+fn friction_has_its_slopes_at_every_turn() {
+    let solver = Adaptive::new(Dop853, 1e-11, 1e-11);
+    let run = |numbers: [f64; 3]| {
+        let model = Rubbing::<f64>::new(RubbingParameters {
+            friction: numbers[0],
+        })
+        .unwrap();
+        let input = mbg_runtime::Smooth(move |t: f64| SVector::from([numbers[2] * t.sin()]));
+        last(
+            &solver,
+            &model,
+            &input,
+            SVector::from([0.5, numbers[1]]),
+            (0.0, 9.0),
+        )
+    };
+    let numbers = [0.2, 0.1, 3.0];
+    for by in 0..3 {
+        let (mut less, mut more) = (numbers, numbers);
+        (less[by], more[by]) = (less[by] - 1e-5, more[by] + 1e-5);
+        let expected = (run(more) - run(less)) / 2e-5;
+        let found = rubbing::<f64>(&solver, numbers, by);
+        assert!((found - expected).amax() < 1e-5, "{by}: {found} {expected}");
+        let single = rubbing::<f32>(&Adaptive::new(Dop853, 1e-5, 1e-5), numbers, by);
+        assert!(
+            (single - expected).amax() < 1e-2,
+            "{by}: {single} {expected}"
+        );
+    }
+}
+
+/// The slopes of the end by one of the numbers.
+fn rubbing<T: Real>(solver: &impl Integrator<2>, numbers: [f64; 3], by: usize) -> SVector<f64, 2> {
+    let mut variable = numbers.map(|it| Dual::<T>::from_f64(it));
+    variable[by].slope = T::from_f64(1.0);
+    let [friction, stretched, force] = variable;
+    let model = Rubbing::new(RubbingParameters { friction }).unwrap();
+    let input = mbg_runtime::Smooth(move |t: Dual<T>| SVector::from([force * t.sin()]));
+    let start = SVector::from([Dual::from_f64(0.5), stretched]);
+    let end = last(solver, &model, &input, start, (Dual::from_f64(0.0), 9.0));
+    end.map(|it| it.slope.find(|_| true).unwrap())
+}

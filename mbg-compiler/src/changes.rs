@@ -43,6 +43,19 @@ pub struct Argument {
     pub thresholds: Vec<Expression>,
     /// Whether they come again with every whole number.
     pub repeats: bool,
+    /// Whether choices change there, or a wave may turn.
+    pub is_choice: bool,
+}
+
+/// What is known of an [`Argument`] while compiling.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// How many.
+    pub thresholds: usize,
+    /// Whether they come again with every whole number.
+    pub repeats: bool,
+    /// Whether choices change there.
+    pub is_choice: bool,
 }
 
 impl Argument {
@@ -53,12 +66,27 @@ impl Argument {
             rate,
             thresholds,
             repeats,
+            is_choice: true,
         }
     }
 
-    /// How many thresholds it has, and whether they come again.
-    pub fn count(&self) -> (usize, bool) {
-        (self.thresholds.len(), self.repeats)
+    /// How many half turns of waves there are.
+    fn turns(value: Expression) -> Self {
+        // A wave turns at least once in each half turn, behind what it may have passed before.
+        let twice = vec![Expression::ZERO; 2];
+        Self {
+            is_choice: false,
+            ..Self::new(value, twice, true)
+        }
+    }
+
+    /// What is known of it while compiling.
+    pub fn kind(&self) -> Kind {
+        Kind {
+            thresholds: self.thresholds.len(),
+            repeats: self.repeats,
+            is_choice: self.is_choice,
+        }
     }
 }
 
@@ -145,13 +173,7 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
             argument.rate = rate;
         }
     }
-    // A wave turns at least once in each half turn, behind what it may have passed before.
-    let twice = vec![Expression::ZERO; 2];
-    arguments.extend(
-        turning
-            .into_iter()
-            .map(|value| Argument::new(value, twice.clone(), true)),
-    );
+    arguments.extend(turning.into_iter().map(Argument::turns));
     arguments
 }
 

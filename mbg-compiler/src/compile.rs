@@ -59,8 +59,8 @@ pub struct Compiled {
     pub pattern: Pattern,
     /// How many of the changes by time alone come once; others come again after a period.
     pub changes_once: usize,
-    /// How many thresholds each argument of choices has, and whether they come again with every whole number.
-    pub thresholds: Vec<(usize, bool)>,
+    /// The thresholds of each argument of choices.
+    pub thresholds: Vec<changes::Kind>,
     /// Things worth knowing.
     pub notes: Vec<String>,
 }
@@ -253,7 +253,7 @@ fn finish(
         strokes: verdict.strokes,
         pattern,
         changes_once: times.once.len(),
-        thresholds: arguments.iter().map(changes::Argument::count).collect(),
+        thresholds: arguments.iter().map(changes::Argument::kind).collect(),
         notes,
         states: answers.states,
         model,

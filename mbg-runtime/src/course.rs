@@ -14,6 +14,8 @@ pub struct Course<'a, T> {
     pub thresholds: &'a [T],
     /// Whether they come again with every whole number.
     pub repeats: bool,
+    /// Whether choices change there, or a wave may turn.
+    pub is_choice: bool,
 }
 
 impl<T: Real> Course<'_, T> {
@@ -40,10 +42,15 @@ impl<T: Real> Course<'_, T> {
     /// by that between the points where it is not known. On [`Dual`](crate::Dual) numbers with its slopes.
     #[must_use]
     pub fn reached(&self, lasting: T) -> Option<T> {
+        if !self.is_choice {
+            return None;
+        }
         let [from, to] = [self.from[0], self.to[0]];
-        let rate = match self.from[1] == T::from_f64(0.0) {
-            true => (to - from) / lasting,
-            false => self.from[1],
+        // Where the argument turns before it goes to a threshold, it is as if the way was straight.
+        let mean = (to - from) / lasting;
+        let rate = match seen(mean) * seen(self.from[1]) > 0.0 {
+            true => self.from[1],
+            false => mean,
         };
         let times = self.thresholds.iter().filter_map(|threshold| {
             let [first, last] = [from, to].map(|it| seen(it) - seen(*threshold));
@@ -57,6 +64,45 @@ impl<T: Real> Course<'_, T> {
             is_between.then(|| (*threshold + T::from_f64(whole) - from) / rate)
         });
         times.reduce(sooner)
+    }
+
+    /// About how long behind the first point a threshold is, if what leads to the second one bends evenly, within the time between both.
+    pub(crate) fn within(&self, lasting: T) -> Option<f64> {
+        let ([from, rate], to, lasting) = self.seen(lasting);
+        let bend = (to[0] - from - rate * lasting) / (lasting * lasting);
+        self.soonest([from, rate, bend])
+            .filter(|time| *time <= lasting)
+    }
+
+    /// About how long behind the second point the next threshold is, if the argument goes on to bend as it does between both.
+    pub(crate) fn behind(&self, lasting: T) -> Option<f64> {
+        let ([_, before], [to, rate], lasting) = self.seen(lasting);
+        self.soonest([to, rate, 0.5 * (rate - before) / lasting])
+    }
+
+    /// The values and rates as numbers, rates that are not known as if the way was straight.
+    fn seen(&self, lasting: T) -> ([f64; 2], [f64; 2], f64) {
+        let ([from, to], lasting) = ([self.from, self.to].map(|it| it.map(seen)), seen(lasting));
+        let mean = (to[0] - from[0]) / lasting;
+        let known = |[value, rate]: [f64; 2]| [value, if rate == 0.0 { mean } else { rate }];
+        (known(from), known(to), lasting)
+    }
+
+    /// How long from a value on with this rate and half its change the first threshold is.
+    fn soonest(&self, [value, rate, bend]: [f64; 3]) -> Option<f64> {
+        let ways = self.thresholds.iter().flat_map(|threshold| {
+            let beyond = value - seen(*threshold);
+            match self.repeats {
+                true => [whole_below(beyond), whole_below(-beyond).saturating_neg()]
+                    .map(|turns| turns as f64 - beyond),
+                false => [-beyond; 2],
+            }
+        });
+        let times = ways.map(|way| {
+            let root = Real::sqrt(rate * rate + 4.0 * bend * way);
+            2.0 * way / (rate + if way < 0.0 { -root } else { root })
+        });
+        times.filter(|time| *time > 0.0).reduce(f64::min)
     }
 
     /// How often a threshold lies below an argument.
@@ -104,6 +150,7 @@ mod tests {
             to,
             thresholds,
             repeats,
+            is_choice: true,
         }
     }
 
@@ -154,6 +201,7 @@ mod tests {
             to: [Dual::constant(2.0); 2],
             thresholds: &[threshold],
             repeats: false,
+            is_choice: true,
         };
         assert_eq!(
             course.reached(Dual::constant(1.0)),

@@ -5,6 +5,7 @@ use quote::quote;
 
 use super::routine::{Setting, lines};
 use super::system::{body, memory};
+use crate::changes::Kind;
 use crate::compile::{Compiled, Routines};
 
 /// Where choices by time alone change; none where there are none.
@@ -34,15 +35,21 @@ pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let mut rest = &results[..];
     let mut arguments = Vec::new();
     let mut calls = Vec::new();
-    for (group, (size, repeats)) in compiled.thresholds.iter().enumerate() {
-        let (own, others) = rest.split_at(2 + size);
+    for (group, kind) in compiled.thresholds.iter().enumerate() {
+        let Kind {
+            thresholds,
+            repeats,
+            is_choice,
+        } = *kind;
+        let (own, others) = rest.split_at(2 + thresholds);
         rest = others;
         let (argument, thresholds) = own.split_at(2);
         let group = Literal::usize_suffixed(group);
         arguments.push(quote!([#(#argument),*]));
         calls.push(quote! {
             each(mbg_runtime::Course {
-                from: from[#group], to: to[#group], thresholds: &[#(#thresholds),*], repeats: #repeats,
+                from: from[#group], to: to[#group], thresholds: &[#(#thresholds),*],
+                repeats: #repeats, is_choice: #is_choice,
             });
         });
     }

@@ -1,14 +1,16 @@
 //! Steps whose length follows the error.
 
+use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
+use super::approach::{Approach, Come};
 use super::control::Control;
-use super::crossing::Crossing;
+use super::crossing::{Crossing, Taken};
 use super::dense::Step;
 use super::integrator::Integrator;
-use super::method::{Estimating, Span, Start, Stepper, along};
+use super::method::{Estimating, Family, Span, Start, Stepper, Trial, along};
 use super::probes::PARTS;
 use super::problem::Problem;
 use super::tolerance::Tolerance;
@@ -147,80 +149,145 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
-        let first = self.first_step(problem, (start, end), (&x, &slope), &tolerance);
-        problem.probes.enter(seen(start), first);
-        let mut control = Control::new(Scheme::ESTIMATE_ORDER, first, problem.is_left_alone());
+        let mut pace = Pace {
+            control: self.begin(problem, (t, end), (&x, &slope), &tolerance),
+            approach: Approach::new(),
+            refused: 0,
+            again: false,
+        };
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
-        let mut refused = 0;
         loop {
-            let taken = problem.statistics.steps;
-            if taken.saturating_add(problem.statistics.rejected) >= self.most {
-                let next = control.length.min(self.longest);
-                return Err(Stopped::new(t, Cause::TooManySteps { next }));
-            }
-            let length = steps.length::<S, M, P>(control.length, refused);
-            let (span, last) = next_span(t, end, length.min(self.longest))?;
+            self.check_count(problem, t, &pace.control)?;
+            let length = steps.length::<S, M, P>(pace.control.length, pace.refused);
+            let length = pace.approach.length(length.min(self.longest));
+            let (span, last) = next_span(t, end, length)?;
             if watch.is_blind(problem, &span) {
                 problem.statistics.rejected += 1;
-                control.shorten(0.5 * seen(span.length));
+                pace.control.shorten(0.5 * seen(span.length));
                 continue;
             }
             let from = Start {
-                again: refused > 0,
+                again: pace.again,
                 ..Start::of(span, x, slope)
             };
             let memory = problem.memory;
             let wide = steps.tolerance::<S, M, P>();
-            let tolerance = wide.as_ref().unwrap_or(&tolerance);
-            let trial = steps.attempt(problem, &from, tolerance);
-            let taken = if trial.error <= 1.0 {
-                let known = x + trial.change;
-                let ahead = trial
-                    .slope
-                    .unwrap_or_else(|| problem.slope(span.end, &known));
-                let dense =
-                    |problem: &mut _| steps.polynomial(problem, &from, (&known, Some(ahead)));
-                match problem.clear_length::<Scheme>(&from, (&trial, &ahead), tolerance, dense) {
-                    None => Some((known, ahead)),
-                    Some(clear) => {
-                        control.shorten(clear);
-                        None
+            let used = wide.as_ref().unwrap_or(&tolerance);
+            let trial = steps.attempt(problem, &from, used);
+            let come = match steps.taken(problem, &from, &trial, used) {
+                Taken::Whole(known, ahead) => {
+                    let next = problem.arrive(span.end, known, &ahead)?;
+                    let memory = problem.memory;
+                    let mut dense = || steps.polynomial(problem, &from, (&next, Some(ahead)));
+                    let mut step = Step::new(span, (x, next), memory, &mut dense);
+                    if observer(&mut step).is_break() {
+                        return Ok(ControlFlow::Break(()));
                     }
+                    problem.memory = memory;
+                    if last {
+                        return Ok(ControlFlow::Continue(next));
+                    }
+                    let come = pace.accept(problem, &mut steps, (&from, &trial), (&next, &ahead));
+                    (t, x, slope) = (span.end, next, ahead);
+                    come
                 }
-            } else {
-                steps.reject::<S, M, P>(&mut control, seen(span.length), trial.error);
-                None
-            };
-            let Some((known, ahead)) = taken else {
-                problem.statistics.rejected += 1;
-                let tried = core::mem::replace(&mut problem.memory, memory);
-                refused += 1;
-                // Written so that a step of NaN is refused as well.
-                if control.length.is_nan() || control.length <= smallest(t) {
-                    let place = steps.place_of_jacobian(&from);
-                    return Err(problem.too_small((&from, &trial.change), &tried, place));
+                missed => {
+                    problem.statistics.rejected += 1;
+                    let tried = core::mem::replace(&mut problem.memory, memory);
+                    let come = pace.refuse(problem, &steps, (&from, &trial), &missed);
+                    // Written so that a step of NaN is refused as well.
+                    if !matches!(
+                        pace.control.length.partial_cmp(&smallest(t)),
+                        Some(Ordering::Greater)
+                    ) {
+                        let place = steps.place_of_jacobian(&from);
+                        return Err(problem.too_small((&from, &trial.change), &tried, place));
+                    }
+                    come
                 }
-                continue;
             };
-            let next = problem.arrive(span.end, known, &ahead)?;
-            let memory = problem.memory;
-            let mut dense = || steps.polynomial(problem, &from, (&next, Some(ahead)));
-            let mut step = Step::new(span, (x, next), memory, &mut dense);
-            if observer(&mut step).is_break() {
-                return Ok(ControlFlow::Break(()));
+            if let Come::There(rest) = come {
+                let here = ((t, x), (rest, &slope));
+                let over = problem.over_threshold(here, (seen(span.length), end), observer)?;
+                let ControlFlow::Continue((next, watched)) = over else {
+                    return Ok(ControlFlow::Break(()));
+                };
+                (t, x) = next;
+                if !less(t, end) {
+                    return Ok(ControlFlow::Continue(x));
+                }
+                slope = problem.slope(t, &x);
+                steps.renew();
+                pace.control = self.begin(problem, (t, end), (&x, &slope), &tolerance);
+                (pace.approach.watched, pace.refused, pace.again) = (watched, 0, false);
             }
-            problem.memory = memory;
-            if last {
-                return Ok(ControlFlow::Continue(next));
-            }
-            problem
-                .probes
-                .heed(seen(t), seen(span.length), trial.coarse);
-            steps.accept::<S, M, P>(&mut control, seen(span.length), trial.error);
-            (t, x, slope, refused) = (span.end, next, ahead, 0);
         }
+    }
+}
+
+/// How a run goes on.
+struct Pace {
+    control: Control,
+    approach: Approach,
+    /// How often a step from the same place was refused, but for those that went over a threshold.
+    refused: u32,
+    /// Whether one was.
+    again: bool,
+}
+
+impl Pace {
+    /// Behind a step that was taken: where the run stands beside a threshold.
+    #[inline]
+    fn accept<F: Family, T: Real, S, I, const N: usize, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        steps: &mut Crossing<'_, F, T, N>,
+        (start, trial): (&Start<T, N>, &Trial<T, N>),
+        end: (&SVector<T, N>, &SVector<T, N>),
+    ) -> Come<T>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let (time, length) = (seen(start.span.start), seen(start.span.length));
+        let come = self.approach.take(problem, start, end);
+        match come {
+            Come::Away => {
+                problem.probes.heed(time, length, trial.coarse);
+                steps.accept::<S, M, P>(&mut self.control, length, trial.error);
+            }
+            Come::Lost(length) => self.control.shorten(length),
+            _ => {}
+        }
+        (self.refused, self.again) = (0, false);
+        come
+    }
+
+    /// Behind one of which something is not taken.
+    fn refuse<F: Family, T: Real, S, I, const N: usize, const M: usize, const P: usize>(
+        &mut self,
+        problem: &Problem<'_, T, S, I, N, M, P>,
+        steps: &Crossing<'_, F, T, N>,
+        (start, trial): (&Start<T, N>, &Trial<T, N>),
+        taken: &Taken<T, N>,
+    ) -> Come<T>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        self.again = true;
+        let come = self.approach.refuse(problem, start, trial, taken);
+        if matches!(come, Come::Away) {
+            self.refused += 1;
+            let length = seen(start.span.length);
+            match taken {
+                Taken::Until(clear) => self.control.shorten(*clear),
+                _ => steps.reject::<S, M, P>(&mut self.control, length, trial.error),
+            }
+        }
+        come
     }
 }
 
@@ -229,6 +296,44 @@ impl<M: Estimating> Adaptive<'_, M> {
     fn tolerances(&self) -> (f64, f64) {
         let tighter = (M::LOOSEST / self.relative).min(1.0);
         (tighter * self.relative, tighter * self.absolute)
+    }
+
+    /// Refuses to go on behind so many steps.
+    fn check_count<T, S, I, const N: usize, const K: usize, const P: usize>(
+        &self,
+        problem: &Problem<'_, T, S, I, N, K, P>,
+        t: T,
+        control: &Control,
+    ) -> Result<(), Stopped>
+    where
+        T: Real,
+        S: System<T, N, K, P>,
+        I: Input<T, K> + ?Sized,
+    {
+        let statistics = &problem.statistics;
+        if statistics.steps.saturating_add(statistics.rejected) < self.most {
+            return Ok(());
+        }
+        let next = control.length.min(self.longest);
+        Err(Stopped::new(t, Cause::TooManySteps { next }))
+    }
+
+    /// How the length of steps is controlled from here on.
+    fn begin<T, S, I, const N: usize, const K: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, K, P>,
+        (start, end): (T, T),
+        at_start: (&SVector<T, N>, &SVector<T, N>),
+        tolerance: &Tolerance<N>,
+    ) -> Control
+    where
+        T: Real,
+        S: System<T, N, K, P>,
+        I: Input<T, K> + ?Sized,
+    {
+        let first = self.first_step(problem, (start, end), at_start, tolerance);
+        problem.probes.enter(seen(start), first);
+        Control::new(M::ESTIMATE_ORDER, first, problem.is_left_alone())
     }
 
     /// The first step, no shorter than time resolves: it grows from there.

@@ -5,10 +5,20 @@ use nalgebra::SVector;
 use super::control::Control;
 use super::dense::Polynomial;
 use super::explicit::Dop853;
-use super::method::{Family, Start, Stepper, Trial};
+use super::method::{Estimating, Family, Start, Stepper, Trial};
 use super::problem::Problem;
 use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
+
+/// What of a step is taken that has been tried.
+pub(super) enum Taken<T, const N: usize> {
+    /// All of it: the state and the derivative at its end.
+    Whole(SVector<T, N>, SVector<T, N>),
+    /// It is to be tried again up to this length, behind which something was missed.
+    Until(f64),
+    /// Its error is too large.
+    Nothing,
+}
 
 /// A step that was refused so often may be one that meets a singular position.
 const REFUSED: u32 = 2;
@@ -126,6 +136,34 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         }
     }
 
+    /// What of the step is taken that was tried last.
+    pub(super) fn taken<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        trial: &Trial<T, N>,
+        tolerance: &Tolerance<N>,
+    ) -> Taken<T, N>
+    where
+        Scheme: Estimating,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        // Written so that a step of NaN is refused as well.
+        if trial.error <= 1.0 {
+            let next = start.x + trial.change;
+            let slope = trial.slope;
+            let ahead = slope.unwrap_or_else(|| problem.slope(start.span.end, &next));
+            let dense = |problem: &mut _| self.polynomial(problem, start, (&next, Some(ahead)));
+            match problem.clear_length::<Scheme>(start, (trial, &ahead), tolerance, dense) {
+                None => Taken::Whole(next, ahead),
+                Some(clear) => Taken::Until(clear),
+            }
+        } else {
+            Taken::Nothing
+        }
+    }
+
     /// What is known in between of the step that was tried last.
     pub(super) fn polynomial<S, I, const M: usize, const P: usize>(
         &mut self,
@@ -161,6 +199,11 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         if !self.is_across::<S, M, P>() {
             control.reject(length, error);
         }
+    }
+
+    /// Goes on behind a jump of the laws.
+    pub(super) fn renew(&mut self) {
+        renew(self.work, self.method);
     }
 
     /// Goes on behind a step.

@@ -4,33 +4,22 @@ use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
-use super::dense::{Polynomial, Step};
+use super::dense::Step;
 use super::integrator::Integrator;
-use super::method::{Span, along};
+use super::over::{Place, SOON};
 use super::problem::Problem;
 use super::{Stopped, less, seen};
-use crate::course::sooner;
 use crate::{Input, Real, System};
 
-/// How near a jump is looked for, in lengths of the step that went over it.
-const NARROW: f64 = 1e-9;
-/// The part of the way to a jump that steps go; the rest of it is a straight line, once it is no more than so many times as near.
+/// The part of the way to a jump that steps go.
 const BEFORE: f64 = 1.0 - 1e-6;
-const STRAIGHT: f64 = 10.0;
-/// Times are apart by so many units of the last place.
-const PLACES: f64 = 8.0;
 /// A law jumps if it differs by more than this part of itself, or so many units of the last place.
 const JUMP: f64 = 1e-7;
 const JUMP_PLACES: f64 = 64.0;
-/// What is met so soon again, in ways over the jump, is one on which the motion stays.
-const SOON: f64 = 1e3;
 /// So many thresholds of one step are looked at, and so often a jump is come nearer to.
 const MOST: usize = 16;
-/// So often the place of a threshold is narrowed, or the way beyond it doubled.
+/// So often the place of a threshold is narrowed.
 const NARROWINGS: u32 = 100;
-
-/// A state at a time.
-type Place<T, const N: usize> = (T, SVector<T, N>);
 
 /// A jump within a step that has been taken.
 struct Jump<T, const N: usize> {
@@ -76,13 +65,9 @@ where
         let Some(rest) = way.rest(problem, &slope, jump) else {
             continue;
         };
-        let beyond = problem.beyond(&way.here, length, (rest, &slope));
-        way.watched = seen(t + rest) + SOON * beyond;
-        if less(t + rest, end) {
-            match problem.cross(way.here, (rest, beyond, &slope), end, observer)? {
-                ControlFlow::Continue(next) => way.here = next,
-                ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
-            }
+        match problem.over_threshold((way.here, (rest, &slope)), (length, end), observer)? {
+            ControlFlow::Continue(next) => (way.here, way.watched) = next,
+            ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
         }
     }
 }
@@ -179,20 +164,20 @@ impl<T: Real, const N: usize> Way<T, N> {
         I: Input<T, M> + ?Sized,
     {
         self.tries += 1;
-        let near = problem.apart(self.here.0, jump.length);
-        let rest = problem.straight_to_threshold(&self.here, slope, jump.length);
-        let Some(rest) = rest.filter(|_| self.tries <= MOST) else {
-            self.watched = seen(self.here.0) + jump.ahead + SOON * near;
-            self.tries = 0;
-            return None;
-        };
-        if seen(rest) > STRAIGHT * near {
-            let ahead = seen(rest);
-            self.near = Some(Jump { ahead, ..jump });
-            return None;
+        let next = problem.next_threshold(&self.here, slope, jump.length);
+        if next.is_none() && self.tries <= MOST {
+            let rest = problem.straight_to_threshold(&self.here, slope, jump.length);
+            if let Some(ahead) = rest.map(seen).filter(|ahead| *ahead > 0.0) {
+                self.near = Some(Jump { ahead, ..jump });
+                return None;
+            }
+        }
+        if next.is_none() {
+            let apart = problem.apart(self.here.0, jump.length);
+            self.watched = seen(self.here.0) + jump.ahead + SOON * apart;
         }
         self.tries = 0;
-        Some(rest)
+        next
     }
 }
 
@@ -277,99 +262,5 @@ where
         let part = JUMP.max(JUMP_PLACES * T::EPSILON);
         let mut pairs = a.iter().zip(&b);
         pairs.any(|(a, b)| (*b - *a).magnitude() > part * (a.magnitude() + b.magnitude()))
-    }
-
-    /// How long behind a place the first threshold between it and another one is passed, if one is, by how states change from one
-    /// to the other.
-    fn reached(&self, from: &Place<T, N>, to: &Place<T, N>) -> Option<T> {
-        let slope = (to.1 - from.1).map(|change| change / (to.0 - from.0));
-        self.reached_with(from, to, &slope)
-    }
-
-    /// How long a straight line goes on from a place to a threshold, within the length of a step.
-    fn straight_to_threshold(
-        &self,
-        from: &Place<T, N>,
-        slope: &SVector<T, N>,
-        length: f64,
-    ) -> Option<T> {
-        let length = T::from_f64(length);
-        let to = (from.0 + length, along(&from.1, length, slope));
-        self.reached_with(from, &to, slope)
-    }
-
-    fn reached_with(
-        &self,
-        from: &Place<T, N>,
-        to: &Place<T, N>,
-        slope: &SVector<T, N>,
-    ) -> Option<T> {
-        let inputs = [from, to].map(|it| self.input.value(it.0, self.since));
-        let mut memory = self.memory;
-        let lasting = to.0 - from.0;
-        let mut first: Option<T> = None;
-        self.system.courses(
-            (from.0, &from.1, slope, &inputs[0]),
-            (to.0, &to.1, slope, &inputs[1]),
-            &mut memory,
-            |course| {
-                let times = [first, course.reached(lasting)].into_iter().flatten();
-                first = times.reduce(sooner);
-            },
-        );
-        first
-    }
-
-    /// How far apart times within a step so long are told from each other.
-    fn apart(&self, t: T, length: f64) -> f64 {
-        (NARROW * length).max(PLACES * T::EPSILON * t.magnitude())
-    }
-
-    /// How far a straight line goes on behind a threshold, which a step so long has passed, until it is passed in numbers, too.
-    fn beyond(&self, from: &Place<T, N>, length: f64, (rest, slope): (T, &SVector<T, N>)) -> f64 {
-        let mut beyond = PLACES * T::EPSILON * from.0.magnitude().max(length);
-        for _ in 0..NARROWINGS {
-            let way = rest + T::from_f64(beyond);
-            let to = (from.0 + way, along(&from.1, way, slope));
-            if self.reached_with(from, &to, slope).is_some() {
-                break;
-            }
-            beyond *= 2.0;
-        }
-        beyond
-    }
-
-    /// A step straight over a jump that is so far ahead, and so far beyond it, if there is so much time left; and where it leads.
-    fn cross(
-        &mut self,
-        (start, x): Place<T, N>,
-        (rest, beyond, slope): (T, f64, &SVector<T, N>),
-        end: T,
-        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<(), Place<T, N>>, Stopped> {
-        let way = rest + T::from_f64(beyond);
-        let mut change = slope.map(|slope| way * slope);
-        let mut ahead = self.slope(start + way, &(x + change));
-        let (mut until, mut length) = (start + way, way);
-        if !less(until, end) {
-            // It stays beyond the threshold, by rounding; what is left of the time changes with when the jump is.
-            (until, length) = (end, end - start);
-            let left = length - rest;
-            change = along(&change, left - T::from_f64(seen(left)), &ahead);
-            ahead = self.slope(end, &(x + change));
-        }
-        let next = self.arrive(until, x + change, &ahead)?;
-        // Of the change itself: beside the state it may be little more than rounding.
-        let mut line = || Polynomial::straight(&x, change);
-        let span = Span {
-            start,
-            end: until,
-            length,
-        };
-        let mut step = Step::new(span, (x, next), self.memory, &mut line);
-        Ok(match observer(&mut step) {
-            ControlFlow::Continue(()) => ControlFlow::Continue((until, next)),
-            ControlFlow::Break(()) => ControlFlow::Break(()),
-        })
     }
 }

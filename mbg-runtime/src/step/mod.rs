@@ -1,6 +1,7 @@
 //! Integrators for initial value problems.
 
 mod adaptive;
+mod approach;
 mod auto;
 mod control;
 mod crossing;
@@ -16,6 +17,7 @@ mod linear;
 mod method;
 #[cfg(test)]
 mod models;
+mod over;
 mod parallel;
 mod probes;
 mod problem;

@@ -6,7 +6,7 @@ use super::dense::Polynomial;
 use super::method::{Family, Span};
 use super::problem::Problem;
 use super::tolerance::Measure;
-use crate::{Input, Real, System};
+use crate::{Course, Input, Real, System};
 
 /// So many thresholds have something between them; what is behind a single one is at the end of the step, too.
 pub(super) const SEVERAL: u32 = 2;
@@ -66,6 +66,29 @@ where
             |course| count = count.saturating_add(course.passed(lasting)),
         );
         count
+    }
+
+    /// The soonest of what is told of the courses of all arguments between two points.
+    pub(super) fn soonest(
+        &self,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+        time: impl Fn(&Course<'_, T>, T) -> Option<f64>,
+    ) -> Option<f64> {
+        let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
+        let mut memory = self.memory;
+        let lasting = to.time - from.time;
+        let mut soonest: Option<f64> = None;
+        self.system.courses(
+            (from.time, &from.state, &from.slope, &inputs[0]),
+            (to.time, &to.state, &to.slope, &inputs[1]),
+            &mut memory,
+            |course| {
+                let times = [soonest, time(&course, lasting)].into_iter().flatten();
+                soonest = times.reduce(f64::min);
+            },
+        );
+        soonest
     }
 
     /// Up to which fraction of a step nothing is missed, where something is.

@@ -191,11 +191,17 @@ fn mistakes_in_curves_are_told() {
     2:24 expected a number, found a vector of 3 [MBG0204]
       help: write one component, such as `a.f[0]`
     ");
-    insta::assert_snapshot!(curve("t, [0.0, 1.0, 0.5], [1.0, 2.0, 3.0]"), @"2:38 expected a place beyond 1, found 0.5 [MBG0213]");
+    insta::assert_snapshot!(curve("t, [0.0, 1.0, 0.5], [1.0, 2.0, 3.0]"), @"
+    2:38 expected a place beyond 1, found 0.5 [MBG0213]
+      help: places rise: where they fall, write both vectors from their other ends
+    ");
     insta::assert_snapshot!(curve("t, [0.0, n, n], [1.0, 2.0, 3.0]"), @"2:36 expected a place beyond the one before [MBG0213]");
     insta::assert_snapshot!(curve("t, [0.0, t], [1.0, 2.0]"), @"2:33 expected places of numbers and parameters alone [MBG0213]");
     insta::assert_snapshot!(curve("t, [0.0, 1e-300], [1.0, 1e300]"), @"2:48 the slope of the line to this value is not a finite number [MBG0216]");
-    insta::assert_snapshot!(mistake("let xs = [1.0, 0.0]; output y = interpolate(t, xs, xs);"), @"2:48 expected a place beyond 1, found 0 [MBG0213]");
+    insta::assert_snapshot!(mistake("let xs = [1.0, 0.0]; output y = interpolate(t, xs, xs);"), @"
+    2:48 expected a place beyond 1, found 0 [MBG0213]
+      help: places rise: where they fall, write both vectors from their other ends
+    ");
     let other = mistake("output y = interpolat(t, [0.0, 1.0], [1.0, 2.0]);");
     assert!(other.contains("did you mean `interpolate`?"), "{other}");
 }

@@ -109,10 +109,107 @@ fn curves_and_choices_are_told_by_their_words_here() {
             "lookup(t, [0.0, 1.0], [2.0, 3.0])",
             "interpolate(t, [0.0, 1.0], [2.0, 3.0])",
         ),
+        (
+            "lookup1d(t, [0.0, 1.0], [2.0, 3.0])",
+            "interpolate(t, [0.0, 1.0], [2.0, 3.0])",
+        ),
+        ("CombiTable1Ds(t)", "interpolate(x, places, values)"),
+        (
+            "interpolate([0.0, 1.0], [2.0, 3.0], t)",
+            "interpolate(t, [0.0, 1.0], [2.0, 3.0])",
+        ),
+    ] {
+        assert_eq!(typed(&driven(slip)).last().map(String::as_str), Some(law));
+        if !law.contains("places") {
+            assert_eq!(told(&driven(law)), "");
+        }
+    }
+    insta::assert_snapshot!(told(&driven("interpolate(t, [1.0, 0.0], [2.0, 3.0])")), @"
+    2:37 expected a place beyond 1, found 0 [MBG0213]
+      help: places rise: where they fall, write both vectors from their other ends
+    ");
+    assert_eq!(
+        typed(&driven("interpolate(t, (0.0, 1.0), [2.0, 3.0])")),
+        ["[0.0, 1.0]"]
+    );
+    assert_eq!(
+        typed(&driven("match t { 0 => 1.0, _ => 2.0 }")),
+        ["if t < … { … } else { … }"]
+    );
+}
+
+#[test]
+fn bars_and_entries_by_values_are_told_as_functions() {
+    for (slip, law) in [
+        ("2.0 * v.f * |v.f|", "abs(v.f)"),
+        ("|v.f - 1.0| * v.f", "abs(v.f - 1.0)"),
+        ("sqrt(|v.f|)", "abs(v.f)"),
+        ("|t| * v.f", "abs(t)"),
     ] {
         assert_eq!(typed(&driven(slip)), [law]);
         assert_eq!(told(&driven(law)), "");
     }
+    let gears = |ratio: &str| {
+        format!(
+            "model M {{ input gear; let ratios = [3.5, 2.0]; 1 v {{ I m {{ inertia: 1.0 }} Se s {{ effort: {ratio} }} }} }}"
+        )
+    };
+    let curve = "interpolate(gear, [0.0, 1.0], ratios)";
+    assert_eq!(typed(&gears("ratios[gear]")).last().unwrap(), curve);
+    assert_eq!(told(&gears(curve)), "");
+}
+
+/// Driveline parts of other tools: each is told as a graph that stands for it.
+#[test]
+fn parts_of_drivelines_are_told_as_elements() {
+    let axle = |part: &str| {
+        format!(
+            "#[derivative] model M {{ param capacity = 300.0; param width = 0.1; param stiffness = 1e4; param gap = 0.02; param ratio = 2.0;
+             1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }} 1 c {{ R r {{ resistance: 1.0 }} }}
+{part} }}"
+        )
+    };
+    for (part, elements) in [
+        (
+            "g: Clutch (a, b);",
+            "0 g_between { R g { effort: capacity * tanh(f / width) } } a -> g_between; g_between -> b;",
+        ),
+        (
+            "g: Brake (a);",
+            "R g { effort: capacity * tanh(f / width) } -> a;",
+        ),
+        (
+            "g: ElastoBacklash (a, b);",
+            "0 g_between { C g { effort: stiffness * (q - max(min(q, gap / 2), -gap / 2)) } } a -> g_between; g_between -> b;",
+        ),
+        (
+            "g: Differential { ratio: 3.0 } (a, b, c);",
+            "0 g_sides; a -> TF g { flow: 2 / 3.0 } -> g_sides; g_sides -> b; g_sides -> c;",
+        ),
+        (
+            "g: IdealPlanetary (a, b, c);",
+            "0 g_teeth; a -> g_teeth; c -> TF g_ring { flow: ratio } -> g_teeth; g_teeth -> TF g { flow: 1 / (1 + ratio) } -> b;",
+        ),
+        (
+            "g: Gear { ratio: 3.5 } (a, c);",
+            "a -> TF g { flow: 1 / 3.5 } -> c;",
+        ),
+    ] {
+        assert_eq!(typed_first(&axle(part)), elements);
+        assert_eq!(told(&axle(elements)), "");
+    }
+    assert_eq!(
+        typed(&axle("g: IdealGear (a, c);")),
+        ["a -> TF g { flow: … } -> c;"]
+    );
+}
+
+/// The first text in backticks that a help gives for what is no name.
+fn typed_first(text: &str) -> String {
+    let diagnostics = diagnose(text);
+    let mut helps = diagnostics.list()[0].helps.iter();
+    let help = helps.next().unwrap();
+    help.split('`').nth(1).unwrap().to_owned()
 }
 
 #[test]
@@ -214,6 +311,21 @@ fn units_are_told_with_their_signs() {
         assert_eq!(typed(&text(slip)), [unit]);
         assert_eq!(told(&text(unit)), "");
     }
+}
+
+#[test]
+fn a_range_with_its_end_is_told_with_what_is_beyond() {
+    let helps = ["for k in 1:4 { 1 x; }", "for k in 1:count { 1 x; }"]
+        .map(|slip| typed(&masses(slip)).remove(0));
+    assert_eq!(helps, ["1..5", "1..count + 1"]);
+    insta::assert_snapshot!(told(&masses("integral x = v.f, initial = 3.0; output x = x;")), @"
+    2:27 expected `:` after `initial`, found `=` [MBG0101]
+      help: write `initial: …`
+    ");
+    insta::assert_snapshot!(told(&masses("initial equation v.f = 10.0;")), @"
+    2:1 expected a statement, found `initial` [MBG0101]
+      help: what storages begin with stands in their braces: `I body { inertia: …, initial_flow: … }`, `C spring { stiffness: …, initial: … }`
+    ");
 }
 
 #[test]

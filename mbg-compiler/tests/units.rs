@@ -716,6 +716,32 @@ fn a_converter_that_is_another_one_is_told() {
 
 /// A source that waves without an amplitude is looked at last, though its rate has a unit.
 #[test]
+fn a_position_for_a_source_of_flow_is_told_at_its_law() {
+    let road = |declared: &str, flow: &str| {
+        format!(
+            "model Quarter {{ param m: kg = 300.0; param k: N/m = 1e5; input {declared};
+             1 body {{ I mass {{ inertia: m }} }} 0 contact {{ C tyre {{ stiffness: k }} }}
+             Sf ground {{ flow: {flow} }} -> contact -> body; }}"
+        )
+    };
+    let (place, text) = told(&road("road: m", "road"));
+    assert!(place.starts_with("road }"));
+    insta::assert_snapshot!(text, @"
+    `flow` of `ground` must be `m/s` here, and this is `m` [MBG0501]
+      help: a source of flow is given the rate of what moves: in the place of `road` declare its rate, such as `input ground_rate: m/s;`, and write `flow: ground_rate`
+    ");
+    assert!(diagnose(&road("ground_rate: m/s", "ground_rate")).is_empty());
+    // What is no position is told as before, where it contradicts the rest.
+    let found = diagnose(&road("road: N", "road"));
+    assert!(
+        found
+            .iter()
+            .all(|report| !report.text().contains("source of flow"))
+    );
+    assert!(!found.is_empty());
+}
+
+#[test]
 fn a_wave_without_an_amplitude_is_told_at_its_law() {
     let (place, text) = told(
         "model M { param k: N/m = 1.0; param w: rad/s = 3.0; 1 a { I m { inertia: 1.0 } }

@@ -175,6 +175,19 @@ fn an_element_between_two_junctions_is_told_a_junction_of_its_own() {
 }
 
 #[test]
+fn mistakes_of_one_model_leave_the_checks_of_the_next() {
+    insta::assert_snapshot!(told("model A { 1 v { I m { inertia: 1.0 } } 0 spare; }
+model B { 1 v { I m { inertia: 1.0 } } 0 node; }"), @"
+    1:42 junction `spare` has no bond [MBG0208]
+      help: write an arrow to it: `spare -> …;`
+      help: or remove it
+    2:42 junction `node` has no bond [MBG0208]
+      help: write an arrow to it: `node -> …;`
+      help: or remove it
+    ");
+}
+
+#[test]
 fn an_element_without_a_bond_is_told_with_its_bond() {
     let model = |statement: &str| {
         format!(

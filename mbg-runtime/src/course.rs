@@ -183,6 +183,38 @@ mod tests {
         }
     }
 
+    /// Along a fall of 5 m from a rate of 3 m/s upwards, with what is 1 and 2 m below the top at these times.
+    #[test]
+    fn a_way_that_bends_evenly_is_followed_to_the_next_threshold() {
+        let at = |time: f64| [3.0 * time - 5.0 * time * time, 3.0 - 10.0 * time];
+        let course = |from: f64, to: f64, thresholds| Course {
+            from: at(from),
+            to: at(to),
+            thresholds,
+            repeats: false,
+            is_choice: true,
+        };
+        let close = |found: Option<f64>, expected: f64| {
+            let found = found.unwrap();
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        };
+        let low = 0.3 + f64::sqrt(0.09 + 0.2);
+        close(course(0.1, 0.9, &[-1.0]).within(0.8), low - 0.1);
+        close(course(0.1, 0.5, &[-1.0, -2.0]).behind(0.4), low - 0.5);
+        // It turns below this one, and comes to the other later.
+        assert_eq!(course(0.1, 0.2, &[0.5]).behind(0.1), None);
+        assert_eq!(course(0.1, 0.5, &[-1.0]).within(0.4), None);
+        let unknown = Course {
+            from: [1.0, 0.0],
+            to: [2.0, 0.0],
+            thresholds: &[0.25],
+            repeats: true,
+            is_choice: true,
+        };
+        close(unknown.within(4.0), 1.0);
+        close(unknown.behind(4.0), 1.0);
+    }
+
     #[test]
     fn when_a_threshold_is_reached_has_slopes() {
         let threshold = Dual {

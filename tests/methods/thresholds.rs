@@ -222,3 +222,30 @@ fn thresholds_between_two_points_are_counted() {
         [0, 2, 4]
     );
 }
+
+/// Between turns the block swings about a place beside the middle, so that each half swing is 0.2 m shorter.
+#[test]
+fn refused_steps_end_where_they_went_over_a_threshold() {
+    let model = Rubbed::new(RubbedParameters::default()).unwrap();
+    let (start, turns) = (model.initial_state(), 50.0);
+    let end = (turns + 1.0 / 3.0) * std::f64::consts::PI;
+    let expected = 0.1 + (10.3 - 0.2 * turns - 0.1) * 0.5;
+    macro_rules! by {
+        ($($method:ident $most:literal),*) => {
+            $(
+                let mut place = 0.0;
+                let statistics = Adaptive::new($method, 1e-9, 1e-9)
+                    .integrate(&model, &(), 0.0, end, start, |step| place = step.state()[1])
+                    .unwrap();
+                let (refused, error) = (statistics.rejected as f64 / turns, place - expected);
+                assert!(
+                    refused < $most && error.abs() < 1e-7,
+                    "{}: {error:e}, {refused} refused at each turn",
+                    stringify!($method),
+                );
+            )*
+        };
+    }
+    // Twenty and more of each before.
+    by!(Tsit5 2.0, Dop853 2.0, Pirk8 2.0, Rodas4 2.0, Rodas5P 2.0, Radau5 2.0, Radau9 2.0);
+}

@@ -104,6 +104,18 @@ fn sledge(solver: &impl Integrator<4>) -> Result<Found, Stopped> {
     ))
 }
 
+/// A block that rubs on a floor, for fifty turns.
+fn rubbed(solver: &impl Integrator<2>) -> Result<Found, Stopped> {
+    #[allow(clippy::expect_used, reason = "it has no parameter")]
+    let model = Rubbed::<f64>::new(RubbedParameters::default()).expect("no parameter");
+    let mut last = model.initial_state();
+    let end = (50.0 + 1.0 / 3.0) * core::f64::consts::PI;
+    let statistics = solver.integrate(&model, &(), 0.0, end, last, |step| last = *step.state())?;
+    // Each half swing is 0.2 m shorter, about a place 0.1 m beside the middle.
+    let expected = 0.1 + (10.3 - 0.2 * 50.0 - 0.1) * 0.5;
+    Ok(Found::new((last[1] - expected).abs(), statistics))
+}
+
 fn pulsing<S: Estimating>(method: S, lines: &mut Vec<Line>) {
     let solver = Adaptive::new(method, 1e-8, 1e-8);
     lines.push(Line::run(
@@ -120,6 +132,11 @@ fn pulsing<S: Estimating>(method: S, lines: &mut Vec<Line>) {
         ("a cam on a free shaft", S::NAME, "the work of torques"),
         Expected::Within(1e-4),
         || cam(&solver),
+    ));
+    lines.push(Line::run(
+        ("friction at fifty turns", S::NAME, "swings in closed form"),
+        Expected::Within(1e-5),
+        || rubbed(&solver),
     ));
 }
 

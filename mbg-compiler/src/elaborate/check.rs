@@ -12,7 +12,8 @@ use crate::syntax::dump;
 impl Builder<'_> {
     /// Completes the dimensions of bonds at two-ports and reports what does not fit.
     pub(super) fn check(&mut self, model: Span) {
-        if self.diagnostics.any() {
+        // Mistakes of models before this one say nothing of it.
+        if self.diagnostics.calls() > self.calls {
             return;
         }
         self.check_bonds();

@@ -23,7 +23,7 @@ use crate::syntax::ast::{self, Unit};
 use crate::units;
 
 /// What a text says of units.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Claims {
     /// In order of reading: what an expression is made of stands before it.
     pub list: Vec<Claim>,
@@ -36,6 +36,7 @@ pub struct Claims {
 }
 
 /// A value behind a symbol.
+#[derive(Clone)]
 pub struct Hidden {
     /// Its name, or the number itself.
     pub text: String,
@@ -55,6 +56,7 @@ impl Claims {
 }
 
 /// One thing that is said.
+#[derive(Clone)]
 pub struct Claim {
     /// What the entries stand for.
     pub subject: Subject,

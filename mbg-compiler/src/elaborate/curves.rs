@@ -7,8 +7,9 @@ use syn::spanned::Spanned;
 use super::expressions::{Evaluator, Names, Result, Value, fail, mismatch};
 use super::model::{Assumption, Condition};
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Function};
+use crate::syntax::dump;
 
 /// A stretch of equal slope, by the numbers of its first and its last point.
 struct Piece {
@@ -20,7 +21,9 @@ struct Piece {
 impl<N: Names> Evaluator<'_, N> {
     /// `interpolate(x, places, values)`; the outer lines go on.
     pub(super) fn curve(&mut self, x: &Expr, places: &Expr, values: &Expr) -> Result<Value> {
-        let argument = self.scalar(x)?;
+        let argument = self
+            .scalar(x)
+            .map_err(|report| in_order(report, [x, places, values]))?;
         let (xs, ys) = (self.points(places)?, self.points(values)?);
         if xs.len() != ys.len() {
             let (wanted, found) = (xs.len(), ys.len());
@@ -86,10 +89,13 @@ impl<N: Names> Evaluator<'_, N> {
                 return Ok(());
             }
             return match ends.map(|end| self.pool.constant_value(end)) {
-                [Some(before), Some(found)] => fail(
-                    place,
-                    format!("expected a place beyond {before}, found {found}"),
-                ),
+                [Some(before), Some(found)] => {
+                    let message = format!("expected a place beyond {before}, found {found}");
+                    let report = error(codes::EXPRESSION, place, message);
+                    let help =
+                        "places rise: where they fall, write both vectors from their other ends";
+                    Err(Box::new(report.help(help)))
+                }
                 _ => fail(place, "expected a place beyond the one before"),
             };
         }
@@ -159,6 +165,17 @@ impl<N: Names> Evaluator<'_, N> {
         let (place, value) = (largest(argument, xs), largest(ys[0], &ys[1..]));
         let choice = [argument, place, value, ys[0]];
         self.pool.call(Function::SelectLess, &choice)
+    }
+}
+
+/// What to type where the vectors come before what they are read at.
+fn in_order(report: Box<Diagnostic>, arguments: [&Expr; 3]) -> Box<Diagnostic> {
+    let [x, places, values] = arguments.map(dump::expression);
+    match arguments.map(|it| matches!(it, Expr::Array(_))) {
+        [true, true, false] => {
+            Box::new(report.help(format!("write `interpolate({values}, {x}, {places})`")))
+        }
+        _ => report,
     }
 }
 

@@ -94,6 +94,21 @@ const WORDS: &[(&str, &[&str], &str)] = &[
         "interpolate(x, places, values)",
     ),
     (
+        "lookup1d",
+        &["x", "places", "values"],
+        "interpolate(x, places, values)",
+    ),
+    (
+        "CombiTable1D",
+        &["x", "places", "values"],
+        "interpolate(x, places, values)",
+    ),
+    (
+        "CombiTable1Ds",
+        &["x", "places", "values"],
+        "interpolate(x, places, values)",
+    ),
+    (
         "interp1",
         &["places", "values", "x"],
         "interpolate(x, places, values)",
@@ -128,7 +143,16 @@ const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
     ),
     (
         ElementKind::R,
-        &["damping", "friction", "viscosity", "drag", "impedance", "r"],
+        &[
+            "damping",
+            "friction",
+            "viscosity",
+            "drag",
+            "impedance",
+            "r",
+            "b",
+            "d",
+        ],
         "resistance",
     ),
     (ElementKind::R, &["admittance", "mobility"], "conductance"),
@@ -348,6 +372,33 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     }
     let places: Vec<(&str, &Expr)> = places.iter().copied().zip(arguments).collect();
     Some(format!("write `{}`", filled(text, &places)))
+}
+
+/// What to type for an expression of Rust that no law is.
+pub(super) fn of_rust(expression: &Expr) -> Option<String> {
+    match expression {
+        Expr::Match(choice) => {
+            let of = dump::expression(&choice.expr);
+            Some(format!("write `if {of} < … {{ … }} else {{ … }}`"))
+        }
+        // `|v| * w`, in Rust a closure.
+        Expr::Closure(bars) => {
+            let inside: Vec<String> = bars
+                .inputs
+                .iter()
+                .map(|it| it.to_token_stream().to_string())
+                .collect();
+            Some(format!(
+                "a magnitude is written `abs({})`",
+                inside.join(", ")
+            ))
+        }
+        Expr::Tuple(list) => {
+            let entries: Vec<String> = list.elems.iter().map(dump::expression).collect();
+            Some(format!("write `[{}]`", entries.join(", ")))
+        }
+        _ => None,
+    }
 }
 
 /// What to read or declare where a rate is meant. Nothing differentiates an input.

@@ -209,10 +209,14 @@ impl<N: Names> Evaluator<'_, N> {
                 let value = dump::expression(&cast.expr);
                 Err(Box::new(report.help(format!("write `{value}`"))))
             }
-            _ => fail(
-                expression.span(),
-                "expected a law: numbers, names, + - * /, functions, vectors or `if`",
-            ),
+            _ => {
+                let message = "expected a law: numbers, names, + - * /, functions, vectors or `if`";
+                let report = error(codes::EXPRESSION, expression.span(), message);
+                Err(Box::new(match elsewhere::of_rust(expression) {
+                    Some(help) => report.help(help),
+                    None => report,
+                }))
+            }
         }
     }
 

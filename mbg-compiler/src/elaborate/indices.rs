@@ -181,7 +181,8 @@ impl<N: Names> Evaluator<'_, N> {
         let value = self.evaluate(&index.expr)?;
         let span = index.index.span();
         let Expr::Range(range) = &*index.index else {
-            let number = self.names.whole(&index.index)?;
+            let number = self.names.whole(&index.index);
+            let number = number.map_err(|report| picked(report, index, &value))?;
             return match value {
                 Value::Matrix(product) if product.columns() > 1 => self.row(&product, number, span),
                 value => self.pick(value, number, span),
@@ -269,4 +270,21 @@ fn no_letter(path: &Expr, name: &Ident, place: usize) -> Box<Diagnostic> {
 /// 0, 1, 2 for `x`, `y`, `z`.
 pub(super) fn component_index(name: &Ident) -> Option<usize> {
     ["x", "y", "z"].iter().position(|known| name == known)
+}
+
+/// What to type where an entry of a vector is picked while the model runs: a curve has the values of the entries at their numbers.
+fn picked(report: Box<Diagnostic>, index: &syn::ExprIndex, value: &Value) -> Box<Diagnostic> {
+    let entries = match value {
+        Value::Matrix(product) if product.columns() == 1 => product.rows(),
+        _ => return report,
+    };
+    if !matches!(*index.index, Expr::Path(_)) {
+        return report;
+    }
+    let [of, by] = [&*index.expr, &*index.index].map(dump::expression);
+    let places: Vec<String> = (0..entries).map(|it| format!("{it}.0")).collect();
+    Box::new(report.help(format!(
+        "what is picked while the model runs is a curve: `interpolate({by}, [{}], {of})`",
+        places.join(", ")
+    )))
 }

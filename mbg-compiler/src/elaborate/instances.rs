@@ -191,6 +191,10 @@ impl<'a> Builder<'a> {
                     self.tell(scope, report.help(format!("write `{here}: {value}`")));
                     continue;
                 }
+                if let Some(gear) = tools::by_ratio(instance, argument) {
+                    self.tell(scope, report.help(gear));
+                    continue;
+                }
                 let longer = ending_in(&argument.name.to_string(), &names);
                 let report = match longer.is_empty() {
                     true => report.did_you_mean(&argument.name.to_string(), &names),

@@ -92,8 +92,8 @@ pub fn elaborate(
     builder.read_defaults(&model.statements);
     builder.resolve_laws();
     builder.check(model.name.span());
-    let before = builder.before;
-    let sound = |diagnostics: &Diagnostics| diagnostics.list().len() == before;
+    let calls = builder.calls;
+    let sound = |diagnostics: &Diagnostics| diagnostics.calls() == calls;
     let mut elaborated = sound(builder.diagnostics).then(|| builder.finish(model))?;
     displacements::express(&mut elaborated, pool, diagnostics);
     sound(diagnostics).then_some(elaborated)
@@ -188,6 +188,8 @@ struct Builder<'a> {
     diagnostics: &'a mut Diagnostics,
     /// How many mistakes were reported before this model's.
     before: usize,
+    /// The same, with those that told what was told already.
+    calls: usize,
     scopes: Scopes,
     definitions: Definitions<'a>,
     /// What the law just read could not be read without.
@@ -242,6 +244,7 @@ impl<'a> Builder<'a> {
             components,
             pool,
             before: diagnostics.list().len(),
+            calls: diagnostics.calls(),
             diagnostics,
             scopes: Scopes(vec![root]),
             definitions: Vec::new(),

@@ -167,7 +167,11 @@ const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
         Stand::Through,
         &[("GY", "gyrator", "effort: …")],
     ),
-    (&["lever"], Stand::Through, &[("TF", "lever", "flow: …")]),
+    (
+        &["lever", "idealgear", "simplegear"],
+        Stand::Through,
+        &[("TF", "lever", "flow: …")],
+    ),
     (
         &[
             "switch",
@@ -212,6 +216,25 @@ const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
         ],
         Stand::Between,
         &[("R", "damper", "resistance: …")],
+    ),
+    (
+        &["clutch", "discclutch", "coneclutch", "frictionclutch"],
+        Stand::Between,
+        &[("R", "clutch", "effort: capacity * tanh(f / width)")],
+    ),
+    (
+        &["brake", "discbrake", "drumbrake", "bearingfriction"],
+        Stand::At,
+        &[("R", "brake", "effort: capacity * tanh(f / width)")],
+    ),
+    (
+        &["backlash", "elastobacklash", "freeplay"],
+        Stand::Between,
+        &[(
+            "C",
+            "lash",
+            "effort: stiffness * (q - max(min(q, gap / 2), -gap / 2))",
+        )],
     ),
     (
         &["springdamper", "springanddamper"],
@@ -484,6 +507,9 @@ pub(super) fn elements(
     end: Option<(JunctionKind, usize)>,
 ) -> Option<String> {
     let component = plain(&instance.component.to_string());
+    if let Some(text) = gears(&component, instance) {
+        return Some(format!("here it is written `{text}`"));
+    }
     let mut known = ELEMENTS.iter();
     let (_, stand, parts) = known.find(|(names, ..)| names.contains(&component.as_str()))?;
     let (kind, dimension) = end.unwrap_or((JunctionKind::One, 1));
@@ -507,6 +533,43 @@ pub(super) fn elements(
         _ => at_junction(parts, &name, at, dimension),
     };
     Some(format!("here it is written `{text}`"))
+}
+
+/// Gears with three shafts, in the order that tools have: a differential by its case and both sides, a planetary gear by sun,
+/// carrier and ring.
+fn gears(component: &str, instance: &ast::Instance) -> Option<String> {
+    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
+    let [a, b, c] = &ends[..] else { return None };
+    let given = instance.arguments.iter().find(|it| it.name == "ratio");
+    let ratio = given.and_then(|it| it.value.as_ref());
+    let ratio = ratio.map_or_else(|| "ratio".to_owned(), dump::expression);
+    let name = &instance.name;
+    match component {
+        "differential" | "differentialgear" | "opendifferential" => Some(format!(
+            "0 {name}_sides; {a} -> TF {name} {{ flow: 2 / {ratio} }} -> {name}_sides; {name}_sides -> {b}; {name}_sides -> {c};"
+        )),
+        "planetary" | "planetarygear" | "idealplanetary" | "epicyclic" => Some(format!(
+            "0 {name}_teeth; {a} -> {name}_teeth; {c} -> TF {name}_ring {{ flow: {ratio} }} -> {name}_teeth; \
+             {name}_teeth -> TF {name} {{ flow: 1 / (1 + {ratio}) }} -> {b};"
+        )),
+        _ => None,
+    }
+}
+
+/// What to type for a gear that is given its ratio in the place of its radii.
+pub(super) fn by_ratio(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
+    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
+    let [from, to] = &ends[..] else { return None };
+    let is_ratio = ["ratio", "i", "n"].iter().any(|it| argument.name == it);
+    if instance.component != "Gear" || !is_ratio {
+        return None;
+    }
+    let value = argument.value.as_ref();
+    let ratio = value.map_or_else(|| "…".to_owned(), dump::expression);
+    Some(format!(
+        "a ratio alone is a transformer: `{from} -> TF {} {{ flow: 1 / {ratio} }} -> {to};`",
+        instance.name
+    ))
 }
 
 /// What holds a flow or an effort at zero.

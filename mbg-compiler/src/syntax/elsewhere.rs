@@ -91,6 +91,11 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             ))
         }
         "state" if cursor.ident(1).is_some() => state(cursor),
+        "initial" if cursor.ident(1).is_some() => Some(
+            "what storages begin with stands in their braces: `I body { inertia: …, initial_flow: … }`, `C spring { stiffness: …, \
+             initial: … }`"
+                .to_owned(),
+        ),
         _ => {
             let (_, here) = DECLARING.iter().find(|(other, _)| *other == word)?;
             declaration(cursor, here)

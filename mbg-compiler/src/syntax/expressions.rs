@@ -27,8 +27,27 @@ pub(super) fn range(cursor: &mut Cursor, what: &str) -> Parsed<(Expr, Expr)> {
     match read(cursor, length, what)? {
         Expr::Range(range) => bounds(range),
         other => {
-            let message = format!("expected {what}, found `{}`", dump::expression(&other));
-            Err(Box::new(error(codes::SYNTAX, other.span(), message)))
+            let found = dump::expression(&other);
+            let message = format!("expected {what}, found `{found}`");
+            let report = error(codes::SYNTAX, other.span(), message);
+            // `1:4`, whose end is within it.
+            let end = match cursor.punct(0, ':') && !cursor.punct(1, ':') {
+                true => cursor.length_until(before_brace),
+                false => 0,
+            };
+            let behind = cursor.ahead(end).get(1..).unwrap_or_default();
+            // With a step, as in `1:2:9`, there is no such range.
+            if behind.is_empty() || behind.iter().any(|it| slips::is_mark(it, ':')) {
+                return Err(Box::new(report));
+            }
+            let last = behind.iter().cloned().collect();
+            let last = dump::tokens(last);
+            let beyond = match last.parse::<i64>().ok().and_then(|it| it.checked_add(1)) {
+                Some(beyond) => beyond.to_string(),
+                None => format!("{last} + 1"),
+            };
+            let help = format!("a range excludes its end: write `{found}..{beyond}`");
+            Err(Box::new(report.help(help)))
         }
     }
 }
@@ -107,7 +126,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
             return report;
         }
         let slip = slips::side_by_side(&law);
-        let slip = slip.or_else(|| keyword(&law));
+        let slip = slip.or_else(|| keyword(&law)).or_else(|| slips::bars(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })
 }

@@ -435,6 +435,29 @@ pub(super) fn is_mark(token: &TokenTree, mark: char) -> bool {
     matches!(token, TokenTree::Punct(it) if it.as_char() == mark)
 }
 
+/// `|v|`, the magnitude of what stands between the bars: the first of them has no operand before it.
+pub(super) fn bars(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    tokens.iter().enumerate().find_map(|(at, token)| {
+        if let TokenTree::Group(group) = token {
+            let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+            return bars(&inside);
+        }
+        let opens = is_mark(token, '|') && (at == 0 || !is_operand(&tokens[at - 1]));
+        let behind = &tokens[at + 1..];
+        let length = behind.iter().position(|it| is_mark(it, '|'))?;
+        if !opens || length == 0 || !is_operand(&behind[length - 1]) {
+            return None;
+        }
+        let report = error(
+            codes::SYNTAX,
+            token.span(),
+            "expected an expression, found `|`",
+        );
+        let help = format!("write `abs({})`", text(&behind[..length]));
+        Some(Box::new(report.help(help)))
+    })
+}
+
 fn text(part: &[TokenTree]) -> String {
     dump::tokens(part.iter().cloned().collect())
 }

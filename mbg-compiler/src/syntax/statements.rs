@@ -536,7 +536,11 @@ fn trailing(
     }
     cursor.advance(1);
     if !cursor.take_punct(':') {
-        return Err(cursor.expected(&format!("`:` after `{wanted}`")));
+        let report = *cursor.expected(&format!("`:` after `{wanted}`"));
+        if !cursor.take_punct('=') {
+            return Err(Box::new(report));
+        }
+        sink.report(Box::new(report.help(format!("write `{wanted}: …`"))));
     }
     read(cursor, &format!("the value of `{wanted}`")).map(Some)
 }

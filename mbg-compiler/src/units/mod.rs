@@ -16,6 +16,7 @@ mod names;
 mod ports;
 mod pseudo;
 mod report;
+mod sources;
 mod spellings;
 
 use std::collections::BTreeMap;
@@ -76,10 +77,12 @@ pub fn check(
     }
     // One converter that is another one explains more than effort times flow that is no power.
     let converters = converters::advice(elaborated, &claims, &pool, &declared);
-    if converters.is_empty()
-        && let Some(report) = densities::report(elaborated, &claims, &pool, &declared)
-    {
-        return diagnostics.report(report);
+    if converters.is_empty() {
+        let report = densities::report(elaborated, &claims, &pool, &declared);
+        let report = report.or_else(|| sources::report(elaborated, &claims, &pool, &declared));
+        if let Some(report) = report {
+            return diagnostics.report(report);
+        }
     }
     for (position, report) in found.list().iter().enumerate() {
         let mut report = report.clone();

@@ -123,7 +123,8 @@ impl fmt::Display for Cause {
             Self::TooManySteps { next } => write!(
                 formatter,
                 "more steps than `most` allows; the next is {next:.1e} s long, which a stiff model asks of an explicit method, \
-                 a tight tolerance of a method of low order, and a law that jumps where it holds its state of any"
+                 a tight tolerance of a method of low order, and a law that jumps where it holds its state of any: let it \
+                 rise within a width there, as `tanh(v / width)` does"
             ),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),
@@ -233,5 +234,21 @@ where
             let trouble = S::unsolved(memory).unwrap_or(trouble);
             Err(Stopped::new(time, Cause::Trouble(trouble)))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::Cause;
+
+    #[test]
+    fn too_many_steps_are_told_with_what_to_write_for_a_jump() {
+        let told = Cause::TooManySteps { next: 1e-9 }.to_string();
+        assert!(
+            told.contains("1.0e-9 s") && told.contains("`tanh(v / width)`"),
+            "{told}"
+        );
     }
 }

@@ -29,6 +29,8 @@ const DIVIDED: u32 = 64;
 /// A start that is nearer to a threshold, in periods, is on it, and later by such a part.
 const BESIDE: f64 = 1e-9;
 const LATER: f64 = 1e-6;
+/// States change alike if their slopes differ by no more than this part.
+const ALIKE: f64 = 1e-7;
 /// At so many times of each step laws are compared with those a period later.
 const COMPARED: u32 = 16;
 /// By how much slopes along a motion may miss it, beside what they are made of: they are less exact than states where lines of a
@@ -51,8 +53,8 @@ const TINY: f64 = 1e-9;
 /// The motion is found by shooting: from a start it is followed for a period by the integrator that is given, and the start corrected
 /// by Newton's method with the exact derivatives of the end, which are those of the same steps on [`Dual`] numbers; through jumps
 /// of laws by time and inputs, too. Corrections are damped until what is left falls; of those that are as good the one of least
-/// norm is taken, in units of what states and inputs do. So the motion need not be one that others tend to. It is as exact as
-/// the integrator.
+/// norm is taken, in units of what states and inputs do; states that change alike differ as in the guess, as with
+/// [`Trim`](crate::Trim). So the motion need not be one that others tend to. It is as exact as the integrator.
 ///
 /// # Example
 ///
@@ -634,7 +636,10 @@ where
             ),
             None => Row::empty(),
         });
-        Rows::new(rows, [])
+        let mut rows = Rows::new(rows, []);
+        let states = (&run.start.state, &self.start.state);
+        rows.keep_differences(&self.selection.resting(), states, ALIKE);
+        rows
     }
 
     /// A motion that comes back better, if there is one.

@@ -48,6 +48,11 @@ impl<const N: usize, const M: usize> Selection<N, M> {
         }
     }
 
+    /// The states that are to be found and to stay as they are.
+    pub(crate) fn resting(&self) -> [bool; N] {
+        core::array::from_fn(|state| !self.fixed.0[state] && self.changes[state] == Some(0.0))
+    }
+
     /// Keeps states or inputs of this name as they are.
     pub(crate) fn fix(&mut self, meta: &Meta, name: &'static str) {
         let mut found = false;

@@ -30,6 +30,8 @@ const LITTLE: f64 = 1e-8;
 const OPEN: f64 = 1e-12;
 /// By what part of itself an input may be in error by what is left open.
 const TORN: f64 = 1e-3;
+/// Slopes of states that change alike differ by no more than this part: by rounding.
+const SAME: f64 = 8.0 * f64::EPSILON;
 /// How many points a few units in the last place away tell what of a condition is rounding.
 const BESIDE: usize = 8;
 /// What is rounding, in units of how far apart its values are there.
@@ -49,6 +51,8 @@ const ROUNDING: f64 = 64.0;
 /// ([`System::close`](crate::System::close)). A ring of joints without a `Cut` is no such loop: each of its coordinates is moved by
 /// itself, and the point that is found may be one where the ring is open. Put a `Cut` in the place of one of its joints, or let what
 /// is between its ends be an output that is zero. The guess decides which point is found of several: a pendulum may hang or stand.
+/// What two states differ by that change alike whatever is done, such as the displacements of two springs at one junction, stays as it
+/// is in the guess, unless one of them is fixed, free or given a rate.
 ///
 /// # Example
 ///
@@ -337,7 +341,10 @@ where
                 Row::new(by_state, by_input, outputs[row]),
             )
         });
-        Ok(Rows::new(rates, outputs))
+        let mut rows = Rows::new(rates, outputs);
+        let states = (&point.state, &self.start.state);
+        rows.keep_differences(&self.selection.resting(), states, SAME);
+        Ok(rows)
     }
 
     /// What is left of the conditions.

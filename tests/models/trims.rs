@@ -1,8 +1,8 @@
 //! Operating points, against closed forms and runs that begin there.
 
 use mbg_runtime::{
-    Adaptive, Constant, Convertible, Dop853, Integrator, Linearised, System, Trim, Trimmed,
-    Untrimmed, mbg,
+    Adaptive, Constant, Convertible, Dop853, Integrator, Linearised, PeriodicTrim, System, Trim,
+    Trimmed, Untrimmed, mbg,
 };
 use nalgebra::SVector;
 
@@ -415,4 +415,58 @@ fn what_cannot_be_is_told() {
         panic!("nothing carries it");
     };
     assert_eq!((name, wanted), ("hull.body.p.z", 0.0));
+}
+
+mbg! {
+    /// A mass on two springs, one behind a lever, of which the second is pretensioned, pushed steadily and with a wave.
+    model Springs {
+        input push: N;
+        param shake: N = 0.0;
+        1 way {
+            I mass { inertia: 1.0 }
+            R damper { resistance: 1.0 }
+            C one { stiffness: 100.0 }
+            C other { stiffness: 10.0, initial: 0.3 }
+            Se hand { effort: push + shake * sin(6.0 * t) }
+        }
+        1 short { C third { stiffness: 5.0, initial: 0.1 } }
+        way -> TF lever { flow: -2.0 } -> short;
+        output stretched: m = one.q;
+    }
+}
+
+/// From the start on all springs are stretched by as much, the one behind the lever twice the other way.
+#[test]
+fn springs_that_move_together_differ_as_at_the_start() {
+    let model = Springs::<f64>::new(SpringsParameters::default()).unwrap();
+    let stiffness = 100.0 + 10.0 + 4.0 * 5.0;
+    let pushed = Trim::new(&model).input(&[11.0]).fix("push").solve();
+    let state = pushed.unwrap().state;
+    let way = (11.0 - 10.0 * 0.3 + 2.0 * 5.0 * 0.1) / stiffness;
+    let expected = SVector::from([0.0, way, 0.3 + way, 0.1 - 2.0 * way]);
+    assert!((state - expected).amax() < 1e-12, "{state}");
+    // What a run comes to.
+    let mut end = model.initial_state();
+    let push = Constant(SVector::from([11.0]));
+    Adaptive::new(Dop853, 1e-11, 1e-11)
+        .integrate(&model, &push, 0.0, 60.0, end, |step| end = *step.state())
+        .unwrap();
+    assert!((end - state).amax() < 1e-9, "{end}");
+    let shaken = Springs::<f64>::new(SpringsParameters { shake: 4.0 }).unwrap();
+    let exact = Adaptive::new(Dop853, 1e-11, 1e-11);
+    let cycle = PeriodicTrim::new(&shaken, &exact, core::f64::consts::PI / 3.0)
+        .input(&[11.0])
+        .fix("push")
+        .solve()
+        .unwrap();
+    // A steady part, and the wave that it swings in.
+    let (far, damped) = (stiffness - 36.0, 6.0);
+    let swung = -4.0 * damped / (far * far + damped * damped);
+    let moved = cycle.state[1] - way;
+    assert!((moved - swung).abs() < 1e-9, "{} {}", moved, swung);
+    let differences = [
+        cycle.state[2] - cycle.state[1],
+        cycle.state[3] + 2.0 * cycle.state[1],
+    ];
+    assert!((differences[0] - 0.3).abs() < 1e-9 && (differences[1] - 0.1).abs() < 1e-9);
 }

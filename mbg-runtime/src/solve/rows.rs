@@ -41,6 +41,23 @@ impl<const N: usize, const M: usize> Row<N, M> {
         self.largest() == 0.0
     }
 
+    /// The number by which another one is to be multiplied to be this one, but for such a part of it.
+    fn in_units_of(&self, other: &Self, part: f64) -> Option<f64> {
+        let pairs = || {
+            let (states, inputs) = (self.by_state.iter(), self.by_input.iter());
+            let pairs = states
+                .zip(&other.by_state)
+                .chain(inputs.zip(&other.by_input));
+            pairs.map(|(own, other)| (*own, *other))
+        };
+        let (own, largest) = pairs().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        let number = own / largest;
+        let aside = |(own, other): (f64, f64)| (own - number * other).abs();
+        let least = part * own.abs();
+        let is_same = own != 0.0 && number.is_finite() && pairs().all(|it| aside(it) <= least);
+        is_same.then_some(number)
+    }
+
     /// The terms that it is made of where unknowns have these sizes.
     fn terms(&self, (states, inputs): &Sizes<N, M>) -> f64 {
         self.by_state.abs().dot(states) + self.by_input.abs().dot(inputs)
@@ -107,6 +124,30 @@ impl<const N: usize, const M: usize, const P: usize> Rows<N, M, P> {
             outputs,
             units,
             along: SMatrix::identity(),
+        }
+    }
+
+    /// Where one state changes as an earlier one does, times a number, what they differ by stays as it is in a guess, for their
+    /// changes say nothing of it: such are the displacements of two springs at one junction. Both must be among these.
+    pub(crate) fn keep_differences(
+        &mut self,
+        among: &[bool; N],
+        (state, guess): (&SVector<f64, N>, &SVector<f64, N>),
+        part: f64,
+    ) {
+        let rates = self.rates;
+        for number in (1..N).filter(|number| among[*number]) {
+            let mut earlier = (0..number).filter(|earlier| among[*earlier]);
+            let same = earlier.find_map(|earlier| {
+                let times = rates[number].in_units_of(&rates[earlier], part)?;
+                Some((earlier, times))
+            });
+            if let Some((earlier, times)) = same {
+                let mut by_state = SVector::<f64, N>::zeros();
+                (by_state[number], by_state[earlier]) = (1.0, -times);
+                let left = by_state.dot(&(state - guess));
+                self.rates[number] = Row::new(by_state, SVector::zeros(), left);
+            }
         }
     }
 

@@ -154,12 +154,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         let mut t = start;
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
-        let mut pace = Pace {
-            control: self.begin(problem, (t, end), (&x, &slope), &tolerance),
-            approach: Approach::new(),
-            refused: 0,
-            again: false,
-        };
+        let mut pace = Pace::new(self.begin(problem, (t, end), (&x, &slope), &tolerance));
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
@@ -243,6 +238,15 @@ struct Pace {
 }
 
 impl Pace {
+    const fn new(control: Control) -> Self {
+        Self {
+            control,
+            approach: Approach::new(),
+            refused: 0,
+            again: false,
+        }
+    }
+
     /// Behind a step that was taken: where the run stands beside a threshold.
     #[inline]
     fn accept<F: Family, T: Real, S, I, const N: usize, const M: usize, const P: usize>(

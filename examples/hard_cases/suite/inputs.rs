@@ -7,7 +7,9 @@ use nalgebra::Vector3;
 
 use super::ins::gust as declared;
 use super::ins_reference::PULSE;
-use super::models::{Cam, CamParameters, Sledge, SledgeParameters, Slide, SlideParameters};
+use super::models::{
+    Cam, CamParameters, Rubbed, RubbedParameters, Sledge, SledgeParameters, Slide, SlideParameters,
+};
 use super::stiffness::ins_model;
 use super::{Expected, Found, Line, apart};
 

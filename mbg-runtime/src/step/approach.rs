@@ -96,10 +96,11 @@ impl Approach {
         // What is no nearer than times are told apart is not there after all.
         self.ahead = ahead.filter(|ahead| *ahead > problem.apart(from.time, 0.0));
         self.tries += 1;
-        match self.ahead {
-            Some(_) => Come::Nearer,
-            None => Come::Away,
+        if self.ahead.is_none() {
+            self.leave();
+            return Come::Away;
         }
+        Come::Nearer
     }
 
     /// Where it stands behind a step that was taken.

@@ -270,6 +270,12 @@ where
     /// laws do not come back with it, since what drives it has another period.
     pub fn solve(&self) -> Result<Cycle<N, M>, Untrimmed> {
         self.selection.check()?;
+        let kept = self.selection.keeping(S::META);
+        let kept = kept.and_then(|selection| Self { selection, ..*self }.found().ok());
+        kept.map_or_else(|| self.found(), Ok)
+    }
+
+    fn found(&self) -> Result<Cycle<N, M>, Untrimmed> {
         if self.period <= 0.0 {
             return Err(Untrimmed::Stopped(Stopped {
                 time: self.time,
@@ -638,7 +644,7 @@ where
         });
         let mut rows = Rows::new(rows, []);
         let states = (&run.start.state, &self.start.state);
-        rows.keep_differences(&self.selection.resting(), states, ALIKE);
+        rows.keep_differences(&self.selection.kept(), states, ALIKE);
         rows
     }
 

@@ -7,6 +7,8 @@ use crate::{Meta, System, Trimmed, Untrimmed};
 pub(crate) struct Selection<const N: usize, const M: usize> {
     pub(crate) fixed: ([bool; N], [bool; M]),
     pub(crate) changes: [Option<f64>; N],
+    /// Whether states that change alike differ as in the guess.
+    keeps_differences: bool,
     unknown: Option<Untrimmed>,
 }
 
@@ -16,6 +18,7 @@ impl<const N: usize, const M: usize> Selection<N, M> {
         Self {
             fixed: ([false; N], [false; M]),
             changes: [Some(0.0); N],
+            keeps_differences: false,
             unknown: None,
         }
     }
@@ -48,9 +51,21 @@ impl<const N: usize, const M: usize> Selection<N, M> {
         }
     }
 
-    /// The states that are to be found and to stay as they are.
-    pub(crate) fn resting(&self) -> [bool; N] {
-        core::array::from_fn(|state| !self.fixed.0[state] && self.changes[state] == Some(0.0))
+    /// The same with states that change alike differing as in the guess. Loops that are closed decide that themselves.
+    pub(crate) fn keeping(&self, meta: &Meta) -> Option<Self> {
+        let keeps_differences = true;
+        let kept = Self {
+            keeps_differences,
+            ..*self
+        };
+        meta.closures.is_empty().then_some(kept)
+    }
+
+    /// The states that are to be found and to stay as they are, where differences between them are kept.
+    pub(crate) fn kept(&self) -> [bool; N] {
+        core::array::from_fn(|state| {
+            self.keeps_differences && !self.fixed.0[state] && self.changes[state] == Some(0.0)
+        })
     }
 
     /// Keeps states or inputs of this name as they are.

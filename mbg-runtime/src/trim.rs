@@ -52,7 +52,7 @@ const ROUNDING: f64 = 64.0;
 /// itself, and the point that is found may be one where the ring is open. Put a `Cut` in the place of one of its joints, or let what
 /// is between its ends be an output that is zero. The guess decides which point is found of several: a pendulum may hang or stand.
 /// What two states differ by that change alike whatever is done, such as the displacements of two springs at one junction, stays as it
-/// is in the guess, unless one of them is fixed, free or given a rate.
+/// is in the guess, if there is such a point and none of them is fixed, free or given a rate.
 ///
 /// # Example
 ///
@@ -195,6 +195,12 @@ where
     /// and what [`System::close`](crate::System::close) and [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
         self.selection.check()?;
+        let kept = self.selection.keeping(S::META);
+        let kept = kept.and_then(|selection| Self { selection, ..*self }.found().ok());
+        kept.map_or_else(|| self.found(), Ok)
+    }
+
+    fn found(&self) -> Result<Trimmed<N, M>, Untrimmed> {
         let mut point = self.closed(self.start)?;
         let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
         let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
@@ -343,7 +349,7 @@ where
         });
         let mut rows = Rows::new(rates, outputs);
         let states = (&point.state, &self.start.state);
-        rows.keep_differences(&self.selection.resting(), states, SAME);
+        rows.keep_differences(&self.selection.kept(), states, SAME);
         Ok(rows)
     }
 

@@ -7,6 +7,7 @@ use nalgebra::SVector;
 use super::dense::{Polynomial, Step};
 use super::method::{Span, along};
 use super::problem::Problem;
+use super::thresholds::Point;
 use super::{Stopped, less, seen};
 use crate::course::sooner;
 use crate::{Input, Real, System};
@@ -56,19 +57,16 @@ where
         to: &Place<T, N>,
         slope: &SVector<T, N>,
     ) -> Option<T> {
-        let inputs = [from, to].map(|it| self.input.value(it.0, self.since));
-        let mut memory = self.memory;
-        let lasting = to.0 - from.0;
+        let [from, to] = [from, to].map(|it| Point {
+            time: it.0,
+            state: it.1,
+            slope: *slope,
+        });
         let mut first: Option<T> = None;
-        self.system.courses(
-            (from.0, &from.1, slope, &inputs[0]),
-            (to.0, &to.1, slope, &inputs[1]),
-            &mut memory,
-            |course| {
-                let times = [first, course.reached(lasting)].into_iter().flatten();
-                first = times.reduce(sooner);
-            },
-        );
+        self.courses(&from, &to, |course, lasting| {
+            let times = [first, course.reached(lasting)].into_iter().flatten();
+            first = times.reduce(sooner);
+        });
         first
     }
 

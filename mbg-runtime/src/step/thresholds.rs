@@ -52,19 +52,32 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    /// How many thresholds are passed between two points.
+    /// Tells of the arguments of all choices how they go between two points, and for how long.
     #[inline]
-    pub(super) fn passed(&self, from: &Point<T, N>, to: &Point<T, N>) -> u32 {
+    pub(super) fn courses(
+        &self,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+        mut each: impl FnMut(&Course<'_, T>, T),
+    ) {
         let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
         let mut memory = self.memory;
         let lasting = to.time - from.time;
-        let mut count = 0_u32;
         self.system.courses(
             (from.time, &from.state, &from.slope, &inputs[0]),
             (to.time, &to.state, &to.slope, &inputs[1]),
             &mut memory,
-            |course| count = count.saturating_add(course.passed(lasting)),
+            |course| each(&course, lasting),
         );
+    }
+
+    /// How many thresholds are passed between two points.
+    #[inline]
+    pub(super) fn passed(&self, from: &Point<T, N>, to: &Point<T, N>) -> u32 {
+        let mut count = 0_u32;
+        self.courses(from, to, |course, lasting| {
+            count = count.saturating_add(course.passed(lasting));
+        });
         count
     }
 
@@ -75,19 +88,11 @@ where
         to: &Point<T, N>,
         time: impl Fn(&Course<'_, T>, T) -> Option<f64>,
     ) -> Option<f64> {
-        let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
-        let mut memory = self.memory;
-        let lasting = to.time - from.time;
         let mut soonest: Option<f64> = None;
-        self.system.courses(
-            (from.time, &from.state, &from.slope, &inputs[0]),
-            (to.time, &to.state, &to.slope, &inputs[1]),
-            &mut memory,
-            |course| {
-                let times = [soonest, time(&course, lasting)].into_iter().flatten();
-                soonest = times.reduce(f64::min);
-            },
-        );
+        self.courses(from, to, |course, lasting| {
+            let times = [soonest, time(course, lasting)].into_iter().flatten();
+            soonest = times.reduce(f64::min);
+        });
         soonest
     }
 

@@ -1,5 +1,7 @@
 //! How the arguments of choices go from one point to another.
 
+use core::cell::Cell;
+
 use crate::Real;
 use crate::step::seen;
 
@@ -46,24 +48,42 @@ impl<T: Real> Course<'_, T> {
             return None;
         }
         let [from, to] = [self.from[0], self.to[0]];
-        // Where the argument turns before it goes to a threshold, it is as if the way was straight.
+        let [zero, one] = [0.0, 1.0].map(T::from_f64);
+        // Where the argument turns before it goes to a threshold, it is as if the way was straight; and a lane may be at rest.
         let mean = (to - from) / lasting;
-        let rate = match seen(mean) * seen(self.from[1]) > 0.0 {
-            true => self.from[1],
-            false => mean,
+        let rate = zero.select_less(mean * self.from[1], self.from[1], mean);
+        let rate = zero.select_less(rate.abs(), rate, one);
+        let mut soonest: Option<(f64, T)> = None;
+        for threshold in self.thresholds {
+            let numbers = [from - *threshold, to - *threshold, rate];
+            // Lanes share their time.
+            for number in 0.. {
+                let [Some(first), Some(last), Some(rate)] = numbers.map(|it| lane(it, number))
+                else {
+                    break;
+                };
+                if let Some(whole) = self.between(first, last) {
+                    let time = (whole - first) / rate;
+                    if soonest.is_none_or(|(before, _)| time < before) {
+                        soonest = Some((time, *threshold - from));
+                    }
+                }
+            }
+        }
+        // Whole turns of the way have no slope.
+        soonest.map(|(time, way)| T::from_f64(time).root_of(|time| way - rate * time))
+    }
+
+    /// At how many whole turns behind a threshold an argument meets it that goes from one place to another, both beyond it.
+    fn between(&self, first: f64, last: f64) -> Option<f64> {
+        let turns = match self.repeats {
+            true if first < last => whole_below(-first).saturating_neg(),
+            true => whole_below(first),
+            false => 0,
         };
-        let times = self.thresholds.iter().filter_map(|threshold| {
-            let [first, last] = [from, to].map(|it| seen(it) - seen(*threshold));
-            let turns = match self.repeats {
-                true if first < last => whole_below(-first).saturating_neg(),
-                true => whole_below(first),
-                false => 0,
-            };
-            let whole = turns as f64;
-            let is_between = (first <= whole && whole < last) || (first >= whole && whole > last);
-            is_between.then(|| (*threshold + T::from_f64(whole) - from) / rate)
-        });
-        times.reduce(sooner)
+        let whole = turns as f64;
+        let is_between = (first <= whole && whole < last) || (first >= whole && whole > last);
+        is_between.then_some(whole)
     }
 
     /// About how long behind the first point a threshold is, if what leads to the second one bends evenly, within the time between both.
@@ -114,6 +134,12 @@ impl<T: Real> Course<'_, T> {
             false => i64::from(threshold < argument),
         }
     }
+}
+
+/// A lane by its number.
+fn lane<T: Real>(number: T, place: usize) -> Option<f64> {
+    let asked = Cell::new(0);
+    number.find(|_| asked.replace(asked.get() + 1) == place)
 }
 
 /// The smaller of two times.

@@ -52,7 +52,8 @@ const ROUNDING: f64 = 64.0;
 /// itself, and the point that is found may be one where the ring is open. Put a `Cut` in the place of one of its joints, or let what
 /// is between its ends be an output that is zero. The guess decides which point is found of several: a pendulum may hang or stand.
 /// What two states differ by that change alike whatever is done, such as the displacements of two springs at one junction, stays as it
-/// is in the guess, if there is such a point and none of them is fixed, free or given a rate.
+/// is in the guess, if there is such a point and none of them is fixed, free or given a rate. Where a contact does not touch, no slope
+/// tells of it: guess a state in which it does, such as that to which a run has fallen.
 ///
 /// # Example
 ///

@@ -1,5 +1,6 @@
 //! Slopes of runs over thresholds at which a law jumps.
 
+use mbg_runtime::lanes::f64x4;
 use mbg_runtime::{
     Adaptive, Auto, Direction, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Integrator, Pirk8,
     Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, System, Tsit5, mbg,
@@ -306,4 +307,26 @@ fn rubbing<T: Real>(solver: &impl Integrator<2>, numbers: [f64; 3], by: usize) -
     let start = SVector::from([Dual::from_f64(0.5), stretched]);
     let end = last(solver, &model, &input, start, (Dual::from_f64(0.0), 9.0));
     end.map(|it| it.slope.find(|_| true).unwrap())
+}
+
+/// Lanes meet the jump at times of their own, the last of them never.
+#[test]
+fn lanes_have_the_slopes_of_each_alone() {
+    let starts = [1.0, 0.8, 1.3, 7.0];
+    let end = 2.0;
+    let solver = Adaptive::new(Dop853, 1e-9, 1e-9);
+    let model = Valley::new(ValleyParameters::default()).unwrap();
+    let rest = Dual::from_f64(0.0);
+    let lanes = SVector::from([rest, Dual::variable(f64x4::from(starts))]);
+    let lanes = last(&solver, &model, &(), lanes, (rest, end));
+    for (lane, start) in starts.into_iter().enumerate() {
+        let model = Valley::new(ValleyParameters::default()).unwrap();
+        let alone = SVector::from([Dual::constant(0.0), Dual::variable(start)]);
+        let alone = last(&solver, &model, &(), alone, (Dual::constant(0.0), end));
+        for (state, alone) in lanes.iter().zip(&alone) {
+            let [value, slope] = [state.value, state.slope].map(|it| it.to_array()[lane]);
+            let error = (value - alone.value).abs().max((slope - alone.slope).abs());
+            assert!(error < 1e-6, "{lane}: {value} {slope} {alone:?}");
+        }
+    }
 }

@@ -1,0 +1,204 @@
+//! Elements and components of other tools, and what is to be typed instead.
+#![allow(clippy::unwrap_used)]
+
+mod told;
+
+use told::{diagnose, told, typed};
+
+/// Two masses and a statement.
+fn masses(statement: &str) -> String {
+    format!(
+        "model M {{ 1 v {{ I m {{ inertia: 1.0 }} }} 1 w[3] {{ I n {{ inertia: 2.0 }} }} 0 k {{ C c {{ stiffness: 1.0 }} }}\n{statement} }}"
+    )
+}
+
+/// Driveline parts of other tools: each is told as a graph that stands for it.
+#[test]
+fn parts_of_drivelines_are_told_as_elements() {
+    let axle = |part: &str| {
+        format!(
+            "#[derivative] model M {{ param capacity = 300.0; param width = 0.1; param stiffness = 1e4; param gap = 0.02; param ratio = 2.0;
+             1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }} 1 c {{ R r {{ resistance: 1.0 }} }}
+{part} }}"
+        )
+    };
+    for (part, elements) in [
+        (
+            "g: Clutch (a, b);",
+            "0 g_between { R g { effort: capacity * tanh(f / width) } } a -> g_between; g_between -> b;",
+        ),
+        (
+            "g: Brake (a);",
+            "R g { effort: capacity * tanh(f / width) } -> a;",
+        ),
+        (
+            "g: ElastoBacklash (a, b);",
+            "0 g_between { C g { effort: stiffness * (q - max(min(q, gap / 2), -gap / 2)) } } a -> g_between; g_between -> b;",
+        ),
+        (
+            "g: Differential { ratio: 3.0 } (a, b, c);",
+            "0 g_sides; a -> TF g { flow: 2 / 3.0 } -> g_sides; g_sides -> b; g_sides -> c;",
+        ),
+        (
+            "g: IdealPlanetary (a, b, c);",
+            "0 g_teeth; a -> g_teeth; c -> TF g_ring { flow: ratio } -> g_teeth; g_teeth -> TF g { flow: 1 / (1 + ratio) } -> b;",
+        ),
+        (
+            "g: Gear { ratio: 3.5 } (a, c);",
+            "a -> TF g { flow: 1 / 3.5 } -> c;",
+        ),
+    ] {
+        assert_eq!(typed_first(&axle(part)), elements);
+        assert_eq!(told(&axle(elements)), "");
+    }
+    assert_eq!(
+        typed(&axle("g: IdealGear (a, c);")),
+        ["a -> TF g { flow: … } -> c;"]
+    );
+}
+
+/// The first text in backticks that a help gives for what is no name.
+fn typed_first(text: &str) -> String {
+    let diagnostics = diagnose(text);
+    let mut helps = diagnostics.list()[0].helps.iter();
+    let help = helps.next().unwrap();
+    help.split('`').nth(1).unwrap().to_owned()
+}
+
+/// Components of other tools are told by their words, and else by what is spelled alike.
+#[test]
+fn unknown_components_are_told_by_the_nearest() {
+    let text = |component: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }} part:\n{component} (a, b); }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("BoxBody")), @"
+    2:1 component `BoxBody` is not declared [MBG0203]
+      help: the library has `Body`, `PlanarBody`, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Valv")), @"
+    2:1 component `Valv` is not declared [MBG0203]
+      help: the library has `Orifice`, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Resistance")), @"
+    2:1 component `Resistance` is not declared [MBG0203]
+      help: the library has `Resistor`, `HeatSource`, `Contact`, `Orifice`, `Prismatic`, `Rack`, `Revolute`, `Bearing` and 46 more, see the page `library` of the documentation of `mbg_runtime`
+    ");
+    insta::assert_snapshot!(told(&text("Gyrator")), @"
+    2:1 component `Gyrator` is not declared [MBG0203]
+      help: here it is written `a -> GY part { effort: … } -> b;`
+    ");
+}
+
+/// A vector is two parameters in a plane, and two parameters are a vector in space.
+#[test]
+fn vectors_are_told_as_the_component_takes_them() {
+    let planar = |arguments: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[3]; 1 rod[3]; 1 end[3]; Sf fixed[3] {{ flow: 0.0 }} -> ground;
+             hinge: PlanarRevolute (ground, rod); arm: PlanarOffset {{ {arguments} }} (rod, end);
+             bob: PlanarPointMass {{ mass: 2.0 }} (end); }}"
+        )
+    };
+    assert_eq!(typed(&planar("by: [0.0, -0.5]")), ["x: 0.0, y: -0.5"]);
+    assert_eq!(told(&planar("x: 0.0, y: -0.5")), "");
+    let spatial = |arguments: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 rod[6]; 1 end[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             hinge: Revolute {{ axis: 1 }} (ground, rod); arm: Offset {{ {arguments} }} (rod, end);
+             bob: PointMass {{ mass: 2.0 }} (end); }}"
+        )
+    };
+    assert_eq!(typed(&spatial("x: 0.1, z: -0.5")), ["by: [0.1, 0.0, -0.5]"]);
+    assert_eq!(told(&spatial("by: [0.1, 0.0, -0.5]")), "");
+}
+
+/// Elements that bond graphs elsewhere have, and sizes before names.
+#[test]
+fn elements_of_other_tools_are_told_as_they_are_written_here() {
+    let within = |element: &str| {
+        told(&masses(&format!(
+            "1 x {{ {element} x_d {{ effort: 1.0 }} }}"
+        )))
+    };
+    let behind = |element: &str| told(&masses(&format!("v -> {element} x_d {{ effort: 1.0 }};")));
+    insta::assert_snapshot!(["MR", "De", "Df", "SS", "RS", "IC", "R[2]"].map(within).join("\n"), @"
+    2:7 expected an element, found `MR` [MBG0101]
+      help: write `R`: any law may be modulated by what it reads
+    2:7 expected an element, found `De` [MBG0101]
+      help: what is measured is read, and needs no detector: `output name = node.e;` of a 0-junction `node`
+    2:7 expected an element, found `Df` [MBG0101]
+      help: what is measured is read, and needs no detector: `output name = rod.f;` of a 1-junction `rod`
+    2:7 expected an element, found `SS` [MBG0101]
+      help: a source and what it measures are written apart: `Se name { effort: … }` and `output measured = name.f;`, or `Sf` and `name.e`
+    2:7 expected an element, found `RS` [MBG0101]
+      help: write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: `Sf entropy { flow: name.e * name.f / node.e }`
+    2:7 expected an element, found `IC` [MBG0101]
+      help: write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`
+    2:8 expected the name of the element after `R`, found `[` [MBG0101]
+      help: an element has the size of its junction: write `R x_d`
+    ");
+    for element in ["MSe", "MR", "RS"] {
+        let help = |text: String| text.split_once("help: ").map(|(_, help)| help.to_owned());
+        assert_eq!(help(behind(element)), help(within(element)));
+    }
+}
+
+/// Junctions by the names of the ports.
+#[test]
+fn ports_are_told_to_have_an_order() {
+    let piston = |ports: &str| {
+        format!(
+            "component Piston(port oil, port 1 rod) {{ param area = 1.0; oil -> TF t {{ flow: 1.0 / area }} -> rod; }} {}",
+            masses(&format!("piston: Piston {{ area: 2.0 }} ({ports});"))
+        )
+    };
+    for ports in ["oil: k, rod: v", "oil = k, rod = v"] {
+        let help = typed(&piston(ports)).remove(0);
+        assert_eq!(help, "piston: Piston { area: 2.0 } (k, v);");
+    }
+    assert_eq!(told(&piston("k, v")), "");
+}
+
+/// What an element in the place of a value is read by.
+#[test]
+fn variables_of_elements_are_told_by_their_kind() {
+    let read = |name: &str| {
+        told(&masses(&format!(
+            "v -> GY g {{ effort: 1.0 }} -> k; k -> R r {{ resistance: 1.0 }}; output y = {name};"
+        )))
+    };
+    insta::assert_snapshot!(["m", "c", "r", "g"].map(read).join("\n"), @"
+    2:74 `m` is an element; write `m.p`, `.e` or `.f` [MBG0213]
+    2:74 `c` is an element; write `c.q`, `.e` or `.f` [MBG0213]
+    2:74 `r` is an element; write `r.e` or `.f` [MBG0213]
+    2:74 `g` is an element; a two-port has two efforts and two flows; read them at a junction [MBG0213]
+    ");
+}
+
+/// Displacements of masses and junctions, and momenta of springs, are integrals.
+#[test]
+fn displacements_that_are_no_states_are_told_as_integrals() {
+    for (read, integral) in [
+        ("m.q", "integral q_m = m.f, initial: 0.0;"),
+        ("n.q", "integral q_n[3] = n.f;"),
+        ("v.q", "integral q_v = v.f, initial: 0.0;"),
+        ("w.q", "integral q_w[3] = w.f;"),
+        ("c.p", "integral p_c = c.e, initial: 0.0;"),
+        ("k.p", "integral p_k = k.e, initial: 0.0;"),
+    ] {
+        let helps = typed(&masses(&format!("output y = {read};")));
+        assert_eq!(helps[0], integral);
+        let size = if helps[0].contains('[') { "[3]" } else { "" };
+        let typed = format!("{} output y{size} = {};", helps[0], helps[1]);
+        assert_eq!(told(&masses(&typed)), "");
+    }
+    assert_eq!(typed(&masses("output y = k.q;"))[0], "c.q");
+    // The rate of an integral is written where it is declared.
+    let rate = told(&masses("integral way = v.f; output y = der(way);"));
+    assert!(
+        rate.contains("an integral has the rate that it is declared with; where `way` is an input"),
+        "{rate}"
+    );
+}

@@ -29,19 +29,19 @@ impl<T: Real> Course<'_, T> {
         let [from, to] = [self.from, self.to].map(|point| point.map(seen));
         let farthest = farthest(seen(lasting), from, to);
         let counts = self.thresholds.iter().map(|threshold| {
-            let [first, turning, last] = [from[0], farthest, to[0]];
-            let below = |argument| self.below(argument, *threshold);
-            let both = below(first)
-                .abs_diff(below(turning))
-                .saturating_add(below(turning).abs_diff(below(last)));
+            let places = [from[0], farthest, to[0]];
+            let [first, turning, last] = places.map(|place| self.below(place, *threshold));
+            let both = first
+                .abs_diff(turning)
+                .saturating_add(turning.abs_diff(last));
             u32::try_from(both).unwrap_or(u32::MAX)
         });
         counts.fold(0, u32::saturating_add)
     }
 
-    /// How long behind the first point the first threshold is that lies between the values at both, or at the first, if any does: by the
-    /// rate there, or
-    /// by that between the points where it is not known. On [`Dual`](crate::Dual) numbers with its slopes.
+    /// How long behind the first point the first threshold is that lies between the values at both, or at the first, if any does, in
+    /// any lane: by the rate there, or by that between the points where it is not known or leads away. On [`Dual`](crate::Dual)
+    /// numbers with its slopes.
     #[must_use]
     pub fn reached(&self, lasting: T) -> Option<T> {
         if !self.is_choice {

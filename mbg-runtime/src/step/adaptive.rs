@@ -48,9 +48,8 @@ use crate::{Input, Real, System};
 /// millionth part, and each in which the argument may come to one and go back, as the distance from a place does that is passed by.
 ///
 /// Where a step is refused that goes over such a threshold, the next ones end almost there instead of becoming shorter and shorter, a
-/// straight line of a billionth of a step leads over it, and the starting step is chosen anew behind it. So friction, relays, cams
-/// and contacts cost three short steps and a start each time that a law changes. On which side of a threshold the motion is, is
-/// exact to the rounding of the time, and what lies behind is as accurate as the steps.
+/// straight line of a hundred millionth of it at most leads over, and the starting step is chosen anew behind it. So friction,
+/// relays, cams and contacts cost about three short steps and a start each time that a law changes.
 ///
 /// # Example
 ///

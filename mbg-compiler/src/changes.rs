@@ -37,7 +37,7 @@ impl Times {
 pub struct Argument {
     /// Varying, without what parameters alone add to it or multiply it by.
     pub value: Expression,
-    /// How it changes with time and states, in terms of their [`Symbol::Slope`]s; zero for what is long to work out.
+    /// How it changes with time, states and inputs, in terms of their [`Symbol::Slope`]s; zero for what is long to work out.
     pub rate: Expression,
     /// In terms of parameters.
     pub thresholds: Vec<Expression>,
@@ -165,7 +165,7 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
     for argument in &arguments {
         add_new(&mut turning, angles(pool, argument.value));
     }
-    let mut along = Differentiator::along(slopes(pool, states));
+    let mut along = Differentiator::along(slopes(pool, states, &arguments));
     for argument in &mut arguments {
         let rate = along.derivative(pool, argument.value);
         // A step is not to take longer for it than for an evaluation of the model, unless that takes next to nothing.
@@ -205,11 +205,24 @@ fn add_threshold(
     }
 }
 
-/// How time and states change with time.
-fn slopes(pool: &mut Pool, states: &[Symbol]) -> BTreeMap<Symbol, Expression> {
-    let states = states.iter().enumerate();
-    let states = states.map(|(place, state)| (*state, pool.symbol(Symbol::Slope(place))));
-    states.chain([(Symbol::Time, Expression::ONE)]).collect()
+/// How time, states and the inputs that are read change with time; the slopes of inputs are behind those of all states.
+fn slopes(
+    pool: &mut Pool,
+    states: &[Symbol],
+    arguments: &[Argument],
+) -> BTreeMap<Symbol, Expression> {
+    let values: Vec<Expression> = arguments.iter().map(|it| it.value).collect();
+    let inputs = symbols(pool, &values)
+        .into_iter()
+        .filter_map(|symbol| match symbol {
+            Symbol::Input(place) => Some((symbol, states.len() + place)),
+            _ => None,
+        });
+    let states = states.iter().enumerate().map(|(place, it)| (*it, place));
+    let varying: Vec<(Symbol, usize)> = states.chain(inputs).collect();
+    let varying = varying.into_iter();
+    let changes = varying.map(|(symbol, place)| (symbol, pool.symbol(Symbol::Slope(place))));
+    changes.chain([(Symbol::Time, Expression::ONE)]).collect()
 }
 
 /// Whether it changes with time, and with nothing but that and inputs while a model runs.

@@ -66,6 +66,19 @@ pub fn check<T: Real>(
     }
 }
 
+/// How states change, and how inputs do.
+#[inline]
+pub fn joined<T: Real, const N: usize, const M: usize, const B: usize>(
+    states: &SVector<T, N>,
+    inputs: &SVector<T, M>,
+) -> [T; B] {
+    let mut both = [T::from_f64(0.0); B];
+    for (place, change) in both.iter_mut().zip(states.iter().chain(inputs)) {
+        *place = *change;
+    }
+    both
+}
+
 /// The first of these times, of all lanes, that is later than `t`, which is the same in all; with its slope. Those of `again`
 /// come back, each after its period.
 #[cold]

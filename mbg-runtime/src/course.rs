@@ -125,6 +125,15 @@ impl<T: Real> Course<'_, T> {
         times.filter(|time| *time > 0.0).reduce(f64::min)
     }
 
+    /// What the argument is at a threshold, with the whole turns that it has made at the second point.
+    pub(crate) fn level(&self, threshold: T) -> T {
+        if !self.repeats {
+            return threshold;
+        }
+        let turns = whole_below(seen(self.to[0] - threshold) + 0.5);
+        threshold + T::from_f64(turns as f64)
+    }
+
     /// How often a threshold lies below an argument.
     #[inline]
     fn below(&self, argument: f64, threshold: T) -> i64 {
@@ -137,7 +146,7 @@ impl<T: Real> Course<'_, T> {
 }
 
 /// A lane by its number.
-fn lane<T: Real>(number: T, place: usize) -> Option<f64> {
+pub(crate) fn lane<T: Real>(number: T, place: usize) -> Option<f64> {
     let asked = Cell::new(0);
     number.find(|_| asked.replace(asked.get() + 1) == place)
 }

@@ -585,10 +585,10 @@ where
             let way = sign * BESIDE * run.period;
             (self.time + way, state + way * slope)
         });
-        let mut is_on = false;
+        let (mut is_on, rest) = (false, SVector::zeros());
         self.system.courses(
-            (before.0, &before.1, &slope, &input),
-            (behind.0, &behind.1, &slope, &input),
+            (before.0, [&before.1, &slope], [&input, &rest]),
+            (behind.0, [&behind.1, &slope], [&input, &rest]),
             &mut Default::default(),
             |course| is_on |= course.reached(behind.0 - before.0).is_some(),
         );

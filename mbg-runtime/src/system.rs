@@ -199,8 +199,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
-    /// Tells of each argument of choices in the laws how it goes between two points, each a time, a state, its derivative and an
-    /// input: that of `if q > 1.0 && q < 1.1 { … }` has two thresholds, that of a curve over `q` one at each of its points.
+    /// Tells of each argument of choices in the laws how it goes between two points, each a time, a state with its derivative, and
+    /// an input with its own: that of `if q > 1.0 && q < 1.1 { … }` has two thresholds, that of a curve over `q` one at each of its points.
     ///
     /// [`Adaptive`](crate::Adaptive) looks into a step that passes any, of which its estimate of the error may be small by chance, and
     /// between them where there are several, since something may be there that neither ends nor stages of the step meet.
@@ -213,12 +213,15 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     #[inline]
     fn courses(
         &self,
-        _from: (T, &SVector<T, N>, &SVector<T, N>, &SVector<T, M>),
-        _to: (T, &SVector<T, N>, &SVector<T, N>, &SVector<T, M>),
+        _from: (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
+        _to: (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
         _memory: &mut Self::Memory,
         _each: impl FnMut(Course<'_, T>),
     ) {
     }
+
+    /// Whether [`courses`](Self::courses) is given; `false` unless it is.
+    const HAS_COURSES: bool = false;
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero. One whose size is that of inertias is divided by the largest

@@ -172,12 +172,7 @@ fn what_is_touched_at_the_top_of_the_way_is_met() {
     }
 }
 
-type Point<'a> = (
-    f64,
-    &'a SVector<f64, 2>,
-    &'a SVector<f64, 2>,
-    &'a SVector<f64, 0>,
-);
+type Point<'a> = (f64, [&'a SVector<f64, 2>; 2], [&'a SVector<f64, 0>; 2]);
 
 /// How many thresholds all arguments of a model pass between two points.
 fn passed_over<const P: usize>(
@@ -199,7 +194,7 @@ fn thresholds_between_two_points_are_counted() {
     let passed = |from: f64, to: f64| {
         let [from, to] = [from, to].map(|gone| SVector::from([4.0, gone]));
         let slope = SVector::from([0.0, to[1] - from[1]]);
-        let points = [&from, &to].map(|x| (x[1], x, &slope, &none));
+        let points = [&from, &to].map(|x| (x[1], [x, &slope], [&none; 2]));
         passed_over(&model, points[0], points[1])
     };
     // Two of the range, three of the hat and of the curve.
@@ -212,8 +207,8 @@ fn thresholds_between_two_points_are_counted() {
         let slope = SVector::from([0.0, 20.0]);
         passed_over(
             &model,
-            (0.0, &from, &slope, &none),
-            (1.0, &to, &slope, &none),
+            (0.0, [&from, &slope], [&none; 2]),
+            (1.0, [&to, &slope], [&none; 2]),
         )
     };
     // Half turns count twice.

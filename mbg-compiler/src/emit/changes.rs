@@ -27,7 +27,10 @@ pub(super) fn next_change(compiled: &Compiled) -> Option<TokenStream> {
 
 /// How the arguments of choices go between two points; none where no step can pass more than it finds.
 pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
-    let [n, m] = [compiled.states.len(), compiled.model.inputs.len()].map(Literal::usize_suffixed);
+    let [states, inputs] = [compiled.states.len(), compiled.model.inputs.len()];
+    let [n, m, both] = [states, inputs, states + inputs].map(Literal::usize_suffixed);
+    let joined = (inputs > 0)
+        .then(|| quote!(let slopes: [T; #both] = mbg_runtime::__private::joined(slopes, rates);));
     let memory = memory(compiled);
     let groups = Literal::usize_suffixed(compiled.thresholds.len());
     let routine = &compiled.program.routines[Routines::THRESHOLDS];
@@ -55,14 +58,16 @@ pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
     }
     let vector = |size| quote!(&mbg_runtime::__private::SVector<T, #size>);
     let [state, input] = [&n, &m].map(vector);
-    let point = quote!((T, #state, #state, #input));
+    let point = quote!((T, [#state; 2], [#input; 2]));
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
+            const HAS_COURSES: ::core::primitive::bool = true;
             fn courses(
                 &self, from: #point, to: #point, memory: &mut #memory,
                 mut each: impl ::core::ops::FnMut(mbg_runtime::Course<'_, T>),
             ) {
-                let mut arguments = |(t, x, slopes, u): #point| -> [[T; 2]; #groups] {
+                let mut arguments = |(t, [x, slopes], [u, rates]): #point| -> [[T; 2]; #groups] {
+                    #joined
                     #steps
                     [#(#arguments),*]
                 };

@@ -12,5 +12,5 @@ macro_rules! functions {
 
 functions! {
     ahead arguments both changing convert derivative each entry fixed folded formatter from holds input jacobian kept memory
-    model other parameters ranks rows slopes stages t to u value whole x zero
+    model other parameters ranks rates rows slopes stages t to u value whole x zero
 }

@@ -11,8 +11,12 @@ use super::crossing::{Crossing, Taken};
 use super::dense::Step;
 use super::integrator::Integrator;
 use super::method::{Estimating, Family, Span, Start, Stepper, Trial, along};
+use super::over::Place;
 use super::probes::PARTS;
 use super::problem::Problem;
+use super::slide::Walked;
+use super::surfaces::Surfaces;
+use super::thresholds::Point;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
 use super::{Cause, Stopped, less, seen};
@@ -138,9 +142,54 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         &self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (start, end): (T, T),
-        mut x: SVector<T, N>,
+        x: SVector<T, N>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let (mut here, mut surfaces) = ((start, x), Surfaces::NONE);
+        if S::HAS_COURSES {
+            let slope = problem.slope(start, &x);
+            surfaces = problem.next_to(&Point {
+                time: start,
+                state: x,
+                slope,
+            });
+        }
+        loop {
+            if S::HAS_COURSES && surfaces.count() > 0 {
+                match self.slide(problem, (here, end), surfaces, observer)? {
+                    ControlFlow::Continue(place) => here = place,
+                    ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
+                }
+                if !less(here.0, end) {
+                    return Ok(ControlFlow::Continue(here.1));
+                }
+            }
+            let stays = |problem: &mut Problem<'_, T, S, I, N, M, P>, here: &_, passed: &_| {
+                problem.stays(here, passed)
+            };
+            match self.walk(problem, (here, end), stays, observer)? {
+                Walked::Ended(x) => return Ok(ControlFlow::Continue(x)),
+                Walked::Left => return Ok(ControlFlow::Break(())),
+                Walked::Stays(place, others) => (here, surfaces) = (place, others),
+            }
+        }
+    }
+}
+
+impl<Scheme: Estimating> Adaptive<'_, Scheme> {
+    /// Runs over a piece of the input, or as far as to just behind thresholds at which the motion is said to stay.
+    pub(super) fn walk<T, S, I, const N: usize, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        ((start, mut x), end): (Place<T, N>, T),
+        stays: impl Fn(&mut Problem<'_, T, S, I, N, M, P>, &Point<T, N>, &Surfaces<T>) -> bool,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Walked<T, N>, Stopped>
     where
         T: Real,
         S: System<T, N, M, P>,
@@ -182,11 +231,11 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                     let mut dense = || steps.polynomial(problem, &from, (&next, Some(ahead)));
                     let mut step = Step::new(span, (x, next), memory, &mut dense);
                     if observer(&mut step).is_break() {
-                        return Ok(ControlFlow::Break(()));
+                        return Ok(Walked::Left);
                     }
                     problem.memory = memory;
                     if last {
-                        return Ok(ControlFlow::Continue(next));
+                        return Ok(Walked::Ended(next));
                     }
                     let come = pace.accept(problem, &mut steps, (&from, &trial), (&next, &ahead));
                     (t, x, slope) = (span.end, next, ahead);
@@ -208,16 +257,20 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
                 }
             };
             if let Come::There(rest) = come {
-                let here = ((t, x), (rest, &slope));
-                let over = problem.over_threshold(here, (seen(span.length), end), observer)?;
-                let ControlFlow::Continue((next, watched)) = over else {
-                    return Ok(ControlFlow::Break(()));
+                let here = Point {
+                    time: t,
+                    state: x,
+                    slope,
                 };
-                (t, x) = next;
-                if !less(t, end) {
-                    return Ok(ControlFlow::Continue(x));
-                }
-                slope = problem.slope(t, &x);
+                let way = (rest, seen(span.length), end);
+                let watched;
+                (t, x, slope, watched) =
+                    match problem.beyond_threshold(&here, way, &stays, observer)? {
+                        ControlFlow::Continue((next, watched)) => {
+                            (next.time, next.state, next.slope, watched)
+                        }
+                        ControlFlow::Break(walked) => return Ok(walked),
+                    };
                 steps.renew();
                 pace.control = self.begin(problem, (t, end), (&x, &slope), &tolerance);
                 (pace.approach.watched, pace.refused, pace.again) = (watched, 0, false);

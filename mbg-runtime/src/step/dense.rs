@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::method::Span;
+use super::surfaces::Surfaces;
 use crate::Real;
 
 /// The highest degree of a polynomial over a step.
@@ -128,6 +129,8 @@ pub struct Step<'a, T, const N: usize, Memory = ()> {
     pub(super) first: SVector<T, N>,
     pub(super) state: SVector<T, N>,
     memory: Memory,
+    /// The thresholds at which the motion stays.
+    pub(super) surfaces: Option<Surfaces<T>>,
     polynomial: Option<Polynomial<T, N>>,
     source: &'a mut dyn FnMut() -> Polynomial<T, N>,
 }
@@ -144,6 +147,7 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
             first,
             state,
             memory,
+            surfaces: None,
             polynomial: None,
             source,
         }

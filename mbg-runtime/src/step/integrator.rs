@@ -8,6 +8,8 @@ use super::dense::Step;
 use super::event::Direction;
 use super::jumps::piece_over_jumps;
 use super::problem::Problem;
+use super::sliding::output_along;
+use super::surfaces::Surfaces;
 use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
 
@@ -141,7 +143,7 @@ pub trait Integrator<const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        sample(self, system, input, (t0, times), x0, |t, x, _memory| {
+        sample(self, system, input, (t0, times), x0, |t, x, _known| {
             observer(t, x);
         })
     }
@@ -193,8 +195,16 @@ pub trait Integrator<const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        sample(self, system, input, (t0, times), x0, |t, x, mut memory| {
-            let y = system.output(t, x, &input.at(t), &mut memory);
+        let whole = times.last().map_or(0.0, |last| seen(*last - t0));
+        sample(self, system, input, (t0, times), x0, |t, x, known| {
+            let (mut memory, surfaces) = known;
+            let y = match surfaces {
+                Some(surfaces) if S::HAS_COURSES => {
+                    let known = (surfaces, &mut memory);
+                    output_along((system, input), (t, whole), x, known)
+                }
+                _ => system.output(t, x, &input.at(t), &mut memory),
+            };
             observer(t, x, &y);
         })
     }
@@ -304,14 +314,15 @@ fn check_sample<T: Real>(time: T, (t0, last): (T, T)) -> Result<(), Stopped> {
     Ok(())
 }
 
-/// Runs over the last of the times and gives the state at each, with what the run remembers of nonlinear loops.
+/// Runs over the last of the times and gives the state at each, with what the run remembers of nonlinear loops, and the thresholds
+/// at which the motion stays.
 fn sample<D, T, S, I, const N: usize, const M: usize, const P: usize>(
     integrator: &D,
     system: &S,
     input: &I,
     (t0, times): (T, &[T]),
     x0: SVector<T, N>,
-    mut observer: impl FnMut(T, &SVector<T, N>, S::Memory),
+    mut observer: impl FnMut(T, &SVector<T, N>, (S::Memory, Option<Surfaces<T>>)),
 ) -> Result<Statistics, Stopped>
 where
     D: Integrator<N> + ?Sized,
@@ -329,18 +340,19 @@ where
     while let [time, others @ ..] = rest
         && !less(t0, *time)
     {
-        observer(*time, &x, problem.memory);
+        observer(*time, &x, (problem.memory, None));
         rest = others;
     }
     integrator.run(&mut problem, (t0, last), x, &mut |step| {
         while let [time, others @ ..] = rest
             && !less(step.end(), *time)
         {
+            let known = (step.memory(), step.surfaces);
             if less(*time, step.end()) {
                 let x = step.at(*time);
-                observer(*time, &x, step.memory());
+                observer(*time, &x, known);
             } else {
-                observer(*time, step.state(), step.memory());
+                observer(*time, step.state(), known);
             }
             rest = others;
         }

@@ -193,6 +193,10 @@ where
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
     ) -> Option<Jump<T, N>> {
+        if step.surfaces.is_some() {
+            // Where it stays at thresholds the derivative is that along them.
+            return None;
+        }
         let start = (step.start(), *step.first());
         let end = (step.end(), *step.state());
         let length = seen(end.0 - start.0);

@@ -83,6 +83,26 @@ where
         }
     }
 
+    /// The same of other laws of the same model.
+    pub(super) fn of<'b, R>(&self, system: &'b R) -> Problem<'b, T, R, I, N, M, P>
+    where
+        'a: 'b,
+        R: System<T, N, M, P, Memory = S::Memory, Conditioning = S::Conditioning>,
+    {
+        Problem {
+            system,
+            input: self.input,
+            statistics: self.statistics,
+            memory: self.memory,
+            whole: self.whole,
+            since: self.since,
+            inside: self.inside,
+            probes: self.probes,
+            conditioning: self.conditioning,
+            closes_stages: false,
+        }
+    }
+
     /// The nearest time on the present piece.
     fn on_piece(&self, t: T) -> T {
         if S::AUTONOMOUS {

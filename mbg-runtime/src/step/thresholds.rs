@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::dense::Polynomial;
 use super::method::{Family, Span};
 use super::problem::Problem;
+use super::seen;
 use super::tolerance::Measure;
 use crate::{Course, Input, Real, System};
 
@@ -17,6 +18,9 @@ const SMALLEST: f64 = 1e-7;
 const DIVISIONS: usize = 25;
 /// Where a part of it is: thresholds may be at halves.
 const DIVIDED: f64 = 0.487;
+
+/// An input is taken to be smooth over this part of a run.
+const SHORT: f64 = 1e-6;
 
 /// A state on its way.
 #[derive(Clone, Copy)]
@@ -63,12 +67,22 @@ where
         let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
         let mut memory = self.memory;
         let lasting = to.time - from.time;
+        let [before, behind] = [from, to].map(|it| self.input_rate(it.time, lasting));
         self.system.courses(
-            (from.time, &from.state, &from.slope, &inputs[0]),
-            (to.time, &to.state, &to.slope, &inputs[1]),
+            (from.time, [&from.state, &from.slope], [&inputs[0], &before]),
+            (to.time, [&to.state, &to.slope], [&inputs[1], &behind]),
             &mut memory,
             |course| each(&course, lasting),
         );
+    }
+
+    /// How fast the input changes, which is smooth over so much time, or a small part of the run.
+    fn input_rate(&self, time: T, lasting: T) -> SVector<T, M> {
+        if M == 0 || self.input.is_constant_between_jumps() {
+            return SVector::from_element(T::from_f64(0.0));
+        }
+        let ahead = seen(lasting).max(SHORT * self.whole);
+        self.input.rate(time, self.since, T::from_f64(ahead))
     }
 
     /// How many thresholds are passed between two points.

@@ -1,0 +1,142 @@
+//! Thresholds of the laws at which a motion may stay.
+
+use super::problem::Problem;
+use super::seen;
+use super::thresholds::Point;
+use crate::course::lane;
+use crate::{Course, Input, Real, System};
+
+/// So many at once.
+pub(super) const MOST: usize = 8;
+/// A state is at a threshold that it comes to within so many units of the last place of the time.
+const PLACES: f64 = 4096.0;
+
+/// A threshold of an argument of choices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Surface<T> {
+    /// The number of the argument, as [`System::courses`] tells of it.
+    pub(super) course: usize,
+    /// What the argument is there.
+    pub(super) level: T,
+}
+
+/// Thresholds at which a motion stays, each of an argument of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Surfaces<T> {
+    list: [Option<Surface<T>>; MOST],
+}
+
+impl<T: Real> Surfaces<T> {
+    pub(super) const NONE: Self = Self { list: [None; MOST] };
+
+    pub(super) fn count(&self) -> usize {
+        self.iter().count()
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Surface<T>> {
+        self.list.iter().flatten()
+    }
+
+    /// The place of the one of this argument.
+    pub(super) fn of(&self, course: usize) -> Option<(usize, T)> {
+        let mut surfaces = self.iter().enumerate();
+        surfaces.find_map(|(place, it)| (it.course == course).then_some((place, it.level)))
+    }
+
+    /// Adds one, unless its argument is at one or there is no room.
+    pub(super) fn add(&mut self, surface: Surface<T>) {
+        if self.of(surface.course).is_none()
+            && let Some(free) = self.list.iter_mut().find(|it| it.is_none())
+        {
+            *free = Some(surface);
+        }
+    }
+
+    /// Leaves one out.
+    pub(super) fn leave(&mut self, place: usize) {
+        if let Some(rest) = self.list.get_mut(place..)
+            && let [left, ..] = rest
+        {
+            *left = None;
+            rest.rotate_left(1);
+        }
+    }
+}
+
+impl<T, S, I, const N: usize, const M: usize, const P: usize> Problem<'_, T, S, I, N, M, P>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    /// The thresholds between two points.
+    pub(super) fn between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Surfaces<T> {
+        self.surfaces(from, to, |course, level| {
+            let [from, to] = [course.from, course.to].map(|it| seen(it[0] - level));
+            from * to <= 0.0 && from != to
+        })
+    }
+
+    /// The thresholds next to a point.
+    pub(super) fn next_to(&self, here: &Point<T, N>) -> Surfaces<T> {
+        let time = PLACES * T::EPSILON * here.time.magnitude().max(self.whole);
+        self.surfaces(here, here, |course, level| {
+            let [value, rate] = course.from.map(seen);
+            (value - seen(level)).abs() <= time * rate.abs()
+        })
+    }
+
+    /// The thresholds of which this holds, unless several lanes have a time.
+    fn surfaces(
+        &self,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+        holds: impl Fn(&Course<'_, T>, T) -> bool,
+    ) -> Surfaces<T> {
+        let mut surfaces = Surfaces::NONE;
+        if lane(from.time, 1).is_some() {
+            return surfaces;
+        }
+        let mut number = 0;
+        self.courses(from, to, |course, _| {
+            for threshold in course.thresholds {
+                let level = course.level(*threshold);
+                if course.is_choice && holds(course, level) {
+                    surfaces.add(Surface {
+                        course: number,
+                        level,
+                    });
+                }
+            }
+            number += 1;
+        });
+        surfaces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_keep_their_order_when_one_is_left() {
+        let surface = |course| Surface {
+            course,
+            level: course as f64,
+        };
+        let mut surfaces = Surfaces::NONE;
+        for course in [4, 2, 4, 7] {
+            surfaces.add(surface(course));
+        }
+        assert_eq!(surfaces.count(), 3);
+        assert_eq!(surfaces.of(7), Some((2, 7.0)));
+        surfaces.leave(1);
+        assert!(surfaces.iter().eq(&[surface(4), surface(7)]));
+        surfaces.leave(2);
+        assert_eq!(surfaces.count(), 2);
+        for course in 10..30 {
+            surfaces.add(surface(course));
+        }
+        assert_eq!(surfaces.count(), MOST);
+    }
+}

@@ -25,6 +25,8 @@ mod parallel;
 mod sampled;
 #[path = "methods/singular.rs"]
 mod singular;
+#[path = "methods/sliding.rs"]
+mod sliding;
 #[path = "methods/stability.rs"]
 mod stability;
 #[path = "methods/starts.rs"]

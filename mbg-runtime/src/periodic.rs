@@ -119,8 +119,9 @@ const TINY: f64 = 1e-9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A law may jump at a state, as dry friction and a relay do. Where the motion stays on a jump, as what friction holds does, its
-/// slopes are not known: let the law rise over a small width there, as `tanh(v / width)` does.
+/// A law may jump at a state, as dry friction and a relay do, and the motion may stay there for a while, as what friction holds does:
+/// nothing is left of how it came there, so that a motion which sticks and slips has a multiplier of zero. Steps of constant length
+/// do not know of that: take [`Adaptive`](crate::Adaptive) ones.
 ///
 /// Newton's method may end between two motions. Where others tend to the motion that is wanted, begin at the state to which a run
 /// of some periods comes.

@@ -206,7 +206,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// between them where there are several, since something may be there that neither ends nor stages of the step meet.
     /// Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
     /// that it may go over and back: those on this side of where its tangents at both points meet. On
-    /// [`Dual`](crate::Dual) numbers steps end at the thresholds at which a law jumps.
+    /// [`Dual`](crate::Dual) numbers steps end at the thresholds at which a law jumps. A motion may stay at one whose argument has
+    /// its rate.
     ///
     /// Generated models give it, for arguments that the state has a part in. Waves over time or one state, such as `cos(q) > 0.9`,
     /// turn often, so half turns of their angles are told as well, with two thresholds each. None unless it is given.

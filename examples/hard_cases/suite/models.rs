@@ -35,4 +35,20 @@ mbg! {
         friction: Friction { sliding: sliding, breakaway: breakaway, speed: 1e-4, stribeck_speed: 5e-2 } (slip);
         output extension: m = spring.q;
     }
+
+    /// The same, with friction that holds at rest.
+    pub(crate) model HoldingBelt {
+        param sliding: N = 2.0;
+        param breakaway: N = 4.0;
+        param belt_speed: m/s = 0.1;
+        1 block { I mass { inertia: 1.0 } C spring { stiffness: 40.0 } }
+        1 belt { Sf drive { flow: belt_speed } }
+        0 contact;
+        1 slip;
+        belt -> contact;
+        contact -> block;
+        contact -> slip;
+        friction: Friction { sliding: sliding, breakaway: breakaway, at_rest: holds, stribeck_speed: 5e-2 } (slip);
+        output extension: m = spring.q;
+    }
 }

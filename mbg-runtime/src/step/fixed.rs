@@ -30,6 +30,9 @@ use crate::{Input, Real, System};
 /// kink. Those of Rosenbrock take a part that is lost, too, by Euler's implicit method, where that errs by less than a thousandth
 /// of what states have been. The midpoint rule comes as near to the kink as a tenth of that.
 ///
+/// A law that jumps where the motion stays, as dry friction does by `sign(f)`, is gone over to and fro, by what a step changes:
+/// [`Adaptive`](super::Adaptive) goes along there, and here the law is to rise within a width.
+///
 /// A law that is steep at one place and level beside it, as dry friction by a steep curve, is one for those of Radau, or for
 /// [`Adaptive`](super::Adaptive) steps: one of Rosenbrock that starts where it is level knows nothing of the steep place, and makes
 /// another motion of a block that sticks and slips.

@@ -149,7 +149,8 @@ pub trait Integrator<const N: usize> {
     }
 
     /// The same with the outputs, at the input of the time and on the branch on which the run is of a nonlinear loop with
-    /// several solutions.
+    /// several solutions. Where the motion stays at a threshold of the laws they are their mean there: of friction that holds, what
+    /// holds.
     ///
     /// # Errors
     ///

@@ -97,9 +97,10 @@ pub enum Cause {
     StepTooSmall,
     /// More steps than [`Adaptive::most`] or [`Auto::most`] allows, which a run over many jumps of an input may well need.
     ///
-    /// Where the next step is short for another reason, an explicit method meets a stiff model, or a law holds its state where it jumps: a sliding
-    /// mode, dry friction without a width, a coil whose current diodes block. Let such a law rise over a small width, as
-    /// `tanh(v / width)` does, or a resistor beside the diodes.
+    /// Where the next step is short for another reason, an explicit method meets a stiff model, or a law jumps again and again, ever
+    /// sooner: a ball that bounces on a floor without give, a relay that is switched by a place and not by a rate, more than sixteen
+    /// thresholds at which the motion stays at once, or one in a batch. Let such a law rise over a small width, as `tanh(v / width)`
+    /// does.
     TooManySteps {
         /// The length that the next step would have, s.
         next: f64,
@@ -126,8 +127,8 @@ impl fmt::Display for Cause {
             Self::TooManySteps { next } => write!(
                 formatter,
                 "more steps than `most` allows; the next is {next:.1e} s long, which a stiff model asks of an explicit method, \
-                 a tight tolerance of a method of low order, and a law that jumps where it holds its state of any: let it \
-                 rise within a width there, as `tanh(v / width)` does"
+                 a tight tolerance of a method of low order, and a law that jumps ever sooner of any: let it rise within a \
+                 width there, as `tanh(v / width)` does"
             ),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),

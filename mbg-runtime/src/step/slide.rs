@@ -118,7 +118,7 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
                 }
                 let crossing = step.crossing(Direction::Falling, |t, x| hold(t, x, memory));
                 if let Some(time) = crossing {
-                    let there = step.at(time);
+                    let there = sliding.landed(time, step.at(time), &memory);
                     step.cut(time, there);
                     left = Some((time, there));
                 }

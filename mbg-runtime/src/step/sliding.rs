@@ -10,6 +10,8 @@ use crate::input::quotient;
 use crate::solve::Regular;
 use crate::{Course, Input, Meta, Power, Real, System, Trouble};
 
+/// So many surfaces are few.
+const FEW: usize = 3;
 /// How far beside a threshold laws are asked, in units of the rounding of its argument.
 const ASIDE: f64 = 64.0;
 /// A rate jumps if it differs by more than this part of what it is made of, or so many units of the last place.
@@ -51,29 +53,28 @@ pub(super) struct Sides<T, const N: usize> {
     base: SVector<T, N>,
     jumps: Each<SVector<T, N>>,
     /// How much faster the argument of each surface goes above each.
-    rates: Few<T>,
+    rates: Factors<T>,
     /// Whether its own argument goes slower above each.
     leads_back: Each<bool>,
     /// Which part of the mean is above each.
     parts: Each<T>,
 }
 
-/// Factors of a matrix of a few rows.
-enum Few<T> {
+/// Factors of a matrix with a row for each surface, which are few most of the time.
+enum Factors<T> {
     One(T),
-    More(Regular<T, MOST>),
+    Few(Regular<T, FEW>),
+    All(Regular<T, MOST>),
 }
 
-impl<T: Real> Few<T> {
+impl<T: Real> Factors<T> {
     /// Of the first rows and columns.
-    fn of(mut matrix: SMatrix<T, MOST, MOST>, count: usize) -> Self {
-        if count == 1 {
-            return Self::One(T::from_f64(1.0) / matrix[(0, 0)]);
+    fn of(matrix: &SMatrix<T, MOST, MOST>, count: usize) -> Self {
+        match count {
+            1 => Self::One(T::from_f64(1.0) / matrix[(0, 0)]),
+            ..=FEW => Self::Few(Regular::new(part(matrix, count))),
+            _ => Self::All(Regular::new(part(matrix, count))),
         }
-        for place in count..MOST {
-            matrix[(place, place)] = T::from_f64(1.0);
-        }
-        Self::More(Regular::new(matrix))
     }
 
     fn solve(&self, mut right: Each<T>) -> Each<T> {
@@ -82,9 +83,25 @@ impl<T: Real> Few<T> {
                 right[0] = *reciprocal * right[0];
                 right
             }
-            Self::More(factors) => factors.solution(&SVector::from(right)).into(),
+            Self::Few(factors) => {
+                let few = factors.solution(&SVector::from_fn(|row, _| right[row]));
+                right[..FEW].copy_from_slice(few.as_slice());
+                right
+            }
+            Self::All(factors) => factors.solution(&SVector::from(right)).into(),
         }
     }
+}
+
+/// The first rows and columns of a matrix, in one that leaves all others as they are.
+fn part<T: Real, const K: usize>(
+    matrix: &SMatrix<T, MOST, MOST>,
+    count: usize,
+) -> SMatrix<T, K, K> {
+    SMatrix::from_fn(|row, column| match row.max(column) < count {
+        true => matrix[(row, column)],
+        false => T::from_f64(if row == column { 1.0 } else { 0.0 }),
+    })
 }
 
 impl<T: Real, const N: usize> Sides<T, N> {
@@ -165,32 +182,46 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let u = input.value(t, since);
         while sliding.surfaces.count() > 0 {
             let count = sliding.surfaces.count();
-            let before = *x;
             sliding.look(t, x, &u, memory);
             sliding.across = shortest(&sliding.gradients.get(), count);
-            *x = sliding.onto(t, *x, &u, memory);
             let sides = sliding.sides((t, x, &u), memory);
             let distances = (0..count).map(|place| (place, sides.beyond(place)));
             let farthest = distances.reduce(|a, b| if b.1 > a.1 { b } else { a });
             let (place, distance) = farthest.unwrap_or((0, 0.0));
             if distance == 0.0 {
+                // As a motion comes there: what it would be late by changes its slopes along this way.
                 sliding.across = sides.across(count);
+                *x = sliding.onto(t, *x, &u, memory);
                 return Some(sliding);
             }
             if distance.is_finite() {
-                let side = if distance == -seen(sides.parts[place]) {
-                    -1.0
-                } else {
-                    1.0
-                };
-                let way = T::from_f64(side) * sliding.aside(x)[place];
-                *x += sliding.across[place].map(|across| way * across);
-            } else {
-                *x = before;
+                let is_below = distance == -seen(sides.parts[place]);
+                let side = T::from_f64(if is_below { -1.0 } else { 1.0 });
+                let aside = sliding.aside(x)[place];
+                let beyond = side * sliding.distances((t, x, &u), memory).0[place];
+                // What is farther away has yet to come there.
+                if beyond.magnitude() < aside.magnitude() {
+                    let way = side * (aside - beyond);
+                    *x += sliding.across[place].map(|across| way * across);
+                }
             }
             sliding.surfaces.leave(place);
         }
         None
+    }
+
+    /// The state on the surfaces next to one.
+    pub(super) fn landed<const M: usize, const P: usize>(
+        &self,
+        t: T,
+        x: SVector<T, N>,
+        memory: &S::Memory,
+    ) -> SVector<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        self.onto(t, x, &self.input.value(t, self.since), memory)
     }
 
     /// Minds how long a step was.
@@ -311,7 +342,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         &self,
         (t, x, u): (T, &SVector<T, N>, &SVector<T, M>),
         memory: &S::Memory,
-    ) -> (Each<T>, Few<T>)
+    ) -> (Each<T>, Factors<T>)
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
@@ -328,7 +359,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 rates[(other, own)] = faster[other] - at_rest[other];
             }
         }
-        (distances, Few::of(rates, count))
+        (distances, Factors::of(&rates, count))
     }
 
     /// A state moved across the surfaces.
@@ -404,7 +435,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
         self.evaluations
             .set(self.evaluations.get() + 1 + count as u64);
-        let rates = Few::of(rates, count);
+        let rates = Factors::of(&rates, count);
         let parts = rates.solve(right);
         Sides {
             states,
@@ -446,7 +477,7 @@ fn shortest<T: Real, const N: usize>(
         let pairs = gradients[row].iter().zip(&gradients[column]);
         pairs.fold(zero, |sum, (a, b)| a.multiply_add(*b, sum))
     });
-    let products = Few::of(products, count);
+    let products = Factors::of(&products, count);
     core::array::from_fn(|own| {
         let mut right = [zero; MOST];
         right[own] = T::from_f64(if own < count { 1.0 } else { 0.0 });

@@ -7,9 +7,9 @@ use crate::course::lane;
 use crate::{Course, Input, Real, System};
 
 /// So many at once.
-pub(super) const MOST: usize = 8;
+pub(super) const MOST: usize = 16;
 /// A state is at a threshold that it comes to within so many units of the last place of the time.
-const PLACES: f64 = 4096.0;
+const PLACES: f64 = 64.0;
 
 /// A threshold of an argument of choices.
 #[derive(Clone, Copy, Debug, PartialEq)]

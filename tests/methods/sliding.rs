@@ -1,0 +1,548 @@
+//! Motions that stay where laws jump: friction that holds, relays that go on and off without end.
+
+use mbg_runtime::{
+    Adaptive, Auto, Constant, Direction, Dop853, Dual, Input, Integrator, Pirk8, Pulse, Radau5,
+    Radau9, Real, Rodas4, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, Verner9, mbg,
+};
+use nalgebra::SVector;
+
+mbg! {
+    /// A block on a floor that a spring pulls.
+    model Block {
+        param friction = 1.0;
+        input force: N;
+        1 motion {
+            I block { inertia: 1.0 }
+            C spring { stiffness: 4.0, initial: 3.3 }
+            R floor { effort: friction * sign(f) }
+            Se push { effort: force }
+        }
+        output friction: N = floor.e;
+    }
+
+    /// A block on another one, which is pushed along a floor.
+    model Stacked {
+        input force: N;
+        1 upper { I load { inertia: 1.0 } }
+        1 lower { I sledge { inertia: 3.0 } R floor { effort: 1.0 * sign(f) } Se push { effort: force } }
+        0 between; 1 slip { R contact { effort: 2.0 * sign(f) } }
+        lower -> between; between -> upper; between -> slip;
+        output contact: N = contact.e;
+        output floor: N = floor.e;
+    }
+
+    /// A mass that a switched force takes along a reference, against a spring that is not linear.
+    model Follower {
+        input place: m;
+        input speed: m/s;
+        1 motion {
+            I mass { inertia: 1.0 }
+            C spring { effort: 0.5 * q * q, initial: 0.4 }
+        }
+        let error = place - spring.q;
+        Se actuator { effort: if speed - motion.f + 2.0 * error > 0.0 { 6.0 } else { -6.0 } } -> motion;
+        output error: m = error;
+        output force: N = actuator.e;
+    }
+
+    /// A block that a spring holds on a belt, whose friction is less the faster it slips.
+    model Belt {
+        param speed = 0.2;
+        1 moving; 0 contact; 1 slip; 1 motion { I block { inertia: 1.0 } C spring { stiffness: 2.0 } }
+        Sf belt { flow: speed } -> moving;
+        moving -> contact; contact -> motion; contact -> slip;
+        slip -> R rubs { effort: sign(f) * (1.0 + 0.5 * exp(-f * f / 0.09)) };
+        output friction: N = rubs.e;
+    }
+
+    /// A ball that a field slows down, which is stronger from a place on.
+    model Thrown {
+        1 motion {
+            I ball { inertia: 1.0, initial: 1.0 }
+            C field { effort: if q < 0.5 { 1.0 } else { 3.0 } }
+        }
+        output place: m = field.q;
+    }
+
+    /// Two rods on hinges, of which the second rubs.
+    #[derivative]
+    model Rubbing {
+        param friction: N*m = 50.0;
+        causality componentwise;
+        gravity [0.0, -9.81];
+        1 ground[3]; 1 upper[3]; 1 heavy[3]; 1 elbow[3]; 1 lower[3]; 1 light[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        shoulder: PlanarRevolute { initial: -0.5 } (ground, upper);
+        to_first: PlanarOffset { x: 0.5, y: 0.0 } (upper, heavy);
+        first: PlanarBody { mass: 2.0, inertia: 0.1 } (heavy);
+        to: PlanarOffset { x: 1.0, y: 0.0 } (upper, elbow);
+        hinge: PlanarRevolute { initial: 0.7 } (elbow, lower);
+        to_second: PlanarOffset { x: 0.4, y: 0.0 } (lower, light);
+        second: PlanarBody { mass: 1.0, inertia: 0.05 } (light);
+        hinge.rate -> R dry { effort: friction * sign(f) };
+        output angles[2]: rad = [shoulder.angle, hinge.angle];
+        output friction: N*m = dry.e;
+    }
+
+    /// Blocks, each on a floor of its own.
+    model Row {
+        blocks: for k in 0..12 {
+            1 motion { I block { inertia: 1.0 } R floor { effort: sign(f) } }
+        }
+    }
+}
+
+/// The last of the states and outputs of a run.
+fn last<T: Real, const N: usize, const M: usize, const P: usize>(
+    model: &impl System<T, N, M, P>,
+    input: &impl Input<T, M>,
+    end: f64,
+    solver: &impl Integrator<N>,
+) -> (SVector<T, N>, SVector<T, P>, Statistics) {
+    let (mut state, mut outputs) = (
+        model.initial_state(),
+        SVector::from_element(T::from_f64(0.0)),
+    );
+    let [start, end] = [0.0, end].map(T::from_f64);
+    let statistics = solver
+        .sample_outputs(model, input, start, state, &[end], |_t, x, y| {
+            (state, outputs) = (*x, *y)
+        })
+        .unwrap();
+    (state, outputs, statistics)
+}
+
+/// The same to nine digits by all methods, with their names.
+fn by_all<const N: usize, const M: usize, const P: usize>(
+    model: &impl System<f64, N, M, P>,
+    input: &impl Input<f64, M>,
+    end: f64,
+) -> Vec<(&'static str, SVector<f64, N>, SVector<f64, P>)> {
+    macro_rules! by {
+        ($($method:ident),*) => {{
+            let auto = last(model, input, end, &Auto::new(1e-9, 1e-11));
+            vec![
+                $({
+                    let found = last(model, input, end, &Adaptive::new($method, 1e-9, 1e-11));
+                    (stringify!($method), found.0, found.1)
+                },)*
+                ("Auto", auto.0, auto.1),
+            ]
+        }};
+    }
+    by!(
+        Tsit5, Dop853, Verner9, Pirk8, Rodas4, Rodas5P, Radau5, Radau9
+    )
+}
+
+const NINE: Adaptive<'_, Dop853> = Adaptive::new(Dop853, 1e-9, 1e-11);
+
+fn push(amplitude: f64, start: f64, end: f64) -> Pulse<f64, 1> {
+    Pulse {
+        amplitude: SVector::from([amplitude]),
+        start,
+        end,
+    }
+}
+
+/// Each half swing is about a place 0.25 m beside the middle: the last is from 0.3 m to 0.2 m, where the spring is too weak.
+#[test]
+fn friction_holds_what_a_spring_is_too_weak_for() {
+    let model = Block::new(BlockParameters::default()).unwrap();
+    for (method, state, outputs) in by_all(&model, &(), 30.0) {
+        let errors = [state[0], state[1] - 0.2, outputs[0] + 0.8];
+        assert!(
+            errors.iter().all(|error| error.abs() < 2e-7),
+            "{method}: {errors:?}"
+        );
+    }
+    // What holds takes few steps, for as long as it lasts.
+    let [before, behind] = [30.0, 3000.0].map(|end| last(&model, &(), end, &NINE).2);
+    assert!(behind.steps - before.steps <= 10, "{before:?} {behind:?}");
+    let single = Block::<f32>::new(BlockParameters::default()).unwrap();
+    let (state, outputs, _) = last(&single, &(), 30.0, &Adaptive::new(Tsit5, 1e-5, 1e-6));
+    assert!(
+        (state[1] - 0.2).abs() < 1e-4 && (outputs[0] + 0.8).abs() < 4e-4,
+        "{state} {outputs}"
+    );
+}
+
+/// A force that grows tears it loose where both are more than the friction, at 3.5 m/s² per s; without a spring it then has half of the
+/// square of the time, and behind a pulse it stays.
+#[test]
+fn a_force_that_grows_tears_loose_what_friction_holds() {
+    let model = Stacked::new(StackedParameters::default()).unwrap();
+    // Both begin to slide at 1 N, the upper one to slip at 9 N.
+    let growing = Smooth(|t: f64| SVector::from([t]));
+    for (end, speeds, forces) in [
+        (0.5, [0.0, 0.0], [0.0, 0.5]),
+        (5.0, [2.0, 6.0], [1.0, 1.0]),
+        (
+            11.0,
+            [8.0 + 2.0 * 2.0, 24.0 + 0.5 * (121.0 - 81.0) - 3.0 * 2.0],
+            [2.0, 1.0],
+        ),
+    ] {
+        for (method, state, outputs) in by_all(&model, &growing, end) {
+            let errors = [
+                state - SVector::from(speeds),
+                outputs - SVector::from(forces),
+            ];
+            assert!(
+                errors.iter().all(|it| it.amax() < 1e-8),
+                "{method} until {end}: {errors:?}"
+            );
+        }
+    }
+}
+
+/// One slips behind the other, both go on together, and stop at once.
+#[test]
+fn several_hold_at_once_and_one_after_the_other() {
+    let model = Stacked::new(StackedParameters::default()).unwrap();
+    // Until 2 s they come to 2 m/s and 3 m/s; a third of a second later both have 8/3 m/s, and from there lose a quarter of 1 m/s².
+    let pulse = push(12.0, 1.0, 2.0);
+    for (end, speeds, forces) in [
+        (0.7, [0.0, 0.0], [0.0, 0.0]),
+        (2.0, [2.0, 9.0], [2.0, 1.0]),
+        (3.0, [2.5, 7.5], [-0.25, 1.0]),
+        (14.0, [0.0, 0.0], [0.0, 0.0]),
+    ] {
+        for (method, state, outputs) in by_all(&model, &pulse, end) {
+            let errors = [
+                state - SVector::from(speeds),
+                outputs - SVector::from(forces),
+            ];
+            assert!(
+                errors.iter().all(|it| it.amax() < 1e-8),
+                "{method} until {end}: {errors:?}"
+            );
+        }
+    }
+    // At steps of the input it begins anew.
+    let times: [f64; 5] = [0.0, 1.0, 2.0, 3.0, 4.0];
+    let values = [0.4, 0.8, -0.9, 5.0, -0.3].map(|force| SVector::from([force]));
+    let held = Sampled::held(&times, &values).unwrap();
+    let (state, outputs, statistics) = last(&model, &held, 30.0, &NINE);
+    assert!(
+        state.amax() < 1e-12 && (outputs - SVector::from([0.0, -0.3])).amax() < 1e-12,
+        "{state} {outputs}"
+    );
+    assert!(statistics.evaluations < 6000, "{statistics:?}");
+}
+
+/// Along the surface on which the force is switched, what is off decays by `exp(-2 t)`, whatever the spring and the reference do, and
+/// the mean of the force is what takes the mass there.
+#[test]
+fn a_switched_force_takes_a_mass_along_a_reference() {
+    let model = Follower::<f64>::new(FollowerParameters::default()).unwrap();
+    let reference = Smooth(|t: f64| SVector::from([t.sin(), t.cos()]));
+    let start = last(
+        &model,
+        &reference,
+        1.0,
+        &Adaptive::new(Dop853, 1e-12, 1e-12),
+    )
+    .1[0];
+    for (method, state, outputs) in by_all(&model, &reference, 4.0) {
+        let off = start * f64::exp(-6.0);
+        let acceleration = -f64::sin(4.0) - 4.0 * off;
+        let force = acceleration + 0.5 * state[1] * state[1];
+        let errors = [outputs[0] - off, outputs[1] - force];
+        assert!(
+            errors[0].abs() < 2e-9 && errors[1].abs() < 2e-7,
+            "{method}: {errors:?}"
+        );
+    }
+}
+
+/// The block goes with the belt until the spring is as strong as the friction at rest, slips back, and is caught.
+#[test]
+fn a_block_on_a_belt_sticks_and_slips() {
+    let model = Belt::<f64>::new(BeltParameters::default()).unwrap();
+    // Phases of their own, one after the other: the slip by an independent method of small steps.
+    let (speed, stiffness, catch) = (0.2, 2.0, 0.75);
+    let slides = |x: [f64; 2]| {
+        let slip: f64 = speed - x[0];
+        [
+            1.0 + 0.5 * f64::exp(-slip * slip / 0.09) - stiffness * x[1],
+            x[0],
+        ]
+    };
+    let step = |x: [f64; 2], h: f64| {
+        let moved = |by: f64, slope: [f64; 2]| [x[0] + by * slope[0], x[1] + by * slope[1]];
+        let a = slides(x);
+        let b = slides(moved(0.5 * h, a));
+        let c = slides(moved(0.5 * h, b));
+        let d = slides(moved(h, c));
+        moved(
+            h / 6.0,
+            [0, 1].map(|i| a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]),
+        )
+    };
+    // From rest it is slower than the belt, and is pulled up to its speed.
+    let mut known = Vec::new();
+    let (mut time, mut x) = (0.0, [0.0, 0.0]);
+    for _ in 0..3 {
+        let h = 1e-4;
+        loop {
+            let next = step(x, h);
+            if next[0] >= speed && x[0] < speed {
+                let part = (speed - x[0]) / (next[0] - x[0]);
+                let (mut low, mut high) = (0.0, h);
+                let mut middle = part * h;
+                for _ in 0..60 {
+                    if step(x, middle)[0] < speed {
+                        low = middle
+                    } else {
+                        high = middle
+                    }
+                    middle = 0.5 * (low + high);
+                }
+                (time, x) = (time + middle, step(x, middle));
+                break;
+            }
+            (time, x) = (time + h, next);
+        }
+        known.push(time);
+        // The friction at rest is 1.5 N.
+        time += (catch - x[1]) / speed;
+        x = [speed, catch];
+        known.push(time);
+        // It leaves by the first step: a speed just below that of the belt.
+        x[0] -= 1e-13;
+    }
+    // The friction by the spring while it sticks, and less while it slips.
+    let times: Vec<f64> = known
+        .windows(2)
+        .map(|pair| 0.5 * (pair[0] + pair[1]))
+        .collect();
+    let solver = Adaptive::new(Radau9, 1e-10, 1e-12);
+    let mut found = Vec::new();
+    solver
+        .sample_outputs(
+            &model,
+            &(),
+            0.0,
+            model.initial_state(),
+            &times,
+            |t, x, y| found.push((t, *x, y[0])),
+        )
+        .unwrap();
+    for (phase, (t, x, friction)) in found.iter().enumerate() {
+        if phase % 2 == 0 {
+            let place = catch - speed * (known[phase + 1] - t);
+            let errors = [x[0] - speed, x[1] - place, friction - stiffness * place];
+            assert!(
+                errors.iter().all(|it| it.abs() < 2e-6),
+                "phase {phase}: {errors:?}"
+            );
+        } else {
+            assert!(
+                x[0] < speed && *friction < 1.5,
+                "phase {phase}: {x} {friction}"
+            );
+        }
+    }
+}
+
+/// The knee holds: the whole is one pendulum, whose motion has an integral.
+#[test]
+fn a_hinge_that_rubs_enough_is_none() {
+    let model = Rubbing::<f64>::new(RubbingParameters::default()).unwrap();
+    // By the parallel axes: of the second rod about the shoulder, with the knee at 0.7 rad.
+    let (knee, shoulder) = (0.7_f64, -0.5_f64);
+    let inertia = 0.1 + 2.0 * 0.25 + 0.05 + 1.0 * (1.0 + 0.16 + 2.0 * 0.4 * knee.cos());
+    let height =
+        |angle: f64| 2.0 * 0.5 * angle.sin() + 1.0 * (angle.sin() + 0.4 * (angle + knee).sin());
+    let rate = |angle: f64| f64::sqrt(2.0 * 9.81 * (height(shoulder) - height(angle)) / inertia);
+    let force = |angle: f64| {
+        let lever = |a: f64| 2.0 * 0.5 * a.cos() + a.cos() + 0.4 * (a + knee).cos();
+        let turning = -9.81 * lever(angle) / inertia;
+        // What the second rod needs about the knee.
+        let moment = (0.05 + 0.16) * turning
+            + 0.4 * turning * knee.cos()
+            + 0.4 * rate(angle).powi(2) * knee.sin();
+        moment + 9.81 * 0.4 * (angle + knee).cos()
+    };
+    for solver in [&NINE] {
+        let mut turned = Vec::new();
+        let times = [0.2, 0.4, 0.6];
+        solver
+            .sample_outputs(
+                &model,
+                &(),
+                0.0,
+                model.initial_state(),
+                &times,
+                |_t, x, y| {
+                    turned.push((*x, *y));
+                },
+            )
+            .unwrap();
+        for (x, y) in turned {
+            let speed = x
+                .iter()
+                .map(|it| it.abs())
+                .find(|it| (it - rate(y[0])).abs() < 1e-7);
+            assert!(speed.is_some(), "{x} instead of {}", rate(y[0]));
+            assert!((y[1] - knee).abs() < 1e-12, "{}", y[1]);
+            assert!(
+                (y[2] + force(y[0])).abs() < 1e-6,
+                "{} instead of {}",
+                y[2],
+                force(y[0])
+            );
+        }
+    }
+    // By implicit methods, whose Jacobian knows of what holds, and where it slips now and then.
+    let model = Rubbing::<f64>::new(RubbingParameters { friction: 3.0 }).unwrap();
+    let expected = last(&model, &(), 3.0, &Adaptive::new(Dop853, 1e-11, 1e-12)).0;
+    for (method, state, _) in by_all(&model, &(), 3.0) {
+        assert!(
+            (state - expected).amax() < 1e-7,
+            "{method}: {state} instead of {expected}"
+        );
+    }
+}
+
+#[test]
+fn what_comes_to_a_threshold_and_goes_back_does_not_stay() {
+    let model = Thrown::new(ThrownParameters::default()).unwrap();
+    // At 1 s it is at the threshold, at rest.
+    for (method, state, _) in by_all(&model, &(), 3.0) {
+        let error = (state - SVector::from([-2.0, -1.5])).amax();
+        assert!(error < 1e-6, "{method}: {error:e}");
+    }
+}
+
+/// What slips until it is caught loses what it had: of the speed of both together, by the speed of either at the start.
+#[test]
+fn slopes_of_what_is_caught_are_those_of_both_together() {
+    let model = Stacked::<Dual<f64>>::new(StackedParameters::default()).unwrap();
+    let input = Constant(SVector::from([Dual::constant(0.0)]));
+    for by in 0..2 {
+        let mut start = SVector::from([1.0, 12.0].map(Dual::constant));
+        start[by].slope = 1.0;
+        let ends = [0.0, 2.0].map(Dual::constant);
+        let mut state = start;
+        macro_rules! by {
+            ($($method:ident),*) => {
+                $(
+                    Adaptive::new($method, 1e-9, 1e-11)
+                        .integrate(&model, &input, ends[0], ends[1], start, |step| state = *step.state())
+                        .unwrap();
+                    // The floor takes 1 N all the time, so that a quarter of the momentum is with each kilogram.
+                    let expected = [(11.0, 0.25), (33.0, 0.75)];
+                    for (state, (value, slope)) in state.iter().zip(expected) {
+                        let errors = [state.value - value / 4.0, state.slope - slope];
+                        assert!(
+                            errors.iter().all(|it| it.abs() < 1e-8),
+                            "{} by {by}: {errors:?}", stringify!($method)
+                        );
+                    }
+                )*
+            };
+        }
+        by!(Dop853, Rodas5P);
+    }
+}
+
+/// Half swings turn the slope by the start about; each is longer by half of the friction.
+#[test]
+fn slopes_are_those_of_where_it_holds() {
+    let start = |by: usize| {
+        let friction = if by == 0 {
+            Dual::variable(1.0)
+        } else {
+            Dual::constant(1.0)
+        };
+        let model = Block::<Dual<f64>>::new(BlockParameters { friction }).unwrap();
+        let place = if by == 1 {
+            Dual::variable(3.3)
+        } else {
+            Dual::constant(3.3)
+        };
+        let speed = if by == 2 {
+            Dual::variable(0.0)
+        } else {
+            Dual::constant(0.0)
+        };
+        (model, SVector::from([speed, place]))
+    };
+    for (by, expected) in [(0, 3.5), (1, -1.0), (2, 0.0)] {
+        let (model, x) = start(by);
+        let ends = [Dual::constant(0.0), Dual::constant(30.0)];
+        let mut state = x;
+        macro_rules! by {
+            ($($method:ident),*) => {
+                $(
+                    Adaptive::new($method, 1e-9, 1e-11)
+                        .integrate(&model, &(), ends[0], ends[1], x, |step| state = *step.state())
+                        .unwrap();
+                    let slopes = [state[0].slope, state[1].slope - expected];
+                    assert!(
+                        slopes.iter().all(|it| it.abs() < 1e-7),
+                        "{} by {by}: {slopes:?}", stringify!($method)
+                    );
+                )*
+            };
+        }
+        by!(Dop853, Tsit5, Rodas5P, Radau9);
+    }
+}
+
+/// An event at the time at which the mass is torn loose, as the friction is at its bound.
+#[test]
+fn events_are_found_where_a_motion_stays() {
+    let model = Block::new(BlockParameters { friction: 2.0 }).unwrap();
+    let still = SVector::from([0.0, 0.25]);
+    let growing = Smooth(|t: f64| SVector::from([t]));
+    let guard = (Direction::Rising, |_t: f64, x: &SVector<f64, 2>| {
+        x[1] - 0.25 - 1e-9
+    });
+    let arrival = NINE
+        .until(&model, &growing, 0.0, 10.0, still, guard, |_step| ())
+        .unwrap();
+    // From 3 s on: x'' = τ − 4 x, so that x = (τ − sin(2 τ) / 2) / 4, about τ³ / 6.
+    let after = f64::cbrt(6e-9);
+    assert!(
+        arrival.found && (arrival.time - 3.0 - after).abs() < 1e-6,
+        "{}",
+        arrival.time - 3.0
+    );
+    // Steps end where it is torn loose.
+    let mut ends = Vec::new();
+    NINE.integrate(&model, &growing, 0.0, 4.0, still, |step| {
+        ends.push(step.end())
+    })
+    .unwrap();
+    assert!(ends.iter().any(|end| (end - 3.0).abs() < 1e-7), "{ends:?}");
+}
+
+#[test]
+fn many_hold_at_once() {
+    let model = Row::new(RowParameters::default()).unwrap();
+    let mut state = SVector::<f64, 12>::from_fn(|place, _| 0.1 * place as f64 - 0.3);
+    let statistics = NINE
+        .integrate(&model, &(), 0.0, 5.0, state, |step| state = *step.state())
+        .unwrap();
+    assert!(
+        state.amax() < 1e-12 && statistics.steps < 200,
+        "{state} {statistics:?}"
+    );
+}
+
+#[test]
+fn methods_of_low_order_hold_too() {
+    let model = Block::new(BlockParameters::default()).unwrap();
+    let solver = Adaptive {
+        most: 200_000,
+        ..Adaptive::new(Ros2, 1e-6, 1e-8)
+    };
+    let (state, outputs, _) = last(&model, &Constant(SVector::from([0.0])), 30.0, &solver);
+    assert!(
+        (state[1] - 0.2).abs() < 1e-3 && (outputs[0] + 0.8).abs() < 4e-3,
+        "{state} {outputs}"
+    );
+}

@@ -105,7 +105,7 @@ const OTHERS: [&str; 7] = [
         input push; Se drive { effort: push } -> a;
         1 a {
             I mass { flow: p + tanh(p) } R air { effort: abs(f) * f + atan2(f, 2.0) + sign(f) }
-            C sine { effort: sin(2.0 * q) } C tangent { effort: tan(q), initial: 0.2 } C arc { effort: atan2(q, 2.0) }
+            C sine { effort: sin(2.0 * q) } C tangent { effort: tan(q), initial: 0.2 } C arc { effort: atan2(q, 2.0) + atan(q) }
             C rise { effort: exp(q) - 1.0 } C logarithm { effort: ln(q + 1.5) } C root { effort: sqrt(q + 2.0) }
             C cube { effort: powi(q + 1.0, 3) } C pole { effort: 3.0 / (q + 2.0) } C size { effort: abs(q - 0.1) }
             C play { effort: if q < 0.2 { q } else { 3.0 * q - 0.4 } } C edge { effort: max(q, 0.1) }

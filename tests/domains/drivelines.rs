@@ -1,6 +1,6 @@
 //! Drivelines.
 
-use mbg_runtime::{Smooth, System, mbg};
+use mbg_runtime::{Adaptive, Dop853, Integrator, Smooth, System, mbg};
 use nalgebra::SVector;
 
 use super::balance;
@@ -94,4 +94,42 @@ fn a_slipping_clutch_starts_two_wheels_as_derived_by_hand() {
         worst = larger(worst, (power.supplied / (input[0] * engine) - 1.0).abs());
     }
     assert!(worst < 1e-9, "{worst:e}");
+}
+
+mbg! {
+    /// A flywheel takes a load along, and is driven on.
+    pub(crate) model Coupled {
+        param torque: N*m = 5.0;
+        1 engine { I flywheel { inertia: 0.25, initial_flow: 200.0 } Se drive { effort: torque } }
+        1 machine { I load { inertia: 1.5 } }
+        clutch: Clutch { capacity: 30.0 } (engine, machine);
+        output engine_speed: rad/s = engine.f;
+        output machine_speed: rad/s = machine.f;
+    }
+}
+
+#[test]
+fn a_clutch_locks_and_both_shafts_turn_as_one() {
+    let model = Coupled::<f64>::new(CoupledParameters::default()).unwrap();
+    // The slip falls by what slows the one and hastens the other.
+    let locked = 200.0 / ((30.0 - 5.0) / 0.25 + 30.0 / 1.5);
+    let (mut last, mut steps) = (model.initial_state(), 0);
+    let run = Adaptive::new(Dop853, 1e-10, 1e-10).integrate(&model, &(), 0.0, 5.0, last, |step| {
+        last = *step.state();
+        let speeds = model.output(
+            step.end(),
+            &last,
+            &Default::default(),
+            &mut Default::default(),
+        );
+        let slip = 200.0 * (1.0 - step.end() / locked).max(0.0);
+        assert!((speeds[0] - speeds[1] - slip).abs() < 1e-6, "{speeds}");
+        steps += 1;
+    });
+    assert!(run.is_ok() && steps < 100, "{run:?}");
+    let speeds = model.output(5.0, &last, &Default::default(), &mut Default::default());
+    let common = (0.25 * 200.0 + 5.0 * 5.0) / 1.75;
+    for speed in speeds.iter() {
+        assert!((speed - common).abs() < 1e-7, "{speeds}");
+    }
 }

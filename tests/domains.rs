@@ -1,4 +1,4 @@
-//! Domains beside mechanics, with the components of the library: circuits, hydraulics, heat.
+//! Domains with the components of the library: circuits, drivelines, hydraulics, heat.
 
 #[path = "../examples/hydraulic_drive/model.rs"]
 #[allow(unreachable_pub)]
@@ -10,6 +10,7 @@ mod references;
 mod domains {
     mod balance;
     mod circuits;
+    mod drivelines;
     mod heat;
     mod hydraulics;
     mod vehicles;

@@ -185,6 +185,14 @@ fn mistakes_in_curves_are_told() {
     let curve = |arguments: &str| mistake(&format!("output y = interpolate({arguments});"));
     insta::assert_snapshot!(curve("t, [0.0, 1.0]"), @"2:12 expected `interpolate(x, places, values)` [MBG0213]");
     insta::assert_snapshot!(curve("t, [0.0, 1.0], [0.0, 1.0, 2.0]"), @"2:39 expected 2 values, one for each place, found 3 [MBG0204]");
+    insta::assert_snapshot!(curve("t, [[0.0, 1.0], [n, 2.0], [9.0, -t]]"), @"
+    2:12 expected `interpolate(x, places, values)` [MBG0213]
+      help: write `interpolate(t, [0.0, n, 9.0], [1.0, 2.0, -t])`
+    ");
+    assert_eq!(
+        curve("t, [[0.0, 1.0], [n, 2.0]]"),
+        curve("t, [(0.0, 1.0), (n, 2.0)]")
+    );
     insta::assert_snapshot!(curve("t, [0.0], [1.0]"), @"2:27 expected at least two points, found one [MBG0204]");
     insta::assert_snapshot!(curve("t, 0.0, [1.0]"), @"2:27 expected a vector such as `[0.0, 1.0]`, found a number [MBG0204]");
     insta::assert_snapshot!(curve("a.f, [0.0, 1.0], [1.0, 2.0]"), @"

@@ -424,7 +424,7 @@ fn weak_functions() -> Vec<Weak> {
         smooth("2.0 * a * tanh(a * q) / 3.0", |a, q| {
             2.0 * a * (a * q).tanh() / 3.0
         }),
-        smooth("atan2(a * q, 1.0)", |a, q| (a * q).atan2(1.0)),
+        smooth("atan(a * q)", |a, q| (a * q).atan()),
         smooth("atan2(a * q - 1.0, 0.5)", |a, q| (a * q - 1.0).atan2(0.5)),
         smooth("q + ln(2 + a * q)", |a, q| q + (2.0 + a * q).ln()),
         smooth("ln(2 - a * q)", |a, q| (2.0 - a * q).ln()),

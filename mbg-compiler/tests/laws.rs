@@ -101,7 +101,7 @@ fn mistakes_in_laws_are_told() {
       help: its words are `inertia`, `flow`, `energy`, `initial`, `initial_flow`, `gyroscopic`
     2:41 `Sin` is not a function of the language [MBG0203]
       help: did you mean `sin`?
-      help: functions are sin, cos, tan, asin, acos, atan2, exp, ln, sqrt, abs, sign, tanh, mod, floor, fraction, min, max, pow, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
+      help: functions are sin, cos, tan, asin, acos, atan, atan2, exp, ln, sqrt, abs, sign, tanh, mod, floor, fraction, min, max, pow, powi, interpolate, diag, transpose, skew, rot_x, rot_y, rot_z, rot, jacobian_xyz, jacobian, matrix_of, quaternion_of, angles_of, rotation
     ");
     insta::assert_snapshot!(mistake("1 v { I b { inertia: q } C c { stiffness: p } R r { resistance: p } TF t { flow: 1.0 } MGY g { effort: 1.0 } }"), @"
     2:69 a `TF` has two ports; put it between two arrows [MBG0208]
@@ -305,6 +305,14 @@ fn value(expression: &str) -> f64 {
     pool.constant_value(model.outputs[0].value).unwrap()
 }
 
+#[test]
+fn an_arc_tangent_of_numbers_is_a_number() {
+    for tangent in [0.7_f64, -2.5, 0.0, 1e300] {
+        assert_eq!(value(&format!("atan({tangent:?})")), tangent.atan());
+    }
+    insta::assert_snapshot!(mistake("output y = atan(n, 1.0);"), @"2:12 `atan` takes 1 argument, found 2 [MBG0213]");
+}
+
 /// What the help on the only mistake of an expression says to write.
 fn instead(expression: &str) -> String {
     let text = format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} output y = {expression}; }}");
@@ -318,7 +326,6 @@ fn instead(expression: &str) -> String {
 #[test]
 fn words_of_other_languages_are_answered_with_what_has_their_value() {
     let cases = [
-        ("atan(0.7)", 0.7_f64.atan()),
         ("arctan(0.7)", 0.7_f64.atan()),
         ("arctan2(0.7, 0.2)", 0.7_f64.atan2(0.2)),
         ("arcsin(0.7)", 0.7_f64.asin()),
@@ -465,9 +472,9 @@ fn mistakes_in_powers_and_functions_are_told() {
     2:29 expected an integer exponent between -64 and 64 [MBG0213]
       help: write `pow(f, n)`, where `f` is not negative
     ");
-    insta::assert_snapshot!(mistake("1 v { R r { effort: atan(f) } }"), @"
-    2:21 `atan` is not a function of the language [MBG0203]
-      help: write `atan2(f, 1.0)`
+    insta::assert_snapshot!(mistake("1 v { R r { effort: arctan(f) } }"), @"
+    2:21 `arctan` is not a function of the language [MBG0203]
+      help: write `atan(f)`
     ");
     insta::assert_snapshot!(mistake("1 v { R r { effort: clamp(f) } }"), @"
     2:21 `clamp` is not a function of the language [MBG0203]

@@ -5,55 +5,9 @@ mod models;
 
 use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::diagnostics::Diagnostics;
-use mbg_compiler::program::{self, Arguments};
 use mbg_compiler::syntax::ast::Item;
 use mbg_compiler::syntax::{self, library};
-use models::{compiled, elaborated};
-
-/// Results of a routine at a state, at time zero and without inputs.
-fn run(model: &Compiled, routine: usize, state: &[f64]) -> Vec<f64> {
-    let arguments = Arguments {
-        parameters: &[0.3; 1][..model.model.parameters.len()],
-        time: 0.0,
-        state,
-        input: &[],
-    };
-    program::evaluate(&model.program, routine, &arguments)
-}
-
-/// Some state without any symmetry.
-fn state(model: &Compiled) -> Vec<f64> {
-    (0..model.states.len())
-        .map(|place| (1.3 * place as f64 + 0.4).sin())
-        .collect()
-}
-
-fn assert_near(found: &[f64], expected: &[f64], tolerance: f64) {
-    assert_eq!(found.len(), expected.len());
-    for (found, expected) in found.iter().zip(expected) {
-        assert!(
-            (found - expected).abs() < tolerance,
-            "found {found}, expected {expected}"
-        );
-    }
-}
-
-/// What the sources supply goes into the storages and the resistors, and nowhere else.
-fn assert_lossless(model: &Compiled) {
-    let (state, step) = (state(model), 1e-4);
-    let rates = run(model, Routines::DERIVATIVE, &state);
-    let energy = |along: f64| {
-        let moved: Vec<f64> = state
-            .iter()
-            .zip(&rates)
-            .map(|(x, rate)| x + along * rate)
-            .collect();
-        run(model, Routines::ENERGY, &moved)[0]
-    };
-    let power = run(model, Routines::POWER, &state);
-    let stored = (energy(step) - energy(-step)) / (2.0 * step);
-    assert_near(&[stored], &[power[0] - power[1]], 1e-6);
-}
+use models::{assert_lossless, assert_near, compiled, elaborated, run, state};
 
 fn cross(a: &[f64], b: &[f64]) -> [f64; 3] {
     [

@@ -43,6 +43,23 @@ fn assert_slopes(cases: &[Case<'_>]) {
     }
 }
 
+/// `atan(x)` is `atan2(x, 1)`, with the slope 1 / (1 + x²) however large `x` is.
+#[test]
+fn an_arc_tangent_has_its_slope() {
+    let infinite = f64::INFINITY;
+    let places = [0.0, 0.5, 2.0, -3.0, 1e200, infinite, -infinite];
+    let slopes = places.map(|place| (place, 1.0 / (1.0 + place * place)));
+    assert_slopes(&[("atan(f)", &slopes)]);
+    for place in places {
+        let found = -entries(&resisted("atan(f)"), &[0.75], &[place])[0];
+        assert_eq!(found, place.atan());
+    }
+    let model = resisted("atan(f)");
+    let routine = &model.program.routines[Routines::DERIVATIVE_AND_JACOBIAN];
+    // The angle, a square, a sum and a quotient.
+    assert_eq!(routine.operations(), 4);
+}
+
 /// Infinite slopes of functions of what does not change are left out, however choices are nested and added.
 #[test]
 fn laws_are_flat_where_choices_make_them_so() {

@@ -131,6 +131,16 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "`x` is `m` and `y` is `s`",
     ),
     (
+        "param x: m = 1.0; output z = 2.0 * atan(x);",
+        "atan(",
+        "`atan` takes a pure number or an angle, and `x` is `m`",
+    ),
+    (
+        "param x: m = 1.0; output z: m = atan(x / 2.0 / x);",
+        "atan(",
+        "`z` is declared in `m`, and this is a pure number",
+    ),
+    (
         "param x: m = 1.0; param n = 1.5; output z: m = pow(x, 1.5) / sqrt(x); output y = pow(x, n);",
         "pow(",
         "`pow` takes a pure number or an angle, and `x` is `m`",
@@ -173,6 +183,8 @@ fn models_whose_units_agree_are_silent() {
             output force: N = interpolate(a.f, [0, 1], [0, 1]);"),
         // What is not declared follows.
         &mass("param k = 1.0; a -> C c { stiffness: k }; output x: m = c.q; output force: N = k * c.q;"),
+        // An arc tangent is an angle, of a slope or an angle.
+        &mass("param x: m = 2.0; output slope: rad = atan(x / 3.0) + atan(x / c.q) + atan(t / 2.0); a -> C c { stiffness: 1.0 };"),
         // Half radians are none.
         &mass("output angle: rad = c.q / 2.0; a -> C c { stiffness: 1.0 }; output hertz: Hz = a.f / c.q;"),
         // Each component has its own.

@@ -55,6 +55,13 @@ impl Claims {
     }
 }
 
+impl Claim {
+    /// Whether it belongs to what is said next.
+    pub(crate) fn is_part(&self) -> bool {
+        matches!(self.subject, Subject::Part | Subject::Argument(_))
+    }
+}
+
 /// One thing that is said.
 #[derive(Clone)]
 pub struct Claim {
@@ -73,6 +80,8 @@ pub struct Claim {
 pub enum Subject {
     /// The value of an operator or a function.
     Part,
+    /// The argument of a function that takes a pure number, which its value does not show.
+    Argument(&'static str),
     /// The value of a name with a declared unit.
     Declared(String, Unit),
     /// What stands after a word of an element.

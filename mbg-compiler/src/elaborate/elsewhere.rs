@@ -33,8 +33,7 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("tau", &[], "6.283185307179586"),
     ("TAU", &[], "6.283185307179586"),
     ("time", &[], "t"),
-    ("atan", &["x"], "atan2(x, 1.0)"),
-    ("arctan", &["x"], "atan2(x, 1.0)"),
+    ("arctan", &["x"], "atan(x)"),
     ("arctan2", &["y", "x"], "atan2(y, x)"),
     ("arcsin", &["x"], "asin(x)"),
     ("arccos", &["x"], "acos(x)"),
@@ -120,6 +119,30 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("radians", &["x"], "(0.017453292519943295 * x)"),
     ("deg2rad", &["x"], "(0.017453292519943295 * x)"),
 ];
+
+/// A curve that is given by its points, `[[x, y], …]`, by its places and values.
+pub(super) fn curve_of_points(arguments: &[Expr]) -> Option<String> {
+    let [x, Expr::Array(points)] = arguments else {
+        return None;
+    };
+    let mut columns = [Vec::new(), Vec::new()];
+    for point in &points.elems {
+        let entries = match point {
+            Expr::Array(point) => &point.elems,
+            Expr::Tuple(point) => &point.elems,
+            _ => return None,
+        };
+        if entries.len() != columns.len() {
+            return None;
+        }
+        for (column, entry) in columns.iter_mut().zip(entries) {
+            column.push(dump::expression(entry));
+        }
+    }
+    let [places, values] = columns.map(|column| column.join(", "));
+    let x = dump::expression(x);
+    Some(format!("interpolate({x}, [{places}], [{values}])"))
+}
 
 /// What the coefficients of elements are called in the parts of physics, and the words of their laws.
 const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[

@@ -85,6 +85,9 @@ pub trait Names {
         false
     }
 
+    /// Remembers that a function takes a pure number, which its value does not show.
+    fn takes_pure(&mut self, _place: Span, _function: &'static str, _argument: Expression) {}
+
     /// What a number with a decimal point stands for, which may carry a unit.
     fn measured(&mut self, _pool: &mut Pool, value: Expression, _text: &str) -> Expression {
         value

@@ -8,7 +8,7 @@ use syn::spanned::Spanned;
 use super::elsewhere;
 use super::expressions::{Evaluator, Names, Result, Value, fail, no_plain_name, whole_vector};
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Product};
 use crate::syntax::dump;
 use crate::syntax::words::FUNCTIONS;
@@ -46,6 +46,10 @@ impl<N: Names> Evaluator<'_, N> {
                     self.pool.cosine(angle)
                 }))
             }
+            "atan" => {
+                count(1)?;
+                self.arc_tangent(name, &arguments[0])
+            }
             "mod" => {
                 count(2)?;
                 let [value, period] = [self.scalar(&arguments[0])?, self.scalar(&arguments[1])?];
@@ -61,12 +65,10 @@ impl<N: Names> Evaluator<'_, N> {
                 count(2)?;
                 self.power(name, arguments)
             }
-            "interpolate" => {
-                let [x, places, values] = arguments else {
-                    return fail(name.span(), "expected `interpolate(x, places, values)`");
-                };
-                self.curve(x, places, values)
-            }
+            "interpolate" => match arguments {
+                [x, places, values] => self.curve(x, places, values),
+                _ => Err(Box::new(no_curve(name, arguments))),
+            },
             "transpose" => {
                 count(1)?;
                 match self.evaluate(&arguments[0])? {
@@ -139,6 +141,14 @@ impl<N: Names> Evaluator<'_, N> {
         Ok(Value::Scalar(self.pool.call(function, &values?)))
     }
 
+    /// The angle of a slope, which is that of a point above one; a point may have a unit, and a slope has none.
+    fn arc_tangent(&mut self, name: &Ident, slope: &Expr) -> Result<Value> {
+        let slope = self.scalar(slope)?;
+        self.names.takes_pure(name.span(), "atan", slope);
+        let angle = self.pool.call(Function::Atan2, &[slope, Expression::ONE]);
+        Ok(Value::Scalar(angle))
+    }
+
     /// What is left of a value beyond whole periods of it.
     fn remainder(
         &mut self,
@@ -183,6 +193,16 @@ impl<N: Names> Evaluator<'_, N> {
             (Some(number), Some(literal)) => Ok(literal.flipped(number < 0.0)),
             _ => self.scalar(exponent),
         }
+    }
+}
+
+/// A curve takes a value, places and values.
+fn no_curve(name: &Ident, arguments: &[Expr]) -> Diagnostic {
+    let message = "expected `interpolate(x, places, values)`";
+    let report = error(codes::EXPRESSION, name.span(), message);
+    match elsewhere::curve_of_points(arguments) {
+        Some(written) => report.help(format!("write `{written}`")),
+        None => report,
     }
 }
 

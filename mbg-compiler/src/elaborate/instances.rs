@@ -235,7 +235,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Reports a parameter without a value, unless a word that is not known was meant to be its name.
+    /// Reports a parameter without a value, unless a word that is not known was meant to be its name, or stands for all of them.
     fn missing_argument(
         &mut self,
         scope: usize,
@@ -252,9 +252,14 @@ impl<'a> Builder<'a> {
             !known.contains(&found.as_str()) && !ending_in(&found, &[&name_text]).is_empty()
         };
         let is_meant = |found: &Ident| tools::parameter(found, &known) == Some(&name_text);
+        let is_ratio = |given: &ast::Field| {
+            !known.iter().any(|known| given.name == known)
+                && tools::by_ratio(instance, given).is_some()
+        };
         if is_misspelt(&name_text, arguments.clone(), &known)
             || arguments.clone().any(is_meant)
             || arguments.any(is_shortened)
+            || instance.arguments.iter().any(is_ratio)
         {
             return;
         }

@@ -327,6 +327,17 @@ impl Names for Lookup<'_, '_> {
         });
     }
 
+    fn takes_pure(&mut self, place: Span, function: &'static str, argument: Expression) {
+        if let Some(claims) = &mut self.claims {
+            claims.list.push(Claim {
+                subject: Subject::Argument(function),
+                entries: vec![argument],
+                columns: 1,
+                place: self.scopes.place(self.scope, place),
+            });
+        }
+    }
+
     fn measured(&mut self, pool: &mut Pool, value: Expression, text: &str) -> Expression {
         match &mut self.claims {
             Some(claims) => pool.symbol(claims.hide(text, true)),

@@ -83,6 +83,40 @@ const COMPONENTS: &[(&[&str], &str)] = &[
         "Rack",
     ),
     (&["gearbox"], "Gear"),
+    (&["discclutch", "coneclutch", "frictionclutch"], "Clutch"),
+    (&["discbrake", "drumbrake", "handbrake"], "Brake"),
+    (
+        &["bearingfriction", "dryfriction", "coulombfriction"],
+        "Friction",
+    ),
+    (
+        &[
+            "elastobacklash",
+            "elastobacklash2",
+            "freeplay",
+            "lostmotion",
+        ],
+        "Backlash",
+    ),
+    (
+        &[
+            "flexibleshaft",
+            "compliantshaft",
+            "torsionalshaft",
+            "torsionbar",
+        ],
+        "ElasticShaft",
+    ),
+    (&["differentialgear", "opendifferential"], "Differential"),
+    (
+        &[
+            "planetarygear",
+            "idealplanetary",
+            "epicyclic",
+            "epicyclicgear",
+        ],
+        "Planetary",
+    ),
     (&["hydrauliccylinder"], "Cylinder"),
     (&["valve"], "Orifice"),
     (&["heatcapacitor", "thermalmass"], "HeatCapacity"),
@@ -216,25 +250,6 @@ const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
         ],
         Stand::Between,
         &[("R", "damper", "resistance: …")],
-    ),
-    (
-        &["clutch", "discclutch", "coneclutch", "frictionclutch"],
-        Stand::Between,
-        &[("R", "clutch", "effort: capacity * tanh(f / width)")],
-    ),
-    (
-        &["brake", "discbrake", "drumbrake", "bearingfriction"],
-        Stand::At,
-        &[("R", "brake", "effort: capacity * tanh(f / width)")],
-    ),
-    (
-        &["backlash", "elastobacklash", "freeplay"],
-        Stand::Between,
-        &[(
-            "C",
-            "lash",
-            "effort: stiffness * (q - max(min(q, gap / 2), -gap / 2))",
-        )],
     ),
     (
         &["springdamper", "springanddamper"],
@@ -392,7 +407,22 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
         &["by", "offset"],
     ),
     (&["blades", "number_of_blades"], &["count"]),
-    (&["gear_ratio"], &["ratio"]),
+    (&["gear_ratio", "teeth_ratio"], &["ratio"]),
+    (
+        &[
+            "max_torque",
+            "maximum_torque",
+            "torque_capacity",
+            "friction_torque",
+            "torque",
+        ],
+        &["capacity"],
+    ),
+    (
+        &["signal", "command", "pressure", "f_normalized", "u"],
+        &["engagement"],
+    ),
+    (&["play", "backlash", "lash", "clearance", "b"], &["gap"]),
     (&["q_flow", "heat_flow"], &["power"]),
 ];
 
@@ -507,9 +537,6 @@ pub(super) fn elements(
     end: Option<(JunctionKind, usize)>,
 ) -> Option<String> {
     let component = plain(&instance.component.to_string());
-    if let Some(text) = gears(&component, instance) {
-        return Some(format!("here it is written `{text}`"));
-    }
     let mut known = ELEMENTS.iter();
     let (_, stand, parts) = known.find(|(names, ..)| names.contains(&component.as_str()))?;
     let (kind, dimension) = end.unwrap_or((JunctionKind::One, 1));
@@ -533,27 +560,6 @@ pub(super) fn elements(
         _ => at_junction(parts, &name, at, dimension),
     };
     Some(format!("here it is written `{text}`"))
-}
-
-/// Gears with three shafts, in the order that tools have: a differential by its case and both sides, a planetary gear by sun,
-/// carrier and ring.
-fn gears(component: &str, instance: &ast::Instance) -> Option<String> {
-    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
-    let [a, b, c] = &ends[..] else { return None };
-    let given = instance.arguments.iter().find(|it| it.name == "ratio");
-    let ratio = given.and_then(|it| it.value.as_ref());
-    let ratio = ratio.map_or_else(|| "ratio".to_owned(), dump::expression);
-    let name = &instance.name;
-    match component {
-        "differential" | "differentialgear" | "opendifferential" => Some(format!(
-            "0 {name}_sides; {a} -> TF {name} {{ flow: 2 / {ratio} }} -> {name}_sides; {name}_sides -> {b}; {name}_sides -> {c};"
-        )),
-        "planetary" | "planetarygear" | "idealplanetary" | "epicyclic" => Some(format!(
-            "0 {name}_teeth; {a} -> {name}_teeth; {c} -> TF {name}_ring {{ flow: {ratio} }} -> {name}_teeth; \
-             {name}_teeth -> TF {name} {{ flow: 1 / (1 + {ratio}) }} -> {b};"
-        )),
-        _ => None,
-    }
 }
 
 /// What to type for a gear that is given its ratio in the place of its radii.

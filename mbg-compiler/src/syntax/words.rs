@@ -46,12 +46,13 @@ pub(crate) const ELEMENTS: &[(&str, ElementKind)] = &[
 ];
 
 /// Functions, as messages list them.
-pub(crate) const FUNCTIONS: [&str; 33] = [
+pub(crate) const FUNCTIONS: [&str; 34] = [
     "sin",
     "cos",
     "tan",
     "asin",
     "acos",
+    "atan",
     "atan2",
     "exp",
     "ln",

@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 pub(crate) use names::{acceleration, without_unit};
 
 use self::dimension::{Dimension, Ratio, Unknowns};
-use self::inference::{Inference, Measure};
+use self::inference::{Inference, Measure, Mismatch};
 use self::ports::Ports;
 use self::report::Reporter;
 use crate::causality::report::alternatives;
@@ -267,7 +267,7 @@ impl Checker<'_> {
             }
             let mut start = 0;
             for (position, claim) in claims.iter().enumerate() {
-                if matches!(claim.subject, Subject::Part) && position + 1 < claims.len() {
+                if claim.is_part() && position + 1 < claims.len() {
                     continue;
                 }
                 // Parts belong to what is made of them.
@@ -338,6 +338,13 @@ impl Checker<'_> {
         }
         match &claim.subject {
             Subject::Part => {}
+            Subject::Argument(function) => {
+                let pure = [Dimension::pure()];
+                if let Some((_, found)) = self.first_other(&measures, &pure) {
+                    let mistake = Mismatch::Argument(function, claim.entries[0], found);
+                    self.reporter.mismatch(&claim.place, &mistake);
+                }
+            }
             Subject::Declared(name, unit) => {
                 let wanted = names::dimension(unit).unwrap_or_default();
                 let found = self.first_other(&measures, &vec![wanted; measures.len()]);

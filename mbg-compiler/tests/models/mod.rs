@@ -5,12 +5,13 @@ pub(crate) mod dual;
 
 use std::fmt::Write;
 
-use mbg_compiler::compile::{Compiled, compile};
+use mbg_compiler::compile::{Compiled, Routines, compile};
 use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::elaborate::{self, Elaborated};
 use mbg_compiler::equations;
 use mbg_compiler::graph::BondId;
 use mbg_compiler::network::Network;
+use mbg_compiler::program::{self, Arguments};
 use mbg_compiler::structure::{self, Formulation, Solved};
 use mbg_compiler::symbolic::print::Printer;
 use mbg_compiler::symbolic::{Pool, Symbol};
@@ -57,10 +58,55 @@ pub(crate) fn completed(text: &str) -> Result<Compiled, String> {
 /// The last model of a text after all stages, or the codes of what was reported.
 #[allow(dead_code, reason = "not every test file tries what may fail")]
 pub(crate) fn attempted(text: &str) -> Result<Compiled, Vec<&'static str>> {
-    let (model, diagnostics) = run(text, |model, source, diagnostics| {
+    let (model, diagnostics) = read(text, |model, source, diagnostics| {
         compile(model, &elaborate::component_table(source), diagnostics)
     });
     model.ok_or_else(|| diagnostics.list().iter().map(|it| it.code.text).collect())
+}
+
+/// Results of a routine at a state, at time zero and without inputs.
+pub(crate) fn run(model: &Compiled, routine: usize, state: &[f64]) -> Vec<f64> {
+    let arguments = Arguments {
+        parameters: &[0.3; 1][..model.model.parameters.len()],
+        time: 0.0,
+        state,
+        input: &[],
+    };
+    program::evaluate(&model.program, routine, &arguments)
+}
+
+/// Some state without any symmetry.
+pub(crate) fn state(model: &Compiled) -> Vec<f64> {
+    (0..model.states.len())
+        .map(|place| (1.3 * place as f64 + 0.4).sin())
+        .collect()
+}
+
+pub(crate) fn assert_near(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(
+            (found - expected).abs() < tolerance,
+            "found {found}, expected {expected}"
+        );
+    }
+}
+
+/// What the sources supply goes into the storages and the resistors, and nowhere else.
+pub(crate) fn assert_lossless(model: &Compiled) {
+    let (state, step) = (state(model), 1e-4);
+    let rates = run(model, Routines::DERIVATIVE, &state);
+    let energy = |along: f64| {
+        let moved: Vec<f64> = state
+            .iter()
+            .zip(&rates)
+            .map(|(x, rate)| x + along * rate)
+            .collect();
+        run(model, Routines::ENERGY, &moved)[0]
+    };
+    let power = run(model, Routines::POWER, &state);
+    let stored = (energy(step) - energy(-step)) / (2.0 * step);
+    assert_near(&[stored], &[power[0] - power[1]], 1e-6);
 }
 
 /// Errors of a model with one mass around the statements given.
@@ -104,7 +150,7 @@ fn stage<T>(
     text: &str,
     stages: impl FnOnce(&Model, &Source, &mut Diagnostics) -> Option<T>,
 ) -> Result<T, String> {
-    let (result, diagnostics) = run(text, stages);
+    let (result, diagnostics) = read(text, stages);
     let reported = diagnostics.list().iter().map(|diagnostic| {
         let start = diagnostic.span.start();
         format!("{}:{} {}", start.line, start.column + 1, diagnostic.text())
@@ -112,7 +158,7 @@ fn stage<T>(
     result.ok_or_else(|| reported.collect::<Vec<_>>().join("\n"))
 }
 
-fn run<T>(
+fn read<T>(
     text: &str,
     stages: impl FnOnce(&Model, &Source, &mut Diagnostics) -> Option<T>,
 ) -> (Option<T>, Diagnostics) {

@@ -63,7 +63,7 @@ const PLANAR: [&str; 5] = [
 ];
 
 /// Models of other domains, laws of every function, and a component in a file.
-const OTHERS: [&str; 7] = [
+const OTHERS: [&str; 8] = [
     "model Circuit {
         0 plus; 0 middle; 0 tapped; 0 ground; Se earth { effort: 0.0 } -> ground; Se supply { effort: 12.0 } -> plus;
         wire: Resistor { resistance: 6.0 } (plus, middle); coil: Inductor { inductance: 0.1 } (middle, ground);
@@ -78,6 +78,15 @@ const OTHERS: [&str; 7] = [
         teeth: Gear { radius_a: 0.1, radius_b: 0.2, blocked: compliant } (shaft, wheel);
         flat: Rack { radius: 0.1, blocked: compliant } (wheel, bar);
         rub: Friction { sliding: 0.2, breakaway: 0.3 } (bar); seat: Bearing { stiffness: 10.0, damping: 1.0 } (bar);
+    }",
+    "#[derivative] model Car {
+        param torque: N*m = 90.0; input pedal;
+        1 engine { I wheel { inertia: 0.2 } Se gas { effort: torque } } 1 inlet { I gears { inertia: 0.01 } } 1 shaft; 1 pinion;
+        1 left { I front { inertia: 9.0 } } 1 right { I back { inertia: 8.0 } } 1 sun { I rotor { inertia: 0.1 } } 1 ring;
+        plates: Clutch { capacity: 200.0, engagement: pedal, speed: 0.1 } (engine, inlet); inlet -> TF gear { flow: 0.3 } -> shaft;
+        bar: ElasticShaft { stiffness: 2e3, damping: 1.0, initial: 0.01 } (shaft, pinion);
+        axle: Differential { ratio: 4.0 } (pinion, left, right); lash: Backlash { gap: 0.01, stiffness: 1e4 } (left, sun);
+        hub: Planetary { ratio: 3.0 } (sun, right, ring); shoe: Brake { capacity: 50.0, speed: 0.1 } (ring);
     }",
     "model Lift {
         0 tank; Se open { effort: 1e5 } -> tank; 0 line; 0 ring; 1 shaft { I rotor { inertia: 0.1 } } 1 rod { I load { inertia: 5.0 } }
@@ -105,7 +114,7 @@ const OTHERS: [&str; 7] = [
         input push; Se drive { effort: push } -> a;
         1 a {
             I mass { flow: p + tanh(p) } R air { effort: abs(f) * f + atan2(f, 2.0) + sign(f) }
-            C sine { effort: sin(2.0 * q) } C tangent { effort: tan(q), initial: 0.2 } C arc { effort: atan2(q, 2.0) }
+            C sine { effort: sin(2.0 * q) } C tangent { effort: tan(q), initial: 0.2 } C arc { effort: atan2(q, 2.0) + atan(q) }
             C rise { effort: exp(q) - 1.0 } C logarithm { effort: ln(q + 1.5) } C root { effort: sqrt(q + 2.0) }
             C cube { effort: powi(q + 1.0, 3) } C pole { effort: 3.0 / (q + 2.0) } C size { effort: abs(q - 0.1) }
             C play { effort: if q < 0.2 { q } else { 3.0 * q - 0.4 } } C edge { effort: max(q, 0.1) }

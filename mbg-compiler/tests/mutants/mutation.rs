@@ -24,6 +24,7 @@ const LAWS: &[&str] = &[
     "tanh",
     "powi",
     "min",
+    "atan",
     "atan2",
     "pow",
     "skew",

@@ -16,6 +16,7 @@ mod gait;
 mod gimbal_lock;
 mod governor;
 mod heat;
+mod hill_start;
 mod hydraulic_drive;
 mod inverter;
 mod motor;
@@ -43,7 +44,7 @@ use std::path::Path;
 type Draw = fn(&Path) -> Result<(), Box<dyn Error>>;
 
 /// Each scene: the name of its file, and what draws it.
-const SCENES: [(&str, Draw); 24] = [
+const SCENES: [(&str, Draw); 25] = [
     ("gimbal_lock", gimbal_lock::draw),
     ("through_lock", through_lock::draw),
     ("tumbling", tumbling::draw),
@@ -62,6 +63,7 @@ const SCENES: [(&str, Draw); 24] = [
     ("forward_flight", forward_flight::draw),
     ("quarter_car", quarter_car::draw),
     ("ride", ride::draw),
+    ("hill_start", hill_start::draw),
     ("motor", motor::draw),
     ("rectifier", rectifier::draw),
     ("inverter", inverter::draw),

@@ -1,8 +1,8 @@
 //! Motions that stay where laws jump: friction that holds, relays that go on and off without end.
 
 use mbg_runtime::{
-    Adaptive, Auto, Constant, Direction, Dop853, Dual, Input, Integrator, Pirk8, Pulse, Radau5,
-    Radau9, Real, Rodas4, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, Verner9, mbg,
+    Adaptive, Auto, Constant, Direction, Dop853, Dual, Input, Integrator, Pirk8, Pulse, Radau9,
+    Real, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -84,6 +84,13 @@ mbg! {
         output friction: N*m = dry.e;
     }
 
+    /// A block that is pulled, and let go after a second.
+    model Released {
+        let grip = if t < 1.0 { 2.0 } else { 0.0 };
+        1 motion { I block { inertia: 1.0 } R brake { effort: grip * sign(f) } Se pull { effort: 1.0 } }
+        output brake: N = brake.e;
+    }
+
     /// Blocks, each on a floor of its own.
     model Row {
         blocks: for k in 0..12 {
@@ -95,7 +102,7 @@ mbg! {
 /// The last of the states and outputs of a run.
 fn last<T: Real, const N: usize, const M: usize, const P: usize>(
     model: &impl System<T, N, M, P>,
-    input: &impl Input<T, M>,
+    input: &dyn Input<T, M>,
     end: f64,
     solver: &impl Integrator<N>,
 ) -> (SVector<T, N>, SVector<T, P>, Statistics) {
@@ -112,27 +119,23 @@ fn last<T: Real, const N: usize, const M: usize, const P: usize>(
     (state, outputs, statistics)
 }
 
-/// The same to nine digits by all methods, with their names.
-fn by_all<const N: usize, const M: usize, const P: usize>(
+/// The same to nine digits by a method of each kind, with their names.
+fn by_each<const N: usize, const M: usize, const P: usize>(
     model: &impl System<f64, N, M, P>,
-    input: &impl Input<f64, M>,
+    input: &dyn Input<f64, M>,
     end: f64,
 ) -> Vec<(&'static str, SVector<f64, N>, SVector<f64, P>)> {
     macro_rules! by {
-        ($($method:ident),*) => {{
-            let auto = last(model, input, end, &Auto::new(1e-9, 1e-11));
+        ($($method:ident),*) => {
             vec![
                 $({
                     let found = last(model, input, end, &Adaptive::new($method, 1e-9, 1e-11));
                     (stringify!($method), found.0, found.1)
                 },)*
-                ("Auto", auto.0, auto.1),
             ]
-        }};
+        };
     }
-    by!(
-        Tsit5, Dop853, Verner9, Pirk8, Rodas4, Rodas5P, Radau5, Radau9
-    )
+    by!(Tsit5, Dop853, Pirk8, Rodas5P, Radau9)
 }
 
 const NINE: Adaptive<'_, Dop853> = Adaptive::new(Dop853, 1e-9, 1e-11);
@@ -149,7 +152,7 @@ fn push(amplitude: f64, start: f64, end: f64) -> Pulse<f64, 1> {
 #[test]
 fn friction_holds_what_a_spring_is_too_weak_for() {
     let model = Block::new(BlockParameters::default()).unwrap();
-    for (method, state, outputs) in by_all(&model, &(), 30.0) {
+    for (method, state, outputs) in by_each(&model, &(), 30.0) {
         let errors = [state[0], state[1] - 0.2, outputs[0] + 0.8];
         assert!(
             errors.iter().all(|error| error.abs() < 2e-7),
@@ -183,7 +186,7 @@ fn a_force_that_grows_tears_loose_what_friction_holds() {
             [2.0, 1.0],
         ),
     ] {
-        for (method, state, outputs) in by_all(&model, &growing, end) {
+        for (method, state, outputs) in by_each(&model, &growing, end) {
             let errors = [
                 state - SVector::from(speeds),
                 outputs - SVector::from(forces),
@@ -208,7 +211,7 @@ fn several_hold_at_once_and_one_after_the_other() {
         (3.0, [2.5, 7.5], [-0.25, 1.0]),
         (14.0, [0.0, 0.0], [0.0, 0.0]),
     ] {
-        for (method, state, outputs) in by_all(&model, &pulse, end) {
+        for (method, state, outputs) in by_each(&model, &pulse, end) {
             let errors = [
                 state - SVector::from(speeds),
                 outputs - SVector::from(forces),
@@ -231,6 +234,20 @@ fn several_hold_at_once_and_one_after_the_other() {
     assert!(statistics.evaluations < 6000, "{statistics:?}");
 }
 
+#[test]
+fn what_lets_go_at_a_time_holds_until_then() {
+    let model = Released::new(ReleasedParameters::default()).unwrap();
+    for (end, momentum, force) in [(0.9, 0.0, 1.0), (2.5, 1.5, 0.0)] {
+        for (method, state, outputs) in by_each(&model, &(), end) {
+            let errors = [state[0] - momentum, outputs[0] - force];
+            assert!(
+                errors.iter().all(|it| it.abs() < 1e-12),
+                "{method} until {end}: {errors:?}"
+            );
+        }
+    }
+}
+
 /// Along the surface on which the force is switched, what is off decays by `exp(-2 t)`, whatever the spring and the reference do, and
 /// the mean of the force is what takes the mass there.
 #[test]
@@ -244,7 +261,7 @@ fn a_switched_force_takes_a_mass_along_a_reference() {
         &Adaptive::new(Dop853, 1e-12, 1e-12),
     )
     .1[0];
-    for (method, state, outputs) in by_all(&model, &reference, 4.0) {
+    for (method, state, outputs) in by_each(&model, &reference, 4.0) {
         let off = start * f64::exp(-6.0);
         let acceleration = -f64::sin(4.0) - 4.0 * off;
         let force = acceleration + 0.5 * state[1] * state[1];
@@ -365,40 +382,29 @@ fn a_hinge_that_rubs_enough_is_none() {
             + 0.4 * rate(angle).powi(2) * knee.sin();
         moment + 9.81 * 0.4 * (angle + knee).cos()
     };
-    for solver in [&NINE] {
-        let mut turned = Vec::new();
-        let times = [0.2, 0.4, 0.6];
-        solver
-            .sample_outputs(
-                &model,
-                &(),
-                0.0,
-                model.initial_state(),
-                &times,
-                |_t, x, y| {
-                    turned.push((*x, *y));
-                },
-            )
-            .unwrap();
-        for (x, y) in turned {
-            let speed = x
-                .iter()
-                .map(|it| it.abs())
-                .find(|it| (it - rate(y[0])).abs() < 1e-7);
-            assert!(speed.is_some(), "{x} instead of {}", rate(y[0]));
-            assert!((y[1] - knee).abs() < 1e-12, "{}", y[1]);
-            assert!(
-                (y[2] + force(y[0])).abs() < 1e-6,
-                "{} instead of {}",
-                y[2],
-                force(y[0])
-            );
-        }
+    let mut turned = Vec::new();
+    let times = [0.2, 0.4, 0.6];
+    let mut note = |_t: f64, x: &SVector<f64, 4>, y: &SVector<f64, 3>| turned.push((*x, *y));
+    NINE.sample_outputs(&model, &(), 0.0, model.initial_state(), &times, &mut note)
+        .unwrap();
+    for (x, y) in turned {
+        let speed = x
+            .iter()
+            .map(|it| it.abs())
+            .find(|it| (it - rate(y[0])).abs() < 1e-7);
+        assert!(speed.is_some(), "{x} instead of {}", rate(y[0]));
+        assert!((y[1] - knee).abs() < 1e-12, "{}", y[1]);
+        assert!(
+            (y[2] + force(y[0])).abs() < 1e-6,
+            "{} instead of {}",
+            y[2],
+            force(y[0])
+        );
     }
     // By implicit methods, whose Jacobian knows of what holds, and where it slips now and then.
     let model = Rubbing::<f64>::new(RubbingParameters { friction: 3.0 }).unwrap();
     let expected = last(&model, &(), 3.0, &Adaptive::new(Dop853, 1e-11, 1e-12)).0;
-    for (method, state, _) in by_all(&model, &(), 3.0) {
+    for (method, state, _) in by_each(&model, &(), 3.0) {
         assert!(
             (state - expected).amax() < 1e-7,
             "{method}: {state} instead of {expected}"
@@ -410,7 +416,7 @@ fn a_hinge_that_rubs_enough_is_none() {
 fn what_comes_to_a_threshold_and_goes_back_does_not_stay() {
     let model = Thrown::new(ThrownParameters::default()).unwrap();
     // At 1 s it is at the threshold, at rest.
-    for (method, state, _) in by_all(&model, &(), 3.0) {
+    for (method, state, _) in by_each(&model, &(), 3.0) {
         let error = (state - SVector::from([-2.0, -1.5])).amax();
         assert!(error < 1e-6, "{method}: {error:e}");
     }
@@ -488,7 +494,7 @@ fn slopes_are_those_of_where_it_holds() {
                 )*
             };
         }
-        by!(Dop853, Tsit5, Rodas5P, Radau9);
+        by!(Dop853, Rodas5P);
     }
 }
 
@@ -534,15 +540,20 @@ fn many_hold_at_once() {
 }
 
 #[test]
-fn methods_of_low_order_hold_too() {
-    let model = Block::new(BlockParameters::default()).unwrap();
+fn what_holds_is_found_by_methods_of_low_order_and_those_picked() {
+    let model = Block::<f64>::new(BlockParameters::default()).unwrap();
     let solver = Adaptive {
         most: 200_000,
         ..Adaptive::new(Ros2, 1e-6, 1e-8)
     };
-    let (state, outputs, _) = last(&model, &Constant(SVector::from([0.0])), 30.0, &solver);
+    let (state, outputs, _) = last(&model, &(), 30.0, &solver);
     assert!(
         (state[1] - 0.2).abs() < 1e-3 && (outputs[0] + 0.8).abs() < 4e-3,
+        "{state} {outputs}"
+    );
+    let (state, outputs, _) = last(&model, &(), 30.0, &Auto::new(1e-9, 1e-11));
+    assert!(
+        (state[1] - 0.2).abs() < 1e-8 && (outputs[0] + 0.8).abs() < 4e-8,
         "{state} {outputs}"
     );
 }

@@ -81,6 +81,14 @@ mbg! {
         }
     }
 
+    /// A block that a spring holds on a belt, whose friction is less the faster it slips.
+    model Belt {
+        1 moving; 0 contact; 1 slip; 1 motion { I block { inertia: 1.0 } C spring { stiffness: 2.0 } }
+        Sf belt { flow: 0.2 } -> moving;
+        moving -> contact; contact -> motion; contact -> slip;
+        rubs: Friction { sliding: 1.0, breakaway: 1.5, stribeck_speed: 0.3 } (slip);
+    }
+
     /// A top without weight.
     model Top {
         1 turning[3] { I body { inertia: diag(1.0, 2.0, 3.0), gyroscopic, initial_flow: [0.1, 5.0, 0.2] } }
@@ -418,6 +426,23 @@ fn what_friction_and_an_escapement_do_at_rest_is_in_the_multipliers() {
         let errors = [multipliers[0] - decay * decay, multipliers[1] - 1.0];
         assert!(errors.iter().all(|it| it.abs() < 1e-9), "{errors:?}");
     }
+}
+
+/// While it sticks its speed is that of the belt, wherever it has begun.
+#[test]
+fn what_sticks_and_slips_forgets_where_it_began() {
+    let model = Belt::<f64>::new(BeltParameters::default()).unwrap();
+    let cycle = PeriodicTrim::new(&model, &exact(), 5.0)
+        .state(&SVector::from([0.0, 0.6]))
+        .find_period("block.p")
+        .solve()
+        .unwrap();
+    let last = after(&model, (cycle.state, cycle.input), 3.0 * cycle.period);
+    assert!((last - cycle.state).amax() < 1e-9, "{last} {cycle:?}");
+    let mut multipliers = cycle.multipliers().unwrap().map(|it| it.norm());
+    multipliers.sort_by(f64::total_cmp);
+    let errors = [multipliers[0], multipliers[1] - 1.0];
+    assert!(errors.iter().all(|it| it.abs() < 1e-9), "{errors:?}");
 }
 
 #[test]

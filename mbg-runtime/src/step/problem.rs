@@ -27,7 +27,7 @@ where
     /// Where the present piece begins.
     pub(super) since: T,
     /// The first and the last time at which laws of time are those of the present piece.
-    inside: (T, T),
+    pub(super) inside: (T, T),
     pub(super) probes: Probes,
     /// The determinants where the last step began, on this piece of the input.
     pub(super) conditioning: Option<S::Conditioning>,

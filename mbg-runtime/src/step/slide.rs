@@ -68,7 +68,7 @@ where
     pub(super) fn stays(&mut self, here: &Point<T, N>, surfaces: &Surfaces<T>) -> bool {
         let (mut x, mut memory) = (here.state, self.memory);
         let model = (self.system, self.input);
-        let times = (self.since, self.whole);
+        let times = (self.since, self.inside, self.whole);
         let place = (here.time, &mut x);
         let sliding = Sliding::settled(model, times, place, *surfaces, &mut memory);
         if let Some(sliding) = &sliding {
@@ -96,7 +96,7 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
     {
         while less(here.0, end) {
             let model = (problem.system, problem.input);
-            let times = (problem.since, problem.whole);
+            let times = (problem.since, problem.inside, problem.whole);
             let mut memory = problem.memory;
             let (t, x) = (here.0, &mut here.1);
             let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, &mut memory)

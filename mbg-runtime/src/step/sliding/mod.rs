@@ -1,0 +1,176 @@
+//! The laws of a motion that stays where others jump.
+
+mod sides;
+mod system;
+
+use core::cell::Cell;
+
+use nalgebra::SVector;
+
+use super::seen;
+use super::surfaces::{MOST, Surfaces};
+use crate::{Input, Real, System};
+use sides::shortest;
+
+/// The part of a run, and of a step, over which an input is taken to be smooth.
+const SHORT: f64 = 1.0 / 4096.0;
+const PART: f64 = 0.25;
+
+/// One for each surface.
+type Each<V> = [V; MOST];
+
+/// The laws of a model whose motion stays at thresholds of them: friction that holds, a relay that goes on and off without end.
+///
+/// On both sides the motion leads to the threshold. Along it goes that mean of both which does not leave it (Filippov,
+/// *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988, §4); along several at once the mean whose parts are
+/// found from what each alone makes different (Utkin, *Sliding Modes in Control and Optimization*, Springer 1992, §2).
+pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
+    system: &'a S,
+    input: &'a I,
+    since: T,
+    /// Between which times laws are those of the present piece.
+    inside: (T, T),
+    /// For how long the input is smooth, about.
+    ahead: Cell<f64>,
+    pub(super) surfaces: Surfaces<T>,
+    /// How states change that go across each surface, at a rate of one, and along the others.
+    across: Each<SVector<T, N>>,
+    /// How the argument of each changes with the states, where the motion has come to.
+    gradients: Cell<Each<SVector<T, N>>>,
+    /// How often the model was evaluated, but for once in each evaluation of these laws.
+    pub(super) evaluations: Cell<u64>,
+}
+
+impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
+    /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
+    /// beside the others, on the side to which it goes. None where it leaves all.
+    pub(super) fn settled<const M: usize, const P: usize>(
+        (system, input): (&'a S, &'a I),
+        (since, inside, whole): (T, (T, T), f64),
+        (t, x): (T, &mut SVector<T, N>),
+        surfaces: Surfaces<T>,
+        memory: &mut S::Memory,
+    ) -> Option<Self>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let none = [SVector::from_element(T::from_f64(0.0)); MOST];
+        let mut sliding = Self {
+            system,
+            input,
+            since,
+            inside,
+            ahead: Cell::new(whole * SHORT),
+            surfaces,
+            across: none,
+            gradients: Cell::new(none),
+            evaluations: Cell::new(0),
+        };
+        let t = sliding.on_piece(t);
+        let u = input.value(t, since);
+        while sliding.surfaces.count() > 0 {
+            let count = sliding.surfaces.count();
+            sliding.look(t, x, &u, memory);
+            sliding.across = shortest(&sliding.gradients.get(), count);
+            let sides = sliding.sides((t, x, &u), memory);
+            let distances = (0..count).map(|place| (place, sides.beyond(place)));
+            let farthest = distances.reduce(|a, b| if b.1 > a.1 { b } else { a });
+            let (place, distance) = farthest.unwrap_or((0, 0.0));
+            if distance == 0.0 {
+                // As a motion comes there: what it would be late by changes its slopes along this way.
+                sliding.across = sides.across(count);
+                *x = sliding.onto(t, *x, &u, memory);
+                return Some(sliding);
+            }
+            if distance.is_finite() {
+                let is_below = distance == -seen(sides.parts[place]);
+                let side = T::from_f64(if is_below { -1.0 } else { 1.0 });
+                let aside = sliding.aside(x)[place];
+                let beyond = side * sliding.distances((t, x, &u), memory).0[place];
+                // What is farther away has yet to come there.
+                if beyond.magnitude() < aside.magnitude() {
+                    let way = side * (aside - beyond);
+                    *x += sliding.across[place].map(|across| way * across);
+                }
+            }
+            sliding.surfaces.leave(place);
+        }
+        None
+    }
+
+    /// The state on the surfaces next to one.
+    pub(super) fn landed<const M: usize, const P: usize>(
+        &self,
+        t: T,
+        x: SVector<T, N>,
+        memory: &S::Memory,
+    ) -> SVector<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let t = self.on_piece(t);
+        self.onto(t, x, &self.input.value(t, self.since), memory)
+    }
+
+    /// The nearest time on the present piece.
+    fn on_piece(&self, t: T) -> T {
+        t.max(self.inside.0).min(self.inside.1)
+    }
+
+    /// Minds how long a step was.
+    pub(super) fn heed(&self, length: f64) {
+        self.ahead.set(PART * length);
+    }
+
+    /// How far the motion is from leaving a surface, as a part of what the laws differ by there; not positive where it leaves one.
+    pub(super) fn hold<const M: usize, const P: usize>(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        memory: &mut S::Memory,
+    ) -> T
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let t = self.on_piece(t);
+        let u = self.input.value(t, self.since);
+        let sides = self.sides((t, x, &u), memory);
+        let [zero, one] = [0.0, 1.0].map(T::from_f64);
+        let parts = sides.parts.iter().take(self.surfaces.count());
+        let least = parts.fold(one, |least, part| least.min(*part).min(one - *part));
+        // What is left on purpose a little late is left for good.
+        let late = T::from_f64(T::SINGULAR);
+        match sides
+            .leads_back
+            .iter()
+            .take(self.surfaces.count())
+            .all(|it| *it)
+        {
+            true => least + late,
+            false => zero,
+        }
+    }
+}
+
+/// The outputs of a model next to thresholds at which its motion stays.
+pub(super) fn output_along<T, S, I, const N: usize, const M: usize, const P: usize>(
+    (system, input): (&S, &I),
+    (t, whole): (T, f64),
+    x: &SVector<T, N>,
+    (surfaces, memory): (Surfaces<T>, &mut S::Memory),
+) -> SVector<T, P>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let (mut x, u) = (*x, input.at(t));
+    let times = (t, (t, t), whole);
+    match Sliding::settled((system, input), times, (t, &mut x), surfaces, memory) {
+        Some(sliding) => sliding.output(t, &x, &u, memory),
+        None => system.output(t, &x, &u, memory),
+    }
+}

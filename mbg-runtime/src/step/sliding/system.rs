@@ -1,0 +1,218 @@
+//! The mean along thresholds as a system of its own.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::super::surfaces::MOST;
+use super::Sliding;
+use crate::input::quotient;
+use crate::{Course, Input, Meta, Power, Real, System, Trouble};
+
+impl<T, S, I, const N: usize, const M: usize, const P: usize> System<T, N, M, P>
+    for Sliding<'_, T, S, I, N>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    const META: &'static Meta = S::META;
+    const AUTONOMOUS: bool = S::AUTONOMOUS;
+    const SEEKS_CHANGES: bool = S::SEEKS_CHANGES;
+    const HAS_COURSES: bool = true;
+
+    type Memory = S::Memory;
+    type Conditioning = S::Conditioning;
+
+    fn initial_state(&self) -> SVector<T, N> {
+        self.system.initial_state()
+    }
+
+    fn derivative(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SVector<T, N> {
+        let derivative = self.sides((t, x, u), memory).derivative();
+        self.evaluations.set(self.evaluations.get() - 1);
+        derivative
+    }
+
+    fn output(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SVector<T, P> {
+        let sides = self.sides((t, x, u), memory);
+        sides.mean(self.surfaces.count(), |x| {
+            self.system.output(t, x, u, memory)
+        })
+    }
+
+    fn jacobian_state(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SMatrix<T, N, N> {
+        let mut jacobian = self.along((t, x, u), memory, |x, memory| {
+            self.system.jacobian_state(t, x, u, memory)
+        });
+        // The model is asked on the surfaces, wherever beside them the state is.
+        for (across, gradient) in self.across.iter().zip(&self.gradients.get()) {
+            let zero = SVector::from_element(T::from_f64(0.0));
+            let columns = jacobian.column_iter().zip(across);
+            let change = columns.fold(zero, |sum: SVector<T, N>, (column, way)| {
+                sum.zip_map(&column, |sum, column| way.multiply_add(column, sum))
+            });
+            for (mut column, by) in jacobian.column_iter_mut().zip(gradient) {
+                column.zip_apply(&change, |column, change| *column -= *by * change);
+            }
+        }
+        jacobian
+    }
+
+    fn jacobian_input(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> SMatrix<T, N, M> {
+        self.along((t, x, u), memory, |x, memory| {
+            self.system.jacobian_input(t, x, u, memory)
+        })
+    }
+
+    /// With how fast the input goes, which the mean follows.
+    fn derivative_time(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+        ahead: T,
+    ) -> SVector<T, N> {
+        if self.input.is_constant_between_jumps() {
+            if S::AUTONOMOUS {
+                return SVector::from_element(T::from_f64(0.0));
+            }
+            return quotient(t, ahead, |t| self.sides((t, x, u), memory).derivative());
+        }
+        let mut change = quotient(t, ahead, |t| {
+            let u = self.input.value(t, self.since);
+            self.sides((t, x, &u), memory).derivative()
+        });
+        // What the input itself changes is added to it.
+        let rate = self.input.rate(t, self.since, ahead);
+        let by_input = System::jacobian_input(self, t, x, u, memory);
+        for (rate, column) in rate.iter().zip(by_input.column_iter()) {
+            change.zip_apply(&column, |change, by| *change -= by * *rate);
+        }
+        change
+    }
+
+    fn energy(&self, t: T, x: &SVector<T, N>) -> T {
+        self.system.energy(t, x)
+    }
+
+    fn power(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &mut S::Memory,
+    ) -> Power<T> {
+        self.system.power(t, x, u, memory)
+    }
+
+    fn next_change(&self, t: T) -> Option<T> {
+        self.system.next_change(t)
+    }
+
+    fn change_between(&self, from: T, to: T, input: impl Fn(T) -> SVector<T, M>) -> Option<T> {
+        self.system.change_between(from, to, input)
+    }
+
+    /// Of an argument that stays no more is told than that there is one.
+    fn courses(
+        &self,
+        from: (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
+        to: (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
+        memory: &mut S::Memory,
+        mut each: impl FnMut(Course<'_, T>),
+    ) {
+        let mut number = 0;
+        self.system.courses(from, to, memory, |course| {
+            let stays = self.surfaces.of(number).is_some();
+            let thresholds = if stays { &[] } else { course.thresholds };
+            each(Course {
+                thresholds,
+                ..course
+            });
+            number += 1;
+        });
+    }
+
+    fn conditioning(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> S::Conditioning {
+        self.system.conditioning(t, x, u)
+    }
+
+    fn trouble(
+        &self,
+        t: T,
+        x: &SVector<T, N>,
+        u: &SVector<T, M>,
+        memory: &S::Memory,
+    ) -> Option<Trouble> {
+        self.system.trouble(t, x, u, memory)
+    }
+
+    fn close(
+        &self,
+        t: T,
+        x: SVector<T, N>,
+        u: &SVector<T, M>,
+        fixed: &[usize],
+    ) -> Result<SVector<T, N>, Trouble> {
+        let closed = self.system.close(t, x, u, fixed)?;
+        let memory = S::Memory::default();
+        self.look(t, &closed, u, &memory);
+        Ok(self.onto(t, closed, u, &memory))
+    }
+}
+
+impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
+    /// A Jacobian along the surfaces, from those on their sides: what would lead away from a surface is taken up by its part of the
+    /// mean. How arguments bend is left out.
+    fn along<const M: usize, const P: usize, const C: usize>(
+        &self,
+        (t, x, u): (T, &SVector<T, N>, &SVector<T, M>),
+        memory: &mut S::Memory,
+        mut of: impl FnMut(&SVector<T, N>, &mut S::Memory) -> SMatrix<T, N, C>,
+    ) -> SMatrix<T, N, C>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let count = self.surfaces.count();
+        let sides = self.sides((t, x, u), memory);
+        let mut jacobian = sides.mean(count, |x| of(x, memory));
+        let gradients = self.gradients.get();
+        for mut column in jacobian.column_iter_mut() {
+            let zero = T::from_f64(0.0);
+            let mut away = [zero; MOST];
+            for (away, gradient) in away.iter_mut().zip(&gradients).take(count) {
+                let pairs = gradient.iter().zip(column.iter());
+                *away = pairs.fold(zero, |sum, (by, change)| by.multiply_add(*change, sum));
+            }
+            for (jump, part) in sides.jumps.iter().zip(&sides.rates.solve(away)) {
+                column -= jump.map(|jump| *part * jump);
+            }
+        }
+        jacobian
+    }
+}

@@ -199,6 +199,20 @@ fn a_force_that_grows_tears_loose_what_friction_holds() {
     }
 }
 
+/// Also at the start, where no step has been.
+#[test]
+fn outputs_have_what_holds_from_the_start() {
+    let model = Block::new(BlockParameters { friction: 20.0 }).unwrap();
+    let (start, times) = (model.initial_state(), [0.0, 0.0, 1.0]);
+    let mut seen = Vec::new();
+    NINE.sample_outputs(&model, &(), 0.0, start, &times, |_t, _x, y| seen.push(y[0]))
+        .unwrap();
+    assert!(
+        seen.len() == 3 && seen.iter().all(|it| (it + 13.2).abs() < 1e-12),
+        "{seen:?}"
+    );
+}
+
 /// One slips behind the other, both go on together, and stop at once.
 #[test]
 fn several_hold_at_once_and_one_after_the_other() {

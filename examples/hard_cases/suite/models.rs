@@ -48,7 +48,7 @@ mbg! {
         belt -> contact;
         contact -> block;
         contact -> slip;
-        friction: Friction { sliding: sliding, breakaway: breakaway, stribeck_speed: 5e-2 } (slip);
+        friction: Friction { sliding: sliding, breakaway: breakaway, at_rest: holds, stribeck_speed: 5e-2 } (slip);
         output extension: m = spring.q;
     }
 }

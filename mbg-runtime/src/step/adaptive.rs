@@ -146,6 +146,8 @@ impl<M> Adaptive<'_, M> {
 
 #[allow(private_interfaces, reason = "no integrator is written outside")]
 impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> {
+    const STAYS: bool = true;
+
     fn check_settings<T: Real>(&self, t0: T, _t1: T) -> Result<(), Stopped> {
         let positive = |number: f64| number > 0.0;
         let what = if !positive(self.absolute) || !self.absolute.is_finite() {
@@ -184,12 +186,7 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
     {
         let (mut here, mut surfaces) = ((start, x), Surfaces::NONE);
         if S::HAS_COURSES {
-            let slope = problem.slope(start, &x);
-            surfaces = problem.next_to(&Point {
-                time: start,
-                state: x,
-                slope,
-            });
+            surfaces = problem.at_start(here);
         }
         loop {
             if S::HAS_COURSES && surfaces.count() > 0 {

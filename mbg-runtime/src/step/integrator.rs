@@ -42,6 +42,10 @@ pub struct Arrival<T, const N: usize> {
 /// state alone, with a memory that is new, may be those of another branch: take them by
 /// [`sample_outputs`](Integrator::sample_outputs), or begin with [`Step::memory`].
 pub trait Integrator<const N: usize> {
+    /// Whether its runs go along thresholds at which the motion stays.
+    #[doc(hidden)]
+    const STAYS: bool = false;
+
     /// Refuses settings that cannot be met.
     #[doc(hidden)]
     fn check_settings<T: Real>(&self, t0: T, t1: T) -> Result<(), Stopped>;
@@ -338,10 +342,14 @@ where
     }
     let (mut problem, x) = begin(integrator, system, input, (t0, last), x0)?;
     let mut rest = times;
+    let surfaces = match S::HAS_COURSES && D::STAYS {
+        true => Some(problem.at_start((t0, x))),
+        false => None,
+    };
     while let [time, others @ ..] = rest
         && !less(t0, *time)
     {
-        observer(*time, &x, (problem.memory, None));
+        observer(*time, &x, (problem.memory, surfaces));
         rest = others;
     }
     integrator.run(&mut problem, (t0, last), x, &mut |step| {

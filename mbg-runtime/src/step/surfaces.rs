@@ -1,5 +1,6 @@
 //! Thresholds of the laws at which a motion may stay.
 
+use super::over::Place;
 use super::problem::Problem;
 use super::seen;
 use super::thresholds::Point;
@@ -77,8 +78,16 @@ where
         })
     }
 
+    /// The thresholds next to a place where a run begins.
+    pub(super) fn at_start(&mut self, (time, state): Place<T, N>) -> Surfaces<T> {
+        let memory = self.memory;
+        let slope = self.slope(time, &state);
+        self.memory = memory;
+        self.next_to(&Point { time, state, slope })
+    }
+
     /// The thresholds next to a point.
-    pub(super) fn next_to(&self, here: &Point<T, N>) -> Surfaces<T> {
+    fn next_to(&self, here: &Point<T, N>) -> Surfaces<T> {
         let time = PLACES * T::EPSILON * here.time.magnitude().max(self.whole);
         self.surfaces(here, here, |course, level| {
             let [value, rate] = course.from.map(seen);

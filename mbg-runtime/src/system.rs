@@ -221,7 +221,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ) {
     }
 
-    /// Whether [`courses`](Self::courses) is given; `false` unless it is.
+    /// Whether [`courses`](Self::courses) tells of any argument; `false` unless it is given, and then runs do not ask.
     const HAS_COURSES: bool = false;
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the

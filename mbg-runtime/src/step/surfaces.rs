@@ -70,11 +70,12 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    /// The thresholds between two points.
+    /// The thresholds between two points next to each other, but for those from which the motion goes on behind them.
     pub(super) fn between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Surfaces<T> {
         self.surfaces(from, to, |course, level| {
             let [from, to] = [course.from, course.to].map(|it| seen(it[0] - level));
-            from * to <= 0.0 && from != to
+            let goes_on = (to - from) * seen(course.to[1]) > 0.0;
+            from * to <= 0.0 && from != to && !goes_on
         })
     }
 

@@ -62,15 +62,52 @@ where
         &self,
         from: &Point<T, N>,
         to: &Point<T, N>,
+        each: impl FnMut(&Course<'_, T>, T),
+    ) {
+        if S::HAS_COURSES {
+            let rate = |at: T| self.input_rate(at, to.time - from.time);
+            let rates = [rate(from.time), rate(to.time)];
+            self.tell([from, to], self.inputs_at([from, to]), rates, each);
+        }
+    }
+
+    /// How many thresholds are passed between two points, by how the input changes from one to the other.
+    #[inline]
+    pub(super) fn passed(&self, from: &Point<T, N>, to: &Point<T, N>) -> u32 {
+        let mut count = 0_u32;
+        if S::HAS_COURSES {
+            let inputs = self.inputs_at([from, to]);
+            let lasting = to.time - from.time;
+            let rate = (inputs[1] - inputs[0]).map(|change| change / lasting);
+            self.tell([from, to], inputs, [rate; 2], |course, lasting| {
+                count = count.saturating_add(course.passed(lasting));
+            });
+        }
+        count
+    }
+
+    fn inputs_at(&self, points: [&Point<T, N>; 2]) -> [SVector<T, M>; 2] {
+        points.map(|it| self.input.value(it.time, self.since))
+    }
+
+    /// Tells of the arguments between two points, with inputs there and how fast these change.
+    #[inline]
+    fn tell(
+        &self,
+        [from, to]: [&Point<T, N>; 2],
+        inputs: [SVector<T, M>; 2],
+        rates: [SVector<T, M>; 2],
         mut each: impl FnMut(&Course<'_, T>, T),
     ) {
-        let inputs = [from, to].map(|it| self.input.value(it.time, self.since));
         let mut memory = self.memory;
         let lasting = to.time - from.time;
-        let [before, behind] = [from, to].map(|it| self.input_rate(it.time, lasting));
         self.system.courses(
-            (from.time, [&from.state, &from.slope], [&inputs[0], &before]),
-            (to.time, [&to.state, &to.slope], [&inputs[1], &behind]),
+            (
+                from.time,
+                [&from.state, &from.slope],
+                [&inputs[0], &rates[0]],
+            ),
+            (to.time, [&to.state, &to.slope], [&inputs[1], &rates[1]]),
             &mut memory,
             |course| each(&course, lasting),
         );
@@ -83,16 +120,6 @@ where
         }
         let ahead = seen(lasting).max(SHORT * self.whole);
         self.input.rate(time, self.since, T::from_f64(ahead))
-    }
-
-    /// How many thresholds are passed between two points.
-    #[inline]
-    pub(super) fn passed(&self, from: &Point<T, N>, to: &Point<T, N>) -> u32 {
-        let mut count = 0_u32;
-        self.courses(from, to, |course, lasting| {
-            count = count.saturating_add(course.passed(lasting));
-        });
-        count
     }
 
     /// The soonest of what is told of the courses of all arguments between two points.

@@ -91,6 +91,17 @@ mbg! {
         output brake: N = brake.e;
     }
 
+    /// A block at rest on a floor, beside a bumper.
+    model Beside {
+        1 motion {
+            I block { inertia: 1.0 }
+            C bumper { effort: max(5.0 * q, 0.0) }
+            R floor { effort: 1.0 * sign(f) }
+            Se pull { effort: 0.5 }
+        }
+        output friction: N = floor.e;
+    }
+
     /// Blocks, each on a floor of its own.
     model Row {
         blocks: for k in 0..12 {
@@ -197,6 +208,17 @@ fn a_force_that_grows_tears_loose_what_friction_holds() {
             );
         }
     }
+}
+
+/// The law of the bumper only bends where the block rests.
+#[test]
+fn what_bends_where_a_motion_stays_changes_nothing() {
+    let model = Beside::<f64>::new(BesideParameters::default()).unwrap();
+    let (state, outputs, statistics) = last(&model, &(), 5.0, &NINE);
+    assert!(
+        state.amax() < 1e-15 && (outputs[0] - 0.5).abs() < 1e-12 && statistics.steps < 20,
+        "{state} {outputs} {statistics:?}"
+    );
 }
 
 /// Also at the start, where no step has been.

@@ -70,11 +70,8 @@ where
         let model = (self.system, self.input);
         let times = (self.since, self.inside, self.whole);
         let place = (here.time, &mut x);
-        let sliding = Sliding::settled(model, times, place, *surfaces, &mut memory);
-        if let Some(sliding) = &sliding {
-            self.statistics.evaluations += sliding.evaluations.get();
-        }
-        sliding.is_some()
+        let known = (&mut memory, &mut self.statistics.evaluations);
+        Sliding::settled(model, times, place, *surfaces, known).is_some()
     }
 }
 
@@ -99,13 +96,13 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
             let times = (problem.since, problem.inside, problem.whole);
             let mut memory = problem.memory;
             let (t, x) = (here.0, &mut here.1);
-            let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, &mut memory)
-            else {
+            let known = (&mut memory, &mut problem.statistics.evaluations);
+            let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, known) else {
                 break;
             };
             surfaces = sliding.surfaces;
             let mut along = problem.of(&sliding);
-            let mut left = None;
+            let (mut left, mut undone) = (None, 0);
             let walked = self.walk(&mut along, (here, end), |_, _, _| true, &mut |step| {
                 let hold = |t: T, x: &SVector<T, N>, memory: S::Memory| {
                     sliding.hold(t, x, &mut { memory })
@@ -113,7 +110,7 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
                 let (start, memory) = ((step.start(), *step.first()), step.memory());
                 let holds = less(T::from_f64(0.0), hold(start.0, &start.1, memory));
                 if !holds {
-                    left = Some(start);
+                    (left, undone) = (Some(start), 1);
                     return ControlFlow::Break(());
                 }
                 let crossing = step.crossing(Direction::Falling, |t, x| hold(t, x, memory));
@@ -136,6 +133,8 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
             (problem.statistics, problem.memory) = (along.statistics, along.memory);
             (problem.probes, problem.conditioning) = (along.probes, along.conditioning);
             problem.statistics.evaluations += sliding.evaluations.get();
+            problem.statistics.steps -= undone;
+            problem.statistics.rejected += undone;
             match (walked, left) {
                 (Walked::Ended(x), _) => here = (end, x),
                 (Walked::Stays(place, others), _) => {

@@ -43,13 +43,13 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
 
 impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
-    /// beside the others, on the side to which it goes. None where it leaves all.
+    /// beside the others, on the side to which it goes. None where it leaves all. Counts evaluations of the model.
     pub(super) fn settled<const M: usize, const P: usize>(
         (system, input): (&'a S, &'a I),
         (since, inside, whole): (T, (T, T), f64),
         (t, x): (T, &mut SVector<T, N>),
         surfaces: Surfaces<T>,
-        memory: &mut S::Memory,
+        (memory, evaluations): (&mut S::Memory, &mut u64),
     ) -> Option<Self>
     where
         S: System<T, N, M, P>,
@@ -74,6 +74,13 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             sliding.look(t, x, &u, memory);
             sliding.across = shortest(&sliding.gradients.get(), count);
             let sides = sliding.sides((t, x, &u), memory);
+            *evaluations += sliding.evaluations.take();
+            // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it.
+            let jumps = (0..count).rev().filter(|place| !sides.leads_back[*place]);
+            jumps.for_each(|place| sliding.surfaces.leave(place));
+            if sliding.surfaces.count() < count {
+                continue;
+            }
             let distances = (0..count).map(|place| (place, sides.beyond(place)));
             let farthest = distances.reduce(|a, b| if b.1 > a.1 { b } else { a });
             let (place, distance) = farthest.unwrap_or((0, 0.0));
@@ -169,7 +176,8 @@ where
 {
     let (mut x, u) = (*x, input.at(t));
     let times = (t, (t, t), whole);
-    match Sliding::settled((system, input), times, (t, &mut x), surfaces, memory) {
+    let known = (&mut *memory, &mut 0);
+    match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
         Some(sliding) => sliding.output(t, &x, &u, memory),
         None => system.output(t, &x, &u, memory),
     }

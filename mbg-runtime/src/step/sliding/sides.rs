@@ -58,9 +58,9 @@ impl<T: Real, const N: usize> Sides<T, N> {
     /// How far beyond all means of both sides the motion along a surface would be.
     pub(super) fn beyond(&self, place: usize) -> f64 {
         let part = seen(self.parts[place]);
-        match self.leads_back[place] && !part.is_nan() {
-            true => (-part).max(part - 1.0).max(0.0),
-            false => f64::INFINITY,
+        match part.is_nan() {
+            true => f64::INFINITY,
+            false => (-part).max(part - 1.0).max(0.0),
         }
     }
 

@@ -72,7 +72,7 @@ use crate::{Input, Real, System};
 ///         1 motion {
 ///             I block { inertia: 1.0 }
 ///             C spring { stiffness: 4.0, initial: 3.3 }
-///             R floor { effort: sign(f) }
+///             R floor { effort: 1.0 * sign(f) }
 ///         }
 ///         output friction: N = floor.e;
 ///     }

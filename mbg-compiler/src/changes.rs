@@ -219,8 +219,7 @@ fn slopes(
             _ => None,
         });
     let states = states.iter().enumerate().map(|(place, it)| (*it, place));
-    let varying: Vec<(Symbol, usize)> = states.chain(inputs).collect();
-    let varying = varying.into_iter();
+    let varying = states.chain(inputs);
     let changes = varying.map(|(symbol, place)| (symbol, pool.symbol(Symbol::Slope(place))));
     changes.chain([(Symbol::Time, Expression::ONE)]).collect()
 }

@@ -200,7 +200,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     }
 
     /// Tells of each argument of choices in the laws how it goes between two points, each a time, a state with its derivative, and
-    /// an input with its own: that of `if q > 1.0 && q < 1.1 { … }` has two thresholds, that of a curve over `q` one at each of its points.
+    /// an input with its own: that of `if q > 1.0 && q < 1.1 { … }` has two thresholds, that of a curve over `q` one at each of its
+    /// points.
     ///
     /// [`Adaptive`](crate::Adaptive) looks into a step that passes any, of which its estimate of the error may be small by chance, and
     /// between them where there are several, since something may be there that neither ends nor stages of the step meet.

@@ -1,7 +1,7 @@
 //! Dry friction.
 
 use mbg_compare::{Comparison, Problem};
-use mbg_runtime::{Adaptive, Dop853, Integrator, Method, Radau5, Rodas5P, Stopped, System};
+use mbg_runtime::{Adaptive, Dop853, Estimating, Integrator, Radau5, Rodas5P, Stopped, System};
 use nalgebra::SVector;
 
 use super::models::{Belt, BeltParameters, HoldingBelt, HoldingBeltParameters};
@@ -40,64 +40,53 @@ fn run<S: System<f64, 2, 0, 1>>(
     Ok(Found::new(error, statistics))
 }
 
-const REFERENCE: &str = "two methods at 1e-8";
-
 /// A block on a belt, with friction that creeps at rest and with such that holds.
 pub(crate) fn dry() -> Vec<Line> {
-    let mut lines = Vec::new();
-    for (case, breakaway) in [
-        ("Coulomb friction on a belt", 2.0),
-        ("Stribeck friction, stick and slip", 4.0),
-    ] {
-        creeping(case, breakaway, &mut lines);
-    }
-    for (case, breakaway) in [
-        ("Coulomb friction that holds", 2.0),
-        ("Stribeck friction that holds", 4.0),
-    ] {
-        holding(case, breakaway, &mut lines);
-    }
-    lines
+    let lines = [
+        creeping("Coulomb friction on a belt", 2.0),
+        creeping("Stribeck friction, stick and slip", 4.0),
+        holding("Coulomb friction that holds", 2.0),
+        holding("Stribeck friction that holds", 4.0),
+    ];
+    lines.into_iter().flatten().collect()
+}
+
+/// A method to seven digits.
+fn line<S: System<f64, 2, 0, 1>, M: Estimating>(
+    method: M,
+    (case, expected): (&'static str, Expected),
+    belt: &S,
+    comparison: Option<&Comparison<'_, S, (), 2, 0, 1>>,
+) -> Line {
+    Line::run((case, M::NAME, "two methods at 1e-8"), expected, || {
+        run(belt, comparison, &Adaptive::new(method, 1e-7, 1e-8))
+    })
 }
 
 #[allow(clippy::expect_used, reason = "its own constants suit it")]
-fn creeping(case: &'static str, breakaway: f64, lines: &mut Vec<Line>) {
-    let belt = Belt::<f64>::new(BeltParameters {
+fn creeping(case: &'static str, breakaway: f64) -> [Line; 2] {
+    let parameters = BeltParameters {
         breakaway,
         ..BeltParameters::default()
-    })
-    .expect("forces and speeds above zero");
-    let comparison = compared(case, &belt);
-    let expected = Expected::Within(1e-4);
-    let radau = Adaptive::new(Radau5, 1e-7, 1e-8);
-    let rodas = Adaptive::new(Rodas5P, 1e-7, 1e-8);
-    lines.push(Line::run((case, Radau5::NAME, REFERENCE), expected, || {
-        run(&belt, comparison.as_ref(), &radau)
-    }));
-    lines.push(Line::run(
-        (case, Rodas5P::NAME, REFERENCE),
-        expected,
-        || run(&belt, comparison.as_ref(), &rodas),
-    ));
+    };
+    let belt = Belt::<f64>::new(parameters).expect("forces and speeds above zero");
+    let (comparison, of) = (compared(case, &belt), (case, Expected::Within(1e-4)));
+    [
+        line(Radau5, of, &belt, comparison.as_ref()),
+        line(Rodas5P, of, &belt, comparison.as_ref()),
+    ]
 }
 
 #[allow(clippy::expect_used, reason = "its own constants suit it")]
-fn holding(case: &'static str, breakaway: f64, lines: &mut Vec<Line>) {
-    let belt = HoldingBelt::<f64>::new(HoldingBeltParameters {
+fn holding(case: &'static str, breakaway: f64) -> [Line; 2] {
+    let parameters = HoldingBeltParameters {
         breakaway,
         ..HoldingBeltParameters::default()
-    })
-    .expect("forces and speeds above zero");
-    let comparison = compared(case, &belt);
-    let expected = Expected::Within(1e-5);
-    let dormand = Adaptive::new(Dop853, 1e-7, 1e-8);
-    let rodas = Adaptive::new(Rodas5P, 1e-7, 1e-8);
-    lines.push(Line::run((case, Dop853::NAME, REFERENCE), expected, || {
-        run(&belt, comparison.as_ref(), &dormand)
-    }));
-    lines.push(Line::run(
-        (case, Rodas5P::NAME, REFERENCE),
-        expected,
-        || run(&belt, comparison.as_ref(), &rodas),
-    ));
+    };
+    let belt = HoldingBelt::<f64>::new(parameters).expect("forces and speeds above zero");
+    let (comparison, of) = (compared(case, &belt), (case, Expected::Within(1e-5)));
+    [
+        line(Dop853, of, &belt, comparison.as_ref()),
+        line(Rodas5P, of, &belt, comparison.as_ref()),
+    ]
 }

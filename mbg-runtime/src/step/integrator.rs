@@ -342,10 +342,8 @@ where
     }
     let (mut problem, x) = begin(integrator, system, input, (t0, last), x0)?;
     let mut rest = times;
-    let surfaces = match S::HAS_COURSES && D::STAYS {
-        true => Some(problem.at_start((t0, x))),
-        false => None,
-    };
+    let may_stay = S::HAS_COURSES && D::STAYS && times.first().is_some_and(|it| !less(t0, *it));
+    let surfaces = may_stay.then(|| problem.at_start((t0, x)));
     while let [time, others @ ..] = rest
         && !less(t0, *time)
     {

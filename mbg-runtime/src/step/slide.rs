@@ -115,7 +115,7 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
                 }
                 let crossing = step.crossing(Direction::Falling, |t, x| hold(t, x, memory));
                 if let Some(time) = crossing {
-                    let there = sliding.landed(time, step.at(time), &memory);
+                    let there = sliding.landed(time, &step.at(time), &memory);
                     step.cut(time, there);
                     left = Some((time, there));
                 }

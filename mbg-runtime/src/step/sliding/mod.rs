@@ -41,6 +41,13 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     pub(super) evaluations: Cell<u64>,
 }
 
+/// A time with the input, and how fast that changes.
+struct Moment<T, const M: usize> {
+    time: T,
+    input: SVector<T, M>,
+    rate: SVector<T, M>,
+}
+
 impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
     /// beside the others, on the side to which it goes. None where it leaves all. Counts evaluations of the model.
@@ -67,13 +74,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             gradients: Cell::new(none),
             evaluations: Cell::new(0),
         };
-        let t = sliding.on_piece(t);
-        let u = input.value(t, since);
+        let at = sliding.on_piece(t);
         while sliding.surfaces.count() > 0 {
             let count = sliding.surfaces.count();
-            sliding.look(t, x, &u, memory);
+            sliding.look(&at, x, memory);
             sliding.across = shortest(&sliding.gradients.get(), count);
-            let sides = sliding.sides((t, x, &u), memory);
+            let sides = sliding.sides(&at, x, memory);
             *evaluations += sliding.evaluations.take();
             // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it.
             let jumps = (0..count).rev().filter(|place| !sides.leads_back[*place]);
@@ -87,14 +93,14 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             if distance == 0.0 {
                 // As a motion comes there: what it would be late by changes its slopes along this way.
                 sliding.across = sides.across(count);
-                *x = sliding.onto(t, *x, &u, memory);
+                *x = sliding.onto(&at, x, memory);
                 return Some(sliding);
             }
             if distance.is_finite() {
                 let is_below = distance == -seen(sides.parts[place]);
                 let side = T::from_f64(if is_below { -1.0 } else { 1.0 });
                 let aside = sliding.aside(x)[place];
-                let beyond = side * sliding.distances((t, x, &u), memory).0[place];
+                let beyond = side * sliding.distances(&at, x, memory).0[place];
                 // What is farther away has yet to come there.
                 if beyond.magnitude() < aside.magnitude() {
                     let way = side * (aside - beyond);
@@ -110,20 +116,37 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     pub(super) fn landed<const M: usize, const P: usize>(
         &self,
         t: T,
-        x: SVector<T, N>,
+        x: &SVector<T, N>,
         memory: &S::Memory,
     ) -> SVector<T, N>
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let t = self.on_piece(t);
-        self.onto(t, x, &self.input.value(t, self.since), memory)
+        self.onto(&self.on_piece(t), x, memory)
     }
 
     /// The nearest time on the present piece.
-    fn on_piece(&self, t: T) -> T {
-        t.max(self.inside.0).min(self.inside.1)
+    fn on_piece<const M: usize>(&self, t: T) -> Moment<T, M>
+    where
+        I: Input<T, M>,
+    {
+        let time = t.max(self.inside.0).min(self.inside.1);
+        self.moment(time, self.input.value(time, self.since))
+    }
+
+    /// A time with this input.
+    fn moment<const M: usize>(&self, time: T, input: SVector<T, M>) -> Moment<T, M>
+    where
+        I: Input<T, M>,
+    {
+        let rate = if self.input.is_constant_between_jumps() {
+            SVector::from_element(T::from_f64(0.0))
+        } else {
+            let ahead = T::from_f64(self.ahead.get());
+            self.input.rate(time, self.since, ahead)
+        };
+        Moment { time, input, rate }
     }
 
     /// Minds how long a step was.
@@ -142,9 +165,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let t = self.on_piece(t);
-        let u = self.input.value(t, self.since);
-        let sides = self.sides((t, x, &u), memory);
+        let sides = self.sides(&self.on_piece(t), x, memory);
         let [zero, one] = [0.0, 1.0].map(T::from_f64);
         let parts = sides.parts.iter().take(self.surfaces.count());
         let least = parts.fold(one, |least, part| least.min(*part).min(one - *part));

@@ -4,9 +4,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::super::seen;
 use super::super::surfaces::MOST;
-use super::{Each, Sliding};
+use super::{Each, Moment, Sliding};
 use crate::solve::Regular;
-use crate::{Input, Real, System};
+use crate::{Real, System};
 
 /// So many surfaces are few.
 const FEW: usize = 3;
@@ -84,18 +84,16 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     /// The arguments of all surfaces, beyond these, and how fast they change, at two states that change so.
     fn told<const M: usize, const P: usize>(
         &self,
-        (t, u): (T, &SVector<T, M>),
+        at: &Moment<T, M>,
         places: [(&SVector<T, N>, &SVector<T, N>); 2],
         memory: &S::Memory,
     ) -> [[Each<T>; 2]; 2]
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
     {
         let mut told = [[[T::from_f64(0.0); MOST]; 2]; 2];
         let (mut number, mut memory) = (0, *memory);
-        let rates = self.input_rate(t);
-        let [from, to] = places.map(|(x, slope)| (t, [x, slope], [u, &rates]));
+        let [from, to] = places.map(|(x, slope)| (at.time, [x, slope], [&at.input, &at.rate]));
         self.system.courses(from, to, &mut memory, |course| {
             if let Some((place, level)) = self.surfaces.of(number) {
                 for (told, [value, rate]) in told.iter_mut().zip([course.from, course.to]) {
@@ -107,35 +105,21 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         told
     }
 
-    /// How fast the input changes.
-    fn input_rate<const M: usize>(&self, t: T) -> SVector<T, M>
-    where
-        I: Input<T, M>,
-    {
-        if self.input.is_constant_between_jumps() {
-            return SVector::from_element(T::from_f64(0.0));
-        }
-        let ahead = T::from_f64(self.ahead.get());
-        self.input.rate(t, self.since, ahead)
-    }
-
     /// How the argument of each surface changes with each state here.
     pub(super) fn look<const M: usize, const P: usize>(
         &self,
-        t: T,
+        at: &Moment<T, M>,
         x: &SVector<T, N>,
-        u: &SVector<T, M>,
         memory: &S::Memory,
     ) where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
     {
         let rest = SVector::from_element(T::from_f64(0.0));
         let mut gradients = self.gradients.get();
         for state in 0..N {
             let mut unit = rest;
             unit[state] = T::from_f64(1.0);
-            let [[_, at_rest], [_, rates]] = self.told((t, u), [(x, &rest), (x, &unit)], memory);
+            let [[_, at_rest], [_, rates]] = self.told(at, [(x, &rest), (x, &unit)], memory);
             for (gradient, (rate, own)) in gradients.iter_mut().zip(rates.iter().zip(&at_rest)) {
                 gradient[state] = *rate - *own;
             }
@@ -163,20 +147,19 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     /// How arguments go across surfaces, with their distances from these.
     pub(super) fn distances<const M: usize, const P: usize>(
         &self,
-        (t, x, u): (T, &SVector<T, N>, &SVector<T, M>),
+        at: &Moment<T, M>,
+        x: &SVector<T, N>,
         memory: &S::Memory,
     ) -> (Each<T>, Factors<T>)
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
     {
         let rest = SVector::from_element(T::from_f64(0.0));
         let mut distances = [T::from_f64(0.0); MOST];
         let mut rates = SMatrix::from_element(T::from_f64(0.0));
         let count = self.surfaces.count();
         for (own, across) in self.across.iter().take(count).enumerate() {
-            let [[_, at_rest], [there, faster]] =
-                self.told((t, u), [(x, &rest), (x, across)], memory);
+            let [[_, at_rest], [there, faster]] = self.told(at, [(x, &rest), (x, across)], memory);
             distances = there;
             for other in 0..count {
                 rates[(other, own)] = faster[other] - at_rest[other];
@@ -197,17 +180,15 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     /// The state on the surfaces next to one.
     pub(super) fn onto<const M: usize, const P: usize>(
         &self,
-        t: T,
-        x: SVector<T, N>,
-        u: &SVector<T, M>,
+        at: &Moment<T, M>,
+        x: &SVector<T, N>,
         memory: &S::Memory,
     ) -> SVector<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
     {
-        let (distances, rates) = self.distances((t, &x, u), memory);
-        self.moved(&x, rates.solve(distances.map(|it| -it)))
+        let (distances, rates) = self.distances(at, x, memory);
+        self.moved(x, rates.solve(distances.map(|it| -it)))
     }
 
     /// What the model says on the sides of the surfaces.
@@ -215,16 +196,16 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     #[inline(never)]
     pub(super) fn sides<const M: usize, const P: usize>(
         &self,
-        (t, x, u): (T, &SVector<T, N>, &SVector<T, M>),
+        at: &Moment<T, M>,
+        x: &SVector<T, N>,
         memory: &mut S::Memory,
     ) -> Sides<T, N>
     where
         S: System<T, N, M, P>,
-        I: Input<T, M>,
     {
         let [zero, two] = [0.0, 2.0].map(T::from_f64);
         let count = self.surfaces.count();
-        let (distances, moves) = self.distances((t, x, u), memory);
+        let (distances, moves) = self.distances(at, x, memory);
         let aside = self.aside(x);
         let mut states = [*x; 1 + MOST];
         let down = core::array::from_fn(|place| match place < count {
@@ -232,7 +213,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             false => zero,
         });
         states[0] = self.moved(x, moves.solve(down));
-        let base = self.system.derivative(t, &states[0], u, memory);
+        let base = (self.system).derivative(at.time, &states[0], &at.input, memory);
         let mut jumps = [SVector::from_element(zero); MOST];
         let mut rates = SMatrix::from_element(zero);
         let mut right = [zero; MOST];
@@ -243,9 +224,9 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             let mut up = [zero; MOST];
             up[own] = two * aside[own];
             let above = self.moved(&states[0], moves.solve(up));
-            let slope = self.system.derivative(t, &above, u, memory);
+            let slope = (self.system).derivative(at.time, &above, &at.input, memory);
             let [[_, below], [_, faster]] =
-                self.told((t, u), [(&states[0], &base), (&above, &slope)], memory);
+                self.told(at, [(&states[0], &base), (&above, &slope)], memory);
             jumps[own] = slope - base;
             for other in 0..count {
                 rates[(other, own)] = faster[other] - below[other];

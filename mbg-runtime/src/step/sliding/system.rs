@@ -33,7 +33,7 @@ where
         u: &SVector<T, M>,
         memory: &mut S::Memory,
     ) -> SVector<T, N> {
-        let derivative = self.sides((t, x, u), memory).derivative();
+        let derivative = self.sides(&self.moment(t, *u), x, memory).derivative();
         self.evaluations.set(self.evaluations.get() - 1);
         derivative
     }
@@ -45,7 +45,7 @@ where
         u: &SVector<T, M>,
         memory: &mut S::Memory,
     ) -> SVector<T, P> {
-        let sides = self.sides((t, x, u), memory);
+        let sides = self.sides(&self.moment(t, *u), x, memory);
         sides.mean(self.surfaces.count(), |x| {
             self.system.output(t, x, u, memory)
         })
@@ -100,11 +100,13 @@ where
             if S::AUTONOMOUS {
                 return SVector::from_element(T::from_f64(0.0));
             }
-            return quotient(t, ahead, |t| self.sides((t, x, u), memory).derivative());
+            return quotient(t, ahead, |t| {
+                self.sides(&self.moment(t, *u), x, memory).derivative()
+            });
         }
         let mut change = quotient(t, ahead, |t| {
             let u = self.input.value(t, self.since);
-            self.sides((t, x, &u), memory).derivative()
+            self.sides(&self.moment(t, u), x, memory).derivative()
         });
         // What the input itself changes is added to it.
         let rate = self.input.rate(t, self.since, ahead);
@@ -180,8 +182,9 @@ where
     ) -> Result<SVector<T, N>, Trouble> {
         let closed = self.system.close(t, x, u, fixed)?;
         let memory = S::Memory::default();
-        self.look(t, &closed, u, &memory);
-        Ok(self.onto(t, closed, u, &memory))
+        let at = self.moment(t, *u);
+        self.look(&at, &closed, &memory);
+        Ok(self.onto(&at, &closed, &memory))
     }
 }
 
@@ -199,7 +202,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         I: Input<T, M>,
     {
         let count = self.surfaces.count();
-        let sides = self.sides((t, x, u), memory);
+        let sides = self.sides(&self.moment(t, *u), x, memory);
         let mut jacobian = sides.mean(count, |x| of(x, memory));
         let gradients = self.gradients.get();
         for mut column in jacobian.column_iter_mut() {

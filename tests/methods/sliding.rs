@@ -1,10 +1,12 @@
 //! Motions that stay where laws jump: friction that holds, relays that go on and off without end.
 
 use mbg_runtime::{
-    Adaptive, Auto, Constant, Direction, Dop853, Dual, Input, Integrator, Pirk8, Pulse, Radau9,
-    Real, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
+    Adaptive, Auto, Constant, Direction, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pirk8, Pulse,
+    Radau9, Real, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
+
+mod constant_steps;
 
 mbg! {
     /// A block on a floor that a spring pulls.
@@ -101,6 +103,42 @@ mbg! {
             Se pull { effort: 0.5 }
         }
         output friction: N = floor.e;
+    }
+
+    /// A load on a sledge on a table that is shaken, and wind on the load.
+    model Shaken {
+        1 table { Sf shake { flow: 0.35 * sin(12.0 * t) } }
+        1 lower { I sledge { inertia: 3.0 } }
+        1 upper { I load { inertia: 2.0, initial_flow: 0.3 } Se wind { effort: 1.5 * sin(5.0 * t) } }
+        below: Clutch { capacity: 14.715 } (table, lower);
+        above: Clutch { capacity: 3.924 } (lower, upper);
+    }
+
+    /// A load that slides on a sledge, which a table takes along faster and faster.
+    model Rising {
+        1 table { Sf rise { flow: 0.5 * t } }
+        1 lower { I sledge { inertia: 3.0 } }
+        1 upper { I load { inertia: 2.0, initial_flow: 0.3 } }
+        below: Clutch { capacity: 14.0 } (table, lower);
+        above: Clutch { capacity: 4.0 } (lower, upper);
+    }
+
+    /// A body from rest whose damper is stiffer one way than the other.
+    model Absorber {
+        1 motion {
+            I body { inertia: 1.0 }
+            C spring { stiffness: 1.0 }
+            R damper { effort: if f > 0.0 { 1.1 * f } else { 0.9 * f } }
+            Se push { effort: 1.0 * t }
+        }
+    }
+
+    /// Two cars with a spring between, of which the one behind has the drag.
+    model Towed {
+        1 first { I car { inertia: 1.0 } Se pull { effort: 1.0 } }
+        1 second { I trailer { inertia: 1.0 } R air { effort: f * abs(f) } }
+        0 between; first -> between -> second;
+        between -> C spring { stiffness: 1.0 };
     }
 
     /// Blocks, each on a floor of its own.
@@ -220,6 +258,46 @@ fn what_bends_where_a_motion_stays_changes_nothing() {
         state.amax() < 1e-15 && (outputs[0] - 0.5).abs() < 1e-12 && statistics.steps < 20,
         "{state} {outputs} {statistics:?}"
     );
+}
+
+/// Where it stands on a bend of a law all that it feels is as small as how far beside it the law is asked.
+#[test]
+fn what_rests_on_a_bend_sets_off() {
+    let model = Absorber::<f64>::new(AbsorberParameters::default()).unwrap();
+    // By `ẍ + 1.1 ẋ + x = t`, as long as it does not go back.
+    let (half, turn) = (0.55, f64::sqrt(1.0 - 0.55 * 0.55));
+    let at = |t: f64| {
+        let (decay, (sin, cos)) = (f64::exp(-half * t), (turn * t).sin_cos());
+        t - 1.1 + decay * (1.1 * cos + (1.1 * half - 1.0) / turn * sin)
+    };
+    for (method, state, _) in by_each(&model, &(), 2.0) {
+        assert!((state[1] - at(2.0)).abs() < 1e-8, "{method}: {state}");
+    }
+    let model = Towed::<f64>::new(TowedParameters::default()).unwrap();
+    let reference = Fixed::new(Gauss6::default(), 1e-3);
+    let reference = last(&model, &(), 5.0, &reference).0;
+    for (method, state, _) in by_each(&model, &(), 5.0) {
+        assert!((state - reference).amax() < 1e-8, "{method}: {state}");
+    }
+}
+
+/// The sledge goes with the table, and when it is as fast as the load, so does that.
+#[test]
+fn what_comes_to_rest_on_what_is_held_stays_there() {
+    let model = Rising::<f64>::new(RisingParameters::default()).unwrap();
+    for (method, state, _) in by_each(&model, &(), 1.0) {
+        let errors = state - SVector::from([1.5, 1.0]);
+        assert!(errors.amax() < 1e-9, "{method}: {errors}");
+    }
+    let model = Shaken::<f64>::new(ShakenParameters::default()).unwrap();
+    // By the impulses of a million short steps, each of which is the least that the clutches let slip.
+    let (end, statistics) = {
+        let (state, _, statistics) = last(&model, &(), 3.0, &NINE);
+        (state, statistics)
+    };
+    let errors = end - SVector::from([-1.041_367_796, 0.081_716_9]);
+    assert!(errors.amax() < 2e-7, "{errors}");
+    assert!(statistics.evaluations < 20_000, "{statistics:?}");
 }
 
 /// Also at the start, where no step has been.

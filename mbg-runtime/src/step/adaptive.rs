@@ -14,8 +14,7 @@ use super::method::{Estimating, Family, Span, Start, Stepper, Trial, along};
 use super::over::Place;
 use super::probes::PARTS;
 use super::problem::Problem;
-use super::slide::Walked;
-use super::surfaces::Surfaces;
+use super::slide::{Ends, Walk, Walked};
 use super::thresholds::Point;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
@@ -146,8 +145,6 @@ impl<M> Adaptive<'_, M> {
 
 #[allow(private_interfaces, reason = "no integrator is written outside")]
 impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> {
-    const STAYS: bool = true;
-
     fn check_settings<T: Real>(&self, t0: T, _t1: T) -> Result<(), Stopped> {
         let positive = |number: f64| number > 0.0;
         let what = if !positive(self.absolute) || !self.absolute.is_finite() {
@@ -184,43 +181,22 @@ impl<Scheme: Estimating, const N: usize> Integrator<N> for Adaptive<'_, Scheme> 
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let (mut here, mut surfaces) = ((start, x), Surfaces::NONE);
-        if S::HAS_COURSES {
-            surfaces = problem.at_start(here);
-        }
-        loop {
-            if S::HAS_COURSES && surfaces.count() > 0 {
-                match self.slide(problem, (here, end), surfaces, observer)? {
-                    ControlFlow::Continue(place) => here = place,
-                    ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
-                }
-                if !less(here.0, end) {
-                    return Ok(ControlFlow::Continue(here.1));
-                }
-            }
-            let stays = |problem: &mut Problem<'_, T, S, I, N, M, P>, here: &_, passed: &_| {
-                problem.stays(here, passed)
-            };
-            match self.walk(problem, (here, end), stays, observer)? {
-                Walked::Ended(x) => return Ok(ControlFlow::Continue(x)),
-                Walked::Left => return Ok(ControlFlow::Break(())),
-                Walked::Stays(place, others) => (here, surfaces) = (place, others),
-            }
-        }
+        let mut steps = *self;
+        steps.over_piece(problem, ((start, x), end), observer)
     }
 }
 
-impl<Scheme: Estimating> Adaptive<'_, Scheme> {
-    /// Runs over a piece of the input, or as far as to just behind thresholds at which the motion is said to stay.
-    pub(super) fn walk<T, S, I, const N: usize, const M: usize, const P: usize>(
-        &self,
+impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Scheme> {
+    const LOOKS_WITHIN: bool = true;
+
+    fn walk<S, I, const M: usize, const P: usize>(
+        &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         ((start, mut x), end): (Place<T, N>, T),
-        stays: impl Fn(&mut Problem<'_, T, S, I, N, M, P>, &Point<T, N>, &Surfaces<T>) -> bool,
+        ends: Ends,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Walked<T, N>, Stopped>
     where
-        T: Real,
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
@@ -294,7 +270,7 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
                 let way = (rest, seen(span.length), end);
                 let watched;
                 (t, x, slope, watched) =
-                    match problem.beyond_threshold(&here, way, &stays, observer)? {
+                    match problem.beyond_threshold(&here, way, ends, observer)? {
                         ControlFlow::Continue((next, watched)) => {
                             (next.time, next.state, next.slope, watched)
                         }

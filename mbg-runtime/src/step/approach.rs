@@ -79,7 +79,14 @@ impl Approach {
         let length = seen(start.span.length);
         let [from, to] = ends(start, &(start.x + trial.change), &start.slope);
         let ahead = match taken {
-            Taken::Nothing => problem.soonest(&from, &to, |course, lasting| course.within(lasting)),
+            // A jump that leads back is met by the line from the start, though stages behind it bend the way back before it.
+            Taken::Nothing => problem
+                .soonest(&from, &to, |course, lasting| course.within(lasting))
+                .or_else(|| {
+                    let place = (from.time, from.state);
+                    let line = problem.straight_to_threshold(&place, &from.slope, length);
+                    line.map(seen).filter(|ahead| *ahead > 0.0)
+                }),
             _ => None,
         };
         let ahead = ahead.filter(|ahead| seen(from.time) + ahead >= self.watched);

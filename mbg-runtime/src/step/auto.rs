@@ -241,8 +241,6 @@ const MODERATE: f64 = 3e-6;
 
 #[allow(private_interfaces, reason = "no integrator is written outside")]
 impl<const N: usize> Integrator<N> for Auto<'_> {
-    const STAYS: bool = true;
-
     fn check_settings<T: Real>(&self, t0: T, t1: T) -> Result<(), Stopped> {
         Integrator::<N>::check_settings(&self.with(Tsit5), t0, t1)
     }

@@ -291,6 +291,19 @@ impl<T: Real, const N: usize> Across<T, N> {
         found.then_some(across)
     }
 
+    /// A step of the explicit method, wherever it goes over.
+    pub(super) fn over<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+    ) -> Trial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        self.explicit.attempt(problem, start, None)
+    }
+
     /// What is known in between of the step that was tried last, which ends at `x`.
     pub(super) fn polynomial<S, I, const M: usize, const P: usize>(
         &mut self,

@@ -5,12 +5,17 @@ use core::ops::ControlFlow;
 use nalgebra::SVector;
 
 use super::crossing::Across;
-use super::dense::Step;
+use super::dense::{Polynomial, Step};
 use super::explicit::Rk4;
+use super::grid::{FINEST, Grid, Parts};
 use super::integrator::{Integrator, begin};
-use super::method::{Method, Span, Start, Stepper, along};
+use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
+use super::method::{Method, Start, Stepper, Trial, along};
+use super::over::Place;
 use super::problem::Problem;
+use super::slide::{Ends, Walk, Walked};
 use super::{Cause, Statistics, Stopped, check_result, seen};
+use crate::course::lane;
 use crate::{Input, Real, System};
 
 /// A method at steps of constant length.
@@ -99,12 +104,13 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
         Ok(())
     }
 
+    // In a caller of several methods their matrices would be on the stack side by side.
     #[inline(never)]
     fn piece<T, S, I, const M: usize, const P: usize>(
         &self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (start, end): (T, T),
-        mut x: SVector<T, N>,
+        x: SVector<T, N>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
     where
@@ -112,25 +118,74 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let Division { count, step, last } = divide(start, end, T::from_f64(self.step));
-        let mut work = Scheme::Work::<T, N>::new(&self.method);
-        let mut across = Across::new();
-        let mut lost = SVector::from_element(T::from_f64(0.0));
-        let mut t = start;
-        for index in 1..=count {
-            let (end, length) = if index == count {
-                (end, last)
-            } else {
-                (start + T::from_f64(index as f64) * step, step)
-            };
-            let mut parts = Parts::of(Span {
-                start: t,
-                end,
-                length,
-            });
+        let mut walk = OnGrid {
+            fixed: self,
+            grid: Grid::new(start, end, T::from_f64(self.step)),
+            asked: (f64::NEG_INFINITY, 0),
+            lost: (f64::NEG_INFINITY, 0),
+        };
+        walk.over_piece(problem, ((start, x), end), observer)
+    }
+}
+
+/// A method along its grid.
+struct OnGrid<'a, Scheme, T> {
+    fixed: &'a Fixed<Scheme>,
+    grid: Grid<T>,
+    /// The end of a step of the grid that was asked for, and how often.
+    asked: (f64, u32),
+    /// Where a step was lost, and how often.
+    lost: (f64, u32),
+}
+
+/// So often a step of the grid ends at a jump at most.
+const ENDS: u32 = 16;
+
+impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, T> {
+    const LOOKS_WITHIN: bool = false;
+
+    fn walk<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (here, end): (Place<T, N>, T),
+        ends: Ends,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Walked<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        // Lanes share their steps.
+        if S::HAS_COURSES && lane(here.0, 1).is_none() {
+            return walk_over_jumps(self, problem, (here, end), ends, observer);
+        }
+        Ok(
+            match self.to(problem, (here, end), f64::NEG_INFINITY, observer)? {
+                Ran::To(x) => Walked::Ended(x),
+                _ => Walked::Left,
+            },
+        )
+    }
+}
+
+impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, T> {
+    fn to<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        ((mut t, mut x), end): (Place<T, N>, T),
+        watched: f64,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Ran<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let mut steps = Steps::new(self.fixed);
+        while let Some(whole) = self.grid.step_between(t, end) {
+            let mut parts = Parts::of(whole);
             while let Some(span) = parts.next() {
                 t = span.start;
-                across.note::<S, M, P>(&x);
+                steps.across.note::<S, M, P>(&x);
                 let slope = problem.slope(t, &x);
                 problem.check(t, &x, &slope)?;
                 let from = Start {
@@ -139,102 +194,225 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
                     ..Start::of(span, x, slope)
                 };
                 let memory = problem.memory;
-                let mut trial = work.attempt(problem, &from, None);
-                let other = across.instead_of(&trial, problem, &from, memory);
-                let is_across = other.is_some();
-                if let Some(other) = other {
-                    (trial, work) = (other, Stepper::new(&self.method));
-                }
+                let (trial, is_across) = steps.attempt(problem, &from);
                 if !trial.error.is_finite() {
-                    let jacobian = work.place_of_jacobian(&from);
+                    let jacobian = steps.work.place_of_jacobian(&from);
                     problem.statistics.rejected += 1;
-                    if jacobian.is_some() && parts.halve() {
+                    let near = match often(&mut self.lost, seen(t)) {
+                        true => Near::Nothing,
+                        false => steps.near(problem, (&from, memory)),
+                    };
+                    let is_near = !matches!(near, Near::Nothing);
+                    let halves = matches!(near, Near::Threshold(_) | Near::Nothing);
+                    if halves && (jacobian.is_some() || is_near) && parts.halve() {
                         problem.memory = memory;
                         continue;
+                    }
+                    if let Near::Jump(jump) | Near::Threshold(jump) = near {
+                        problem.memory = memory;
+                        return Ok(Ran::Met(jump));
                     }
                     check_result(problem.system, t, &trial.change, &problem.memory)
                         .map_err(|stopped| problem.traced(stopped, &from, jacobian))?;
                     return Err(Stopped::new(t, Cause::Diverged));
                 }
-                x = if self.compensated {
-                    summed(&x, &trial.change, &mut lost)
-                } else {
-                    x + trial.change
-                };
-                t = span.end;
-                check_result(problem.system, t, &x, &problem.memory).map_err(|stopped| {
-                    problem.traced(stopped, &from, work.place_of_jacobian(&from))
-                })?;
-                x = problem.close(t, x)?;
-                problem.statistics.steps += 1;
+                if S::HAS_COURSES
+                    && let Some(jump) = touched(problem, (&from, &trial.change), watched)
+                {
+                    problem.memory = memory;
+                    return Ok(Ran::Met(jump));
+                }
+                (t, x) = (span.end, steps.arrive(problem, &from, &trial.change)?);
                 let memory = problem.memory;
-                let mut dense = || match is_across {
-                    true => across.polynomial(problem, &from, &x),
-                    false => work.polynomial(problem, &from, (&x, None)),
-                };
+                let mut dense = || steps.polynomial(problem, &from, &x, is_across);
                 let mut step = Step::new(span, (from.x, x), memory, &mut dense);
                 if observer(&mut step).is_break() {
-                    return Ok(ControlFlow::Break(()));
+                    return Ok(Ran::Left);
                 }
                 problem.memory = memory;
                 parts.take();
             }
         }
-        Ok(ControlFlow::Continue(x))
+        Ok(Ran::To(x))
+    }
+
+    fn watched(&mut self, t: T) -> f64 {
+        let end = self.grid.end_of_step(t);
+        match often(&mut self.asked, end) {
+            true => end,
+            false => f64::NEG_INFINITY,
+        }
     }
 }
 
-/// In how many parts a step of the grid is taken at most.
-const FINEST: u32 = 1 << 20;
-/// How often a step of the grid is halved at most.
-const HALVINGS: u32 = 1000;
-
-/// A step of the grid, in halves of halves where its stages are not found.
-struct Parts<T> {
-    whole: Span<T>,
-    /// How much of it is done, and the size of the next part, in the finest ones.
-    done: u32,
-    size: u32,
-    halvings: u32,
-    /// Whether a longer part was tried from where it stands.
-    again: bool,
+/// Whether something is at the same time again, and that too often.
+fn often(before: &mut (f64, u32), time: f64) -> bool {
+    *before = match *before {
+        (same, times) if same == time => (time, times.saturating_add(1)),
+        _ => (time, 0),
+    };
+    before.1 > ENDS
 }
 
-impl<T: Real> Parts<T> {
-    fn of(whole: Span<T>) -> Self {
+/// What a step that is lost has ahead.
+enum Near<T, const N: usize> {
+    /// A jump of a law.
+    Jump(Jump<T, N>),
+    /// A threshold, as far as the line from the start tells.
+    Threshold(Jump<T, N>),
+    Nothing,
+}
+
+/// The part of a straight way to a threshold that is gone.
+const STRAIGHT: f64 = 0.9;
+
+/// Most of the line from the start of a step to a threshold of the laws, if it comes to one within a length.
+fn line_to_threshold<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &Problem<'_, T, S, I, N, M, P>,
+    from: &Start<T, N>,
+    way: f64,
+) -> Option<Jump<T, N>>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let start = (from.span.start, from.x);
+    let ahead = problem.straight_to_threshold(&start, &from.slope, way)?;
+    Some(Jump {
+        start,
+        ahead: STRAIGHT * seen(ahead),
+        length: seen(from.span.length),
+        is_guess: true,
+    })
+}
+
+/// The same over a threshold that a step itself has not passed, as where it meets a jump that leads back at its stages; and not
+/// before a time.
+fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &Problem<'_, T, S, I, N, M, P>,
+    (from, change): (&Start<T, N>, &SVector<T, N>),
+    watched: f64,
+) -> Option<Jump<T, N>>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let line = line_to_threshold(problem, from, seen(from.span.length))?;
+    let end = (from.span.end, from.x + change);
+    let is_late = seen(line.start.0) + line.ahead >= watched;
+    let is_passed = problem.reached(&line.start, &end).is_some();
+    (is_late && !is_passed).then_some(line)
+}
+
+/// Steps of a method, with what goes from one to the next.
+struct Steps<'a, Scheme: Method, T: Real, const N: usize> {
+    fixed: &'a Fixed<Scheme>,
+    work: Scheme::Work<T, N>,
+    across: Across<T, N>,
+    lost: SVector<T, N>,
+}
+
+impl<'a, Scheme: Method, T: Real, const N: usize> Steps<'a, Scheme, T, N> {
+    fn new(fixed: &'a Fixed<Scheme>) -> Self {
         Self {
-            whole,
-            done: 0,
-            size: FINEST,
-            halvings: 0,
-            again: false,
+            fixed,
+            work: Stepper::new(&fixed.method),
+            across: Across::new(),
+            lost: SVector::from_element(T::from_f64(0.0)),
         }
     }
 
-    /// The next part.
-    fn next(&self) -> Option<Span<T>> {
-        let fraction = |parts| T::from_f64(f64::from(parts) / f64::from(FINEST));
-        (self.done < FINEST).then(|| Span {
-            start: self.whole.at(fraction(self.done)),
-            end: self.whole.at(fraction(self.done + self.size)),
-            length: fraction(self.size) * self.whole.length,
-        })
-    }
-
-    fn take(&mut self) {
-        self.done += self.size;
-        self.again = false;
-        if self.size < FINEST && self.done.is_multiple_of(2 * self.size) {
-            self.size *= 2;
+    /// Tries a step; and whether it is one across a singular position.
+    #[inline]
+    fn attempt<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Start<T, N>,
+    ) -> (Trial<T, N>, bool)
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let memory = problem.memory;
+        let trial = self.work.attempt(problem, from, None);
+        match self.across.instead_of(&trial, problem, from, memory) {
+            Some(other) => {
+                self.work = Stepper::new(&self.fixed.method);
+                (other, true)
+            }
+            None => (trial, false),
         }
     }
 
-    /// Whether there is a shorter part.
-    fn halve(&mut self) -> bool {
-        self.size /= 2;
-        self.halvings += 1;
-        self.again = true;
-        self.size > 0 && self.halvings <= HALVINGS
+    /// What there is ahead of a step that is lost: stages on both sides of a jump are not found, and another method goes over it.
+    #[cold]
+    #[inline(never)]
+    fn near<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (from, memory): (&Start<T, N>, S::Memory),
+    ) -> Near<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let length = seen(from.span.length);
+        let line = line_to_threshold(problem, from, 2.0 * length);
+        let Some(line) = line else {
+            return Near::Nothing;
+        };
+        let tried = core::mem::replace(&mut problem.memory, memory);
+        let mut beside = problem.beside();
+        let end = from.x + self.across.over(problem, from).change;
+        let mut dense = || self.across.polynomial(problem, from, &end);
+        let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
+        let jump = beside.jump_within(&mut step, f64::NEG_INFINITY);
+        problem.memory = tried;
+        jump.map_or(Near::Threshold(line), Near::Jump)
+    }
+
+    /// The state behind a step, on the closed loops.
+    #[inline]
+    fn arrive<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Start<T, N>,
+        change: &SVector<T, N>,
+    ) -> Result<SVector<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let x = if self.fixed.compensated {
+            summed(&from.x, change, &mut self.lost)
+        } else {
+            from.x + change
+        };
+        let end = from.span.end;
+        check_result(problem.system, end, &x, &problem.memory)
+            .map_err(|stopped| problem.traced(stopped, from, self.work.place_of_jacobian(from)))?;
+        let x = problem.close(end, x)?;
+        problem.statistics.steps += 1;
+        Ok(x)
+    }
+
+    fn polynomial<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Start<T, N>,
+        x: &SVector<T, N>,
+        is_across: bool,
+    ) -> Polynomial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        match is_across {
+            true => self.across.polynomial(problem, from, x),
+            false => self.work.polynomial(problem, from, (x, None)),
+        }
     }
 }
 
@@ -396,47 +574,6 @@ pub(super) fn stages<T: Real>(h: T) -> [(T, T); 4] {
     let (sixth, third) = (T::from_f64(1.0 / 6.0), T::from_f64(1.0 / 3.0));
     let half = T::from_f64(0.5) * h;
     [(sixth, half), (third, half), (third, h), (sixth, h)]
-}
-
-/// Steps of constant length.
-struct Division<T> {
-    count: u64,
-    /// The length of all but the last.
-    step: T,
-    /// The length of the last.
-    last: T,
-}
-
-/// The steps from `start` to `end`: of length `h`, or what is next to it when `h` divides the way up to rounding; else
-/// the last one is shorter.
-fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
-    let way = end - start;
-    let number = |count: u64| T::from_f64(count as f64);
-    let ratio = seen(way / h);
-    let whole = ratio as u64;
-    let rest = ratio - whole as f64;
-    let times = start.magnitude().max(end.magnitude()) / seen(h);
-    let rounding = (8.0 * T::EPSILON * (times + ratio)).min(0.25);
-    let even = |count: u64| {
-        let steps = number(count);
-        let step = if way == steps * h { h } else { way / steps };
-        Division {
-            count,
-            step,
-            last: step,
-        }
-    };
-    if whole > 0 && rest <= rounding {
-        even(whole)
-    } else if rest >= 1.0 - rounding {
-        even(whole.saturating_add(1))
-    } else {
-        Division {
-            count: whole.saturating_add(1),
-            step: h,
-            last: way - number(whole) * h,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -6,8 +6,10 @@ use nalgebra::SVector;
 
 use super::dense::Step;
 use super::event::Direction;
-use super::jumps::piece_over_jumps;
+use super::jumps::{Ran, Runs, walk_over_jumps};
+use super::over::Place;
 use super::problem::Problem;
+use super::slide::{Ends, Walked};
 use super::sliding::output_along;
 use super::surfaces::Surfaces;
 use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
@@ -42,10 +44,6 @@ pub struct Arrival<T, const N: usize> {
 /// state alone, with a memory that is new, may be those of another branch: take them by
 /// [`sample_outputs`](Integrator::sample_outputs), or begin with [`Step::memory`].
 pub trait Integrator<const N: usize> {
-    /// Whether its runs go along thresholds at which the motion stays.
-    #[doc(hidden)]
-    const STAYS: bool = false;
-
     /// Refuses settings that cannot be met.
     #[doc(hidden)]
     fn check_settings<T: Real>(&self, t0: T, t1: T) -> Result<(), Stopped>;
@@ -85,7 +83,7 @@ pub trait Integrator<const N: usize> {
             let end = piece_end(problem.system, problem.input, since, t1)?;
             problem.enter((since, end));
             let done = match T::HAS_SLOPES {
-                true => piece_over_jumps(self, problem, (since, end), x, observer),
+                true => over_jumps(self, problem, ((since, x), end), observer),
                 false => self.piece(problem, (since, end), x, observer),
             };
             match done.map_err(|stopped| problem.of_input(stopped))? {
@@ -302,6 +300,60 @@ pub trait Integrator<const N: usize> {
     }
 }
 
+/// An integrator that runs over parts of a piece.
+struct Parts<'a, D: ?Sized>(&'a D);
+
+impl<D: Integrator<N> + ?Sized, T: Real, const N: usize> Runs<T, N> for Parts<'_, D> {
+    fn to<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        ((start, x), end): (Place<T, N>, T),
+        _watched: f64,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Ran<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        Ok(match self.0.piece(problem, (start, end), x, observer)? {
+            ControlFlow::Continue(x) => Ran::To(x),
+            ControlFlow::Break(()) => Ran::Left,
+        })
+    }
+
+    fn watched(&mut self, _t: T) -> f64 {
+        f64::NEG_INFINITY
+    }
+}
+
+/// Runs over a piece of the input, where slopes are carried along, and ends steps where laws jump.
+fn over_jumps<D, T, S, I, const N: usize, const M: usize, const P: usize>(
+    integrator: &D,
+    problem: &mut Problem<'_, T, S, I, N, M, P>,
+    ends: (Place<T, N>, T),
+    observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+where
+    D: Integrator<N> + ?Sized,
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    // Where the next piece begins, it is found that a motion stays there.
+    Ok(
+        match walk_over_jumps(
+            &mut Parts(integrator),
+            problem,
+            ends,
+            Ends::Nowhere,
+            observer,
+        )? {
+            Walked::Ended(x) | Walked::Stays((_, x), _) => ControlFlow::Continue(x),
+            Walked::Left => ControlFlow::Break(()),
+        },
+    )
+}
+
 /// Refuses a sample whose time is not finite, before the start or before the last sample.
 fn check_sample<T: Real>(time: T, (t0, last): (T, T)) -> Result<(), Stopped> {
     let refused = |at: T, what| Err(Stopped::new(at, Cause::Argument(what)));
@@ -342,8 +394,8 @@ where
     }
     let (mut problem, x) = begin(integrator, system, input, (t0, last), x0)?;
     let mut rest = times;
-    let may_stay = S::HAS_COURSES && D::STAYS && times.first().is_some_and(|it| !less(t0, *it));
-    let surfaces = may_stay.then(|| problem.at_start((t0, x)));
+    let may_stay = S::HAS_COURSES && times.first().is_some_and(|it| !less(t0, *it));
+    let surfaces = may_stay.then(|| problem.at_start((t0, x))).flatten();
     while let [time, others @ ..] = rest
         && !less(t0, *time)
     {

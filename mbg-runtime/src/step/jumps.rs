@@ -1,13 +1,13 @@
-//! Runs with slopes across thresholds at which a law jumps: a step ends there.
+//! Runs across thresholds at which a law jumps: a step ends there.
 
 use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
 use super::dense::Step;
-use super::integrator::Integrator;
 use super::over::{Place, SOON};
 use super::problem::Problem;
+use super::slide::{Ends, Walked};
 use super::{Stopped, less, seen};
 use crate::{Input, Real, System};
 
@@ -21,53 +21,88 @@ const MOST: usize = 16;
 /// So often the place of a threshold is narrowed.
 const NARROWINGS: u32 = 100;
 
-/// A jump within a step that has been taken.
-struct Jump<T, const N: usize> {
+/// A jump within a step that has been tried.
+pub(super) struct Jump<T, const N: usize> {
     /// Where the step began.
-    start: Place<T, N>,
+    pub(super) start: Place<T, N>,
     /// How far ahead of that the jump is thought to be.
-    ahead: f64,
+    pub(super) ahead: f64,
     /// How long the step was.
-    length: f64,
+    pub(super) length: f64,
+    /// Whether no more is known than that a line leads there.
+    pub(super) is_guess: bool,
 }
 
-/// Runs over one piece of the input, where slopes are carried along, and ends a step wherever a law jumps at a state.
+/// How far a run over a part of a piece has come.
+pub(super) enum Ran<T, const N: usize> {
+    /// To the end of it, with the state there.
+    To(SVector<T, N>),
+    /// The observer has broken off.
+    Left,
+    /// A step is lost, by a jump that it seems to have met.
+    Met(Jump<T, N>),
+}
+
+/// What runs over parts of a piece of the input.
+pub(super) trait Runs<T: Real, const N: usize> {
+    /// Runs from a place to a time, on the lookout for jumps from another one on.
+    fn to<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        place_and_end: (Place<T, N>, T),
+        watched: f64,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Ran<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized;
+
+    /// From which time on jumps are met behind so many on this piece.
+    fn watched(&mut self, t: T) -> f64;
+}
+
+/// Runs over a piece of the input, or as far as to thresholds at which walks end, and ends a step wherever a law
+/// jumps at a state.
 ///
-/// What changes when the law jumps changes what comes behind: by the difference of the derivatives at both sides, times by how much
-/// later it is (Aizerman and Gantmakher, *Quarterly Journal of Mechanics and Applied Mathematics* 11 (1958), 224–241). A run whose
-/// step ends there, at a time with the slopes of that, and whose next step begins there, has it so.
-pub(super) fn piece_over_jumps<D, T, S, I, const N: usize, const M: usize, const P: usize>(
-    integrator: &D,
+/// So no stage is beyond a jump, and slopes know of it. What changes when a law jumps changes what comes behind: by the difference of
+/// the derivatives at both sides, times by how much later it is (Aizerman and Gantmakher, *Quarterly Journal of Mechanics and Applied
+/// Mathematics* 11 (1958), 224–241). A run whose step ends there, at a time with the slopes of that, and whose next step begins there,
+/// has it so.
+pub(super) fn walk_over_jumps<R, T, S, I, const N: usize, const M: usize, const P: usize>(
+    runs: &mut R,
     problem: &mut Problem<'_, T, S, I, N, M, P>,
-    (start, end): (T, T),
-    x: SVector<T, N>,
+    (here, end): (Place<T, N>, T),
+    ends: Ends,
     observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+) -> Result<Walked<T, N>, Stopped>
 where
-    D: Integrator<N> + ?Sized,
+    R: Runs<T, N>,
     T: Real,
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    let mut way = Way::new((start, x));
+    let mut way = Way::new(here, runs.watched(here.0));
     loop {
-        match way.follow(integrator, problem, end, observer)? {
+        match way.follow(runs, problem, end, observer)? {
             Followed::Over => continue,
             Followed::There => {}
-            Followed::Left => return Ok(ControlFlow::Break(())),
+            Followed::Left => return Ok(Walked::Left),
         }
         let Some(jump) = way.near.take() else {
-            return Ok(ControlFlow::Continue(way.here.1));
+            return Ok(Walked::Ended(way.here.1));
         };
-        let (t, x) = way.here;
-        let slope = problem.slope(t, &x);
+        let here = problem.point(way.here);
         let length = jump.length;
-        let Some(rest) = way.rest(problem, &slope, jump) else {
+        let Some(rest) = way.rest(problem, &here.slope, jump) else {
             continue;
         };
-        match problem.over_threshold((way.here, (rest, &slope)), (length, end), observer)? {
-            ControlFlow::Continue(next) => (way.here, way.watched) = next,
-            ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
+        let ahead = (rest, length, end);
+        match problem.beyond_threshold(&here, ahead, ends, observer)? {
+            ControlFlow::Continue((next, watched)) => {
+                way.here = (next.time, next.state);
+                way.watched = watched.max(runs.watched(next.time));
+            }
+            ControlFlow::Break(walked) => return Ok(walked),
         }
     }
 }
@@ -94,29 +129,29 @@ enum Followed {
 }
 
 impl<T: Real, const N: usize> Way<T, N> {
-    fn new(here: Place<T, N>) -> Self {
+    fn new(here: Place<T, N>, watched: f64) -> Self {
         Self {
             here,
             near: None,
             tries: 0,
-            watched: f64::NEG_INFINITY,
+            watched,
         }
     }
 
     /// Goes on to the end, or almost to a jump that is near.
-    fn follow<D, S, I, const M: usize, const P: usize>(
+    fn follow<R, S, I, const M: usize, const P: usize>(
         &mut self,
-        integrator: &D,
+        runs: &mut R,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         end: T,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Followed, Stopped>
     where
-        D: Integrator<N> + ?Sized,
+        R: Runs<T, N>,
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let (t, x) = self.here;
+        let t = self.here.0;
         let target = match &self.near {
             Some(jump) => end.min(t + T::from_f64(BEFORE * jump.ahead)),
             None => end,
@@ -127,7 +162,7 @@ impl<T: Real, const N: usize> Way<T, N> {
         let mut found = None;
         let mut memory = problem.memory;
         let mut beside = problem.beside();
-        let done = integrator.piece(problem, (t, target), x, &mut |step| {
+        let done = runs.to(problem, (self.here, target), self.watched, &mut |step| {
             beside.memory = memory;
             found = beside.jump_within(step, self.watched);
             if found.is_some() {
@@ -137,12 +172,16 @@ impl<T: Real, const N: usize> Way<T, N> {
             observer(step)
         })?;
         Ok(match (done, found) {
-            (ControlFlow::Continue(next), _) => {
+            (Ran::To(next), _) => {
                 self.here = (target, next);
                 Followed::There
             }
-            (ControlFlow::Break(()), None) => Followed::Left,
-            (ControlFlow::Break(()), Some(jump)) => {
+            (Ran::Met(jump), _) => {
+                (self.here, self.near) = (jump.start, Some(jump));
+                Followed::Over
+            }
+            (Ran::Left, None) => Followed::Left,
+            (Ran::Left, Some(jump)) => {
                 problem.statistics.steps -= 1;
                 problem.statistics.rejected += 1;
                 problem.memory = memory;
@@ -172,7 +211,7 @@ impl<T: Real, const N: usize> Way<T, N> {
                 return None;
             }
         }
-        if next.is_none() {
+        if next.is_none() && (!jump.is_guess || self.tries > MOST) {
             let apart = problem.apart(self.here.0, jump.length);
             self.watched = seen(self.here.0) + jump.ahead + SOON * apart;
         }
@@ -188,7 +227,7 @@ where
     I: Input<T, M> + ?Sized,
 {
     /// The first jump of a law at a state that a step has gone over, but for those before a time.
-    fn jump_within(
+    pub(super) fn jump_within(
         &mut self,
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
@@ -209,6 +248,7 @@ where
                     start,
                     ahead: seen(before.0 - start.0),
                     length,
+                    is_guess: false,
                 });
             }
             from = behind;

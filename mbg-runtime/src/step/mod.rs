@@ -11,6 +11,7 @@ mod event;
 mod explicit;
 mod fixed;
 mod gauss;
+mod grid;
 mod integrator;
 mod jumps;
 mod linear;

@@ -4,10 +4,8 @@ use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
-use super::adaptive::Adaptive;
 use super::dense::Step;
 use super::event::Direction;
-use super::method::Estimating;
 use super::over::Place;
 use super::problem::Problem;
 use super::sliding::Sliding;
@@ -26,6 +24,15 @@ pub(super) enum Walked<T, const N: usize> {
     Stays(Place<T, N>, Surfaces<T>),
 }
 
+/// At which of the thresholds that it goes over a walk ends.
+#[derive(Clone, Copy)]
+pub(super) enum Ends {
+    Nowhere,
+    WhereItStays,
+    /// Beside thresholds at which a motion stays laws are asked a little off it: what it comes to is to be found with these.
+    Everywhere,
+}
+
 /// Where a run goes on behind a threshold, with when the next may be met, if it does.
 type Beyond<T, const N: usize> = ControlFlow<Walked<T, N>, (Point<T, N>, f64)>;
 
@@ -41,7 +48,7 @@ where
         &mut self,
         here: &Point<T, N>,
         (rest, length, end): (T, f64, T),
-        stays: &impl Fn(&mut Self, &Point<T, N>, &Surfaces<T>) -> bool,
+        ends: Ends,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Beyond<T, N>, Stopped> {
         let way = ((here.time, here.state), (rest, &here.slope));
@@ -52,20 +59,35 @@ where
         if !less(time, end) {
             return Ok(ControlFlow::Break(Walked::Ended(state)));
         }
-        let slope = self.slope(time, &state);
-        let next = Point { time, state, slope };
-        if S::HAS_COURSES {
-            let passed = self.between(here, &next);
-            if passed.count() > 0 && stays(self, &next, &passed) {
-                return Ok(ControlFlow::Break(Walked::Stays((time, state), passed)));
-            }
+        let next = self.point((time, state));
+        if S::HAS_COURSES
+            && let Some(passed) = self.ends_between(here, &next, ends)
+        {
+            return Ok(ControlFlow::Break(Walked::Stays((time, state), passed)));
         }
         Ok(ControlFlow::Continue((next, watched)))
     }
 
+    /// The thresholds between two points next to each other, if a walk ends there.
+    fn ends_between(
+        &mut self,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+        ends: Ends,
+    ) -> Option<Surfaces<T>> {
+        match ends {
+            Ends::Nowhere => None,
+            Ends::WhereItStays => {
+                let passed = self.met_between(from, to);
+                passed.filter(|passed| self.stays(to, passed))
+            }
+            Ends::Everywhere => self.between(from, to),
+        }
+    }
+
     /// Whether the motion stays at some of these thresholds.
     #[cold]
-    pub(super) fn stays(&mut self, here: &Point<T, N>, surfaces: &Surfaces<T>) -> bool {
+    fn stays(&mut self, here: &Point<T, N>, surfaces: &Surfaces<T>) -> bool {
         let (mut x, mut memory) = (here.state, self.memory);
         let model = (self.system, self.input);
         let times = (self.since, self.inside, self.whole);
@@ -75,19 +97,69 @@ where
     }
 }
 
-impl<Scheme: Estimating> Adaptive<'_, Scheme> {
+/// What takes steps over a piece of the input.
+pub(super) trait Walk<T: Real, const N: usize> {
+    /// Whether a threshold may be left and met again within a step.
+    const LOOKS_WITHIN: bool;
+
+    /// Runs to the end of the piece, or as far as to thresholds at which walks end.
+    fn walk<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        place_and_end: (Place<T, N>, T),
+        ends: Ends,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Walked<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized;
+
+    /// Runs over the piece, also along thresholds.
+    fn over_piece<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (mut here, end): (Place<T, N>, T),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let mut surfaces = match S::HAS_COURSES {
+            true => problem.at_start(here),
+            false => None,
+        };
+        loop {
+            if S::HAS_COURSES
+                && let Some(surfaces) = surfaces
+            {
+                match self.slide(problem, (here, end), surfaces, observer)? {
+                    ControlFlow::Continue(place) => here = place,
+                    ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
+                }
+                if !less(here.0, end) {
+                    return Ok(ControlFlow::Continue(here.1));
+                }
+            }
+            match self.walk(problem, (here, end), Ends::WhereItStays, observer)? {
+                Walked::Ended(x) => return Ok(ControlFlow::Continue(x)),
+                Walked::Left => return Ok(ControlFlow::Break(())),
+                Walked::Stays(place, others) => (here, surfaces) = (place, Some(others)),
+            }
+        }
+    }
+
     /// Goes on from a place next to thresholds that the motion may not leave, along these, until it leaves all or is at the end.
     // Not side by side on the stack with the run that has come there.
     #[inline(never)]
-    pub(super) fn slide<T, S, I, const N: usize, const M: usize, const P: usize>(
-        &self,
+    fn slide<S, I, const M: usize, const P: usize>(
+        &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (mut here, end): (Place<T, N>, T),
         mut surfaces: Surfaces<T>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Place<T, N>>, Stopped>
     where
-        T: Real,
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
@@ -103,18 +175,20 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
             surfaces = sliding.surfaces;
             let mut along = problem.of(&sliding);
             let (mut left, mut undone) = (None, 0);
-            let walked = self.walk(&mut along, (here, end), |_, _, _| true, &mut |step| {
+            let walked = self.walk(&mut along, (here, end), Ends::Everywhere, &mut |step| {
                 let hold = |t: T, x: &SVector<T, N>, memory: S::Memory| {
                     sliding.hold(t, x, &mut { memory })
                 };
                 let (start, memory) = ((step.start(), *step.first()), step.memory());
-                let holds = less(T::from_f64(0.0), hold(start.0, &start.1, memory));
-                if !holds {
+                let holds = |(t, x): Place<T, N>| less(T::from_f64(0.0), hold(t, &x, memory));
+                if !holds(start) {
                     (left, undone) = (Some(start), 1);
                     return ControlFlow::Break(());
                 }
-                let crossing = step.crossing(Direction::Falling, |t, x| hold(t, x, memory));
-                if let Some(time) = crossing {
+                let looks = Self::LOOKS_WITHIN || !holds((step.end(), *step.state()));
+                if looks
+                    && let Some(time) = step.crossing(Direction::Falling, |t, x| hold(t, x, memory))
+                {
                     let there = sliding.landed(time, &step.at(time), &memory);
                     step.cut(time, there);
                     left = Some((time, there));
@@ -140,6 +214,10 @@ impl<Scheme: Estimating> Adaptive<'_, Scheme> {
                 (Walked::Stays(place, others), _) => {
                     here = place;
                     others.iter().for_each(|other| surfaces.add(*other));
+                }
+                // Laws that jump no more where the motion stands, or never did, are gone on behind.
+                (Walked::Left, Some(place)) if !less(here.0, place.0) => {
+                    return Ok(ControlFlow::Continue(place));
                 }
                 (Walked::Left, Some(place)) => here = place,
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),

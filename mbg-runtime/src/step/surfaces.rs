@@ -28,7 +28,7 @@ pub(super) struct Surfaces<T> {
 }
 
 impl<T: Real> Surfaces<T> {
-    pub(super) const NONE: Self = Self { list: [None; MOST] };
+    const NONE: Self = Self { list: [None; MOST] };
 
     pub(super) fn count(&self) -> usize {
         self.iter().count()
@@ -54,13 +54,11 @@ impl<T: Real> Surfaces<T> {
     }
 
     /// Leaves one out.
-    pub(super) fn leave(&mut self, place: usize) {
-        if let Some(rest) = self.list.get_mut(place..)
-            && let [left, ..] = rest
-        {
-            *left = None;
-            rest.rotate_left(1);
-        }
+    pub(super) fn leave(&mut self, place: usize) -> Option<Surface<T>> {
+        let rest = self.list.get_mut(place..)?;
+        let left = rest.first_mut()?.take();
+        rest.rotate_left(1);
+        left
     }
 }
 
@@ -70,25 +68,35 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    /// The thresholds between two points next to each other, but for those from which the motion goes on behind them.
-    pub(super) fn between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Surfaces<T> {
+    /// The thresholds between two points next to each other.
+    pub(super) fn between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Option<Surfaces<T>> {
+        self.surfaces(from, to, is_between)
+    }
+
+    /// The same but for those from which the motion goes on behind them.
+    pub(super) fn met_between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Option<Surfaces<T>> {
         self.surfaces(from, to, |course, level| {
-            let [from, to] = [course.from, course.to].map(|it| seen(it[0] - level));
-            let goes_on = (to - from) * seen(course.to[1]) > 0.0;
-            from * to <= 0.0 && from != to && !goes_on
+            let goes_on = seen(course.to[0] - course.from[0]) * seen(course.to[1]) > 0.0;
+            is_between(course, level) && !goes_on
         })
     }
 
     /// The thresholds next to a place where a run begins.
-    pub(super) fn at_start(&mut self, (time, state): Place<T, N>) -> Surfaces<T> {
+    pub(super) fn at_start(&mut self, place: Place<T, N>) -> Option<Surfaces<T>> {
         let memory = self.memory;
-        let slope = self.slope(time, &state);
+        let here = self.point(place);
         self.memory = memory;
-        self.next_to(&Point { time, state, slope })
+        self.next_to(&here)
+    }
+
+    /// A place with the derivative there.
+    pub(super) fn point(&mut self, (time, state): Place<T, N>) -> Point<T, N> {
+        let slope = self.slope(time, &state);
+        Point { time, state, slope }
     }
 
     /// The thresholds next to a point.
-    fn next_to(&self, here: &Point<T, N>) -> Surfaces<T> {
+    fn next_to(&self, here: &Point<T, N>) -> Option<Surfaces<T>> {
         let time = PLACES * T::EPSILON * here.time.magnitude().max(self.whole);
         self.surfaces(here, here, |course, level| {
             let [value, rate] = course.from.map(seen);
@@ -102,16 +110,17 @@ where
         from: &Point<T, N>,
         to: &Point<T, N>,
         holds: impl Fn(&Course<'_, T>, T) -> bool,
-    ) -> Surfaces<T> {
-        let mut surfaces = Surfaces::NONE;
+    ) -> Option<Surfaces<T>> {
         if lane(from.time, 1).is_some() {
-            return surfaces;
+            return None;
         }
+        let mut surfaces = None;
         let mut number = 0;
         self.courses(from, to, |course, _| {
             for threshold in course.thresholds {
                 let level = course.level(*threshold);
                 if course.is_choice && holds(course, level) {
+                    let surfaces = surfaces.get_or_insert(Surfaces::NONE);
                     surfaces.add(Surface {
                         course: number,
                         level,
@@ -122,6 +131,11 @@ where
         });
         surfaces
     }
+}
+
+fn is_between<T: Real>(course: &Course<'_, T>, level: T) -> bool {
+    let [from, to] = [course.from, course.to].map(|it| seen(it[0] - level));
+    from * to <= 0.0 && from != to
 }
 
 #[cfg(test)]

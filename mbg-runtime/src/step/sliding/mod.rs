@@ -16,6 +16,11 @@ use sides::shortest;
 const SHORT: f64 = 1.0 / 4096.0;
 const PART: f64 = 0.25;
 
+/// What does not stay is put so many times as far beside a surface as those that do are asked.
+const BESIDE: f64 = 4.0;
+/// So many times as far beside a surface a law is asked whether it jumps there.
+const WIDE: f64 = 1024.0;
+
 /// One for each surface.
 type Each<V> = [V; MOST];
 
@@ -39,6 +44,17 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     gradients: Cell<Each<SVector<T, N>>>,
     /// How often the model was evaluated, but for once in each evaluation of these laws.
     pub(super) evaluations: Cell<u64>,
+}
+
+/// On which side of a surface a motion goes on.
+#[derive(Clone, Copy)]
+enum Aside {
+    /// It stays on it.
+    On,
+    /// On the side on which it is.
+    Passed,
+    Below,
+    Above,
 }
 
 /// A time with the input, and how fast that changes.
@@ -75,15 +91,25 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             evaluations: Cell::new(0),
         };
         let at = sliding.on_piece(t);
+        sliding.look(&at, x, memory);
+        let gradients = sliding.gradients.get();
+        // To each surface and along all others.
+        let ways = shortest(&gradients, surfaces.count());
+        let mut asides = [Aside::On; MOST];
         while sliding.surfaces.count() > 0 {
             let count = sliding.surfaces.count();
             sliding.look(&at, x, memory);
             sliding.across = shortest(&sliding.gradients.get(), count);
-            let sides = sliding.sides(&at, x, memory);
+            let sides = sliding.sides(&at, (x, 1.0), memory);
+            let wide = sliding.sides(&at, (x, WIDE), memory);
             *evaluations += sliding.evaluations.take();
-            // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it.
-            let jumps = (0..count).rev().filter(|place| !sides.leads_back[*place]);
-            jumps.for_each(|place| sliding.surfaces.leave(place));
+            // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it. At rest all
+            // that it makes different is as small as how far beside it is.
+            let jumps =
+                |place: &usize| sides.leads_back[*place] && !wide.bends(&sides, *place, WIDE);
+            for place in (0..count).rev().filter(|place| !jumps(place)) {
+                sliding.leave(place, (&surfaces, &mut asides), Aside::Passed);
+            }
             if sliding.surfaces.count() < count {
                 continue;
             }
@@ -94,22 +120,73 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 // As a motion comes there: what it would be late by changes its slopes along this way.
                 sliding.across = sides.across(count);
                 *x = sliding.onto(&at, x, memory);
-                return Some(sliding);
+                break;
             }
-            if distance.is_finite() {
-                let is_below = distance == -seen(sides.parts[place]);
-                let side = T::from_f64(if is_below { -1.0 } else { 1.0 });
-                let aside = sliding.aside(x)[place];
-                let beyond = side * sliding.distances(&at, x, memory).0[place];
-                // What is farther away has yet to come there.
-                if beyond.magnitude() < aside.magnitude() {
-                    let way = side * (aside - beyond);
-                    *x += sliding.across[place].map(|across| way * across);
-                }
-            }
-            sliding.surfaces.leave(place);
+            let aside = match distance == -seen(sides.parts[place]) {
+                true => Aside::Below,
+                false => Aside::Above,
+            };
+            sliding.leave(place, (&surfaces, &mut asides), aside);
         }
-        None
+        let stays = sliding.surfaces.count() > 0;
+        let left = Self {
+            surfaces,
+            across: ways,
+            gradients: Cell::new(gradients),
+            ahead: Cell::new(sliding.ahead.get()),
+            evaluations: Cell::new(0),
+            ..sliding
+        };
+        *x = left.put_aside((&at, x), (&asides, stays), memory);
+        stays.then_some(sliding)
+    }
+
+    /// Leaves a surface, which is one of all.
+    fn leave(
+        &mut self,
+        place: usize,
+        (all, asides): (&Surfaces<T>, &mut Each<Aside>),
+        aside: Aside,
+    ) {
+        let left = self.surfaces.leave(place);
+        if let Some((own, _)) = left.and_then(|left| all.of(left.course)) {
+            asides[own] = aside;
+        }
+    }
+
+    /// The state surely beside what the motion does not stay at, if it is not farther away: that it has yet to come to. What is
+    /// passed is in the way where the motion stays at another one, as laws are asked a little off it.
+    fn put_aside<const M: usize, const P: usize>(
+        &self,
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        (asides, stays): (&Each<Aside>, bool),
+        memory: &S::Memory,
+    ) -> SVector<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let distances = self.distances(at, x, memory).0;
+        let mut ways = self.aside(x);
+        for (way, (aside, distance)) in ways.iter_mut().zip(asides.iter().zip(distances)) {
+            let side = match aside {
+                Aside::Below => -1.0,
+                Aside::Above => 1.0,
+                Aside::Passed if stays && seen(distance) != 0.0 => seen(distance).signum(),
+                _ => 0.0,
+            };
+            let side = T::from_f64(side);
+            let beyond = side * distance;
+            let least = T::from_f64(BESIDE) * *way;
+            let is_near = beyond.magnitude() < least.magnitude();
+            *way = side
+                * (if is_near {
+                    least - beyond
+                } else {
+                    T::from_f64(0.0)
+                });
+        }
+        self.moved(x, ways)
     }
 
     /// The state on the surfaces next to one.
@@ -165,7 +242,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let sides = self.sides(&self.on_piece(t), x, memory);
+        let sides = self.sides(&self.on_piece(t), (x, 1.0), memory);
         let [zero, one] = [0.0, 1.0].map(T::from_f64);
         let parts = sides.parts.iter().take(self.surfaces.count());
         let least = parts.fold(one, |least, part| least.min(*part).min(one - *part));

@@ -12,6 +12,10 @@ use crate::{Real, System};
 const FEW: usize = 3;
 /// How far beside a threshold laws are asked, in units of the rounding of its argument.
 const ASIDE: f64 = 64.0;
+/// What a law that bends differs by on both sides grows with their distance, by this part at least.
+const BENT: f64 = 0.125;
+/// A sum is zero but for rounding within so many units of the last place of its terms.
+const PLACES: f64 = 8.0;
 /// A rate jumps if it differs by more than this part of what it is made of, or so many units of the last place.
 const JUMP: f64 = 1e-7;
 const JUMP_PLACES: f64 = 64.0;
@@ -25,19 +29,28 @@ pub(super) struct Sides<T, const N: usize> {
     pub(super) jumps: Each<SVector<T, N>>,
     /// How much faster the argument of each surface goes above each.
     pub(super) rates: Factors<T>,
-    /// Whether its own argument goes slower above each.
+    /// Whether its own argument goes slower above each, and by how much.
     pub(super) leads_back: Each<bool>,
+    slower: Each<f64>,
     /// Which part of the mean is above each.
     pub(super) parts: Each<T>,
 }
 
 impl<T: Real, const N: usize> Sides<T, N> {
+    /// What is left of a state by rounding alone, which the motion does not leave, is nothing: methods that iterate go by how large a
+    /// state is.
     pub(super) fn derivative(&self) -> SVector<T, N> {
-        let mut derivative = self.base;
+        let (mut derivative, mut sizes) = (self.base, self.base.map(Real::magnitude));
         for (jump, part) in self.jumps.iter().zip(&self.parts) {
-            derivative += jump.map(|jump| *part * jump);
+            let shares = jump.map(|jump| *part * jump);
+            derivative += shares;
+            sizes += shares.map(Real::magnitude);
         }
-        derivative
+        derivative.zip_map(&sizes, |sum, size| {
+            let is_rounding = sum.magnitude() <= PLACES * T::EPSILON * size;
+            let left = if is_rounding { seen(sum) } else { 0.0 };
+            sum - T::from_f64(left)
+        })
     }
 
     /// The mean of what there is on the sides of so many surfaces.
@@ -53,6 +66,11 @@ impl<T: Real, const N: usize> Sides<T, N> {
             mean += (of(state) - base).map(|jump| *part * jump);
         }
         mean
+    }
+
+    /// Whether a law bends at a surface and does not jump, as these sides show, which are farther from it than others by a factor.
+    pub(super) fn bends(&self, nearer: &Self, place: usize, factor: f64) -> bool {
+        self.slower[place] > BENT * factor * nearer.slower[place]
     }
 
     /// How far beyond all means of both sides the motion along a surface would be.
@@ -169,7 +187,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     }
 
     /// A state moved across the surfaces.
-    fn moved(&self, x: &SVector<T, N>, ways: Each<T>) -> SVector<T, N> {
+    pub(super) fn moved(&self, x: &SVector<T, N>, ways: Each<T>) -> SVector<T, N> {
         let mut moved = *x;
         for (across, way) in self.across.iter().zip(&ways) {
             moved += across.map(|across| *way * across);
@@ -191,13 +209,13 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         self.moved(x, rates.solve(distances.map(|it| -it)))
     }
 
-    /// What the model says on the sides of the surfaces.
+    /// What the model says on the sides of the surfaces, so many times as far from these as need be.
     // Of all that asks for it there is one copy: it is much code, and none that a run waits for.
     #[inline(never)]
     pub(super) fn sides<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,
-        x: &SVector<T, N>,
+        (x, factor): (&SVector<T, N>, f64),
         memory: &mut S::Memory,
     ) -> Sides<T, N>
     where
@@ -206,7 +224,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let [zero, two] = [0.0, 2.0].map(T::from_f64);
         let count = self.surfaces.count();
         let (distances, moves) = self.distances(at, x, memory);
-        let aside = self.aside(x);
+        let aside = self.aside(x).map(|aside| T::from_f64(factor) * aside);
         let mut states = [*x; 1 + MOST];
         let down = core::array::from_fn(|place| match place < count {
             true => -(aside[place] + distances[place]),
@@ -217,7 +235,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let mut jumps = [SVector::from_element(zero); MOST];
         let mut rates = SMatrix::from_element(zero);
         let mut right = [zero; MOST];
-        let mut leads_back = [false; MOST];
+        let (mut leads_back, mut slower) = ([false; MOST], [0.0; MOST]);
         let jump = JUMP.max(JUMP_PLACES * T::EPSILON);
         let gradients = self.gradients.get();
         for own in 0..count {
@@ -236,7 +254,8 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             let size = terms.fold(0.0, |size, (by, (a, b))| {
                 size + by.magnitude() * (a.magnitude() + b.magnitude())
             });
-            leads_back[own] = seen(rates[(own, own)]) < -jump * size;
+            slower[own] = -seen(rates[(own, own)]);
+            leads_back[own] = slower[own] > jump * size;
             states[1 + own] = above;
         }
         self.evaluations
@@ -249,6 +268,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             jumps,
             rates,
             leads_back,
+            slower,
             parts,
         }
     }

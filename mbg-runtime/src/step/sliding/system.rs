@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::surfaces::MOST;
-use super::Sliding;
+use super::{Moment, Sliding};
 use crate::input::quotient;
 use crate::{Course, Input, Meta, Power, Real, System, Trouble};
 
@@ -33,7 +33,9 @@ where
         u: &SVector<T, M>,
         memory: &mut S::Memory,
     ) -> SVector<T, N> {
-        let derivative = self.sides(&self.moment(t, *u), x, memory).derivative();
+        let derivative = self
+            .sides(&self.moment(t, *u), (x, 1.0), memory)
+            .derivative();
         self.evaluations.set(self.evaluations.get() - 1);
         derivative
     }
@@ -45,7 +47,7 @@ where
         u: &SVector<T, M>,
         memory: &mut S::Memory,
     ) -> SVector<T, P> {
-        let sides = self.sides(&self.moment(t, *u), x, memory);
+        let sides = self.sides(&self.moment(t, *u), (x, 1.0), memory);
         sides.mean(self.surfaces.count(), |x| {
             self.system.output(t, x, u, memory)
         })
@@ -101,12 +103,14 @@ where
                 return SVector::from_element(T::from_f64(0.0));
             }
             return quotient(t, ahead, |t| {
-                self.sides(&self.moment(t, *u), x, memory).derivative()
+                self.sides(&self.moment(t, *u), (x, 1.0), memory)
+                    .derivative()
             });
         }
         let mut change = quotient(t, ahead, |t| {
             let u = self.input.value(t, self.since);
-            self.sides(&self.moment(t, u), x, memory).derivative()
+            self.sides(&self.moment(t, u), (x, 1.0), memory)
+                .derivative()
         });
         // What the input itself changes is added to it.
         let rate = self.input.rate(t, self.since, ahead);
@@ -139,15 +143,26 @@ where
         self.system.change_between(from, to, input)
     }
 
-    /// Of an argument that stays no more is told than that there is one.
+    /// As the laws see it, on the surfaces; of an argument that stays no more is told than that there is one.
     fn courses(
         &self,
-        from: (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
-        to: (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
+        (from, [x, slope], [u, rate]): (T, [&SVector<T, N>; 2], [&SVector<T, M>; 2]),
+        (to, [ahead, slope_ahead], [u_ahead, rate_ahead]): (
+            T,
+            [&SVector<T, N>; 2],
+            [&SVector<T, M>; 2],
+        ),
         memory: &mut S::Memory,
         mut each: impl FnMut(Course<'_, T>),
     ) {
+        let on = |time: T, x: &SVector<T, N>, input: &SVector<T, M>, rate: &SVector<T, M>| {
+            let (input, rate) = (*input, *rate);
+            self.onto(&Moment { time, input, rate }, x, memory)
+        };
+        let (x, ahead) = (on(from, x, u, rate), on(to, ahead, u_ahead, rate_ahead));
         let mut number = 0;
+        let from = (from, [&x, slope], [u, rate]);
+        let to = (to, [&ahead, slope_ahead], [u_ahead, rate_ahead]);
         self.system.courses(from, to, memory, |course| {
             let stays = self.surfaces.of(number).is_some();
             let thresholds = if stays { &[] } else { course.thresholds };
@@ -202,7 +217,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         I: Input<T, M>,
     {
         let count = self.surfaces.count();
-        let sides = self.sides(&self.moment(t, *u), x, memory);
+        let sides = self.sides(&self.moment(t, *u), (x, 1.0), memory);
         let mut jacobian = sides.mean(count, |x| of(x, memory));
         let gradients = self.gradients.get();
         for mut column in jacobian.column_iter_mut() {

@@ -1,0 +1,174 @@
+//! The times at which steps of constant length end.
+
+use super::method::Span;
+use super::{less, seen};
+use crate::Real;
+
+/// The steps over a piece, of which one may be begun anew from within.
+pub(super) struct Grid<T> {
+    start: T,
+    end: T,
+    division: Division<T>,
+    /// Which step is at hand.
+    index: u64,
+}
+
+impl<T: Real> Grid<T> {
+    /// From one time to another, by steps of length `h` or next to it.
+    pub(super) fn new(start: T, end: T, h: T) -> Self {
+        Self {
+            start,
+            end,
+            division: divide(start, end, h),
+            index: 1,
+        }
+    }
+
+    /// The time at which this step ends, and the next one starts.
+    fn time(&self, index: u64) -> T {
+        match index {
+            0 => self.start,
+            _ if index == self.division.count => self.end,
+            _ => self.start + T::from_f64(index as f64) * self.division.step,
+        }
+    }
+
+    /// The step of the grid that a time is in, but for its end.
+    fn find(&mut self, t: T) -> Option<T> {
+        loop {
+            let end = self.time(self.index);
+            if less(t, end) {
+                return Some(end);
+            }
+            if self.index >= self.division.count {
+                return None;
+            }
+            self.index += 1;
+        }
+    }
+
+    /// When the step of the grid ends that a time is in.
+    pub(super) fn end_of_step(&mut self, t: T) -> f64 {
+        seen(self.find(t).unwrap_or(self.end))
+    }
+
+    /// The step from a time on, to the end of that of the grid or to a time before that; none at the end.
+    pub(super) fn step_between(&mut self, t: T, until: T) -> Option<Span<T>> {
+        let next = self.find(t)?;
+        if !less(t, until) {
+            return None;
+        }
+        let start = t;
+        let is_whole = !less(self.time(self.index - 1), t) && !less(until, next);
+        Some(match is_whole {
+            true => Span {
+                start,
+                end: next,
+                length: match self.index == self.division.count {
+                    true => self.division.last,
+                    false => self.division.step,
+                },
+            },
+            false => {
+                let end = if less(until, next) { until } else { next };
+                let length = end - t;
+                Span { start, end, length }
+            }
+        })
+    }
+}
+
+/// Steps of constant length.
+struct Division<T> {
+    count: u64,
+    /// The length of all but the last.
+    step: T,
+    /// The length of the last.
+    last: T,
+}
+
+/// The steps from `start` to `end`: of length `h`, or what is next to it when `h` divides the way up to rounding; else
+/// the last one is shorter.
+fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
+    let way = end - start;
+    let number = |count: u64| T::from_f64(count as f64);
+    let ratio = seen(way / h);
+    let whole = ratio as u64;
+    let rest = ratio - whole as f64;
+    let times = start.magnitude().max(end.magnitude()) / seen(h);
+    let rounding = (8.0 * T::EPSILON * (times + ratio)).min(0.25);
+    let even = |count: u64| {
+        let steps = number(count);
+        let step = if way == steps * h { h } else { way / steps };
+        Division {
+            count,
+            step,
+            last: step,
+        }
+    };
+    if whole > 0 && rest <= rounding {
+        even(whole)
+    } else if rest >= 1.0 - rounding {
+        even(whole.saturating_add(1))
+    } else {
+        Division {
+            count: whole.saturating_add(1),
+            step: h,
+            last: way - number(whole) * h,
+        }
+    }
+}
+
+/// In how many parts a step of the grid is taken at most.
+pub(super) const FINEST: u32 = 1 << 20;
+/// How often a step of the grid is halved at most.
+const HALVINGS: u32 = 1000;
+
+/// A step of the grid, in halves of halves where its stages are not found.
+pub(super) struct Parts<T> {
+    whole: Span<T>,
+    /// How much of it is done, and the size of the next part, in the finest ones.
+    done: u32,
+    pub(super) size: u32,
+    halvings: u32,
+    /// Whether a longer part was tried from where it stands.
+    pub(super) again: bool,
+}
+
+impl<T: Real> Parts<T> {
+    pub(super) fn of(whole: Span<T>) -> Self {
+        Self {
+            whole,
+            done: 0,
+            size: FINEST,
+            halvings: 0,
+            again: false,
+        }
+    }
+
+    /// The next part.
+    pub(super) fn next(&self) -> Option<Span<T>> {
+        let fraction = |parts| T::from_f64(f64::from(parts) / f64::from(FINEST));
+        (self.done < FINEST).then(|| Span {
+            start: self.whole.at(fraction(self.done)),
+            end: self.whole.at(fraction(self.done + self.size)),
+            length: fraction(self.size) * self.whole.length,
+        })
+    }
+
+    pub(super) fn take(&mut self) {
+        self.done += self.size;
+        self.again = false;
+        if self.size < FINEST && self.done.is_multiple_of(2 * self.size) {
+            self.size *= 2;
+        }
+    }
+
+    /// Whether there is a shorter part.
+    pub(super) fn halve(&mut self) -> bool {
+        self.size /= 2;
+        self.halvings += 1;
+        self.again = true;
+        self.size > 0 && self.halvings <= HALVINGS
+    }
+}

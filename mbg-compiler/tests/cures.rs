@@ -3,7 +3,7 @@
 
 mod told;
 
-use told::{diagnose, told};
+use told::{diagnose, told, typed};
 
 /// A body that floats in space, with more beside it.
 fn floating(free: &str, more: &str) -> String {
@@ -11,6 +11,13 @@ fn floating(free: &str, more: &str) -> String {
         "model M {{ causality componentwise; input u; 1 ground[6]; 1 hull[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
          free: Free {{ {free} }} (ground, hull); body: Body {{ mass: 1.0, inertia: diag(1.0, 1.0, 1.0) }} (hull);
          {more} }}"
+    )
+}
+
+/// A mass and a resistor with a law, beside an input.
+fn by_law(law: &str) -> String {
+    format!(
+        "model M {{ input u; input road[2]; 1 v {{ I b {{ inertia: 1.0 }} Se push {{ effort: {law} }} }} output y = u * road.x * road.y; }}"
     )
 }
 
@@ -117,4 +124,126 @@ fn an_element_that_is_called_as_a_component_is_written_as_an_element() {
         );
     }
     assert_eq!(first_typed(&scene("x: C (a);"))[1], "a -> C x { … };");
+}
+
+#[test]
+fn the_end_of_a_range_is_excluded() {
+    let scene = |read: &str| format!("model M {{ 1 w[6] {{ I b {{ inertia: 1.0 }} }} {read} }}");
+    for (short, written) in [
+        ("output e[2] = w.f[1..2];", "w.f[1..3]"),
+        ("output e[3] = w.f[3..5];", "w.f[3..6]"),
+        ("integral e[2] = w.f[0..1];", "w.f[0..2]"),
+    ] {
+        let help = format!("the end of a range is excluded: write `{written}`");
+        assert_eq!(first_help(&scene(short)), help);
+        let (front, _) = short.split_once("w.f").unwrap();
+        assert_eq!(told(&scene(&format!("{front}{written};"))), "");
+    }
+    let number = first_help(&scene("output e[2] = w.f[1];"));
+    assert!(number.starts_with("write each component"), "{number}");
+    let bond = "model M { 1 w[4] { I b { inertia: 1.0 } } Se s[2] { effort: 1.0 } -> w[1..2]; }";
+    assert_eq!(
+        first_help(bond),
+        "the end of a range is excluded: write `w[1..3]`"
+    );
+    assert_eq!(told(&bond.replace("1..2", "1..3")), "");
+}
+
+#[test]
+fn a_number_for_a_way_is_told_along_an_axis() {
+    let arm = |by: &str| {
+        floating(
+            "",
+            &format!("1 tip[6]; arm: Offset {{ {by} }} (hull, tip);"),
+        )
+    };
+    assert_eq!(
+        first_help(&arm("by: 1.5")),
+        "write each component: `[1.5, 0.0, 0.0]` is a way along x"
+    );
+    assert_eq!(told(&arm("by: [1.5, 0.0, 0.0]")), "");
+}
+
+#[test]
+fn a_function_of_a_module_is_written_alone() {
+    for module in ["Math", "math", "np", "Modelica.Math"] {
+        let text = by_law(&format!("{module}.sin(u)"));
+        let diagnostics = diagnose(&text);
+        let [report] = diagnostics.list() else {
+            panic!("{}", told(&text))
+        };
+        assert_eq!(report.message, format!("`{module}` is not declared"));
+        assert_eq!(
+            report.helps,
+            ["functions belong to no module: write `sin(u)`"]
+        );
+    }
+    assert_eq!(
+        first_typed(&by_law("Math.atan2(u, 1.0)")),
+        ["atan2(u, 1.0)"]
+    );
+    assert_eq!(told(&by_law("sin(u)")), "");
+    // A value has its own mistake.
+    assert!(told(&by_law("u.sin(u)")).contains("`sin` takes 1 argument, found 2"));
+}
+
+#[test]
+fn three_components_are_bonded_to_a_part_of_a_frame() {
+    let push = |to: &str| {
+        floating(
+            "",
+            &format!("Se push[3] {{ effort: [0.0, 0.0, u] }} -> {to};"),
+        )
+    };
+    let help = "bond it to `hull[3..6]` for a force or a velocity, to `hull[0..3]` for a moment or an angular velocity";
+    assert_eq!(first_help(&push("hull")), help);
+    let short = first_help(&push("hull[0..2]"));
+    assert_eq!(short, format!("the end of a range is excluded: {help}"));
+    for part in ["hull[0..3]", "hull[3..6]"] {
+        assert_eq!(told(&push(part)), "");
+    }
+    for size in ["", "[3]"] {
+        let inside = floating("", "").replace(
+            "1 hull[6]",
+            &format!("1 hull[6] {{ Se push{size} {{ effort: [0.0, 0.0, u] }} }}"),
+        );
+        assert_eq!(first_help(&inside), help);
+    }
+}
+
+#[test]
+fn starts_of_a_rotation_are_angles_and_rates() {
+    let quaternion = first_typed(&floating("initial: [1.0, 0.0, 0.0, 0.0]", ""));
+    let angles = "initial: angles_of(matrix_of([1.0, 0.0, 0.0, 0.0]), 0, 1, 2)";
+    assert_eq!(quaternion, ["initial", "[w, x, y, z]", angles]);
+    assert_eq!(told(&floating(angles, "")), "");
+    for name in [
+        "initial_omega",
+        "omega",
+        "omega0",
+        "initial_angular_velocity",
+    ] {
+        let rate = first_typed(&floating(&format!("{name}: [1.0, 0.0, 0.0]"), ""));
+        assert_eq!(rate, ["initial_rate: [1.0, 0.0, 0.0]"]);
+    }
+    assert_eq!(told(&floating("initial_rate: [1.0, 0.0, 0.0]", "")), "");
+}
+
+#[test]
+fn a_vector_at_a_junction_of_one_component_is_told_both_ways() {
+    assert_eq!(typed(&by_law("road")), ["road.x", "1 v[2]"]);
+    assert_eq!(told(&by_law("road.x")), "");
+    assert_eq!(told(&by_law("road").replace("1 v {", "1 v[2] {")), "");
+    let long = by_law("road").replace("road[2]", "road[4]");
+    assert_eq!(first_typed(&long), ["road[0]"]);
+}
+
+#[test]
+fn a_value_has_no_variables_of_an_element() {
+    let text = "model M { param spring = 2.0; 1 v { I b { inertia: 1.0 } C stroke { stiffness: spring } }\noutput y = spring.q; }";
+    insta::assert_snapshot!(told(text), @"
+    2:19 `spring.q` is not declared [MBG0203]
+      help: `spring` is a value, and `q` is read of an element: write the name of that before it
+    ");
+    assert_eq!(told(&text.replace("spring.q", "stroke.q")), "");
 }

@@ -79,7 +79,8 @@ pub fn summed(graph: &BondGraph, sources: &[ElementId]) -> Option<String> {
 }
 
 /// Where the bond of a one-port leads, and its dimension.
-fn beside(graph: &BondGraph, id: ElementId) -> Option<(&End, usize)> {
+#[must_use]
+pub fn beside(graph: &BondGraph, id: ElementId) -> Option<(&End, usize)> {
     let own = End::OnePort(id);
     let mut bonds = graph.bonds.iter();
     bonds.find_map(|bond| match bond {

@@ -326,6 +326,12 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
     (
         &[
             "initial_angular_velocity",
+            "initial_angular_rate",
+            "initial_omega",
+            "initial_w",
+            "omega",
+            "omega0",
+            "w0",
             "initial_rates",
             "w_start",
             "rate",
@@ -532,6 +538,31 @@ pub(super) fn vector(
 
 /// Vectors in space from one point to another.
 const VECTORS: [&str; 2] = ["by", "offset"];
+
+/// Whether a parameter of this name has the angles of a joint that turns about three axes.
+pub(super) fn is_of_angles(name: &Ident) -> bool {
+    name == "initial" || name == "rest"
+}
+
+/// What to type for a quaternion in the place of such angles.
+pub(super) fn as_angles(name: &Ident, quaternion: &Expr) -> String {
+    let quaternion = dump::expression(quaternion);
+    format!(
+        "`{name}` has three angles, however the orientation is represented: for a quaternion `[w, x, y, z]` and the axes that \
+         are not given write `{name}: angles_of(matrix_of({quaternion}), 0, 1, 2)`"
+    )
+}
+
+/// Whether a parameter of this name leads from one point to another.
+pub(super) fn is_way(name: &Ident) -> bool {
+    VECTORS.iter().any(|way| name == way)
+}
+
+/// What to type where a number stands for such a way, which has a direction.
+pub(super) fn along_an_axis(number: &Expr) -> String {
+    let number = dump::expression(number);
+    format!("write each component: `[{number}, 0.0, 0.0]` is a way along x")
+}
 
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 

@@ -247,3 +247,23 @@ fn a_value_has_no_variables_of_an_element() {
     ");
     assert_eq!(told(&text.replace("spring.q", "stroke.q")), "");
 }
+
+#[test]
+fn an_instance_among_the_elements_of_a_junction_stands_outside() {
+    for written in [
+        "brake: Brake { capacity: 3.0 }",
+        "Brake brake { capacity: 3.0 }",
+    ] {
+        let text = format!("model M {{ 1 v {{ I b {{ inertia: 1.0 }} {written} }} }}");
+        let typed = typed(&text);
+        assert_eq!(typed, ["brake: Brake { capacity: 3.0 } (v);"]);
+        let text = format!(
+            "model M {{ 1 v {{ I b {{ inertia: 1.0 }} }} {} }}",
+            typed[0]
+        );
+        assert_eq!(told(&text), "");
+    }
+    // A kind that stands in the place of a component is an element still.
+    let turned = "model M { 1 v { b: I { inertia: 1.0 } } }";
+    assert!(first_help(turned).starts_with("the kind of an element stands before its name"));
+}

@@ -267,3 +267,23 @@ fn an_instance_among_the_elements_of_a_junction_stands_outside() {
     let turned = "model M { 1 v { b: I { inertia: 1.0 } } }";
     assert!(first_help(turned).starts_with("the kind of an element stands before its name"));
 }
+
+#[test]
+fn a_ground_that_is_left_free_is_held() {
+    let scene = |causality: &str, source: &str| {
+        format!(
+            "model M {{ {causality} 1 ground[6]; 1 hull[6]; {source} free: Free (ground, hull);
+             body: Body {{ mass: 1.0, inertia: diag(1.0, 1.0, 1.0) }} (hull); }}"
+        )
+    };
+    for causality in ["", "causality componentwise;"] {
+        let helps = diagnose(&scene(causality, "")).list()[0].helps.clone();
+        let source = "Sf wall[6] { flow: 0.0 } -> ground;";
+        assert_eq!(helps[0], format!("hold it, if it is at rest: `{source}`"));
+        assert_eq!(
+            helps[1],
+            "or give it an inertia, such as a body, if it moves by itself"
+        );
+        assert_eq!(told(&scene("causality componentwise;", source)), "");
+    }
+}

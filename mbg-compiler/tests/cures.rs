@@ -287,3 +287,26 @@ fn a_ground_that_is_left_free_is_held() {
         assert_eq!(told(&scene("causality componentwise;", source)), "");
     }
 }
+
+#[test]
+fn a_parameter_in_the_unit_of_another_domain_is_named_where_its_unit_shows() {
+    let text = |unit: &str| {
+        format!(
+            "model M {{ param k{unit} = 2.0; 1 v {{ I b {{ inertia: 1.0 }} C spring {{ stiffness: k }} }}\noutput x: m = spring.q; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text(": N*m/rad")), @"
+    2:15 `x` is declared in `m`, and this is a pure number [MBG0501]
+      help: declare `k`, which is in `N*m/rad`, in another unit or in none
+      help: an angle is declared in `rad`
+      help: a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts
+    ");
+    assert_eq!(told(&text(": N/m")), "");
+    assert_eq!(told(&text("")), "");
+    // What is read at the mistake itself is seen there, and of two causes none is the one.
+    let direct = told(&text(": N/m").replace("= spring.q", "= k * spring.q"));
+    assert!(!direct.contains("declare `k`"), "{direct}");
+    let two = "model M { param k: N*m/rad = 2.0; param d: N*m*s/rad = 2.0; 1 v { I b { inertia: 1.0 } C spring { stiffness: k }
+        R damper { resistance: d } } output x: m = spring.q; }";
+    assert!(!told(two).contains("declare `k`"), "{}", told(two));
+}

@@ -310,3 +310,34 @@ fn a_parameter_in_the_unit_of_another_domain_is_named_where_its_unit_shows() {
         R damper { resistance: d } } output x: m = spring.q; }";
     assert!(!told(two).contains("declare `k`"), "{}", told(two));
 }
+
+#[test]
+fn what_a_brake_or_a_clutch_is_given_lies_between_nothing_and_all() {
+    let scene = |engagement: &str| {
+        format!(
+            "model M {{ input u; param e: 1 = 0.5; 1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }}
+             clutch: Clutch {{ capacity: 3.0,\nengagement: {engagement} }} (a, b); output y = e * u; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&scene("2")), @"
+    3:13 `engagement` does not fit in `Clutch`: `engagement <= 1` is asserted of `clutch.plates`, and these are 2.0 and 1.0 [MBG0213]
+      `engagement`: How much of the capacity acts, from 0 for an open clutch to 1: a number, or a signal such as an input
+    ");
+    assert!(told(&scene("-0.1")).contains("`0 <= engagement` is asserted"));
+    for within in [
+        "0",
+        "0.5",
+        "1",
+        "u",
+        "2 * u",
+        "e",
+        "if t < 1.0 { 0 } else { 1 }",
+    ] {
+        assert_eq!(told(&scene(within)), "", "{within}");
+    }
+    let brake = scene("0")
+        .replace("Clutch", "Brake")
+        .replace("(a, b)", "(a)");
+    assert_eq!(told(&brake), "");
+    assert!(told(&brake.replace("engagement: 0", "engagement: 1.5")).contains("`engagement <= 1`"));
+}

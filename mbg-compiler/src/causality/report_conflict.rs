@@ -10,7 +10,7 @@ use super::report::{
     COMPONENTWISE, JACOBIAN, alternatives, may_be_rewritten, own_steps, resistor_help,
 };
 use super::strokes::Site;
-use super::ways::{Between, hold, summed, through, turned};
+use super::ways::{Between, held_or_heavy, hold, is_bare, summed, through, turned};
 use super::words;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error, listing};
@@ -122,6 +122,11 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
     if !conflict.proven() {
         return vec![COMPONENTWISE.to_owned()];
     }
+    if let Some(frame) = bare_frame(graph, conflict) {
+        let componentwise = outlook.is_soluble().then(|| COMPONENTWISE.to_owned());
+        let ways = held_or_heavy(graph, frame).into_iter();
+        return ways.chain(componentwise).collect();
+    }
     let elements = conflict.elements();
     let mut helps = Vec::new();
     if conflict.code == codes::FIXED_RESISTOR {
@@ -177,6 +182,14 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         helps.push(JACOBIAN.to_owned());
     }
     helps
+}
+
+/// The frame that nothing holds, where the conflict is that no bond gives it its flow.
+fn bare_frame(graph: &BondGraph, conflict: &Conflict) -> Option<JunctionId> {
+    match (conflict.code, conflict.place()) {
+        (codes::NO_ASSIGNMENT, Some(End::Junction(id, _))) if is_bare(graph, id) => Some(id),
+        _ => None,
+    }
 }
 
 /// A source at the first node of a conflict that may lack one, such as a tank between a pump and a valve.

@@ -1,9 +1,11 @@
 //! Ways out that rewrite a part of the graph, with the text to type.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::graph::{
-    Bond, BondGraph, ElementId, End, JunctionId, JunctionKind, Law, Rule, declaration,
+    Bond, BondGraph, ElementId, End, JunctionId, JunctionKind, Law, Rule, declaration, instance_of,
+    outermost_instance,
 };
 use crate::symbolic::Expression;
 
@@ -79,7 +81,8 @@ pub fn summed(graph: &BondGraph, sources: &[ElementId]) -> Option<String> {
 }
 
 /// Where the bond of a one-port leads, and its dimension.
-fn beside(graph: &BondGraph, id: ElementId) -> Option<(&End, usize)> {
+#[must_use]
+pub fn beside(graph: &BondGraph, id: ElementId) -> Option<(&End, usize)> {
     let own = End::OnePort(id);
     let mut bonds = graph.bonds.iter();
     bonds.find_map(|bond| match bond {
@@ -123,6 +126,39 @@ pub fn hold(graph: &BondGraph, id: JunctionId, range: Range<usize>) -> String {
     let source = free_name(graph, word);
     let place = graph.end_name(&End::Junction(id, range));
     format!("`{symbol} {source}{size} {{ {field}: 0.0 }} -> {place};`")
+}
+
+/// Whether a 1-junction has no elements of its own and leads into one component in use alone.
+#[must_use]
+pub fn is_bare(graph: &BondGraph, id: JunctionId) -> bool {
+    let junction = &graph.junctions[id.0];
+    let own = instance_of(&junction.name);
+    let neighbours: Option<Vec<&str>> = graph
+        .across(id)
+        .map(|far| match far {
+            End::OnePort(_) | End::Border => None,
+            End::In(id) | End::Out(id) => Some(graph.elements[id.0].name.as_str()),
+            End::Junction(other, _) => Some(graph.junctions[other.0].name.as_str()),
+        })
+        .collect();
+    let users = neighbours.map(|names| {
+        let users = names.into_iter();
+        users
+            .filter_map(|name| outermost_instance(name, own))
+            .collect()
+    });
+    junction.kind == JunctionKind::One
+        && users.is_some_and(|users: BTreeSet<&str>| users.len() == 1)
+}
+
+/// What to do about a frame that nothing holds.
+#[must_use]
+pub fn held_or_heavy(graph: &BondGraph, frame: JunctionId) -> [String; 2] {
+    let source = hold(graph, frame, 0..graph.junctions[frame.0].dimension);
+    [
+        format!("hold it, if it is at rest: {source}"),
+        "give it an inertia, such as a body, if it moves by itself".to_owned(),
+    ]
 }
 
 /// A name for a source that nothing has yet.

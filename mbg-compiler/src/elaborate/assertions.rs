@@ -65,6 +65,8 @@ impl Builder<'_> {
                     }
                 }
             }
+            // What a component is given may be a signal, which nothing but a run of it can tell to be within its bounds.
+            (Rate::Varying, None) if self.scopes[scope].library.is_some() => Ok(()),
             (Rate::Varying, None) => {
                 let message = format!("`{text}` may change while the model runs");
                 let report = error(codes::EXPRESSION, whole.span(), message);

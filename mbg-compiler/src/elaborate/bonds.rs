@@ -2,6 +2,7 @@
 
 use proc_macro2::Span;
 
+use super::frames::part_of_frame;
 use super::model::{State, StateRate};
 use super::scope::Entity;
 use super::{Builder, Pending, component_names};
@@ -59,10 +60,10 @@ impl<'a> Builder<'a> {
                 "`{}` has dimension {own}, its junction {dimension}",
                 element.name
             );
-            self.tell(
-                scope,
-                error(codes::WRONG_DIMENSION, element.name.span(), message),
-            );
+            let mut report = error(codes::WRONG_DIMENSION, element.name.span(), message);
+            let frame = self.graph.end_name(&end);
+            report.helps.extend(part_of_frame(&frame, dimension, own));
+            self.tell(scope, report);
             return;
         }
         let id = self.element(scope, element, dimension);

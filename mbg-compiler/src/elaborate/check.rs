@@ -4,6 +4,8 @@ use proc_macro2::Span;
 use syn::Expr;
 
 use super::Builder;
+use super::definitions::END_EXCLUDED;
+use super::frames::part_of_frame;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{Bond, ElementId, End, JunctionKind, Rule, declaration};
@@ -59,7 +61,8 @@ impl Builder<'_> {
                     .report(report.help("take one of the bonds away"));
             } else if from != to {
                 let message = format!("`{name}` joins dimension {from} to dimension {to}");
-                let report = error(codes::WRONG_DIMENSION, span, message);
+                let mut report = error(codes::WRONG_DIMENSION, span, message);
+                report.helps.extend(self.other_components(index));
                 let report = self.tell_of_transposed(index, report);
                 self.tell_of_two_port(index, report);
             }
@@ -77,6 +80,26 @@ impl Builder<'_> {
         let [a, b] = [a, b].map(|id| self.graph.junctions[id.0].kind);
         let mut before = self.graph.bonds[..index].iter();
         a == b && before.any(|it| [(&it.from, &it.to), (&it.to, &it.from)].contains(&(from, to)))
+    }
+
+    /// What to type where a bond joins too many or too few components of a junction to an element or another junction.
+    fn other_components(&self, bond: usize) -> Option<String> {
+        let Bond { from, to, .. } = &self.graph.bonds[bond];
+        [(from, to), (to, from)].into_iter().find_map(|(own, far)| {
+            let End::Junction(id, range) = own else {
+                return None;
+            };
+            let (junction, size) = (&self.graph.junctions[id.0], self.size(far));
+            let is_short = range.len() < junction.dimension && range.len() + 1 == size;
+            let excluded = if is_short { END_EXCLUDED } else { "" };
+            if let Some(help) = part_of_frame(&junction.name, junction.dimension, size) {
+                return Some(format!("{excluded}{help}"));
+            }
+            let longer = range.start..range.start + size;
+            let fits = is_short && longer.end <= junction.dimension;
+            let longer = End::Junction(*id, longer);
+            fits.then(|| format!("{excluded}write `{}`", self.graph.end_name(&longer)))
+        })
     }
 
     /// What to type where the matrix of a two-port would fit at both of its ends if it were transposed.

@@ -8,13 +8,19 @@ use proc_macro2::Ident;
 use syn::Expr;
 
 use super::Builder;
+use super::elsewhere;
 use super::expressions::{Result, Value};
+use super::frames::IN_SPACE;
 use super::scope::{Entity, GRAVITY};
+use super::tools;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Expression;
 use crate::syntax::ast::{Parameter, Unit};
 use crate::syntax::dump;
+
+/// Why a range has one component less than was meant.
+pub(super) const END_EXCLUDED: &str = "the end of a range is excluded: ";
 
 /// A named value.
 pub(super) struct Definition<'a> {
@@ -210,11 +216,16 @@ impl<'a> Builder<'a> {
         expression: &Expr,
     ) -> Result<Value> {
         let is_number = matches!(value, Value::Scalar(_));
+        let is_quaternion = value.is_vector_of(4) && size == 3 && tools::is_of_angles(name);
         let column = self.column(value, size, name);
         column.map_err(|report| match is_number {
             _ if is_gravity(expression) => about_gravity(report, size),
+            _ if is_quaternion => Box::new(report.help(tools::as_angles(name, expression))),
+            true if tools::is_way(name) && size == IN_SPACE / 2 => {
+                Box::new(report.help(tools::along_an_axis(expression)))
+            }
             true => by_component(report, expression, size),
-            false => report,
+            false => end_excluded(report, expression, size),
         })
     }
 
@@ -251,8 +262,40 @@ pub(super) fn by_component(
     number: &Expr,
     dimension: usize,
 ) -> Box<Diagnostic> {
+    if let Some(help) = longer_range(number, dimension) {
+        return Box::new(report.help(help));
+    }
     match dump::column(number, dimension) {
         Some(all) => Box::new(report.help(format!("write each component, such as `{all}`"))),
         None => report,
     }
+}
+
+/// What to type where a range is one component short.
+pub(super) fn end_excluded(
+    report: Box<Diagnostic>,
+    range: &Expr,
+    dimension: usize,
+) -> Box<Diagnostic> {
+    match longer_range(range, dimension) {
+        Some(help) => Box::new(report.help(help)),
+        None => report,
+    }
+}
+
+/// `w.f[1..3]` for `w.f[1..2]` where two components are wanted.
+fn longer_range(vector: &Expr, dimension: usize) -> Option<String> {
+    let Expr::Index(picked) = vector else {
+        return None;
+    };
+    let Expr::Range(range) = &*picked.index else {
+        return None;
+    };
+    let [start, end] = [range.start.as_deref()?, range.end.as_deref()?]
+        .map(|bound| elsewhere::number(bound).filter(|it| *it >= 0.0));
+    let (start, end) = (start? as usize, end? as usize);
+    (end.checked_sub(start)? + 1 == dimension).then(|| {
+        let vector = dump::expression(&picked.expr);
+        format!("{END_EXCLUDED}write `{vector}[{start}..{}]`", end + 1)
+    })
 }

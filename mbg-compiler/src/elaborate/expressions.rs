@@ -200,6 +200,7 @@ impl<N: Names> Evaluator<'_, N> {
                 arguments.extend(call.args.iter().cloned());
                 let (receiver, method) = (&call.receiver, &call.method);
                 self.function(method, &arguments).map_err(|report| {
+                    let report = self.of_module(report, call);
                     self.called(report, &parse_quote!(#receiver.#method), &call.args)
                 })
             }
@@ -319,7 +320,8 @@ impl<N: Names> Evaluator<'_, N> {
             }
         }
         let help = elsewhere::instead(&text, &[]);
-        Err(Box::new(match help.or_else(|| self.advice(&steps)) {
+        let help = help.or_else(|| self.advice(&steps));
+        Err(Box::new(match help.or_else(|| self.of_value(&steps)) {
             Some(help) => report.help(help),
             None => report.did_you_mean(&text, &self.names.all()),
         }))

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
-use super::definitions::{Missing, by_component};
+use super::definitions::{Missing, by_component, end_excluded};
 use super::elsewhere;
 use super::expressions::{Evaluator, Result, Step, Value};
 use super::laws::{Reader, words_of};
@@ -260,7 +260,7 @@ impl<'a> Builder<'a> {
         let entries = self.entries(&value, dimension, name);
         entries.map_err(|report| match value {
             Value::Scalar(_) => by_component(report, expression, dimension),
-            Value::Matrix(_) => report,
+            Value::Matrix(_) => end_excluded(report, expression, dimension),
         })
     }
 

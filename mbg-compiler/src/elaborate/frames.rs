@@ -321,6 +321,17 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// Where a vector of so many components acts on a frame of this name.
+pub(super) fn part_of_frame(frame: &str, dimension: usize, size: usize) -> Option<String> {
+    let half = IN_SPACE / 2;
+    ((dimension, size) == (IN_SPACE, half)).then(|| {
+        format!(
+            "bond it to `{frame}[{half}..{IN_SPACE}]` for a force or a velocity, to `{frame}[0..{half}]` for a moment or an angular \
+             velocity"
+        )
+    })
+}
+
 /// Whether a component of a flow is written as zero.
 fn is_zero(flow: &Expr, component: usize) -> bool {
     match flow {

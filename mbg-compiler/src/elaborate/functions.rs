@@ -33,6 +33,29 @@ impl<N: Names> Evaluator<'_, N> {
         self.function(name, &arguments)
     }
 
+    /// A mistake in `Math.sin(u)`, whose function is called as one of a module.
+    pub(super) fn of_module(
+        &mut self,
+        report: Box<Diagnostic>,
+        call: &syn::ExprMethodCall,
+    ) -> Box<Diagnostic> {
+        let arguments: Vec<Expr> = call.args.iter().cloned().collect();
+        let is_module = matches!(&*call.receiver, Expr::Path(_) | Expr::Field(_))
+            && self.evaluate(&call.receiver).is_err();
+        if !is_module || self.function(&call.method, &arguments).is_err() {
+            return report;
+        }
+        let module = dump::expression(&call.receiver);
+        let message = format!("`{module}` is not declared");
+        let report = error(codes::UNKNOWN_NAME, call.receiver.span(), message);
+        let arguments: Vec<String> = arguments.iter().map(dump::expression).collect();
+        Box::new(report.help(format!(
+            "functions belong to no module: write `{}({})`",
+            call.method,
+            arguments.join(", ")
+        )))
+    }
+
     pub(super) fn function(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
         let text = name.unraw().to_string();
         let count = |expected: usize| check_count(name, expected, arguments.len());

@@ -41,6 +41,19 @@ impl<N: Names> Evaluator<'_, N> {
         of_row.or_else(|| self.names.advice(self.pool, steps))
     }
 
+    /// Where a variable of an element is read of a value.
+    pub(super) fn of_value(&mut self, steps: &[Step]) -> Option<String> {
+        let (last, front) = steps.split_last()?;
+        let value = self.names.value(self.pool, front)?;
+        let owner = advice::text(front);
+        (value.is_ok() && is_of_bond(steps)).then(|| {
+            format!(
+                "`{owner}` is a value, and `{}` is read of an element: write the name of that before it",
+                last.name
+            )
+        })
+    }
+
     /// `a[1][0]` for `a[1].x`, where `a` is a matrix: a row of it is a vector, but no name.
     fn entry_by_letter(&mut self, steps: &[Step]) -> Option<String> {
         let (last, front) = steps.split_last()?;

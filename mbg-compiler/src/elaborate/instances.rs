@@ -191,8 +191,10 @@ impl<'a> Builder<'a> {
                     self.tell(scope, report.help(format!("write `{here}: {value}`")));
                     continue;
                 }
-                if let Some(gear) = tools::by_ratio(instance, argument) {
-                    self.tell(scope, report.help(gear));
+                let way = tools::by_ratio(instance, argument)
+                    .or_else(|| tools::at_point(instance, argument));
+                if let Some(way) = way {
+                    self.tell(scope, report.help(way));
                     continue;
                 }
                 let longer = ending_in(&argument.name.to_string(), &names);
@@ -299,18 +301,29 @@ impl<'a> Builder<'a> {
         let mut known: Vec<&str> = library::names().collect();
         known.extend(components.keys().map(String::as_str));
         let report = error(codes::UNKNOWN_NAME, name.span(), message);
-        let elements = tools::elements(instance, self.first_end(scope, instance));
+        let end = self.first_end(scope, instance);
+        let fitting = |here: &str| match end {
+            Some((_, size)) => in_frames(here, size).unwrap_or_else(|| here.to_owned()),
+            None => here.to_owned(),
+        };
+        let elements = tools::as_element(instance).or_else(|| tools::elements(instance, end));
         let mut report = match (tools::component(&name.to_string()), elements) {
-            (Some(here), _) => report.help(format!("write `{here}`, as it is called here")),
+            (Some(here), _) => {
+                let here = fitting(here);
+                report.help(format!("write `{here}`, as it is called here"))
+            }
             (None, Some(help)) => report.help(help),
             (None, None) => report.did_you_mean(&name.to_string(), &known),
         };
         if report.helps.is_empty() {
             let alike = tools::alike(&name.to_string());
-            let names = listing(alike.into_iter().map(str::to_owned));
-            report = report.help(format!(
-                "the library has {names}, see the page `library` of the documentation of `mbg_runtime`"
-            ));
+            let mut alike: Vec<String> = alike.into_iter().map(fitting).collect();
+            alike.dedup();
+            let page = "the page `library` of the documentation of `mbg_runtime`";
+            report = report.help(match alike.is_empty() {
+                true => format!("{page} lists the components that there are"),
+                false => format!("the library has {}, see {page}", listing(alike)),
+            });
         }
         self.tell(scope, report);
     }
@@ -366,15 +379,23 @@ fn wrong_size(port: &ast::Port, reference: &ast::Reference, size: usize) -> Diag
     error(codes::WRONG_DIMENSION, reference.span, message)
 }
 
-/// The component of the library that is in space what another is in a plane, or the other way round.
+/// What to type for a component whose frames are those of the other space.
 fn counterpart(name: &str, size: usize) -> Option<String> {
-    let (other, frames) = match (name.strip_prefix("Planar"), size) {
-        (Some(other), IN_SPACE) => (other.to_owned(), "space"),
-        (None, IN_PLANE) => (format!("Planar{name}"), "a plane"),
+    let space = if size == IN_PLANE { "a plane" } else { "space" };
+    let other = in_frames(name, size)?;
+    Some(format!("write `{other}`, which is for frames in {space}"))
+}
+
+/// The component of the library that is in space what another is in a plane, or the other way round.
+fn in_frames(name: &str, size: usize) -> Option<String> {
+    let other = match (name.strip_prefix("Planar"), size) {
+        (Some(other), IN_SPACE) => other.to_owned(),
+        (None, IN_PLANE) => format!("Planar{name}"),
         _ => return None,
     };
-    let is_known = library::names().any(|known| known == other);
-    is_known.then(|| format!("write `{other}`, which is for frames in {frames}"))
+    library::names()
+        .any(|known| known == other)
+        .then_some(other)
 }
 
 /// What to give a port for a shaft or a node in the place of a frame.

@@ -7,18 +7,21 @@ use syn::Expr;
 use syn::spanned::Spanned;
 
 use super::expressions::{Evaluator, Result, Value};
+use super::frames::part_of_frame;
 use super::model::{Assumption, Condition, Place, Quantity};
 use super::own::Own;
 use super::scope::Lookup;
+use crate::causality::ways::beside;
 use crate::codes;
-use crate::diagnostics::error;
-use crate::graph::{ElementKind, Integral, Law, Rule, Storage};
+use crate::diagnostics::{Diagnostic, error};
+use crate::graph::{ElementKind, End, Integral, Law, Rule, Storage, declaration};
 use crate::symbolic::print::number;
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Differentiator, Expression, Factor, Matrix, Pool, Product, Substitution, Symbol, linear_part,
 };
 use crate::syntax::ast::{Element, Field};
+use crate::syntax::dump;
 use crate::syntax::words::{article, is_two_port, law_words};
 
 /// What reading the fields of an element gives.
@@ -169,11 +172,35 @@ impl Reader<'_, '_, '_> {
             format!("a number or a vector of {size}")
         };
         let message = format!("expected {expected}, found {}", found.shape());
-        Err(Box::new(error(
-            codes::WRONG_DIMENSION,
-            value.span(),
-            message,
-        )))
+        let report = error(codes::WRONG_DIMENSION, value.span(), message);
+        let helps = self.of_another_size(value, found);
+        Err(Box::new(helps.into_iter().fold(report, Diagnostic::help)))
+    }
+
+    /// What to type where a vector does not have the size of the element.
+    fn of_another_size(&self, value: &Expr, found: &Value) -> Vec<String> {
+        let is_inside = self.lookup.scopes[self.lookup.scope].library.is_some();
+        let Value::Matrix(vector) = found else {
+            return Vec::new();
+        };
+        let (size, rows) = (self.own.dimension, vector.rows());
+        let Some((End::Junction(id, range), _)) = beside(self.lookup.graph, self.own.element)
+        else {
+            return Vec::new();
+        };
+        let junction = &self.lookup.graph.junctions[id.0];
+        if is_inside || vector.columns() > 1 || range.len() < junction.dimension {
+            return Vec::new();
+        }
+        let mut helps = Vec::from_iter(part_of_frame(&junction.name, size, rows));
+        if size == 1 && matches!(value, Expr::Path(_) | Expr::Field(_)) {
+            let text = dump::expression(value);
+            let first = if rows > 3 { "[0]" } else { ".x" };
+            helps.push(format!("write one component, such as `{text}{first}`"));
+            let wide = declaration(junction.kind, &junction.name, rows);
+            helps.push(format!("or `{wide}` for a junction with as many"));
+        }
+        helps
     }
 
     /// One entry per component; a number stands for all of them.

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use proc_macro2::Ident;
 use syn::Expr;
 
-use super::frames::IN_PLANE;
-use crate::graph::JunctionKind;
-use crate::syntax::words::{by_nearness, nearest};
+use super::frames::{IN_PLANE, IN_SPACE};
+use crate::graph::{ElementKind, JunctionKind};
+use crate::syntax::words::{ELEMENTS as KINDS, is_two_port, near, nearest};
 use crate::syntax::{ast, dump, library};
 
 /// What components are called elsewhere, without regard to capitals, underscores and the word joint, and in the library.
@@ -326,6 +326,12 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
     (
         &[
             "initial_angular_velocity",
+            "initial_angular_rate",
+            "initial_omega",
+            "initial_w",
+            "omega",
+            "omega0",
+            "w0",
             "initial_rates",
             "w_start",
             "rate",
@@ -435,12 +441,17 @@ pub(super) fn component(name: &str) -> Option<&'static str> {
     listed.map(|(_, here)| *here).or_else(of_library)
 }
 
-/// Names of the library for one that is unknown: by what they are called elsewhere, by a word that they share, or else all
-/// in order of their spelling.
+/// Names of the library for one that is unknown: by what they are called elsewhere, by a word that they share, or by their
+/// spelling; none where all are far from it.
 pub(super) fn alike(name: &str) -> Vec<&'static str> {
     let others = COMPONENTS.iter().flat_map(|(names, _)| names.iter());
     let others: Vec<&str> = others.copied().collect();
-    if let Some(meant) = nearest(&plain(name), &others).and_then(component) {
+    // Half of all words of three letters are near another.
+    let is_told = name.len() > 3;
+    if let Some(meant) = nearest(&plain(name), &others)
+        .and_then(component)
+        .filter(|_| is_told)
+    {
         return vec![meant];
     }
     // The last word tells what a thing is, and those before it of which kind.
@@ -453,7 +464,7 @@ pub(super) fn alike(name: &str) -> Vec<&'static str> {
         found.into_iter().collect::<Vec<_>>()
     });
     let shared = found.find(|found| !found.is_empty());
-    shared.unwrap_or_else(|| by_nearness(name, library::names()))
+    shared.unwrap_or_else(|| near(name, library::names()))
 }
 
 /// The words of a name, from capital to capital or between underscores, in small letters.
@@ -528,7 +539,89 @@ pub(super) fn vector(
 /// Vectors in space from one point to another.
 const VECTORS: [&str; 2] = ["by", "offset"];
 
+/// Whether a parameter of this name has the angles of a joint that turns about three axes.
+pub(super) fn is_of_angles(name: &Ident) -> bool {
+    name == "initial" || name == "rest"
+}
+
+/// What to type for a quaternion in the place of such angles.
+pub(super) fn as_angles(name: &Ident, quaternion: &Expr) -> String {
+    let quaternion = dump::expression(quaternion);
+    format!(
+        "`{name}` has three angles, however the orientation is represented: for a quaternion `[w, x, y, z]` and the axes that \
+         are not given write `{name}: angles_of(matrix_of({quaternion}), 0, 1, 2)`"
+    )
+}
+
+/// Whether a parameter of this name leads from one point to another.
+pub(super) fn is_way(name: &Ident) -> bool {
+    VECTORS.iter().any(|way| name == way)
+}
+
+/// What to type where a number stands for such a way, which has a direction.
+pub(super) fn along_an_axis(number: &Expr) -> String {
+    let number = dump::expression(number);
+    format!("write each component: `[{number}, 0.0, 0.0]` is a way along x")
+}
+
 const LETTERS: [&str; 3] = ["x", "y", "z"];
+
+/// What to type for an element that is called as a component is.
+pub(super) fn as_element(instance: &ast::Instance) -> Option<String> {
+    let mut kinds = KINDS.iter();
+    let (spelling, kind) = kinds.find(|(spelling, _)| instance.component == spelling)?;
+    let words = instance.arguments.iter().map(|it| match &it.value {
+        Some(value) => format!("{}: {}", it.name, dump::expression(value)),
+        None => it.name.to_string(),
+    });
+    let words = words.collect::<Vec<_>>().join(", ");
+    let words = if words.is_empty() { "…" } else { &words };
+    let element = format!("{spelling} {} {{ {words} }}", instance.name);
+    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
+    let written = match (&ends[..], kind) {
+        ([from, to], _) if is_two_port(*kind) => format!("{from} -> {element} -> {to};"),
+        _ if is_two_port(*kind) => format!("… -> {element} -> …;"),
+        ([at], ElementKind::Se | ElementKind::Sf) => format!("{element} -> {at};"),
+        ([at], _) => format!("{at} -> {element};"),
+        _ => format!("… -> {element};"),
+    };
+    Some(format!("`{spelling}` is an element: write `{written}`"))
+}
+
+/// What to type for a load that is given the point where it acts.
+pub(super) fn at_point(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
+    let is_point = ["at", "point", "position", "r"]
+        .iter()
+        .any(|it| argument.name == it);
+    let [frame] = &instance.connections[..] else {
+        return None;
+    };
+    let (size, offset) = match instance.component.to_string().as_str() {
+        "Load" => (IN_SPACE, "Offset"),
+        "PlanarLoad" => (IN_PLANE, "PlanarOffset"),
+        _ => return None,
+    };
+    let by = match &argument.value {
+        Some(Expr::Array(entries)) if size == IN_PLANE && entries.elems.len() == 2 => {
+            let [x, y] = [0, 1].map(|place| dump::expression(&entries.elems[place]));
+            format!("x: {x}, y: {y}")
+        }
+        _ if size == IN_PLANE => "x: …, y: …".to_owned(),
+        value => format!(
+            "by: {}",
+            value
+                .as_ref()
+                .map_or_else(|| "…".to_owned(), dump::expression)
+        ),
+    };
+    let (name, frame) = (&instance.name, dump::reference(frame));
+    is_point.then(|| {
+        format!(
+            "a load acts at the origin of its frame: write `1 {name}_at[{size}]; {name}_arm: {offset} {{ {by} }} ({frame}, {name}_at);`, \
+             and give `{name}` the frame `{name}_at`"
+        )
+    })
+}
 
 /// What to type for an instance of a component of another tool that is made of elements here; `end` is the first junction
 /// that it was given, by its kind and dimension.

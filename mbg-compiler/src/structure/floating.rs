@@ -9,12 +9,12 @@ use std::collections::BTreeSet;
 use proc_macro2::Span;
 
 use super::mesh;
-use crate::causality::ways::hold;
+use crate::causality::ways::{held_or_heavy, hold, is_bare};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Equation, Owner, Scalars};
-use crate::graph::{BondGraph, End, JunctionId, JunctionKind, instance_of, outermost_instance};
+use crate::graph::{BondGraph, JunctionId, JunctionKind, outermost_instance};
 use crate::symbolic::Pool;
 
 /// A component of a junction.
@@ -97,34 +97,9 @@ pub(super) fn bare_frame(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> 
         "nothing holds `{name}`: its flow and that of {others} can change together without any effect"
     );
     let span = graph.origins.span(junction.origin);
-    let source = hold(graph, frame, 0..junction.dimension);
-    Some(
-        error(codes::SINGULAR_JUNCTIONS, span, message)
-            .help(format!("hold it, if it is at rest: {source}"))
-            .help("or give it an inertia, such as a body, if it moves by itself"),
-    )
-}
-
-/// Whether a 1-junction has no elements of its own and leads into one component in use alone.
-fn is_bare(graph: &BondGraph, id: JunctionId) -> bool {
-    let junction = &graph.junctions[id.0];
-    let own = instance_of(&junction.name);
-    let neighbours: Option<Vec<&str>> = graph
-        .across(id)
-        .map(|far| match far {
-            End::OnePort(_) | End::Border => None,
-            End::In(id) | End::Out(id) => Some(graph.elements[id.0].name.as_str()),
-            End::Junction(other, _) => Some(graph.junctions[other.0].name.as_str()),
-        })
-        .collect();
-    let users = neighbours.map(|names| {
-        let users = names.into_iter();
-        users
-            .filter_map(|name| outermost_instance(name, own))
-            .collect()
-    });
-    junction.kind == JunctionKind::One
-        && users.is_some_and(|users: BTreeSet<&str>| users.len() == 1)
+    let [first, other] = held_or_heavy(graph, frame);
+    let report = error(codes::SINGULAR_JUNCTIONS, span, message);
+    Some(report.help(first).help(format!("or {other}")))
 }
 
 /// The nodes that change together in each mesh of these equations.

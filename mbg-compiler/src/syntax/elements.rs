@@ -1,6 +1,6 @@
 //! Elements and the words in their braces.
 
-use proc_macro2::{Delimiter, Group, Span};
+use proc_macro2::{Delimiter, Group, Ident, Span};
 
 use super::ast::{Element, ElementKind, Field};
 use super::attributes::Attributes;
@@ -136,7 +136,7 @@ fn unseparated(cursor: &Cursor, bare: bool, is_law: bool) -> Box<Diagnostic> {
 /// Reads the one-ports in a junction's braces.
 ///
 /// One that cannot be read is reported and its name remembered; the others are kept.
-pub(super) fn one_ports(group: &Group, sink: &mut Sink<'_>) -> Vec<Element> {
+pub(super) fn one_ports(group: &Group, junction: &Ident, sink: &mut Sink<'_>) -> Vec<Element> {
     let mut cursor = Cursor::inside(group);
     let mut elements = Vec::new();
     loop {
@@ -145,7 +145,7 @@ pub(super) fn one_ports(group: &Group, sink: &mut Sink<'_>) -> Vec<Element> {
             return elements;
         }
         let start = cursor.position();
-        match one_port(&mut cursor, sink) {
+        match one_port(&mut cursor, junction, sink) {
             Ok(element) => elements.push(element),
             Err(error) => {
                 sink.report(error);
@@ -157,12 +157,12 @@ pub(super) fn one_ports(group: &Group, sink: &mut Sink<'_>) -> Vec<Element> {
 }
 
 /// Reads one element of a junction's braces.
-fn one_port(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Element> {
+fn one_port(cursor: &mut Cursor, junction: &Ident, sink: &mut Sink<'_>) -> Parsed<Element> {
     let attributes = Attributes::read(cursor, sink)?;
     if let Some(kind) = kind(cursor, 0) {
         return element(cursor, kind, attributes.derivative, sink);
     }
-    if let Some(help) = slips::no_element(cursor) {
+    if let Some(help) = slips::no_element(cursor, junction) {
         return Err(Box::new((*cursor.expected("an element")).help(help)));
     }
     let mut error = no_element(cursor, "an element");

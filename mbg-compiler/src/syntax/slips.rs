@@ -5,7 +5,7 @@ use syn::ExprArray;
 
 use super::ast::{Reference, Segment};
 use super::cursor::Cursor;
-use super::{dump, elements, words};
+use super::{dump, elements, library, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::units::without_unit;
@@ -93,7 +93,7 @@ pub(super) fn nameless(kind: &str, law: &Group) -> Option<String> {
 }
 
 /// What to type in a junction for `mass: I { … }`, and for choices and loops of elements.
-pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
+pub(super) fn no_element(cursor: &Cursor, junction: &Ident) -> Option<String> {
     let word = cursor.ident(0)?;
     if word == "if" || word == "for" {
         return Some(format!(
@@ -101,7 +101,7 @@ pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
              {{ junction -> R name {{ … }}; }}`"
         ));
     }
-    if let Some(written) = instance(cursor) {
+    if let Some(written) = instance(cursor, junction) {
         return Some(format!(
             "instances stand outside the junction's braces, each in a statement of its own: `{written}`"
         ));
@@ -116,20 +116,30 @@ pub(super) fn no_element(cursor: &Cursor) -> Option<String> {
 }
 
 /// The instance that stands here, as it is written.
-fn instance(cursor: &Cursor) -> Option<String> {
+fn instance(cursor: &Cursor, junction: &Ident) -> Option<String> {
     let (name, component, behind) = match cursor.punct(1, ':') {
         true => (cursor.ident(0)?, cursor.ident(2)?, 3),
         false => (cursor.ident(1)?, cursor.ident(0)?, 2),
     };
     let groups = [behind, behind + 1].map(|at| cursor.group(at, Delimiter::Parenthesis));
-    let ports = groups.into_iter().flatten().next()?;
     let parameters = cursor.group(behind, Delimiter::Brace);
-    Some(statement(
-        &name.to_string(),
-        &component.to_string(),
-        parameters,
-        ports,
-    ))
+    let name = name.to_string();
+    let ports = match groups.into_iter().flatten().next() {
+        Some(ports) => dump::tokens(ports.stream()),
+        // In the braces of its junction it seems to need none.
+        None if parameters.is_some() && is_component(cursor, component) => junction.to_string(),
+        None => return None,
+    };
+    let component = component.to_string();
+    Some(statement(&name, &component, parameters, &ports))
+}
+
+/// Whether a word that is written as the component of an instance can be one.
+fn is_component(cursor: &Cursor, word: &Ident) -> bool {
+    match cursor.punct(1, ':') {
+        true => words::element(&word.to_string()).is_none(),
+        false => library::names().any(|known| word == known),
+    }
 }
 
 /// The digit of a junction by its name in words, as in `One v { … }` or `J1 v { … }`.
@@ -159,12 +169,11 @@ pub(super) fn written(
 ) -> String {
     format!(
         "an instance is written `{}`",
-        statement(name, component, braces, parentheses)
+        statement(name, component, braces, &dump::tokens(parentheses.stream()))
     )
 }
 
-fn statement(name: &str, component: &str, braces: Option<&Group>, parentheses: &Group) -> String {
-    let ports = dump::tokens(parentheses.stream());
+fn statement(name: &str, component: &str, braces: Option<&Group>, ports: &str) -> String {
     let parameters = match braces.map(|group| dump::tokens(group.stream())) {
         Some(words) if !words.is_empty() => format!(" {{ {words} }}"),
         _ => String::new(),

@@ -612,7 +612,7 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
     };
     let elements = match cursor.take_group(Delimiter::Brace) {
         Some(group) => {
-            let elements = one_ports(&group, sink);
+            let elements = one_ports(&group, &name, sink);
             if cursor.arrow(0) {
                 let error = *cursor.expected("the next statement after the junction's braces");
                 return Err(Box::new(error.help(format!(

@@ -183,13 +183,16 @@ pub(crate) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
         .map(|(_, word)| word)
 }
 
-/// Words, those first that are spelled most like what was typed.
-pub(crate) fn by_nearness<'a>(found: &str, words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+/// Words that share most of their letters with what was typed, in order, those first that are spelled most like it.
+pub(crate) fn near<'a>(found: &str, words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     // What makes a word longer than ours makes it no nearer to any of them.
     let found: String = found.to_lowercase().chars().take(16).collect();
-    let mut words: Vec<&str> = words.collect();
-    words.sort_by_key(|word| distance(&found, &word.to_lowercase()));
-    words
+    let words = words.map(|word| (distance(&found, &word.to_lowercase()), word));
+    let mut words: Vec<(usize, &str)> = words
+        .filter(|(distance, _)| 5 * distance <= 2 * found.chars().count())
+        .collect();
+    words.sort_by_key(|(distance, _)| *distance);
+    words.into_iter().map(|(_, word)| word).collect()
 }
 
 /// Whether one of these words, of which some are unknown, was probably meant to be `word`.

@@ -13,6 +13,7 @@ mod densities;
 mod dimension;
 mod inference;
 mod names;
+mod parameters;
 mod ports;
 mod pseudo;
 mod report;
@@ -88,6 +89,9 @@ pub fn check(
         let mut report = report.clone();
         if position == 0 && !converters.is_empty() {
             report.helps = alternatives(converters.clone());
+        } else if position == 0 {
+            let cause = parameters::advice(elaborated, &claims, &pool, &declared, &report);
+            report.helps.splice(0..0, cause);
         }
         diagnostics.report(report);
     }

@@ -45,6 +45,12 @@ pub(super) fn unit_text(unit: &Dimension) -> String {
     "a unit that is not known".to_owned()
 }
 
+/// What to do about a name whose unit is at fault.
+pub(super) fn in_another_unit(name: &str, unit: &Unit) -> String {
+    let unit = &unit.text;
+    format!("declare `{name}`, which is in `{unit}`, in another unit or in none")
+}
+
 /// `damper.e`, `joint.f.x`.
 pub(super) fn signal_text(model: &Elaborated, (quantity, place, component): Signal) -> String {
     let letter = match quantity {
@@ -390,10 +396,7 @@ impl<'a> Reporter<'a> {
         };
         let help = declared.map(|(symbol, unit, _)| {
             let name = symbol_text(self.model, self.claims, *symbol);
-            format!(
-                "declare `{name}`, which is in `{}`, in another unit or in none",
-                unit.text
-            )
+            in_another_unit(&name, unit)
         });
         Some((claim.place.clone(), help))
     }

@@ -1,0 +1,343 @@
+//! Mistakes of people who know another tool: each says what to type, and with that typed nothing is told any more.
+#![allow(clippy::unwrap_used)]
+
+mod told;
+
+use told::{diagnose, told, typed};
+
+/// A body that floats in space, with more beside it.
+fn floating(free: &str, more: &str) -> String {
+    format!(
+        "model M {{ causality componentwise; input u; 1 ground[6]; 1 hull[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+         free: Free {{ {free} }} (ground, hull); body: Body {{ mass: 1.0, inertia: diag(1.0, 1.0, 1.0) }} (hull);
+         {more} }}"
+    )
+}
+
+/// A mass and a resistor with a law, beside an input.
+fn by_law(law: &str) -> String {
+    format!(
+        "model M {{ input u; input road[2]; 1 v {{ I b {{ inertia: 1.0 }} Se push {{ effort: {law} }} }} output y = u * road.x * road.y; }}"
+    )
+}
+
+/// The first help of the first mistake.
+fn first_help(text: &str) -> String {
+    let diagnostics = diagnose(text);
+    let helps = diagnostics.list().first().unwrap().helps.clone();
+    helps.into_iter().next().unwrap_or_default()
+}
+
+/// The texts in backticks of the first help of the first mistake.
+fn first_typed(text: &str) -> Vec<String> {
+    let help = first_help(text);
+    let typed = help.split('`').skip(1).step_by(2);
+    typed.map(str::to_owned).collect()
+}
+
+#[test]
+fn a_load_at_a_point_stands_at_an_offset() {
+    let load = |frames: &str, load: &str| {
+        let more = format!("{frames} load: Load {{ force: [0.0, 0.0, u] {load};");
+        floating("", &more)
+    };
+    let typed = first_typed(&load("", ", at: [0.1, 0.0, 0.0] } (hull)"));
+    assert_eq!(
+        typed,
+        [
+            "1 load_at[6]; load_arm: Offset { by: [0.1, 0.0, 0.0] } (hull, load_at);",
+            "load",
+            "load_at"
+        ]
+    );
+    assert_eq!(told(&load(&typed[0], "} (load_at)")), "");
+    let planar = |frames: &str, load: &str| {
+        format!(
+            "model M {{ causality componentwise; input u; 1 hull[3]; body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (hull);
+             {frames} load: PlanarLoad {{ axes: body, angle_at: 0.0, force: [0.0, u] {load}; }}"
+        )
+    };
+    let typed = first_typed(&planar("", ", at: [0.1, 0.2] } (hull)"));
+    assert_eq!(
+        typed[0],
+        "1 load_at[3]; load_arm: PlanarOffset { x: 0.1, y: 0.2 } (hull, load_at);"
+    );
+}
+
+#[test]
+fn components_are_told_that_fit_and_are_near() {
+    let scene = |size: usize, joint: &str| {
+        format!(
+            "#[derivative] model M {{ 1 g[{size}]; 1 a[{size}]; Sf fixed[{size}] {{ flow: 0.0 }} -> g;
+             h: {joint} (g, a); body: {}Body {{ mass: 1.0, inertia: 1.0 }} (a); }}",
+            if size == 3 { "Planar" } else { "" }
+        )
+    };
+    assert_eq!(first_typed(&scene(3, "PlanarHinge"))[0], "PlanarRevolute");
+    assert_eq!(first_typed(&scene(3, "Hinge"))[0], "PlanarRevolute");
+    assert_eq!(told(&scene(3, "PlanarRevolute")), "");
+    assert_eq!(first_typed(&scene(6, "Hinge { axis: 2 }"))[0], "Revolute");
+    assert_eq!(told(&scene(6, "Revolute { axis: 2 }")), "");
+    for far in ["PID { gain: 1.0 }", "Controller { gain: 1.0 }"] {
+        insta::allow_duplicates! {
+            insta::assert_snapshot!(
+                first_help(&floating("", &format!("control: {far} (hull);"))),
+                @"the page `library` of the documentation of `mbg_runtime` lists the components that there are"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_element_that_is_called_as_a_component_is_written_as_an_element() {
+    let scene = |part: &str| {
+        format!(
+            "model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ R r {{ resistance: 1.0 }} }} 1 c[3] {{ I n {{ inertia: 1.0 }} }} {part} }}"
+        )
+    };
+    for (called, written) in [
+        (
+            "x: C { stiffness: 2.0 } (a);",
+            "a -> C x { stiffness: 2.0 };",
+        ),
+        ("x: Se { effort: 2.0 } (a);", "Se x { effort: 2.0 } -> a;"),
+        (
+            "x: TF { flow: 2.0 } (a, b);",
+            "a -> TF x { flow: 2.0 } -> b;",
+        ),
+        (
+            "x: EJS { momentum: n.p } (c);",
+            "c -> EJS x { momentum: n.p };",
+        ),
+    ] {
+        let typed = first_typed(&scene(called));
+        assert_eq!(typed.last().unwrap(), written);
+        assert_eq!(
+            told(&scene(written).replace(
+                "1 b { R r { resistance: 1.0 } }",
+                match called.contains("TF") {
+                    true => "1 b { R r { resistance: 1.0 } }",
+                    false => "",
+                }
+            )),
+            ""
+        );
+    }
+    assert_eq!(first_typed(&scene("x: C (a);"))[1], "a -> C x { … };");
+}
+
+#[test]
+fn the_end_of_a_range_is_excluded() {
+    let scene = |read: &str| format!("model M {{ 1 w[6] {{ I b {{ inertia: 1.0 }} }} {read} }}");
+    for (short, written) in [
+        ("output e[2] = w.f[1..2];", "w.f[1..3]"),
+        ("output e[3] = w.f[3..5];", "w.f[3..6]"),
+        ("integral e[2] = w.f[0..1];", "w.f[0..2]"),
+    ] {
+        let help = format!("the end of a range is excluded: write `{written}`");
+        assert_eq!(first_help(&scene(short)), help);
+        let (front, _) = short.split_once("w.f").unwrap();
+        assert_eq!(told(&scene(&format!("{front}{written};"))), "");
+    }
+    let number = first_help(&scene("output e[2] = w.f[1];"));
+    assert!(number.starts_with("write each component"), "{number}");
+    let bond = "model M { 1 w[4] { I b { inertia: 1.0 } } Se s[2] { effort: 1.0 } -> w[1..2]; }";
+    assert_eq!(
+        first_help(bond),
+        "the end of a range is excluded: write `w[1..3]`"
+    );
+    assert_eq!(told(&bond.replace("1..2", "1..3")), "");
+}
+
+#[test]
+fn a_number_for_a_way_is_told_along_an_axis() {
+    let arm = |by: &str| {
+        floating(
+            "",
+            &format!("1 tip[6]; arm: Offset {{ {by} }} (hull, tip);"),
+        )
+    };
+    assert_eq!(
+        first_help(&arm("by: 1.5")),
+        "write each component: `[1.5, 0.0, 0.0]` is a way along x"
+    );
+    assert_eq!(told(&arm("by: [1.5, 0.0, 0.0]")), "");
+}
+
+#[test]
+fn a_function_of_a_module_is_written_alone() {
+    for module in ["Math", "math", "np", "Modelica.Math"] {
+        let text = by_law(&format!("{module}.sin(u)"));
+        let diagnostics = diagnose(&text);
+        let [report] = diagnostics.list() else {
+            panic!("{}", told(&text))
+        };
+        assert_eq!(report.message, format!("`{module}` is not declared"));
+        assert_eq!(
+            report.helps,
+            ["functions belong to no module: write `sin(u)`"]
+        );
+    }
+    assert_eq!(
+        first_typed(&by_law("Math.atan2(u, 1.0)")),
+        ["atan2(u, 1.0)"]
+    );
+    assert_eq!(told(&by_law("sin(u)")), "");
+    // A value has its own mistake.
+    assert!(told(&by_law("u.sin(u)")).contains("`sin` takes 1 argument, found 2"));
+}
+
+#[test]
+fn three_components_are_bonded_to_a_part_of_a_frame() {
+    let push = |to: &str| {
+        floating(
+            "",
+            &format!("Se push[3] {{ effort: [0.0, 0.0, u] }} -> {to};"),
+        )
+    };
+    let help = "bond it to `hull[3..6]` for a force or a velocity, to `hull[0..3]` for a moment or an angular velocity";
+    assert_eq!(first_help(&push("hull")), help);
+    let short = first_help(&push("hull[0..2]"));
+    assert_eq!(short, format!("the end of a range is excluded: {help}"));
+    for part in ["hull[0..3]", "hull[3..6]"] {
+        assert_eq!(told(&push(part)), "");
+    }
+    for size in ["", "[3]"] {
+        let inside = floating("", "").replace(
+            "1 hull[6]",
+            &format!("1 hull[6] {{ Se push{size} {{ effort: [0.0, 0.0, u] }} }}"),
+        );
+        assert_eq!(first_help(&inside), help);
+    }
+}
+
+#[test]
+fn starts_of_a_rotation_are_angles_and_rates() {
+    let quaternion = first_typed(&floating("initial: [1.0, 0.0, 0.0, 0.0]", ""));
+    let angles = "initial: angles_of(matrix_of([1.0, 0.0, 0.0, 0.0]), 0, 1, 2)";
+    assert_eq!(quaternion, ["initial", "[w, x, y, z]", angles]);
+    assert_eq!(told(&floating(angles, "")), "");
+    for name in [
+        "initial_omega",
+        "omega",
+        "omega0",
+        "initial_angular_velocity",
+    ] {
+        let rate = first_typed(&floating(&format!("{name}: [1.0, 0.0, 0.0]"), ""));
+        assert_eq!(rate, ["initial_rate: [1.0, 0.0, 0.0]"]);
+    }
+    assert_eq!(told(&floating("initial_rate: [1.0, 0.0, 0.0]", "")), "");
+}
+
+#[test]
+fn a_vector_at_a_junction_of_one_component_is_told_both_ways() {
+    assert_eq!(typed(&by_law("road")), ["road.x", "1 v[2]"]);
+    assert_eq!(told(&by_law("road.x")), "");
+    assert_eq!(told(&by_law("road").replace("1 v {", "1 v[2] {")), "");
+    let long = by_law("road").replace("road[2]", "road[4]");
+    assert_eq!(first_typed(&long), ["road[0]"]);
+}
+
+#[test]
+fn a_value_has_no_variables_of_an_element() {
+    let text = "model M { param spring = 2.0; 1 v { I b { inertia: 1.0 } C stroke { stiffness: spring } }\noutput y = spring.q; }";
+    insta::assert_snapshot!(told(text), @"
+    2:19 `spring.q` is not declared [MBG0203]
+      help: `spring` is a value, and `q` is read of an element: write the name of that before it
+    ");
+    assert_eq!(told(&text.replace("spring.q", "stroke.q")), "");
+}
+
+#[test]
+fn an_instance_among_the_elements_of_a_junction_stands_outside() {
+    for written in [
+        "brake: Brake { capacity: 3.0 }",
+        "Brake brake { capacity: 3.0 }",
+    ] {
+        let text = format!("model M {{ 1 v {{ I b {{ inertia: 1.0 }} {written} }} }}");
+        let typed = typed(&text);
+        assert_eq!(typed, ["brake: Brake { capacity: 3.0 } (v);"]);
+        let text = format!(
+            "model M {{ 1 v {{ I b {{ inertia: 1.0 }} }} {} }}",
+            typed[0]
+        );
+        assert_eq!(told(&text), "");
+    }
+    // A kind that stands in the place of a component is an element still.
+    let turned = "model M { 1 v { b: I { inertia: 1.0 } } }";
+    assert!(first_help(turned).starts_with("the kind of an element stands before its name"));
+}
+
+#[test]
+fn a_ground_that_is_left_free_is_held() {
+    let scene = |causality: &str, source: &str| {
+        format!(
+            "model M {{ {causality} 1 ground[6]; 1 hull[6]; {source} free: Free (ground, hull);
+             body: Body {{ mass: 1.0, inertia: diag(1.0, 1.0, 1.0) }} (hull); }}"
+        )
+    };
+    for causality in ["", "causality componentwise;"] {
+        let helps = diagnose(&scene(causality, "")).list()[0].helps.clone();
+        let source = "Sf wall[6] { flow: 0.0 } -> ground;";
+        assert_eq!(helps[0], format!("hold it, if it is at rest: `{source}`"));
+        assert_eq!(
+            helps[1],
+            "or give it an inertia, such as a body, if it moves by itself"
+        );
+        assert_eq!(told(&scene("causality componentwise;", source)), "");
+    }
+}
+
+#[test]
+fn a_parameter_in_the_unit_of_another_domain_is_named_where_its_unit_shows() {
+    let text = |unit: &str| {
+        format!(
+            "model M {{ param k{unit} = 2.0; 1 v {{ I b {{ inertia: 1.0 }} C spring {{ stiffness: k }} }}\noutput x: m = spring.q; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text(": N*m/rad")), @"
+    2:15 `x` is declared in `m`, and this is a pure number [MBG0501]
+      help: declare `k`, which is in `N*m/rad`, in another unit or in none
+      help: an angle is declared in `rad`
+      help: a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts
+    ");
+    assert_eq!(told(&text(": N/m")), "");
+    assert_eq!(told(&text("")), "");
+    // What is read at the mistake itself is seen there, and of two causes none is the one.
+    let direct = told(&text(": N/m").replace("= spring.q", "= k * spring.q"));
+    assert!(!direct.contains("declare `k`"), "{direct}");
+    let two = "model M { param k: N*m/rad = 2.0; param d: N*m*s/rad = 2.0; 1 v { I b { inertia: 1.0 } C spring { stiffness: k }
+        R damper { resistance: d } } output x: m = spring.q; }";
+    assert!(!told(two).contains("declare `k`"), "{}", told(two));
+}
+
+#[test]
+fn what_a_brake_or_a_clutch_is_given_lies_between_nothing_and_all() {
+    let scene = |engagement: &str| {
+        format!(
+            "model M {{ input u; param e: 1 = 0.5; 1 a {{ I m {{ inertia: 1.0 }} }} 1 b {{ I n {{ inertia: 1.0 }} }}
+             clutch: Clutch {{ capacity: 3.0,\nengagement: {engagement} }} (a, b); output y = e * u; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&scene("2")), @"
+    3:13 `engagement` does not fit in `Clutch`: `engagement <= 1` is asserted of `clutch.plates`, and these are 2.0 and 1.0 [MBG0213]
+      `engagement`: How much of the capacity acts, from 0 for an open clutch to 1: a number, or a signal such as an input
+    ");
+    assert!(told(&scene("-0.1")).contains("`0 <= engagement` is asserted"));
+    for within in [
+        "0",
+        "0.5",
+        "1",
+        "u",
+        "2 * u",
+        "e",
+        "if t < 1.0 { 0 } else { 1 }",
+    ] {
+        assert_eq!(told(&scene(within)), "", "{within}");
+    }
+    let brake = scene("0")
+        .replace("Clutch", "Brake")
+        .replace("(a, b)", "(a)");
+    assert_eq!(told(&brake), "");
+    assert!(told(&brake.replace("engagement: 0", "engagement: 1.5")).contains("`engagement <= 1`"));
+}

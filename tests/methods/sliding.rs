@@ -1,11 +1,12 @@
 //! Motions that stay where laws jump: friction that holds, relays that go on and off without end.
 
 use mbg_runtime::{
-    Adaptive, Auto, Constant, Direction, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pirk8, Pulse,
-    Radau9, Real, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
+    Adaptive, Auto, Constant, Direction, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pirk8,
+    Pulse, Radau9, Real, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
+#[path = "sliding/constant_steps.rs"]
 mod constant_steps;
 
 mbg! {

@@ -138,8 +138,8 @@ struct OnGrid<'a, Scheme, T> {
     lost: (f64, u32),
 }
 
-/// So often a step of the grid ends at a jump at most.
-const ENDS: u32 = 16;
+/// So often it is begun anew within a step of the grid at most.
+const ENDS: u32 = 64;
 
 impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, T> {
     const LOOKS_WITHIN: bool = false;

@@ -57,7 +57,7 @@ pub(super) trait Runs<T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
 
-    /// From which time on jumps are met behind so many on this piece.
+    /// From which time on jumps are met, where it was asked before how often.
     fn watched(&mut self, t: T) -> f64;
 }
 
@@ -81,8 +81,9 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    let mut way = Way::new(here, runs.watched(here.0));
+    let mut way = Way::new(here);
     loop {
+        way.watched = way.watched.max(runs.watched(way.here.0));
         match way.follow(runs, problem, end, observer)? {
             Followed::Over => continue,
             Followed::There => {}
@@ -92,6 +93,9 @@ where
             return Ok(Walked::Ended(way.here.1));
         };
         let here = problem.point(way.here);
+        if let Some(surfaces) = problem.ends_at(&here, ends) {
+            return Ok(Walked::Stays(way.here, surfaces));
+        }
         let length = jump.length;
         let Some(rest) = way.rest(problem, &here.slope, jump) else {
             continue;
@@ -100,7 +104,7 @@ where
         match problem.beyond_threshold(&here, ahead, ends, observer)? {
             ControlFlow::Continue((next, watched)) => {
                 way.here = (next.time, next.state);
-                way.watched = watched.max(runs.watched(next.time));
+                way.watched = watched;
             }
             ControlFlow::Break(walked) => return Ok(walked),
         }
@@ -129,12 +133,12 @@ enum Followed {
 }
 
 impl<T: Real, const N: usize> Way<T, N> {
-    fn new(here: Place<T, N>, watched: f64) -> Self {
+    fn new(here: Place<T, N>) -> Self {
         Self {
             here,
             near: None,
             tries: 0,
-            watched,
+            watched: f64::NEG_INFINITY,
         }
     }
 

@@ -85,6 +85,17 @@ where
         }
     }
 
+    /// The thresholds at which a point is, as far as numbers tell, if a walk ends there.
+    pub(super) fn ends_at(&mut self, here: &Point<T, N>, ends: Ends) -> Option<Surfaces<T>> {
+        match ends {
+            Ends::Nowhere => None,
+            _ => {
+                let met = self.next_to(here);
+                met.filter(|met| self.stays(here, met))
+            }
+        }
+    }
+
     /// Whether the motion stays at some of these thresholds.
     #[cold]
     fn stays(&mut self, here: &Point<T, N>, surfaces: &Surfaces<T>) -> bool {

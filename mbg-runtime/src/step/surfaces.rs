@@ -96,7 +96,7 @@ where
     }
 
     /// The thresholds next to a point.
-    fn next_to(&self, here: &Point<T, N>) -> Option<Surfaces<T>> {
+    pub(super) fn next_to(&self, here: &Point<T, N>) -> Option<Surfaces<T>> {
         let time = PLACES * T::EPSILON * here.time.magnitude().max(self.whole);
         self.surfaces(here, here, |course, level| {
             let [value, rate] = course.from.map(seen);

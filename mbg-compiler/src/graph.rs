@@ -356,6 +356,23 @@ impl BondGraph {
             .map(|(_, far)| far)
     }
 
+    /// What the other port of a two-port leads to.
+    #[must_use]
+    pub fn beyond(&self, port: &End) -> Option<&End> {
+        let other = match port {
+            End::In(id) => End::Out(*id),
+            End::Out(id) => End::In(*id),
+            _ => return None,
+        };
+        self.bonds
+            .iter()
+            .find_map(|bond| match (&bond.from, &bond.to) {
+                (from, to) if *from == other => Some(to),
+                (from, to) if *to == other => Some(from),
+                _ => None,
+            })
+    }
+
     /// The path of an end, for people.
     #[must_use]
     pub fn end_name(&self, end: &End) -> String {

@@ -312,6 +312,53 @@ fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_i
     assert_eq!(around_a_wheel("", free), "");
 }
 
+/// A shaft that nothing brakes takes what is between the others out of the model.
+#[test]
+fn gears_with_a_loose_shaft_are_told() {
+    let geared = |gear: &str| {
+        around_a_wheel(
+            "",
+            &format!("1 shaft {{ #[derivative] I n {{ inertia: 2.0 }} }} 1 c; {gear}"),
+        )
+    };
+    let sum = "0 sum; wheel -> sum; sum -> shaft; sum -> c;";
+    for (gear, dead) in [
+        (sum, "nor does `sum` act"),
+        (
+            "gear: Planetary { ratio: 3.0 } (wheel, shaft, c);",
+            "nor does `gear.teeth` act",
+        ),
+        (
+            "gear: Differential (wheel, shaft, c);",
+            "nor does `gear.side` act",
+        ),
+        // Behind two-ports, of which a gyrator takes the flow.
+        (
+            "0 sum; wheel -> sum; sum -> shaft; sum -> TF on { flow: 2.0 } -> c;",
+            "nor does `sum` act",
+        ),
+        (
+            "1 coil { R r { resistance: 1.0 } } coil -> GY motor { effort: 0.1 } -> c;",
+            "and nothing flows through `coil`",
+        ),
+    ] {
+        let told = format!(
+            "3:50 nothing acts on `c`, which has one bond, {dead} [MBG0225]\n  help: hold `c`: `Sf wall {{ flow: 0.0 }} -> c;`"
+        );
+        assert_eq!(geared(gear), told);
+    }
+    // Not where it is held, where its motion is asked for or is a coordinate, nor at the end of a chain.
+    for held in [
+        format!("{sum} Sf brake {{ flow: 0.0 }} -> c;"),
+        format!("{sum} output slip = c.f;"),
+        "wheel -> TF lever { flow: 2.0 } -> c;".to_owned(),
+    ] {
+        assert_eq!(geared(&held), "", "{held}");
+    }
+    let hinge = "1 shaft { I n { inertia: 2.0 } } 1 c coordinate;";
+    assert_eq!(around_a_wheel("", &format!("{hinge} {sum}")), "");
+}
+
 /// An arm on a hinge, and a statement.
 fn around_an_arm(statement: &str) -> String {
     warned(&format!(

@@ -278,6 +278,11 @@ pub fn declaration(kind: JunctionKind, name: &str, dimension: usize) -> String {
 }
 
 impl Element {
+    /// Its name without the path.
+    pub fn own_name(&self) -> &str {
+        self.name.rsplit('.').next().unwrap_or(&self.name)
+    }
+
     /// Whether it is a storage with states of its own.
     #[must_use]
     pub const fn has_states(&self) -> bool {

@@ -11,6 +11,7 @@ use crate::elaborate::{Elaborated, Place};
 use crate::graph::{
     BondGraph, ElementId, ElementKind, End, JunctionId, JunctionKind, Law, Rule, instance_of,
 };
+use crate::locked;
 use crate::structure::Solved;
 use crate::symbolic::Expression;
 
@@ -22,7 +23,7 @@ struct Loose {
     like: JunctionKind,
 }
 
-/// Warns of those whose effort or flow nobody asks for.
+/// Warns of those whose effort or flow nobody asks for, or else of sources and inertias that can do nothing.
 pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
     let mut is_told = false;
@@ -52,14 +53,16 @@ pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagno
         diagnostics.warn(report.help(holding(graph, id)));
         is_told = true;
     }
-    if !is_told {
-        warn_of_sources(model, solved, diagnostics);
+    if !is_told && !warn_of_sources(model, solved, diagnostics) {
+        locked::warn(model, solved, diagnostics);
     }
 }
 
-/// Warns of effort sources at nodes through which nothing flows, whatever the state, and whose effort nobody asks for.
-fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
+/// Warns of effort sources at nodes through which nothing flows, whatever the state, and whose effort nobody asks for; whether
+/// there are such.
+fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) -> bool {
     let graph = &model.graph;
+    let mut is_told = false;
     for bond in &graph.bonds {
         let (End::OnePort(id), End::Junction(node, _)) = (&bond.from, &bond.to) else {
             continue;
@@ -79,7 +82,9 @@ fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagno
             Some(held) => report.help(format!("if its circuit lacks a ground, {held}")),
             None => report,
         });
+        is_told = true;
     }
+    is_told
 }
 
 /// Whether a law or an output asks for an effort or a flow there.
@@ -99,7 +104,7 @@ fn is_driven(graph: &BondGraph, source: ElementId, node: JunctionId) -> bool {
 }
 
 /// Whether the flow of a one-port is zero whatever the state.
-fn is_idle(solved: &Solved, id: ElementId) -> bool {
+pub(crate) fn is_idle(solved: &Solved, id: ElementId) -> bool {
     let mut flow = solved.scalars.ports[&id].flow.iter();
     flow.all(|unknown| solved.solution.values[*unknown] == Expression::ZERO)
 }

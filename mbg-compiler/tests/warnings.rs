@@ -359,6 +359,34 @@ fn gears_with_a_loose_shaft_are_told() {
     assert_eq!(around_a_wheel("", &format!("{hinge} {sum}")), "");
 }
 
+/// Two gears between the same shafts, whose ratios are not the same.
+#[test]
+fn shafts_that_gears_lock_are_told() {
+    let train = |gears: &str, more: &str| {
+        warned(&format!(
+            "#[derivative] model M {{
+                input drive: N*m; param one = 3.5; param two = 3.5;
+                1 a {{ I m {{ inertia: 2.0 }} Se k {{ effort: drive }} }} 1 b {{ I n {{ inertia: 200.0 }} }}
+                1 c {{ I moving {{ inertia: 1.0 }} }} 0 soft {{ C spring {{ stiffness: 1.0 }} }} b -> TF slow {{ flow: 0.1 }} -> soft; soft -> c;
+                a -> TF first {{ flow: 1.0 / one }} -> b; {gears} {more} }}"
+        ))
+    };
+    let second = "a -> TF second { flow: 1.0 / two } -> b;";
+    insta::assert_snapshot!(train(second, ""), @"
+    3:25 the flow of `m`, `n` is zero, whatever acts there [MBG0224]
+      help: `first`, `second` hold each other where their ratios contradict each other: leave one of them out
+    ");
+    // Not one gear alone, what is held on purpose, nor two that drive shafts of their own.
+    assert_eq!(train("output twice = two;", ""), "");
+    assert_eq!(
+        train("output twice = two;", "Sf wall { flow: 0.0 } -> b;"),
+        ""
+    );
+    let third = "1 aside { I other { inertia: 1.0 } } a -> TF second { flow: 1.0 / two } -> aside;";
+    assert_eq!(train(third, ""), "");
+    assert_eq!(train(second, "Sf wall { flow: 0.0 } -> c;"), "");
+}
+
 /// An arm on a hinge, and a statement.
 fn around_an_arm(statement: &str) -> String {
     warned(&format!(

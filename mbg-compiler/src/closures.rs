@@ -11,9 +11,9 @@ use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, StateRate};
 use crate::equations::Scalars;
-use crate::graph::ElementKind;
+use crate::graph::{ElementKind, Law};
 use crate::scaling::{SAMPLES, sample};
-use crate::structure::Solution;
+use crate::structure::{Solution, Solved};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Differentiator, Evaluation, Expression, Matrix, Pool, Substitution, Symbol, jacobian,
@@ -233,9 +233,21 @@ pub fn tangential(
     }
 }
 
-/// Residuals of the flows, with derivatives by the states that are velocities or momenta.
+/// Residuals of the flows, and of these together with what is given for the start.
 #[must_use]
-pub fn flows(
+pub fn rates(
+    model: &Elaborated,
+    solved: &Solved,
+    by: &[Symbol],
+    pool: &mut Pool,
+) -> [Residuals; 2] {
+    let flows = flows(model, &solved.scalars, &solved.solution, by, pool);
+    let started = started(model, solved, &flows, by, pool);
+    [flows, started]
+}
+
+/// Residuals of the flows, with derivatives by the states that are velocities or momenta.
+fn flows(
     model: &Elaborated,
     scalars: &Scalars,
     solution: &Solution,
@@ -249,6 +261,17 @@ pub fn flows(
             closures.push(number);
         }
     }
+    moved(model, values, closures, by, pool)
+}
+
+/// Residuals with derivatives by the states that are velocities or momenta.
+fn moved(
+    model: &Elaborated,
+    values: Vec<Expression>,
+    closures: Vec<usize>,
+    by: &[Symbol],
+    pool: &mut Pool,
+) -> Residuals {
     let mut jacobian = jacobian(pool, &values, by);
     for (column, symbol) in by.iter().enumerate() {
         if !moves(model, *symbol) {
@@ -262,6 +285,62 @@ pub fn flows(
         jacobian,
         closures,
     }
+}
+
+/// Residuals of the flows, and what flows and momenta are beside those that are given for the start, so that others follow
+/// from them; nothing without loops, or where nothing is given. A rate of zero is not told from none; beside another
+/// component that is not zero it is given.
+fn started(
+    model: &Elaborated,
+    solved: &Solved,
+    flows: &Residuals,
+    by: &[Symbol],
+    pool: &mut Pool,
+) -> Residuals {
+    let is_state = |symbol: &Symbol| !matches!(symbol, Symbol::State(_)) || by.contains(symbol);
+    let mut given = Vec::new();
+    for (found, wanted) in starts(model, solved, pool) {
+        if wanted.iter().any(|it| *it != Expression::ZERO)
+            && symbols(pool, &found).iter().all(is_state)
+        {
+            let pairs = found.into_iter().zip(wanted);
+            given.extend(pairs.map(|(found, wanted)| pool.subtract(found, wanted)));
+        }
+    }
+    if flows.values.is_empty() || given.is_empty() {
+        return moved(model, Vec::new(), Vec::new(), by, pool);
+    }
+    // No closure has this number.
+    let none = vec![model.graph.closures.len(); given.len()];
+    let closures = [&flows.closures[..], &none].concat();
+    let values = [flows.values.clone(), given].concat();
+    moved(model, values, closures, by, pool)
+}
+
+/// Flows of coordinates, and momenta that are given themselves, with what they are said to be at the start.
+fn starts(
+    model: &Elaborated,
+    solved: &Solved,
+    pool: &mut Pool,
+) -> Vec<(Vec<Expression>, Vec<Expression>)> {
+    let junctions = model.graph.junctions.iter().zip(&solved.scalars.common);
+    let flows = junctions.map(|(junction, flows)| {
+        let found = flows.iter().map(|flow| solved.solution.values[*flow]);
+        (found.collect(), junction.initial_flow.clone())
+    });
+    let mut starts: Vec<_> = flows.collect();
+    for element in &model.graph.elements {
+        if let (ElementKind::I, Law::Storage(storage)) = (element.kind, &element.law) {
+            let states = &model.states[storage.states.clone()];
+            if states.iter().all(|it| it.is_given) {
+                let found = storage.states.clone();
+                let found = found.map(|state| pool.symbol(Symbol::State(state)));
+                let wanted = states.iter().map(|it| it.initial).collect();
+                starts.push((found.collect(), wanted));
+            }
+        }
+    }
+    starts
 }
 
 /// Whether a state is a velocity or a momentum.

@@ -47,6 +47,8 @@ pub struct Compiled {
     pub attitudes: Vec<Vec<Vec<usize>>>,
     /// The closure behind each residual of positions and of flows.
     pub closed: [Vec<usize>; 2],
+    /// The same of flows beside those that are given for the start; nothing where none is given.
+    pub started: Vec<usize>,
     /// Whose ranks `new` finds.
     pub ranks: closures::Ranks,
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
@@ -119,6 +121,8 @@ impl Routines {
     pub const RESIDUALS_OF_POSITIONS: usize = 14;
     pub const RESIDUALS_OF_FLOWS: usize = 15;
     pub const SOUGHT: usize = 16;
+    pub const STARTED_FLOWS: usize = 17;
+    pub const RESIDUALS_OF_START: usize = 18;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -186,7 +190,7 @@ fn finish(
     let attitudes = attitudes(&model, &answers.states);
     let mut positions = closures::positions(&answers.displacements, &by_state, &mut pool);
     closures::tangential(&mut positions, &attitudes, &by_state, &mut pool);
-    let flows = closures::flows(&model, scalars, solution, &by_state, &mut pool);
+    let [flows, started] = closures::rates(&model, solved, &by_state, &mut pool);
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
     let conditioning = scaling::scaled(&model, solution, &mut pool);
     let named = divisors::names(&model, scalars, solution, &pool);
@@ -196,15 +200,15 @@ fn finish(
     if diagnostics.any() {
         return None;
     }
-    let states = answers.states.iter();
-    let initial = states.map(|state| model.states[*state].initial);
+    let initial = |state: &usize| model.states[*state].initial;
+    let initial: Vec<Expression> = answers.states.iter().map(initial).collect();
     let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let (times, arguments) = changes::of(&mut pool, rates, &by_state);
-    let requests: [Request; 17] = [
+    let requests: [Request; 19] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -212,7 +216,7 @@ fn finish(
         vec![answers.energy].into(),
         vec![answers.supplied, answers.dissipated].into(),
         conditioning.clone().into(),
-        initial.collect::<Vec<_>>().into(),
+        initial.into(),
         checked.into(),
         positions.evaluated().into(),
         flows.evaluated().into(),
@@ -222,14 +226,14 @@ fn finish(
         positions.values.clone().into(),
         flows.values.clone().into(),
         times.sought.clone().into(),
+        started.evaluated().into(),
+        started.values.clone().into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);
     let program = build(&pool, scalars, solution, &answers, &requests);
     if !program.is_finite() {
-        let message = "numbers of the model multiply to one that is not finite";
-        let report = error(codes::NOT_FINITE, model.name.span(), message);
-        diagnostics.report(report.help("choose units in which the values are of moderate size"));
+        report_infinite(&model, diagnostics);
         return None;
     }
     let written = |value: &Expression| text(&model, scalars, &pool, *value);
@@ -248,6 +252,7 @@ fn finish(
         attitudes,
         ranks: closures::ranks(scalars, &answers.displacements, &pool),
         closed: [positions.closures, flows.closures],
+        started: started.closures,
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,
@@ -258,6 +263,12 @@ fn finish(
         states: answers.states,
         model,
     })
+}
+
+fn report_infinite(model: &Elaborated, diagnostics: &mut Diagnostics) {
+    let message = "numbers of the model multiply to one that is not finite";
+    let report = error(codes::NOT_FINITE, model.name.span(), message);
+    diagnostics.report(report.help("choose units in which the values are of moderate size"));
 }
 
 /// Shortens a Jacobian that is written out.

@@ -278,6 +278,11 @@ pub fn declaration(kind: JunctionKind, name: &str, dimension: usize) -> String {
 }
 
 impl Element {
+    /// Its name without the path.
+    pub fn own_name(&self) -> &str {
+        self.name.rsplit('.').next().unwrap_or(&self.name)
+    }
+
     /// Whether it is a storage with states of its own.
     #[must_use]
     pub const fn has_states(&self) -> bool {
@@ -354,6 +359,23 @@ impl BondGraph {
         let ends = bonds.flat_map(|bond| [(&bond.from, &bond.to), (&bond.to, &bond.from)]);
         ends.filter(move |(end, _)| is_here(end))
             .map(|(_, far)| far)
+    }
+
+    /// What the other port of a two-port leads to.
+    #[must_use]
+    pub fn beyond(&self, port: &End) -> Option<&End> {
+        let other = match port {
+            End::In(id) => End::Out(*id),
+            End::Out(id) => End::In(*id),
+            _ => return None,
+        };
+        self.bonds
+            .iter()
+            .find_map(|bond| match (&bond.from, &bond.to) {
+                (from, to) if *from == other => Some(to),
+                (from, to) if *to == other => Some(from),
+                _ => None,
+            })
     }
 
     /// The path of an end, for people.

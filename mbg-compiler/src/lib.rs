@@ -38,6 +38,7 @@ pub mod explain;
 pub mod graph;
 pub mod inclusion;
 pub mod jacobians;
+mod locked;
 mod loose;
 pub mod network;
 mod notes;

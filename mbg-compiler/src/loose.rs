@@ -1,16 +1,17 @@
 //! Junctions that a bond leads to and nothing else: a node without its ground, a wall without its source.
 //!
-//! Such a 0-junction has no flow, and such a 1-junction no effort. That takes a branch or a spring behind the bond out of
-//! the model, of which it is warned; and where storages lose their states by it, it is the first way out. A circuit whose
-//! ground is missing may close among its nodes: then nothing flows through its source.
+//! Such a 0-junction has no flow, and such a 1-junction no effort. That takes a branch, a spring or a gear of three shafts
+//! behind the bond out of the model, of which it is warned; and where storages lose their states by it, it is the first way
+//! out. A circuit whose ground is missing may close among its nodes: then nothing flows through its source.
 
 use crate::causality::ways::hold;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::{Elaborated, Place};
 use crate::graph::{
-    BondGraph, ElementId, ElementKind, End, JunctionId, JunctionKind, Law, instance_of,
+    BondGraph, ElementId, ElementKind, End, JunctionId, JunctionKind, Law, Rule, instance_of,
 };
+use crate::locked;
 use crate::structure::Solved;
 use crate::symbolic::Expression;
 
@@ -18,27 +19,32 @@ use crate::symbolic::Expression;
 struct Loose {
     id: JunctionId,
     dead: String,
+    /// The kind of a junction of which as much is zero.
+    like: JunctionKind,
 }
 
-/// Warns of those whose effort or flow nobody asks for.
+/// Warns of those whose effort or flow nobody asks for, or else of sources and inertias that can do nothing.
 pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
     let mut is_told = false;
-    for Loose { id, dead } in all(graph) {
+    for Loose { id, dead, like } in all(graph) {
         let junction = &graph.junctions[id.0];
         if is_read(model, Place::Junction(id)) || junction.own_name().starts_with('_') {
             continue;
         }
-        let message = match junction.kind {
-            JunctionKind::Zero => format!(
-                "nothing flows through `{}`, which has one bond, nor through `{dead}`",
-                junction.name
-            ),
-            JunctionKind::One => format!(
-                "nothing acts on `{}`, which has one bond, nor does `{dead}` act",
-                junction.name
-            ),
+        let own = match junction.kind {
+            JunctionKind::Zero => "flows through",
+            JunctionKind::One => "acts on",
         };
+        let behind = match (junction.kind, like) {
+            (JunctionKind::Zero, JunctionKind::Zero) => format!("nor through `{dead}`"),
+            (JunctionKind::One, JunctionKind::Zero) => {
+                format!("and nothing flows through `{dead}`")
+            }
+            (_, JunctionKind::One) => format!("nor does `{dead}` act"),
+        };
+        let name = &junction.name;
+        let message = format!("nothing {own} `{name}`, which has one bond, {behind}");
         let report = error(
             codes::LOOSE_END,
             graph.origins.span(junction.origin),
@@ -47,14 +53,16 @@ pub(crate) fn warn(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagno
         diagnostics.warn(report.help(holding(graph, id)));
         is_told = true;
     }
-    if !is_told {
-        warn_of_sources(model, solved, diagnostics);
+    if !is_told && !warn_of_sources(model, solved, diagnostics) {
+        locked::warn(model, solved, diagnostics);
     }
 }
 
-/// Warns of effort sources at nodes through which nothing flows, whatever the state, and whose effort nobody asks for.
-fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) {
+/// Warns of effort sources at nodes through which nothing flows, whatever the state, and whose effort nobody asks for; whether
+/// there are such.
+fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagnostics) -> bool {
     let graph = &model.graph;
+    let mut is_told = false;
     for bond in &graph.bonds {
         let (End::OnePort(id), End::Junction(node, _)) = (&bond.from, &bond.to) else {
             continue;
@@ -74,7 +82,9 @@ fn warn_of_sources(model: &Elaborated, solved: &Solved, diagnostics: &mut Diagno
             Some(held) => report.help(format!("if its circuit lacks a ground, {held}")),
             None => report,
         });
+        is_told = true;
     }
+    is_told
 }
 
 /// Whether a law or an output asks for an effort or a flow there.
@@ -94,7 +104,7 @@ fn is_driven(graph: &BondGraph, source: ElementId, node: JunctionId) -> bool {
 }
 
 /// Whether the flow of a one-port is zero whatever the state.
-fn is_idle(solved: &Solved, id: ElementId) -> bool {
+pub(crate) fn is_idle(solved: &Solved, id: ElementId) -> bool {
     let mut flow = solved.scalars.ports[&id].flow.iter();
     flow.all(|unknown| solved.solution.values[*unknown] == Expression::ZERO)
 }
@@ -131,31 +141,62 @@ fn holding(graph: &BondGraph, id: JunctionId) -> String {
 fn all(graph: &BondGraph) -> Vec<Loose> {
     let junctions = (0..graph.junctions.len()).map(JunctionId);
     let loose = junctions.filter_map(|id| {
-        Some(Loose {
-            id,
-            dead: dead(graph, id)?,
-        })
+        let (dead, like) = dead(graph, id)?;
+        Some(Loose { id, dead, like })
     });
     loose.collect()
 }
 
-/// What the only bond of a junction takes out of the model.
-fn dead(graph: &BondGraph, id: JunctionId) -> Option<String> {
-    let junction = &graph.junctions[id.0];
+/// What the only bond of a junction takes out of the model, and the kind of a junction of which as much is zero.
+fn dead(graph: &BondGraph, id: JunctionId) -> Option<(String, JunctionKind)> {
     let mut far = graph.across(id);
-    let (Some(far), None) = (far.next(), far.next()) else {
+    let (Some(mut far), None) = (far.next(), far.next()) else {
         return None;
     };
-    match far {
+    // Where it is zero, so it is behind a transformer; behind a gyrator the flow is zero for the effort.
+    let mut kind = graph.junctions[id.0].kind;
+    while let End::In(two_port) | End::Out(two_port) = far {
+        kind = behind(&graph.elements[two_port.0].rule, kind)?;
+        far = graph.beyond(far)?;
+    }
+    let dead = match far {
         End::OnePort(element) => {
             let element = &graph.elements[element.0];
             (element.kind == ElementKind::R).then(|| element.name.clone())
         }
         End::Junction(other, _) => {
-            let (own, other) = (junction.kind, &graph.junctions[other.0]);
-            let is_dead = own != other.kind && (own == JunctionKind::Zero || has_law(graph, far));
-            is_dead.then(|| other.name.clone())
+            let takes_out = kind == JunctionKind::Zero
+                || has_law(graph, far)
+                || (!graph.junctions[id.0].coordinate && branches(graph, far));
+            let other = &graph.junctions[other.0];
+            (kind != other.kind && takes_out).then(|| other.name.clone())
         }
+        _ => None,
+    };
+    dead.map(|dead| (dead, kind))
+}
+
+/// The kind of a junction of which as much is zero behind a two-port, if all of it is.
+fn behind(rule: &Rule, kind: JunctionKind) -> Option<JunctionKind> {
+    match (rule, kind) {
+        (
+            Rule::Transformer {
+                invertible: true, ..
+            },
+            kind,
+        ) => Some(kind),
+        (
+            Rule::Gyrator {
+                invertible: true, ..
+            },
+            JunctionKind::One,
+        ) => Some(JunctionKind::Zero),
+        (
+            Rule::Gyrator {
+                invertible: true, ..
+            },
+            JunctionKind::Zero,
+        ) => Some(JunctionKind::One),
         _ => None,
     }
 }
@@ -166,13 +207,22 @@ fn has_law(graph: &BondGraph, junction: &End) -> bool {
     let End::Junction(id, _) = junction else {
         return false;
     };
-    let mut bonds = graph.bonds.iter();
-    bonds.any(|bond| match [&bond.from, &bond.to] {
-        [End::Junction(other, _), End::OnePort(element)]
-        | [End::OnePort(element), End::Junction(other, _)] => {
-            let kind = graph.elements[element.0].kind;
-            other == id && matches!(kind, ElementKind::C | ElementKind::R)
-        }
-        _ => false,
+    graph.across(*id).any(|far| {
+        matches!(far, End::OnePort(element)
+            if matches!(graph.elements[element.0].kind, ElementKind::C | ElementKind::R))
     })
+}
+
+/// Whether a junction joins two others beside the one that it is told of: a gear does, of which one shaft is loose.
+fn branches(graph: &BondGraph, junction: &End) -> bool {
+    let End::Junction(id, range) = junction else {
+        return false;
+    };
+    let bonds = graph.bonds.iter();
+    let ends = bonds.flat_map(|bond| [&bond.from, &bond.to]);
+    let meets = |end: &&End| {
+        matches!(end, End::Junction(other, own)
+            if other == id && own.start < range.end && range.start < own.end)
+    };
+    ends.filter(meets).count() > 2
 }

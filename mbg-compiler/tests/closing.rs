@@ -6,10 +6,15 @@ mod models;
 use std::collections::BTreeMap;
 
 use mbg_compiler::compile::{Compiled, Routines};
+use mbg_compiler::expand;
+use mbg_compiler::inclusion::no_file;
 use mbg_compiler::program::{self, Arguments, Step};
 use mbg_runtime::Dual;
-use models::compiled;
+use mbg_runtime::solve::project;
 use models::dual::{Point, evaluate};
+use models::{compiled, run};
+use nalgebra::{SMatrix, SVector};
+use quote::quote;
 
 /// A base and a limb that stands on the ground, whose ends are held together.
 fn model(base: &str, limb: &[&str], joint: &str, gravity: f64) -> String {
@@ -218,4 +223,62 @@ fn constraints_that_nothing_breaks_are_not_solved_for() {
         _ => None,
     });
     assert_eq!(solves.collect::<Vec<_>>(), [3]);
+}
+
+/// A slider-crank with rates at the start; its states are the momentum of the rod, and the rates of crank and slide.
+fn slider_crank(rates: [f64; 3]) -> String {
+    let [crank, rod, slide] = rates.map(|rate| format!("initial_rate: {rate:?}"));
+    let body = "PlanarBody { mass: 1.0, inertia: 0.1 }";
+    format!(
+        "#[derivative] model M {{
+            1 ground[3]; 1 crank[3]; 1 pin[3]; 1 rod[3]; 1 end[3]; 1 block[3];
+            Sf fixed[3] {{ flow: 0.0 }} -> ground;
+            first: PlanarRevolute {{ initial: 0.5, {crank} }} (ground, crank); a: {body} (crank);
+            throw: PlanarOffset {{ x: 0.1 }} (crank, pin);
+            second: PlanarRevolute {{ initial: -0.66, {rod} }} (pin, rod); b: {body} (rod);
+            bar: PlanarOffset {{ x: 0.3 }} (rod, end);
+            slide: PlanarPrismatic {{ initial: 0.384, {slide} }} (ground, block); c: {body} (block);
+            cut: PlanarCut {{}} (end, block);
+            output rates[3] = [first.rate.f, second.rate.f, slide.rate.f];
+        }}"
+    )
+}
+
+/// A rate that is given is kept, be it a state or not, and those that are not given follow, where all moved by least norm.
+#[test]
+fn rates_that_are_given_are_kept_at_the_start() {
+    for given in 0..3 {
+        let mut rates = [0.0; 3];
+        rates[given] = 10.0;
+        let model = compiled(&slider_crank(rates));
+        let split = |x: &SVector<f64, 6>| {
+            let found = run(&model, Routines::STARTED_FLOWS, x.as_slice());
+            let (values, slopes) = found.split_at(model.started.len());
+            (
+                SVector::<f64, 3>::from_row_slice(values),
+                SMatrix::<f64, 3, 6>::from_row_slice(slopes),
+            )
+        };
+        let start = SVector::from_row_slice(&run(&model, Routines::INITIAL, &[]));
+        let found = project(start, 1e-12, split);
+        assert!(found.converged, "{given}");
+        let rates = run(&model, Routines::OUTPUT, found.point.as_slice());
+        assert!((rates[given] - 10.0).abs() < 1e-11, "{given}: {rates:?}");
+        let open = run(&model, Routines::RESIDUALS_OF_FLOWS, found.point.as_slice());
+        assert!(size(&open) < 1e-11 && size(&rates) > 9.9, "{given}");
+    }
+    let tokens = [[0.0; 3], [10.0, 0.0, 0.0]].map(|rates| {
+        let source = slider_crank(rates).parse().unwrap();
+        expand(source, &quote!(::mbg_runtime), &no_file).to_string()
+    });
+    let keeps = tokens.each_ref().map(|it| it.contains("close (start)"));
+    assert_eq!(keeps, [false, true]);
+    // Momenta too, and nothing without a loop.
+    let pair = |closure: &str| {
+        let wheel = "I m { inertia: 2.0, initial: 6.0 }";
+        let text =
+            format!("model M {{ 1 a {{ {wheel} }} 1 b {{ I n {{ inertia: 3.0 }} }} {closure} }}");
+        compiled(&text).started.len()
+    };
+    assert_eq!([pair("close a -> b by multipliers;"), pair("")], [2, 0]);
 }

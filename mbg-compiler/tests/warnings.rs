@@ -312,6 +312,81 @@ fn junctions_that_take_a_branch_out_of_the_model_are_told_with_the_source_that_i
     assert_eq!(around_a_wheel("", free), "");
 }
 
+/// A shaft that nothing brakes takes what is between the others out of the model.
+#[test]
+fn gears_with_a_loose_shaft_are_told() {
+    let geared = |gear: &str| {
+        around_a_wheel(
+            "",
+            &format!("1 shaft {{ #[derivative] I n {{ inertia: 2.0 }} }} 1 c; {gear}"),
+        )
+    };
+    let sum = "0 sum; wheel -> sum; sum -> shaft; sum -> c;";
+    for (gear, dead) in [
+        (sum, "nor does `sum` act"),
+        (
+            "gear: Planetary { ratio: 3.0 } (wheel, shaft, c);",
+            "nor does `gear.teeth` act",
+        ),
+        (
+            "gear: Differential (wheel, shaft, c);",
+            "nor does `gear.side` act",
+        ),
+        // Behind two-ports, of which a gyrator takes the flow.
+        (
+            "0 sum; wheel -> sum; sum -> shaft; sum -> TF on { flow: 2.0 } -> c;",
+            "nor does `sum` act",
+        ),
+        (
+            "1 coil { R r { resistance: 1.0 } } coil -> GY motor { effort: 0.1 } -> c;",
+            "and nothing flows through `coil`",
+        ),
+    ] {
+        let told = format!(
+            "3:50 nothing acts on `c`, which has one bond, {dead} [MBG0225]\n  help: hold `c`: `Sf wall {{ flow: 0.0 }} -> c;`"
+        );
+        assert_eq!(geared(gear), told);
+    }
+    // Not where it is held, where its motion is asked for or is a coordinate, nor at the end of a chain.
+    for held in [
+        format!("{sum} Sf brake {{ flow: 0.0 }} -> c;"),
+        format!("{sum} output slip = c.f;"),
+        "wheel -> TF lever { flow: 2.0 } -> c;".to_owned(),
+    ] {
+        assert_eq!(geared(&held), "", "{held}");
+    }
+    let hinge = "1 shaft { I n { inertia: 2.0 } } 1 c coordinate;";
+    assert_eq!(around_a_wheel("", &format!("{hinge} {sum}")), "");
+}
+
+/// Two gears between the same shafts, whose ratios are not the same.
+#[test]
+fn shafts_that_gears_lock_are_told() {
+    let train = |gears: &str, more: &str| {
+        warned(&format!(
+            "#[derivative] model M {{
+                input drive: N*m; param one = 3.5; param two = 3.5;
+                1 a {{ I m {{ inertia: 2.0 }} Se k {{ effort: drive }} }} 1 b {{ I n {{ inertia: 200.0 }} }}
+                1 c {{ I moving {{ inertia: 1.0 }} }} 0 soft {{ C spring {{ stiffness: 1.0 }} }} b -> TF slow {{ flow: 0.1 }} -> soft; soft -> c;
+                a -> TF first {{ flow: 1.0 / one }} -> b; {gears} {more} }}"
+        ))
+    };
+    let second = "a -> TF second { flow: 1.0 / two } -> b;";
+    insta::assert_snapshot!(train(second, ""), @"
+    3:25 the flow of `m`, `n` is zero, whatever acts there [MBG0224]
+      help: `first`, `second` hold each other where their ratios contradict each other: leave one of them out
+    ");
+    // Not one gear alone, what is held on purpose, nor two that drive shafts of their own.
+    assert_eq!(train("output twice = two;", ""), "");
+    assert_eq!(
+        train("output twice = two;", "Sf wall { flow: 0.0 } -> b;"),
+        ""
+    );
+    let third = "1 aside { I other { inertia: 1.0 } } a -> TF second { flow: 1.0 / two } -> aside;";
+    assert_eq!(train(third, ""), "");
+    assert_eq!(train(second, "Sf wall { flow: 0.0 } -> c;"), "");
+}
+
 /// An arm on a hinge, and a statement.
 fn around_an_arm(statement: &str) -> String {
     warned(&format!(

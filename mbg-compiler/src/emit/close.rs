@@ -27,12 +27,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
         let [both, alone] = [Routines::CLOSED_FLOWS, Routines::RESIDUALS_OF_FLOWS].map(&body);
-        // Flows are as dependent as positions are.
-        let rank = if compiled.closed[0] == compiled.closed[1] {
-            rank(compiled, 0)
-        } else {
-            full(compiled.closed[1].len())
-        };
+        let rank = rank_of_flows(compiled);
         let evaluated = quote! {
             |x: &mbg_runtime::__private::SVector<T, #n>| { #both },
             |x: &mbg_runtime::__private::SVector<T, #n>| { #alone }
@@ -53,6 +48,53 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             ::core::result::Result::Ok(x)
         }
     })
+}
+
+/// Flows are as dependent as positions are.
+fn rank_of_flows(compiled: &Compiled) -> TokenStream {
+    if compiled.closed[0] == compiled.closed[1] {
+        rank(compiled, 0)
+    } else {
+        full(compiled.closed[1].len())
+    }
+}
+
+/// The state at the start, of which `initial` is what was given: where loops are closed, so that rates that were given stay and
+/// the others follow. Where these cannot, nothing is changed.
+pub(super) fn started(compiled: &Compiled, initial: &TokenStream) -> TokenStream {
+    let given = match compiled.started.len() {
+        0 => return initial.clone(),
+        all => all - compiled.closed[1].len(),
+    };
+    let [n, m, p] = [
+        compiled.states.len(),
+        compiled.model.inputs.len(),
+        compiled.model.outputs.len(),
+    ]
+    .map(Literal::usize_suffixed);
+    let attitudes: Vec<TokenStream> = compiled.attitudes.iter().map(|it| attitude(it)).collect();
+    let memory = quote!(<Self as mbg_runtime::System<T, #n, #m, #p>>::Memory);
+    let [both, alone] = [Routines::STARTED_FLOWS, Routines::RESIDUALS_OF_START]
+        .map(|routine| residuals(compiled, &attitudes, routine, &memory));
+    let (flows, given) = (rank_of_flows(compiled), full(given));
+    let rank = quote!(#flows + #given);
+    let evaluated = quote! {
+        |x: &mbg_runtime::__private::SVector<T, #n>| { #both },
+        |x: &mbg_runtime::__private::SVector<T, #n>| { #alone }
+    };
+    let projection = projection(&compiled.started, &quote!(Flows), &rank, &evaluated);
+    quote! {
+        let start = { #initial };
+        let t = T::from_f64(0.0);
+        let u = &mbg_runtime::__private::SVector::<T, #m>::from_element(t);
+        let fixed: &[::core::primitive::usize] = &[];
+        let close = |x| {
+            let x = mbg_runtime::System::close(self, t, x, u, fixed)?;
+            #projection
+            ::core::result::Result::<_, mbg_runtime::Trouble>::Ok(x)
+        };
+        close(start).unwrap_or(start)
+    }
 }
 
 /// Makes the states of an attitude a rotation.
@@ -92,6 +134,7 @@ fn residuals(
     let states = compiled.states.len();
     let closed = match routine {
         Routines::CLOSED_POSITIONS | Routines::RESIDUALS_OF_POSITIONS => &compiled.closed[0],
+        Routines::STARTED_FLOWS | Routines::RESIDUALS_OF_START => &compiled.started,
         _ => &compiled.closed[1],
     };
     let (values, jacobian) = results.split_at(closed.len());

@@ -124,7 +124,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let meta = meta::constant(compiled);
     let sparsity = sparsity::items(&compiled.pattern);
     let body = |routine: usize, build: Build| body(compiled, routine, build);
-    let initial = body(Routines::INITIAL, &vector);
+    let initial = close::started(compiled, &body(Routines::INITIAL, &vector));
     let derivative = block(derivative(compiled));
     let derivative_time = body(Routines::DERIVATIVE_TIME, &vector);
     let output = body(Routines::OUTPUT, &vector);

@@ -14,9 +14,9 @@ use crate::{Columns, Real};
 /// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
 /// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event. So have the times at which an
 /// input jumps, or a law by time, parameters and inputs, and at which a law jumps since a state goes through a threshold: a step
-/// ends there, of constant length as well, so that a run on dual numbers may have more steps than one of the values alone. Slopes of
+/// ends there, so that a run on dual numbers may have more steps than one of the values alone. Slopes of
 /// slopes do not know how the motion bends at such a threshold. Where a motion stays on one, as a block does that dry friction by
-/// [`sign`](Real::sign) holds, [`Adaptive`](crate::Adaptive) has the slopes of that; steps of constant length have none.
+/// [`sign`](Real::sign) holds, they are those of that.
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope
 /// zero, and at a kink ([`Real::abs`] at zero, equal arguments of [`Real::min`]) the slope is that of one side.

@@ -120,8 +120,7 @@ const TINY: f64 = 1e-9;
 /// ```
 ///
 /// A law may jump at a state, as dry friction and a relay do, and the motion may stay there for a while, as what friction holds does:
-/// nothing is left of how it came there, so that a motion which sticks and slips has a multiplier of zero. Steps of constant length
-/// do not know of that: take [`Adaptive`](crate::Adaptive) ones.
+/// nothing is left of how it came there, so that a motion which sticks and slips has a multiplier of zero.
 ///
 /// Newton's method may end between two motions. Where others tend to the motion that is wanted, begin at the state to which a run
 /// of some periods comes.

@@ -35,8 +35,35 @@ use crate::{Input, Real, System};
 /// kink. Those of Rosenbrock take a part that is lost, too, by Euler's implicit method, where that errs by less than a thousandth
 /// of what states have been. The midpoint rule comes as near to the kink as a tenth of that.
 ///
-/// A law that jumps where the motion stays, as dry friction does by `sign(f)`, is gone over to and fro, by what a step changes:
-/// [`Adaptive`](super::Adaptive) goes along there, and here the law is to rise within a width.
+/// Where a law jumps since a state goes through a threshold, as a relay, a contact or dry friction by `sign(f)` does, the step ends
+/// there and another one begins, up to the end of the step of the grid: no stage is beyond the jump, and the method keeps its order.
+/// Where the motion leads back from both sides it stays, as told of [`Adaptive`](super::Adaptive): friction holds. Such a step takes
+/// some evaluations more, twice as many along one threshold, and is begun anew 64 times at most, so that a loop with a clock of its own
+/// knows the longest time of a tick: each is a run of one step, from zero to `h`. Lanes share their steps and go over jumps, and so
+/// does [`Rk4::step`]; there a law is to rise within a width.
+///
+/// ```
+/// use mbg_runtime::{Constant, Fixed, Integrator, Rk4, System, mbg};
+///
+/// mbg! {
+///     /// A slide on which dry friction of 1 N acts.
+///     model Slide {
+///         input force: N;
+///         1 motion { I slide { inertia: 2.0 } R guide { effort: 1.0 * sign(f) } Se motor { effort: force } }
+///     }
+/// }
+///
+/// let model = Slide::<f32>::new(SlideParameters::default())?;
+/// let tick = Fixed::new(Rk4, 1e-3);
+/// let mut state = model.initial_state();
+/// for force in [0.9, 3.0, 0.5, 0.5, 0.5] {
+///     let input = Constant([force].into());
+///     tick.integrate(&model, &input, 0.0, 1e-3, state, |step| state = *step.state())?;
+/// }
+/// // It holds, is torn loose for a tick, and comes to rest.
+/// assert_eq!(state[0], 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// A law that is steep at one place and level beside it, as dry friction by a steep curve, is one for those of Radau, or for
 /// [`Adaptive`](super::Adaptive) steps: one of Rosenbrock that starts where it is level knows nothing of the steep place, and makes

@@ -1,0 +1,335 @@
+//! Steps of constant length along their grid, which end at jumps of the laws.
+
+use core::ops::ControlFlow;
+
+use nalgebra::SVector;
+
+use super::crossing::Across;
+use super::dense::{Polynomial, Step};
+use super::fixed::Fixed;
+use super::grid::{FINEST, Grid, Parts};
+use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
+use super::method::{Method, Start, Stepper, Trial};
+use super::over::Place;
+use super::problem::Problem;
+use super::slide::{Ends, Walk, Walked};
+use super::{Cause, Stopped, check_result, seen};
+use crate::course::lane;
+use crate::{Input, Real, System};
+
+/// A method along its grid.
+pub(super) struct OnGrid<'a, Scheme, T> {
+    fixed: &'a Fixed<Scheme>,
+    grid: Grid<T>,
+    /// The end of a step of the grid that was asked for, and how often.
+    asked: (f64, u32),
+    /// Where a step was lost, and how often.
+    lost: (f64, u32),
+    /// Whether it is on the lookout for jumps.
+    looks: bool,
+}
+
+impl<'a, Scheme, T: Real> OnGrid<'a, Scheme, T> {
+    /// From one time to another.
+    pub(super) fn new(fixed: &'a Fixed<Scheme>, (start, end): (T, T)) -> Self {
+        Self {
+            fixed,
+            grid: Grid::new(start, end, T::from_f64(fixed.step)),
+            asked: (f64::NEG_INFINITY, 0),
+            lost: (f64::NEG_INFINITY, 0),
+            looks: false,
+        }
+    }
+}
+
+/// So often it is begun anew within a step of the grid at most.
+const ENDS: u32 = 64;
+
+impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, T> {
+    const LOOKS_WITHIN: bool = false;
+
+    fn walk<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (here, end): (Place<T, N>, T),
+        ends: Ends,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Walked<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        // Lanes share their steps.
+        self.looks = S::HAS_COURSES && lane(here.0, 1).is_none();
+        if S::HAS_COURSES && self.looks {
+            return walk_over_jumps(self, problem, (here, end), ends, observer);
+        }
+        Ok(
+            match self.to(problem, (here, end), f64::NEG_INFINITY, observer)? {
+                Ran::To(x) => Walked::Ended(x),
+                _ => Walked::Left,
+            },
+        )
+    }
+}
+
+impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, T> {
+    fn to<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        ((mut t, mut x), end): (Place<T, N>, T),
+        watched: f64,
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Ran<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let mut steps = Steps::new(self.fixed);
+        while let Some(whole) = self.grid.step_between(t, end) {
+            let mut parts = Parts::of(whole);
+            while let Some(span) = parts.next() {
+                t = span.start;
+                steps.across.note::<S, M, P>(&x);
+                let slope = problem.slope(t, &x);
+                problem.check(t, &x, &slope)?;
+                let from = Start {
+                    again: parts.again,
+                    is_part: parts.size < FINEST,
+                    ..Start::of(span, x, slope)
+                };
+                let memory = problem.memory;
+                let (trial, is_across) = steps.attempt(problem, &from);
+                if !trial.error.is_finite() {
+                    let jacobian = steps.work.place_of_jacobian(&from);
+                    problem.statistics.rejected += 1;
+                    let near = match self.looks && !often(&mut self.lost, seen(t)) {
+                        true => steps.near(problem, (&from, memory)),
+                        false => Near::Nothing,
+                    };
+                    let is_near = !matches!(near, Near::Nothing);
+                    let halves = matches!(near, Near::Threshold(_) | Near::Nothing);
+                    if halves && (jacobian.is_some() || is_near) && parts.halve() {
+                        problem.memory = memory;
+                        continue;
+                    }
+                    if let Near::Jump(jump) | Near::Threshold(jump) = near {
+                        problem.memory = memory;
+                        return Ok(Ran::Met(jump));
+                    }
+                    check_result(problem.system, t, &trial.change, &problem.memory)
+                        .map_err(|stopped| problem.traced(stopped, &from, jacobian))?;
+                    return Err(Stopped::new(t, Cause::Diverged));
+                }
+                if S::HAS_COURSES
+                    && self.looks
+                    && let Some(jump) = touched(problem, (&from, &trial.change), watched)
+                {
+                    problem.memory = memory;
+                    return Ok(Ran::Met(jump));
+                }
+                (t, x) = (span.end, steps.arrive(problem, &from, &trial.change)?);
+                let memory = problem.memory;
+                let mut dense = || steps.polynomial(problem, &from, &x, is_across);
+                let mut step = Step::new(span, (from.x, x), memory, &mut dense);
+                if observer(&mut step).is_break() {
+                    return Ok(Ran::Left);
+                }
+                problem.memory = memory;
+                parts.take();
+            }
+        }
+        Ok(Ran::To(x))
+    }
+
+    fn watched(&mut self, t: T) -> f64 {
+        let end = self.grid.end_of_step(t);
+        match often(&mut self.asked, end) {
+            true => end,
+            false => f64::NEG_INFINITY,
+        }
+    }
+}
+
+/// Whether something is at the same time again, and that too often.
+fn often(before: &mut (f64, u32), time: f64) -> bool {
+    *before = match *before {
+        (same, times) if same == time => (time, times.saturating_add(1)),
+        _ => (time, 0),
+    };
+    before.1 > ENDS
+}
+
+/// What a step that is lost has ahead.
+enum Near<T, const N: usize> {
+    /// A jump of a law.
+    Jump(Jump<T, N>),
+    /// A threshold, as far as the line from the start tells.
+    Threshold(Jump<T, N>),
+    Nothing,
+}
+
+/// The part of a straight way to a threshold that is gone.
+const STRAIGHT: f64 = 0.9;
+
+/// Most of the line from the start of a step to a threshold of the laws, if it comes to one within a length.
+fn line_to_threshold<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &Problem<'_, T, S, I, N, M, P>,
+    from: &Start<T, N>,
+    way: f64,
+) -> Option<Jump<T, N>>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let start = (from.span.start, from.x);
+    let ahead = problem.straight_to_threshold(&start, &from.slope, way)?;
+    Some(Jump {
+        start,
+        ahead: STRAIGHT * seen(ahead),
+        length: seen(from.span.length),
+        is_guess: true,
+    })
+}
+
+/// The same over a threshold that a step itself has not passed, as where it meets a jump that leads back at its stages; and not
+/// before a time.
+fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &Problem<'_, T, S, I, N, M, P>,
+    (from, change): (&Start<T, N>, &SVector<T, N>),
+    watched: f64,
+) -> Option<Jump<T, N>>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let line = line_to_threshold(problem, from, seen(from.span.length))?;
+    let end = (from.span.end, from.x + change);
+    let is_late = seen(line.start.0) + line.ahead >= watched;
+    let is_passed = problem.reached(&line.start, &end).is_some();
+    (is_late && !is_passed).then_some(line)
+}
+
+/// Steps of a method, with what goes from one to the next.
+struct Steps<'a, Scheme: Method, T: Real, const N: usize> {
+    fixed: &'a Fixed<Scheme>,
+    work: Scheme::Work<T, N>,
+    across: Across<T, N>,
+    lost: SVector<T, N>,
+}
+
+impl<'a, Scheme: Method, T: Real, const N: usize> Steps<'a, Scheme, T, N> {
+    fn new(fixed: &'a Fixed<Scheme>) -> Self {
+        Self {
+            fixed,
+            work: Stepper::new(&fixed.method),
+            across: Across::new(),
+            lost: SVector::from_element(T::from_f64(0.0)),
+        }
+    }
+
+    /// Tries a step; and whether it is one across a singular position.
+    #[inline]
+    fn attempt<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Start<T, N>,
+    ) -> (Trial<T, N>, bool)
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let memory = problem.memory;
+        let trial = self.work.attempt(problem, from, None);
+        match self.across.instead_of(&trial, problem, from, memory) {
+            Some(other) => {
+                self.work = Stepper::new(&self.fixed.method);
+                (other, true)
+            }
+            None => (trial, false),
+        }
+    }
+
+    /// What there is ahead of a step that is lost: stages on both sides of a jump are not found, and another method goes over it.
+    #[cold]
+    #[inline(never)]
+    fn near<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (from, memory): (&Start<T, N>, S::Memory),
+    ) -> Near<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let length = seen(from.span.length);
+        let line = line_to_threshold(problem, from, 2.0 * length);
+        let Some(line) = line else {
+            return Near::Nothing;
+        };
+        let tried = core::mem::replace(&mut problem.memory, memory);
+        let mut beside = problem.beside();
+        let end = from.x + self.across.over(problem, from).change;
+        let mut dense = || self.across.polynomial(problem, from, &end);
+        let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
+        let jump = beside.jump_within(&mut step, f64::NEG_INFINITY);
+        problem.memory = tried;
+        jump.map_or(Near::Threshold(line), Near::Jump)
+    }
+
+    /// The state behind a step, on the closed loops.
+    #[inline]
+    fn arrive<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Start<T, N>,
+        change: &SVector<T, N>,
+    ) -> Result<SVector<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let x = if self.fixed.compensated {
+            summed(&from.x, change, &mut self.lost)
+        } else {
+            from.x + change
+        };
+        let end = from.span.end;
+        check_result(problem.system, end, &x, &problem.memory)
+            .map_err(|stopped| problem.traced(stopped, from, self.work.place_of_jacobian(from)))?;
+        let x = problem.close(end, x)?;
+        problem.statistics.steps += 1;
+        Ok(x)
+    }
+
+    fn polynomial<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Start<T, N>,
+        x: &SVector<T, N>,
+        is_across: bool,
+    ) -> Polynomial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        match is_across {
+            true => self.across.polynomial(problem, from, x),
+            false => self.work.polynomial(problem, from, (x, None)),
+        }
+    }
+}
+
+/// `x + change`, where `lost` is what rounding took off the sums before.
+pub(super) fn summed<T: Real, const N: usize>(
+    x: &SVector<T, N>,
+    change: &SVector<T, N>,
+    lost: &mut SVector<T, N>,
+) -> SVector<T, N> {
+    let whole = change + *lost;
+    let sum = x + whole;
+    *lost = x.zip_zip_map(&sum, &whole, |x, sum, whole| (x - sum) + whole);
+    sum
+}

@@ -315,18 +315,21 @@ fn outputs_have_what_holds_from_the_start() {
     );
 }
 
+/// Momenta and friction of both blocks at some times, when 12 N act from 1 s to 2 s: until then they come to 2 m/s and 3 m/s; a third of
+/// a second later both have 8/3 m/s, and from there lose a quarter of 1 m/s².
+const CAUGHT: [(f64, [f64; 2], [f64; 2]); 4] = [
+    (0.7, [0.0, 0.0], [0.0, 0.0]),
+    (2.0, [2.0, 9.0], [2.0, 1.0]),
+    (3.0, [2.5, 7.5], [-0.25, 1.0]),
+    (14.0, [0.0, 0.0], [0.0, 0.0]),
+];
+
 /// One slips behind the other, both go on together, and stop at once.
 #[test]
 fn several_hold_at_once_and_one_after_the_other() {
     let model = Stacked::new(StackedParameters::default()).unwrap();
-    // Until 2 s they come to 2 m/s and 3 m/s; a third of a second later both have 8/3 m/s, and from there lose a quarter of 1 m/s².
     let pulse = push(12.0, 1.0, 2.0);
-    for (end, speeds, forces) in [
-        (0.7, [0.0, 0.0], [0.0, 0.0]),
-        (2.0, [2.0, 9.0], [2.0, 1.0]),
-        (3.0, [2.5, 7.5], [-0.25, 1.0]),
-        (14.0, [0.0, 0.0], [0.0, 0.0]),
-    ] {
+    for (end, speeds, forces) in CAUGHT {
         for (method, state, outputs) in by_each(&model, &pulse, end) {
             let errors = [
                 state - SVector::from(speeds),

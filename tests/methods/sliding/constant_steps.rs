@@ -7,8 +7,8 @@ use mbg_runtime::{
 use nalgebra::SVector;
 
 use super::{
-    Belt, BeltParameters, Block, BlockParameters, Follower, FollowerParameters, Row, RowParameters,
-    Shaken, ShakenParameters, Stacked, StackedParameters, last, push,
+    Belt, BeltParameters, Block, BlockParameters, CAUGHT, Follower, FollowerParameters, Row,
+    RowParameters, Shaken, ShakenParameters, Stacked, StackedParameters, last, push,
 };
 
 const STRICT: Adaptive<'_, Dop853> = Adaptive::new(Dop853, 1e-12, 1e-13);
@@ -62,12 +62,7 @@ fn friction_holds_what_a_spring_is_too_weak_for() {
 fn several_hold_at_once_and_one_after_the_other() {
     let model = Stacked::new(StackedParameters::default()).unwrap();
     let pulse = push(12.0, 1.0, 2.0);
-    for (end, speeds, forces) in [
-        (0.7, [0.0, 0.0], [0.0, 0.0]),
-        (2.0, [2.0, 9.0], [2.0, 1.0]),
-        (3.0, [2.5, 7.5], [-0.25, 1.0]),
-        (14.0, [0.0, 0.0], [0.0, 0.0]),
-    ] {
+    for (end, speeds, forces) in CAUGHT {
         for (method, _, state, outputs) in by_each(&model, &pulse, (end, 0.03)) {
             let errors = [
                 state - SVector::from(speeds),

@@ -9,8 +9,10 @@ pub(super) struct Grid<T> {
     start: T,
     end: T,
     division: Division<T>,
-    /// Which step is at hand.
+    /// Which step is at hand, and from when to when it is.
     index: u64,
+    first: T,
+    last: T,
 }
 
 impl<T: Real> Grid<T> {
@@ -20,61 +22,53 @@ impl<T: Real> Grid<T> {
             start,
             end,
             division: divide(start, end, h),
-            index: 1,
+            index: 0,
+            first: start,
+            last: start,
         }
     }
 
-    /// The time at which this step ends, and the next one starts.
-    fn time(&self, index: u64) -> T {
-        match index {
-            0 => self.start,
-            _ if index == self.division.count => self.end,
-            _ => self.start + T::from_f64(index as f64) * self.division.step,
-        }
-    }
-
-    /// The step of the grid that a time is in, but for its end.
-    fn find(&mut self, t: T) -> Option<T> {
-        loop {
-            let end = self.time(self.index);
-            if less(t, end) {
-                return Some(end);
-            }
+    /// Goes on to the step that a time is in, but for its end; none at the end of all.
+    #[inline(always)]
+    fn find(&mut self, t: T) -> Option<()> {
+        while !less(t, self.last) {
             if self.index >= self.division.count {
                 return None;
             }
             self.index += 1;
+            self.first = self.last;
+            self.last = if self.index == self.division.count {
+                self.end
+            } else {
+                self.start + T::from_f64(self.index as f64) * self.division.step
+            };
         }
+        Some(())
     }
 
     /// When the step of the grid ends that a time is in.
     pub(super) fn end_of_step(&mut self, t: T) -> f64 {
-        seen(self.find(t).unwrap_or(self.end))
+        self.find(t);
+        seen(self.last)
     }
 
     /// The step from a time on, to the end of that of the grid or to a time before that; none at the end.
-    pub(super) fn step_between(&mut self, t: T, until: T) -> Option<Span<T>> {
-        let next = self.find(t)?;
-        if !less(t, until) {
+    #[inline(always)]
+    pub(super) fn step_between(&mut self, start: T, until: T) -> Option<Span<T>> {
+        self.find(start)?;
+        if !less(start, until) {
             return None;
         }
-        let start = t;
-        let is_whole = !less(self.time(self.index - 1), t) && !less(until, next);
-        Some(match is_whole {
-            true => Span {
-                start,
-                end: next,
-                length: match self.index == self.division.count {
-                    true => self.division.last,
-                    false => self.division.step,
-                },
-            },
-            false => {
-                let end = if less(until, next) { until } else { next };
-                let length = end - t;
-                Span { start, end, length }
-            }
-        })
+        let is_cut = less(until, self.last);
+        let end = if is_cut { until } else { self.last };
+        let length = if is_cut || less(self.first, start) {
+            end - start
+        } else if self.index == self.division.count {
+            self.division.last
+        } else {
+            self.division.step
+        };
+        Some(Span { start, end, length })
     }
 }
 

@@ -5,11 +5,11 @@ use core::ops::ControlFlow;
 use nalgebra::SVector;
 
 use super::crossing::Across;
-use super::dense::{Polynomial, Step};
+use super::dense::Step;
 use super::fixed::Fixed;
 use super::grid::{FINEST, Grid, Parts};
 use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
-use super::method::{Method, Start, Stepper, Trial};
+use super::method::{Method, Start, Stepper};
 use super::over::Place;
 use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked};
@@ -85,12 +85,14 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let mut steps = Steps::new(self.fixed);
+        let mut work = Scheme::Work::<T, N>::new(&self.fixed.method);
+        let mut across = Across::new();
+        let mut lost = SVector::from_element(T::from_f64(0.0));
         while let Some(whole) = self.grid.step_between(t, end) {
             let mut parts = Parts::of(whole);
             while let Some(span) = parts.next() {
                 t = span.start;
-                steps.across.note::<S, M, P>(&x);
+                across.note::<S, M, P>(&x);
                 let slope = problem.slope(t, &x);
                 problem.check(t, &x, &slope)?;
                 let from = Start {
@@ -99,12 +101,17 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                     ..Start::of(span, x, slope)
                 };
                 let memory = problem.memory;
-                let (trial, is_across) = steps.attempt(problem, &from);
+                let mut trial = work.attempt(problem, &from, None);
+                let other = across.instead_of(&trial, problem, &from, memory);
+                let is_across = other.is_some();
+                if let Some(other) = other {
+                    (trial, work) = (other, Stepper::new(&self.fixed.method));
+                }
                 if !trial.error.is_finite() {
-                    let jacobian = steps.work.place_of_jacobian(&from);
+                    let jacobian = work.place_of_jacobian(&from);
                     problem.statistics.rejected += 1;
                     let near = match self.looks && !often(&mut self.lost, seen(t)) {
-                        true => steps.near(problem, (&from, memory)),
+                        true => near(problem, &mut across, (&from, memory)),
                         false => Near::Nothing,
                     };
                     let is_near = !matches!(near, Near::Nothing);
@@ -128,9 +135,22 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                     problem.memory = memory;
                     return Ok(Ran::Met(jump));
                 }
-                (t, x) = (span.end, steps.arrive(problem, &from, &trial.change)?);
+                x = if self.fixed.compensated {
+                    summed(&x, &trial.change, &mut lost)
+                } else {
+                    x + trial.change
+                };
+                t = span.end;
+                check_result(problem.system, t, &x, &problem.memory).map_err(|stopped| {
+                    problem.traced(stopped, &from, work.place_of_jacobian(&from))
+                })?;
+                x = problem.close(t, x)?;
+                problem.statistics.steps += 1;
                 let memory = problem.memory;
-                let mut dense = || steps.polynomial(problem, &from, &x, is_across);
+                let mut dense = || match is_across {
+                    true => across.polynomial(problem, &from, &x),
+                    false => work.polynomial(problem, &from, (&x, None)),
+                };
                 let mut step = Step::new(span, (from.x, x), memory, &mut dense);
                 if observer(&mut step).is_break() {
                     return Ok(Ran::Left);
@@ -212,114 +232,32 @@ where
     (is_late && !is_passed).then_some(line)
 }
 
-/// Steps of a method, with what goes from one to the next.
-struct Steps<'a, Scheme: Method, T: Real, const N: usize> {
-    fixed: &'a Fixed<Scheme>,
-    work: Scheme::Work<T, N>,
-    across: Across<T, N>,
-    lost: SVector<T, N>,
-}
-
-impl<'a, Scheme: Method, T: Real, const N: usize> Steps<'a, Scheme, T, N> {
-    fn new(fixed: &'a Fixed<Scheme>) -> Self {
-        Self {
-            fixed,
-            work: Stepper::new(&fixed.method),
-            across: Across::new(),
-            lost: SVector::from_element(T::from_f64(0.0)),
-        }
-    }
-
-    /// Tries a step; and whether it is one across a singular position.
-    #[inline]
-    fn attempt<S, I, const M: usize, const P: usize>(
-        &mut self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        from: &Start<T, N>,
-    ) -> (Trial<T, N>, bool)
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        let memory = problem.memory;
-        let trial = self.work.attempt(problem, from, None);
-        match self.across.instead_of(&trial, problem, from, memory) {
-            Some(other) => {
-                self.work = Stepper::new(&self.fixed.method);
-                (other, true)
-            }
-            None => (trial, false),
-        }
-    }
-
-    /// What there is ahead of a step that is lost: stages on both sides of a jump are not found, and another method goes over it.
-    #[cold]
-    #[inline(never)]
-    fn near<S, I, const M: usize, const P: usize>(
-        &mut self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        (from, memory): (&Start<T, N>, S::Memory),
-    ) -> Near<T, N>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        let length = seen(from.span.length);
-        let line = line_to_threshold(problem, from, 2.0 * length);
-        let Some(line) = line else {
-            return Near::Nothing;
-        };
-        let tried = core::mem::replace(&mut problem.memory, memory);
-        let mut beside = problem.beside();
-        let end = from.x + self.across.over(problem, from).change;
-        let mut dense = || self.across.polynomial(problem, from, &end);
-        let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
-        let jump = beside.jump_within(&mut step, f64::NEG_INFINITY);
-        problem.memory = tried;
-        jump.map_or(Near::Threshold(line), Near::Jump)
-    }
-
-    /// The state behind a step, on the closed loops.
-    #[inline]
-    fn arrive<S, I, const M: usize, const P: usize>(
-        &mut self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        from: &Start<T, N>,
-        change: &SVector<T, N>,
-    ) -> Result<SVector<T, N>, Stopped>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        let x = if self.fixed.compensated {
-            summed(&from.x, change, &mut self.lost)
-        } else {
-            from.x + change
-        };
-        let end = from.span.end;
-        check_result(problem.system, end, &x, &problem.memory)
-            .map_err(|stopped| problem.traced(stopped, from, self.work.place_of_jacobian(from)))?;
-        let x = problem.close(end, x)?;
-        problem.statistics.steps += 1;
-        Ok(x)
-    }
-
-    fn polynomial<S, I, const M: usize, const P: usize>(
-        &mut self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        from: &Start<T, N>,
-        x: &SVector<T, N>,
-        is_across: bool,
-    ) -> Polynomial<T, N>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        match is_across {
-            true => self.across.polynomial(problem, from, x),
-            false => self.work.polynomial(problem, from, (x, None)),
-        }
-    }
+/// What there is ahead of a step that is lost: stages on both sides of a jump are not found, and another method goes over it.
+#[cold]
+#[inline(never)]
+fn near<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &mut Problem<'_, T, S, I, N, M, P>,
+    across: &mut Across<T, N>,
+    (from, memory): (&Start<T, N>, S::Memory),
+) -> Near<T, N>
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let length = seen(from.span.length);
+    let line = line_to_threshold(problem, from, 2.0 * length);
+    let Some(line) = line else {
+        return Near::Nothing;
+    };
+    let tried = core::mem::replace(&mut problem.memory, memory);
+    let mut beside = problem.beside();
+    let end = from.x + across.over(problem, from).change;
+    let mut dense = || across.polynomial(problem, from, &end);
+    let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
+    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY);
+    problem.memory = tried;
+    jump.map_or(Near::Threshold(line), Near::Jump)
 }
 
 /// `x + change`, where `lost` is what rounding took off the sums before.

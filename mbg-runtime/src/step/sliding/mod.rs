@@ -186,7 +186,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                     T::from_f64(0.0)
                 });
         }
-        self.moved(x, ways)
+        // Surfaces along each other have no ways of their own.
+        let moved = self.moved(x, ways);
+        match moved.iter().all(|it| it.magnitude().is_finite()) {
+            true => moved,
+            false => *x,
+        }
     }
 
     /// The state on the surfaces next to one.

@@ -205,7 +205,8 @@ where
 {
     let start = (from.span.start, from.x);
     let ahead = problem.straight_to_threshold(&start, &from.slope, way)?;
-    Some(Jump {
+    // What begins at one leaves it behind.
+    (seen(ahead) > 0.0).then(|| Jump {
         start,
         ahead: STRAIGHT * seen(ahead),
         length: seen(from.span.length),

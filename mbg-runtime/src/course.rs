@@ -5,6 +5,9 @@ use core::cell::Cell;
 use crate::Real;
 use crate::step::seen;
 
+/// How much farther than a step the way from its start is looked at.
+const FARTHER: f64 = 1.25;
+
 /// How an argument of choices in the laws goes between two points, as [`System::courses`](crate::System::courses) tells it.
 #[derive(Clone, Copy, Debug)]
 pub struct Course<'a, T> {
@@ -72,6 +75,32 @@ impl<T: Real> Course<'_, T> {
         }
         // Whole turns of the way have no slope.
         soonest.map(|(time, way)| T::from_f64(time).root_of(|time| way - rate * time))
+    }
+
+    /// Whether the argument stays on its sides of all thresholds at which choices change, at the second point and for so much time on its
+    /// way from the first as its rates tell, which leads somewhat farther.
+    #[inline]
+    pub(crate) fn is_clear(&self, lasting: T) -> bool {
+        let ([from, rate], [to, later]) = (self.from.map(seen), self.to.map(seen));
+        let lasting = FARTHER * seen(lasting);
+        let ends = [
+            to,
+            from + rate * lasting,
+            from + 0.5 * (rate + later) * lasting,
+        ];
+        let clear = |threshold: &T| {
+            let side = self.below(from, *threshold);
+            let beyond = from - seen(*threshold);
+            // Written so that what is no number is not clear.
+            let is_beside = match self.repeats {
+                true => side as f64 != beyond,
+                false => beyond.abs() > 0.0,
+            };
+            is_beside
+                && beyond.is_finite()
+                && ends.iter().all(|end| self.below(*end, *threshold) == side)
+        };
+        !self.is_choice || self.thresholds.iter().all(clear)
     }
 
     /// At how many whole turns behind a threshold an argument meets it that goes from one place to another, both beyond it.
@@ -216,6 +245,21 @@ mod tests {
             );
             assert_eq!(reached([place, 1.0], [place, 1.0], repeats), None);
         }
+    }
+
+    #[test]
+    fn what_stays_on_its_side_is_clear() {
+        let clear = |from, to, repeats| course(from, to, repeats).is_clear(2.0);
+        assert!(clear([0.5, 0.1], [0.75, 0.0], false));
+        assert!(clear([1.5, 0.1], [1.25, 0.0], false));
+        assert!(!clear([0.5, 0.1], [1.5, 0.0], false));
+        // By the line, though it comes back.
+        assert!(!clear([0.5, 0.5], [0.75, 0.0], false));
+        assert!(!clear([1.0, -0.1], [0.5, 0.0], false));
+        assert!(clear([5.5, 0.1], [6.0, 0.0], true));
+        assert!(!clear([5.5, 0.1], [6.5, 0.0], true));
+        assert!(!clear([5.25, -0.1], [5.0, 0.0], true));
+        assert!(!clear([f64::NAN, 0.0], [5.0, 0.0], false));
     }
 
     /// Along a fall of 5 m from a rate of 3 m/s upwards, with what is 1 and 2 m below the top at these times.

@@ -131,6 +131,8 @@ pub struct Step<'a, T, const N: usize, Memory = ()> {
     memory: Memory,
     /// The thresholds at which the motion stays.
     pub(super) surfaces: Option<Surfaces<T>>,
+    /// Whether it is known to go over none.
+    pub(super) is_clear: bool,
     polynomial: Option<Polynomial<T, N>>,
     source: &'a mut dyn FnMut() -> Polynomial<T, N>,
 }
@@ -148,6 +150,7 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
             state,
             memory,
             surfaces: None,
+            is_clear: false,
             polynomial: None,
             source,
         }

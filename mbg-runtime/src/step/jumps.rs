@@ -236,7 +236,7 @@ where
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
     ) -> Option<Jump<T, N>> {
-        if step.surfaces.is_some() {
+        if step.is_clear || step.surfaces.is_some() {
             // Where it stays at thresholds the derivative is that along them.
             return None;
         }

@@ -13,6 +13,7 @@ use super::method::{Method, Start, Stepper};
 use super::over::Place;
 use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked};
+use super::thresholds::Point;
 use super::{Cause, Stopped, check_result, seen};
 use crate::course::lane;
 use crate::{Input, Real, System};
@@ -128,8 +129,11 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                         .map_err(|stopped| problem.traced(stopped, &from, jacobian))?;
                     return Err(Stopped::new(t, Cause::Diverged));
                 }
+                let is_clear =
+                    S::HAS_COURSES && self.looks && is_clear(problem, &from, &trial.change);
                 if S::HAS_COURSES
                     && self.looks
+                    && !is_clear
                     && let Some(jump) = touched(problem, (&from, &trial.change), watched)
                 {
                     problem.memory = memory;
@@ -152,6 +156,7 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                     false => work.polynomial(problem, &from, (&x, None)),
                 };
                 let mut step = Step::new(span, (from.x, x), memory, &mut dense);
+                step.is_clear = is_clear;
                 if observer(&mut step).is_break() {
                     return Ok(Ran::Left);
                 }
@@ -214,7 +219,32 @@ where
     })
 }
 
-/// The same over a threshold that a step itself has not passed, as where it meets a jump that leads back at its stages; and not
+/// Whether a step, and the line from its start, go over no threshold.
+#[inline(always)]
+fn is_clear<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &Problem<'_, T, S, I, N, M, P>,
+    from: &Start<T, N>,
+    change: &SVector<T, N>,
+) -> bool
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let [first, last] =
+        [(from.span.start, from.x), (from.span.end, from.x + change)].map(|(time, state)| Point {
+            time,
+            state,
+            slope: from.slope,
+        });
+    let mut is_clear = true;
+    problem.courses(&first, &last, |course, lasting| {
+        is_clear &= course.is_clear(lasting);
+    });
+    is_clear
+}
+
+/// The line from the start of a step over a threshold that the step itself has not passed, as where it meets a jump that leads back at its stages; and not
 /// before a time.
 fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, T, S, I, N, M, P>,

@@ -63,6 +63,7 @@ extern crate std;
 
 #[doc(hidden)]
 pub mod __private;
+mod apart;
 pub mod attitude;
 #[cfg(feature = "dispatch")]
 pub mod batch;

@@ -4,6 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{Complex, SMatrix, SVector};
 
+use crate::apart::apart;
 use crate::convertible::{Together, along, keep_slopes};
 use crate::poles::eigenvalues;
 use crate::selection::Selection;
@@ -266,16 +267,59 @@ where
     /// # Errors
     ///
     /// A name that the model has not, a motion from the guess that cannot go on, one on which the state that tells the period is not
-    /// met again, one that does not come back: some state differs by more than a millionth of the terms it is made of, and one whose
-    /// laws do not come back with it, since what drives it has another period.
+    /// met again, one that does not come back: some state differs by more than a millionth of the terms it is made of, or does not
+    /// unless states that change alike differ otherwise, and one whose laws do not come back with it, since what drives it has
+    /// another period.
     pub fn solve(&self) -> Result<Cycle<N, M>, Untrimmed> {
         self.selection.check()?;
-        let kept = self.selection.keeping(S::META);
-        let kept = kept.and_then(|selection| Self { selection, ..*self }.found().ok());
-        kept.map_or_else(|| self.found(), Ok)
+        let Some(selection) = self.selection.keeping(S::META) else {
+            return self.found(self.start);
+        };
+        self.reached(&selection).or_else(|(missed, other)| {
+            let cycle = other.ok_or(missed)?;
+            let section = self.section;
+            let untargeted = Self {
+                selection: self.selection.without_targets(section),
+                ..*self
+            };
+            // Unless none is reached without them it is targets that ask for other differences.
+            match untargeted.reached(&selection.without_targets(section)) {
+                Err((missed, Some(_))) => Err(missed),
+                _ => Ok(cycle),
+            }
+        })
     }
 
-    fn found(&self) -> Result<Cycle<N, M>, Untrimmed> {
+    /// The motion with differences as this selection keeps them, or one without them where it is not known that none leads there;
+    /// else why there is none, and one that no other motion comes to.
+    fn reached(
+        &self,
+        selection: &Selection<N, M>,
+    ) -> Result<Cycle<N, M>, (Untrimmed, Option<Cycle<N, M>>)> {
+        let keeping = |kept| Self {
+            selection: selection.keeping_among(kept),
+            ..*self
+        };
+        if let Ok(cycle) = keeping(selection.kept).found(self.start) {
+            return Ok(cycle);
+        }
+        let cycle = self.found(self.start).map_err(|missed| (missed, None))?;
+        let Cycle { state, input, .. } = cycle;
+        let point = Trimmed { state, input };
+        let ends = (&self.start, &point);
+        let apart = apart(self.system, self.time, &selection.kept, ends, LEFT);
+        let Some((apart, kept)) = apart else {
+            return Ok(cycle);
+        };
+        // With these alone, or from there, the one with the differences of the guess may be found.
+        let keeping = keeping(kept);
+        let found = keeping.found(self.start);
+        let found = found.or_else(|_| keeping.found(point));
+        found.map_err(|_| (apart, Some(cycle)))
+    }
+
+    /// The motion to which corrections lead from a start.
+    fn found(&self, from: Trimmed<N, M>) -> Result<Cycle<N, M>, Untrimmed> {
         if self.period <= 0.0 {
             return Err(Untrimmed::Stopped(Stopped {
                 time: self.time,
@@ -284,7 +328,7 @@ where
         }
         let infinite = f64::INFINITY;
         let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
-        let mut run = self.run(self.start)?;
+        let mut run = self.run(from)?;
         let mut sizes = run.sizes;
         let mut slopes = self.slopes(&run.start, self.section)?;
         for _ in 0..CORRECTIONS {
@@ -644,7 +688,7 @@ where
         });
         let mut rows = Rows::new(rows, []);
         let states = (&run.start.state, &self.start.state);
-        rows.keep_differences(&self.selection.kept(), states, ALIKE);
+        rows.keep_differences(&self.selection.kept, states, ALIKE);
         rows
     }
 

@@ -7,8 +7,8 @@ use crate::{Meta, System, Trimmed, Untrimmed};
 pub(crate) struct Selection<const N: usize, const M: usize> {
     pub(crate) fixed: ([bool; N], [bool; M]),
     pub(crate) changes: [Option<f64>; N],
-    /// Whether states that change alike differ as in the guess.
-    keeps_differences: bool,
+    /// Among which states those that change alike differ as in the guess.
+    pub(crate) kept: [bool; N],
     unknown: Option<Untrimmed>,
 }
 
@@ -18,7 +18,7 @@ impl<const N: usize, const M: usize> Selection<N, M> {
         Self {
             fixed: ([false; N], [false; M]),
             changes: [Some(0.0); N],
-            keeps_differences: false,
+            kept: [false; N],
             unknown: None,
         }
     }
@@ -51,21 +51,31 @@ impl<const N: usize, const M: usize> Selection<N, M> {
         }
     }
 
-    /// The same with states that change alike differing as in the guess. Loops that are closed decide that themselves.
+    /// The same with states that change alike differing as in the guess: those that are to be found and to stay as they are. Loops
+    /// that are closed decide that themselves.
     pub(crate) fn keeping(&self, meta: &Meta) -> Option<Self> {
-        let keeps_differences = true;
-        let kept = Self {
-            keeps_differences,
-            ..*self
-        };
+        let kept =
+            core::array::from_fn(|state| !self.fixed.0[state] && self.changes[state] == Some(0.0));
+        let kept = Self { kept, ..*self };
         meta.closures.is_empty().then_some(kept)
     }
 
-    /// The states that are to be found and to stay as they are, where differences between them are kept.
-    pub(crate) fn kept(&self) -> [bool; N] {
-        core::array::from_fn(|state| {
-            self.keeps_differences && !self.fixed.0[state] && self.changes[state] == Some(0.0)
-        })
+    /// The same with differences kept among these.
+    pub(crate) const fn keeping_among(&self, kept: [bool; N]) -> Self {
+        Self { kept, ..*self }
+    }
+
+    /// The same with states that may be anything, but for one that tells when a motion comes back, and may change as they do where they
+    /// were to change: what is left is what inputs and the model ask for.
+    pub(crate) fn without_targets(&self, section: Option<usize>) -> Self {
+        let (states, inputs) = self.fixed;
+        let fixed = core::array::from_fn(|state| states[state] && Some(state) == section);
+        let at_rest = |change: Option<f64>| change.filter(|change| *change == 0.0);
+        Self {
+            fixed: (fixed, inputs),
+            changes: self.changes.map(at_rest),
+            ..*self
+        }
     }
 
     /// Keeps states or inputs of this name as they are.

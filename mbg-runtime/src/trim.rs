@@ -4,6 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::apart::apart;
 use crate::selection::{Selection, is_named};
 use crate::solve::{Row, Rows, Sizes};
 use crate::{Convertible, Linearised, Untrimmed};
@@ -32,6 +33,8 @@ const OPEN: f64 = 1e-12;
 const TORN: f64 = 1e-3;
 /// Slopes of states that change alike differ by no more than this part: by rounding.
 const SAME: f64 = 8.0 * f64::EPSILON;
+/// What such states differ by may change by this part of them: by rounding, too.
+const APART: f64 = 1e-9;
 /// How many points a few units in the last place away tell what of a condition is rounding.
 const BESIDE: usize = 8;
 /// What is rounding, in units of how far apart its values are there.
@@ -52,8 +55,10 @@ const ROUNDING: f64 = 64.0;
 /// itself, and the point that is found may be one where the ring is open. Put a `Cut` in the place of one of its joints, or let what
 /// is between its ends be an output that is zero. The guess decides which point is found of several: a pendulum may hang or stand.
 /// What two states differ by that change alike whatever is done, such as the displacements of two springs at one junction, stays as it
-/// is in the guess, if there is such a point and none of them is fixed, free or given a rate. Where a contact does not touch, no slope
-/// tells of it: guess a state in which it does, such as that to which a run has fallen.
+/// is in the guess, unless one of them is fixed, free or given a rate. A point at which they differ otherwise is reached by no motion:
+/// beyond the voltage at which a plate is pulled in it is an error, [`Untrimmed::Apart`]. It is taken only where it is outputs, rates
+/// or fixed states that ask for it, and without them there is one with the differences of the guess. Where a contact does not touch,
+/// no slope tells of it: guess a state in which it does, such as that to which a run has fallen.
 ///
 /// # Example
 ///
@@ -192,17 +197,58 @@ where
     ///
     /// # Errors
     ///
-    /// A name that the model has not, conditions that cannot be met from the guess, a point where constraints depend on each other,
-    /// and what [`System::close`](crate::System::close) and [`System::trouble`](crate::System::trouble) say of a state.
+    /// A name that the model has not, conditions that cannot be met from the guess, or only with other differences between states that
+    /// change alike, a point where constraints depend on each other, and what [`System::close`](crate::System::close) and
+    /// [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
         self.selection.check()?;
-        let kept = self.selection.keeping(S::META);
-        let kept = kept.and_then(|selection| Self { selection, ..*self }.found().ok());
-        kept.map_or_else(|| self.found(), Ok)
+        let Some(selection) = self.selection.keeping(S::META) else {
+            return self.found(self.start);
+        };
+        self.reached(&selection).or_else(|(missed, other)| {
+            let point = other.ok_or(missed)?;
+            let untargeted = Self {
+                selection: self.selection.without_targets(None),
+                outputs: [None; P],
+                ..*self
+            };
+            // Unless none is reached without them it is targets that ask for other differences.
+            match untargeted.reached(&selection.without_targets(None)) {
+                Err((missed, Some(_))) => Err(missed),
+                _ => Ok(point),
+            }
+        })
     }
 
-    fn found(&self) -> Result<Trimmed<N, M>, Untrimmed> {
-        let mut point = self.closed(self.start)?;
+    /// The point with differences as this selection keeps them, or one without them where it is not known that no motion leads there;
+    /// else why there is none, and one that no motion reaches.
+    fn reached(
+        &self,
+        selection: &Selection<N, M>,
+    ) -> Result<Trimmed<N, M>, (Untrimmed, Option<Trimmed<N, M>>)> {
+        let keeping = |kept| Self {
+            selection: selection.keeping_among(kept),
+            ..*self
+        };
+        if let Ok(point) = keeping(selection.kept).found(self.start) {
+            return Ok(point);
+        }
+        let point = self.found(self.start).map_err(|missed| (missed, None))?;
+        let ends = (&self.start, &point);
+        let apart = apart(self.system, self.time, &selection.kept, ends, APART);
+        let Some((apart, kept)) = apart else {
+            return Ok(point);
+        };
+        // With these alone, or from there, the one with the differences of the guess may be found.
+        let keeping = keeping(kept);
+        let found = keeping.found(self.start);
+        let found = found.or_else(|_| keeping.found(point));
+        found.map_err(|_| (apart, Some(point)))
+    }
+
+    /// The point to which corrections lead from another one.
+    fn found(&self, from: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
+        let mut point = self.closed(from)?;
         let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
         let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
         let infinite = f64::INFINITY;
@@ -350,7 +396,7 @@ where
         });
         let mut rows = Rows::new(rates, outputs);
         let states = (&point.state, &self.start.state);
-        rows.keep_differences(&self.selection.kept(), states, SAME);
+        rows.keep_differences(&self.selection.kept, states, SAME);
         Ok(rows)
     }
 

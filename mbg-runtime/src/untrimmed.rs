@@ -26,6 +26,21 @@ pub enum Untrimmed {
         /// Whether nothing that may be chosen has an influence on it.
         is_fixed: bool,
     },
+    /// A point that no motion from the guess reaches: what two states differ by that change alike whatever is done, such as the
+    /// displacements of two springs at one junction, would have to be something else. With the differences of the guess none was
+    /// found, and there may be none, as beyond the voltage at which a plate is pulled in.
+    Apart {
+        /// One of the states.
+        name: &'static str,
+        /// The other one.
+        other: &'static str,
+        /// By what number the change of the other one is to be multiplied to be that of the first one.
+        times: f64,
+        /// The first one without so many of the other one in the guess, as it stays.
+        kept: f64,
+        /// What it would have to be.
+        needed: f64,
+    },
     /// Constraints of closed loops depend on each other there, as those of a parallelogram whose bars are in line: which forces
     /// hold it is not determined. Ask for a point beside it.
     Singular {
@@ -72,16 +87,7 @@ pub enum Untrimmed {
 impl core::fmt::Display for Untrimmed {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match *self {
-            Self::Unknown { kind, name } => {
-                write!(formatter, "the model has no {kind} `{name}`")?;
-                formatter.write_str(match kind {
-                    _ if name.ends_with(']') => {
-                        ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
-                    }
-                    "state" => ": a position or an angle that nothing reads is none",
-                    _ => "",
-                })
-            }
+            Self::Unknown { kind, name } => write_unknown(formatter, kind, name),
             Self::Missed {
                 name,
                 is_output,
@@ -94,18 +100,20 @@ impl core::fmt::Display for Untrimmed {
                     formatter,
                     "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
                 )?;
-                if !is_fixed {
-                    return formatter.write_str(
-                        "no choice was found that does better: begin elsewhere, or let more be chosen",
-                    );
-                }
-                formatter.write_str("nothing that may be chosen has an influence on it")?;
-                if is_output {
-                    return Ok(());
-                }
+                write_choices(formatter, name, (is_output, is_fixed))
+            }
+            Self::Apart {
+                name,
+                other,
+                times,
+                kept,
+                needed,
+            } => {
+                write_difference(formatter, [name, other], times)?;
                 write!(
                     formatter,
-                    " there: begin elsewhere, or write `.free(\"{name}\")` where it is to change"
+                    " is {kept:e} and stays so in every motion, but the point that was found asks for {needed:e}: begin with that, \
+                     fix or free one of them, or let more be chosen"
                 )
             }
             Self::Singular { input, here, error } => write!(
@@ -152,6 +160,57 @@ impl core::fmt::Display for Untrimmed {
             Self::Trouble(trouble) => trouble.fmt(formatter),
         }
     }
+}
+
+/// A name that is none of the model's.
+fn write_unknown(
+    formatter: &mut core::fmt::Formatter<'_>,
+    kind: &str,
+    name: &str,
+) -> core::fmt::Result {
+    write!(formatter, "the model has no {kind} `{name}`")?;
+    formatter.write_str(match kind {
+        _ if name.ends_with(']') => {
+            ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
+        }
+        "state" => ": a position or an angle that nothing reads is none",
+        _ => "",
+    })
+}
+
+/// What may be chosen where a condition is not met.
+fn write_choices(
+    formatter: &mut core::fmt::Formatter<'_>,
+    name: &str,
+    (is_output, is_fixed): (bool, bool),
+) -> core::fmt::Result {
+    if !is_fixed {
+        return formatter.write_str(
+            "no choice was found that does better: begin elsewhere, or let more be chosen",
+        );
+    }
+    formatter.write_str("nothing that may be chosen has an influence on it")?;
+    if is_output {
+        return Ok(());
+    }
+    write!(
+        formatter,
+        " there: begin elsewhere, or write `.free(\"{name}\")` where it is to change"
+    )
+}
+
+/// One state without so many of another one.
+fn write_difference(
+    formatter: &mut core::fmt::Formatter<'_>,
+    [name, other]: [&str; 2],
+    times: f64,
+) -> core::fmt::Result {
+    let sign = if times < 0.0 { '+' } else { '-' };
+    write!(formatter, "`{name}` {sign} ")?;
+    if times.abs() != 1.0 {
+        write!(formatter, "{} ", times.abs())?;
+    }
+    write!(formatter, "`{other}`")
 }
 
 impl core::error::Error for Untrimmed {}

@@ -470,3 +470,94 @@ fn springs_that_move_together_differ_as_at_the_start() {
     ];
     assert!((differences[0] - 0.3).abs() < 1e-9 && (differences[1] - 0.1).abs() < 1e-9);
 }
+
+mbg! {
+    /// A plate on a beam before another one, drawn to it by a voltage: a pair of plates that is a field of two ports.
+    model PullIn {
+        param gap: m = 2e-6;
+        param plates: F*m = 8.854e-20;
+        param k: N/m = 1.0;
+        input bias: V;
+        1 wire { Se source { effort: bias } R lead { resistance: 1e5 } }
+        1 plate { I proof { inertia: 1e-10 } R film { resistance: 2e-5 } C beam { stiffness: k } }
+        1 field[2] { C pair { energy: powi(q[0], 2) * (gap - q[1]) / (2 * plates) } }
+        wire -> field[0];
+        plate -> field[1];
+        output bent: m = beam.q;
+        output left: m = gap - pair.q[1];
+    }
+}
+
+/// The plate goes by as much as the beam is bent, so that nothing rests beyond the voltage at which it is pulled in.
+#[test]
+fn a_plate_that_is_pulled_in_has_no_rest() {
+    let parameters = PullInParameters::<f64>::default();
+    let PullInParameters { gap, plates, k } = parameters;
+    let pulled_in = f64::sqrt(8.0 * k * gap.powi(3) / (27.0 * plates));
+    let model = PullIn::<f64>::new(parameters).unwrap();
+    let trim = |part: f64| Trim::new(&model).input(&[part * pulled_in]).fix("bias");
+    for part in [0.1, 0.5, 0.9, 0.99] {
+        let point = trim(part).solve().unwrap();
+        let [bent, left] = model
+            .output(0.0, &point.state, &point.input, &mut ())
+            .into();
+        // The first root of x (1 - x)^2 = 4/27 part^2, by three times its angle.
+        let third = 2.0 / 3.0 * (part.acos() + core::f64::consts::PI);
+        let expected = 2.0 / 3.0 * gap * (1.0 + third.cos());
+        assert!((bent - expected).abs() < 1e-9 * gap, "{part}: {bent:e}");
+        assert!((bent + left - gap).abs() < 1e-12 * gap, "{part}: {left:e}");
+    }
+    for part in [1.001, 1.01, 1.1, 1.5, 3.0] {
+        let missed = trim(part).solve().unwrap_err();
+        let Untrimmed::Apart {
+            name: "pair.q.y",
+            other: "beam.q",
+            times: 1.0,
+            kept: 0.0,
+            needed,
+        } = missed
+        else {
+            panic!("{part}: {missed:?}");
+        };
+        assert!(needed < -0.1 * gap, "{part}: {needed:e}");
+        let told = missed.to_string();
+        let begins = "`pair.q.y` - `beam.q` is 0e0 and stays so in every motion, but";
+        assert!(told.starts_with(begins), "{told}");
+        // An output that rests elsewhere does not excuse it.
+        let wanted = trim(part).output("bent", 0.1 * gap).solve();
+        assert_eq!(wanted.unwrap_err().to_string()[..begins.len()], *begins);
+    }
+}
+
+/// Where the beam is asked to be bent otherwise than the voltage bends it, or one of both is fixed, the plate may be elsewhere.
+#[test]
+fn differences_change_where_that_is_asked() {
+    let model = PullIn::<f64>::new(PullInParameters::default()).unwrap();
+    let bent = 0.5e-6;
+    let wanted = Trim::new(&model).input(&[4.0]).fix("bias");
+    let mut start = model.initial_state();
+    start[PullIn::<f64>::META.state("beam.q").unwrap()] = bent;
+    let fixed = Trim::new(&model).state(&start).input(&[6.0]).fix("bias");
+    let points = [
+        wanted.output("bent", bent).solve().unwrap(),
+        fixed.fix("beam.q").solve().unwrap(),
+    ];
+    for point in points {
+        let [found, left] = model
+            .output(0.0, &point.state, &point.input, &mut ())
+            .into();
+        // The plates draw each other as the beam draws back.
+        let force = 0.5 * 8.854e-20 * (point.input[0] / left).powi(2);
+        assert!((found - bent).abs() < 1e-9 * bent, "{found:e}");
+        assert!((force - bent).abs() < 1e-9 * bent, "{force:e}");
+        assert!((found + left - 2e-6).abs() > 1e-8, "{left:e}");
+    }
+    let springs = Springs::<f64>::new(SpringsParameters::default()).unwrap();
+    let both = Trim::new(&springs)
+        .input(&[11.0])
+        .fix("push")
+        .output("stretched", 0.02);
+    let state = both.solve().unwrap().state;
+    let forces = 100.0 * state[1] + 10.0 * state[2] - 2.0 * 5.0 * state[3];
+    assert!((state[1] - 0.02).abs() < 1e-12 && (forces - 11.0).abs() < 1e-9);
+}

@@ -42,20 +42,40 @@ impl<const N: usize, const M: usize> Row<N, M> {
     }
 
     /// The number by which another one is to be multiplied to be this one, but for such a part of it.
-    fn in_units_of(&self, other: &Self, part: f64) -> Option<f64> {
-        let pairs = || {
-            let (states, inputs) = (self.by_state.iter(), self.by_input.iter());
-            let pairs = states
-                .zip(&other.by_state)
-                .chain(inputs.zip(&other.by_input));
-            pairs.map(|(own, other)| (*own, *other))
-        };
+    pub(crate) fn in_units_of(&self, other: &Self, part: f64) -> Option<f64> {
+        let pairs = || self.pairs(other);
         let (own, largest) = pairs().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         let number = own / largest;
         let aside = |(own, other): (f64, f64)| (own - number * other).abs();
         let least = part * own.abs();
         let is_same = own != 0.0 && number.is_finite() && pairs().all(|it| aside(it) <= least);
         is_same.then_some(number)
+    }
+
+    /// Whether it is another one, times this number, but for such a part of each of its entries, which may have any units, and of
+    /// the terms of its right side.
+    pub(crate) fn is_multiple(
+        &self,
+        (other, times): (&Self, f64),
+        sizes: &Sizes<N, M>,
+        part: f64,
+    ) -> bool {
+        let near = |(own, other): (f64, f64)| (own - times * other).abs() <= part * own.abs();
+        let aside = (self.right - times * other.right).abs();
+        self.pairs(other).all(near) && aside <= part * (self.right.abs() + self.terms(sizes))
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.pairs(self).all(|(own, _)| own.is_finite()) && self.right.is_finite()
+    }
+
+    /// Its entries next to those of another one.
+    fn pairs(&self, other: &Self) -> impl Iterator<Item = (f64, f64)> {
+        let (states, inputs) = (self.by_state.iter(), self.by_input.iter());
+        let pairs = states
+            .zip(&other.by_state)
+            .chain(inputs.zip(&other.by_input));
+        pairs.map(|(own, other)| (*own, *other))
     }
 
     /// The terms that it is made of where unknowns have these sizes.

@@ -11,6 +11,6 @@ macro_rules! functions {
 }
 
 functions! {
-    ahead arguments both changing convert derivative each entry fixed folded formatter from holds input jacobian kept memory
-    model other parameters ranks rates rows slopes stages t to u value whole x zero
+    ahead arguments both changing close convert derivative each entry fixed folded formatter from holds input jacobian kept memory
+    model other parameters ranks rates rows slopes stages start t to u value whole x zero
 }

@@ -33,10 +33,10 @@ use crate::{Input, Real, System};
 ///
 /// Where a law jumps since a state goes through a threshold, as a relay, a contact or dry friction by `sign(f)` does, the step ends
 /// there and another one begins, up to the end of the step of the grid: no stage is beyond the jump, and the method keeps its order.
-/// Where the motion leads back from both sides it stays, as told of [`Adaptive`](super::Adaptive): friction holds. Such a step takes
-/// some evaluations more, twice as many along one threshold, and is begun anew 64 times at most, so that a loop with a clock of its own
-/// knows the longest time of a tick: each is a run of one step, from zero to `h`. Lanes share their steps and go over jumps, and so
-/// does [`Rk4::step`]; there a law is to rise within a width.
+/// Where the motion leads back from both sides it stays, as told of [`Adaptive`](super::Adaptive): friction holds. Along one threshold
+/// a step takes about three times the evaluations. Within a step of the grid it is begun anew 64 times at most, so that a loop with a
+/// clock of its own knows the longest time of a tick: each is a run of one step, from zero to `h`. Lanes share their steps and go over
+/// jumps, and so does [`Rk4::step`]; there a law is to rise within a width.
 ///
 /// ```
 /// use mbg_runtime::{Constant, Fixed, Integrator, Rk4, System, mbg};

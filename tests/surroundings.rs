@@ -92,7 +92,7 @@ pub mod renamed {
             1 crank[3];
             1 pin[3];
             1 rod[3];
-            turn: PlanarRevolute { initial: 0.5 } (ground, crank);
+            turn: PlanarRevolute { initial: 0.5, initial_rate: 2.0 } (ground, crank);
             along: PlanarOffset { x: 1.0 } (crank, pin);
             joint: PlanarRevolute { initial: -1.0 } (pin, rod);
             wheel: PlanarBody { mass: 1.0, inertia: 2.0 } (crank);

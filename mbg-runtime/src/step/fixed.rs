@@ -52,12 +52,12 @@ use crate::{Input, Real, System};
 /// let model = Slide::<f32>::new(SlideParameters::default())?;
 /// let tick = Fixed::new(Rk4, 1e-3);
 /// let mut state = model.initial_state();
-/// for force in [0.9, 3.0, 0.5, 0.5, 0.5] {
+/// for force in [0.9, 2.0, 0.5, 0.5, 0.5] {
 ///     let input = Constant([force].into());
 ///     tick.integrate(&model, &input, 0.0, 1e-3, state, |step| state = *step.state())?;
 /// }
 /// // It holds, is torn loose for a tick, and comes to rest.
-/// assert_eq!(state[0], 0.0);
+/// assert!(state[0].abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

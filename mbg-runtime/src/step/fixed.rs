@@ -61,7 +61,7 @@ use crate::{Input, Real, System};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A law that is steep at one place without a kink, and level beside it, as dry friction by `tanh` is one for those of Radau, or for
+/// A law that is steep at one place without a kink and level beside it, as dry friction by `tanh`, is one for those of Radau, or for
 /// [`Adaptive`](super::Adaptive) steps: one of Rosenbrock that starts where it is level knows nothing of the steep place, and makes
 /// another motion of a block that sticks and slips.
 ///

@@ -115,9 +115,12 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                         true => near(problem, &mut across, (&from, memory)),
                         false => Near::Nothing,
                     };
-                    let is_near = !matches!(near, Near::Nothing);
-                    let halves = matches!(near, Near::Threshold(_) | Near::Nothing);
-                    if halves && (jacobian.is_some() || is_near) && parts.halve() {
+                    let may_halve = match &near {
+                        Near::Jump(_) => false,
+                        Near::Threshold(_) => true,
+                        Near::Nothing => jacobian.is_some(),
+                    };
+                    if may_halve && parts.halve() {
                         problem.memory = memory;
                         continue;
                     }
@@ -244,8 +247,8 @@ where
     is_clear
 }
 
-/// The line from the start of a step over a threshold that the step itself has not passed, as where it meets a jump that leads back at its stages; and not
-/// before a time.
+/// The line from the start of a step over a threshold that the step itself has not passed, as where it meets a jump that leads back
+/// at its stages; and not before a time.
 fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, T, S, I, N, M, P>,
     (from, change): (&Start<T, N>, &SVector<T, N>),

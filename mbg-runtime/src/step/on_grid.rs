@@ -115,12 +115,7 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                         true => near(problem, &mut across, (&from, memory)),
                         false => Near::Nothing,
                     };
-                    let may_halve = match &near {
-                        Near::Jump(_) => false,
-                        Near::Threshold(_) => true,
-                        Near::Nothing => jacobian.is_some(),
-                    };
-                    if may_halve && parts.halve() {
+                    if near.may_be_halved(jacobian.is_some()) && parts.halve() {
                         problem.memory = memory;
                         continue;
                     }
@@ -195,6 +190,17 @@ enum Near<T, const N: usize> {
     /// A threshold, as far as the line from the start tells.
     Threshold(Jump<T, N>),
     Nothing,
+}
+
+impl<T, const N: usize> Near<T, N> {
+    /// Whether the step is to be tried in halves; one that takes no Jacobian finds its stages no better for it elsewhere.
+    const fn may_be_halved(&self, takes_jacobian: bool) -> bool {
+        match self {
+            Self::Jump(_) => false,
+            Self::Threshold(_) => true,
+            Self::Nothing => takes_jacobian,
+        }
+    }
 }
 
 /// The part of a straight way to a threshold that is gone.

@@ -93,6 +93,7 @@ mod periodic;
 mod poles;
 mod real;
 mod scalar;
+mod search;
 mod selection;
 mod sine;
 pub mod solve;

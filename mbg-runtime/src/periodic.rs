@@ -4,9 +4,9 @@ use core::cmp::Ordering;
 
 use nalgebra::{Complex, SMatrix, SVector};
 
-use crate::apart::apart;
 use crate::convertible::{Together, along, keep_slopes};
 use crate::poles::eigenvalues;
+use crate::search::{Asked, Search};
 use crate::selection::Selection;
 use crate::solve::{Row, Rows, Sizes};
 use crate::{
@@ -271,102 +271,7 @@ where
     /// unless states that change alike differ otherwise, and one whose laws do not come back with it, since what drives it has
     /// another period.
     pub fn solve(&self) -> Result<Cycle<N, M>, Untrimmed> {
-        self.selection.check()?;
-        let Some(selection) = self.selection.keeping(S::META) else {
-            return self.found(self.start);
-        };
-        self.reached(&selection).or_else(|(missed, other)| {
-            let cycle = other.ok_or(missed)?;
-            let section = self.section;
-            let untargeted = Self {
-                selection: self.selection.without_targets(section),
-                ..*self
-            };
-            // Unless none is reached without them it is targets that ask for other differences.
-            match untargeted.reached(&selection.without_targets(section)) {
-                Err((missed, Some(_))) => Err(missed),
-                _ => Ok(cycle),
-            }
-        })
-    }
-
-    /// The motion with differences as this selection keeps them, or one without them where it is not known that none leads there;
-    /// else why there is none, and one that no other motion comes to.
-    fn reached(
-        &self,
-        selection: &Selection<N, M>,
-    ) -> Result<Cycle<N, M>, (Untrimmed, Option<Cycle<N, M>>)> {
-        let keeping = |kept| Self {
-            selection: selection.keeping_among(kept),
-            ..*self
-        };
-        if let Ok(cycle) = keeping(selection.kept).found(self.start) {
-            return Ok(cycle);
-        }
-        let cycle = self.found(self.start).map_err(|missed| (missed, None))?;
-        let Cycle { state, input, .. } = cycle;
-        let point = Trimmed { state, input };
-        let ends = (&self.start, &point);
-        let apart = apart(self.system, self.time, &selection.kept, ends, LEFT);
-        let Some((apart, kept)) = apart else {
-            return Ok(cycle);
-        };
-        // With these alone, or from there, the one with the differences of the guess may be found.
-        let keeping = keeping(kept);
-        let found = keeping.found(self.start);
-        let found = found.or_else(|_| keeping.found(point));
-        found.map_err(|_| (apart, Some(cycle)))
-    }
-
-    /// The motion to which corrections lead from a start.
-    fn found(&self, from: Trimmed<N, M>) -> Result<Cycle<N, M>, Untrimmed> {
-        if self.period <= 0.0 {
-            return Err(Untrimmed::Stopped(Stopped {
-                time: self.time,
-                cause: Cause::Argument("the period must be larger than zero"),
-            }));
-        }
-        let infinite = f64::INFINITY;
-        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
-        let mut run = self.run(from)?;
-        let mut sizes = run.sizes;
-        let mut slopes = self.slopes(&run.start, self.section)?;
-        for _ in 0..CORRECTIONS {
-            // What comes back already is left by whole corrections, which square what is left, or not at all: the rest is rounding.
-            let dampings = match self.missed(&run, &slopes, &sizes) {
-                Some(_) => DAMPINGS,
-                None => 1,
-            };
-            let Some(next) = self.descend(&run, &slopes, &mut units, dampings) else {
-                break;
-            };
-            run = next;
-            sizes.0 = sizes.0.sup(&run.sizes.0);
-            sizes.1 = sizes.1.sup(&run.sizes.1);
-            slopes = self.slopes(&run.start, self.section)?;
-        }
-        if let Some(untrimmed) = self.missed(&run, &slopes, &sizes) {
-            return Err(untrimmed);
-        }
-        if let Some(untrimmed) = self.driven_otherwise(&run)? {
-            return Err(untrimmed);
-        }
-        let (time, start) = self.off_thresholds(&run)?;
-        let from = Self {
-            time,
-            period: run.period,
-            ..*self
-        };
-        let (mut monodromy, end) = from.monodromy(start)?;
-        if !from.leads_along((&start, &end), &run.strokes, &monodromy) {
-            monodromy.fill(f64::NAN);
-        }
-        Ok(Cycle {
-            state: run.start.state,
-            input: run.start.input,
-            period: run.period,
-            monodromy,
-        })
+        self.search()
     }
 
     /// The condition that is farthest from being met, if it is not met.
@@ -724,6 +629,87 @@ where
             });
             let next = next.ok()?;
             (size(&next) < (1.0 - 0.5 * damping) * before).then_some(next)
+        })
+    }
+}
+
+impl<S, A, const N: usize, const M: usize, const P: usize> Search<S, N, M, P>
+    for PeriodicTrim<'_, S, A, N, M, P>
+where
+    S: Convertible<f64, N, M, P>,
+    A: Integrator<N>,
+{
+    type Found = Cycle<N, M>;
+    const APART: f64 = LEFT;
+
+    fn asked(&self) -> Asked<'_, S, N, M> {
+        Asked {
+            system: self.system,
+            time: self.time,
+            start: self.start,
+            selection: self.selection,
+        }
+    }
+
+    fn choosing(&self, selection: Selection<N, M>) -> Self {
+        Self { selection, ..*self }
+    }
+
+    fn without_targets(&self) -> Self {
+        self.choosing(self.selection.without_targets(self.section))
+    }
+
+    fn point(&Cycle { state, input, .. }: &Cycle<N, M>) -> Trimmed<N, M> {
+        Trimmed { state, input }
+    }
+
+    fn found(&self, from: Trimmed<N, M>) -> Result<Cycle<N, M>, Untrimmed> {
+        if self.period <= 0.0 {
+            return Err(Untrimmed::Stopped(Stopped {
+                time: self.time,
+                cause: Cause::Argument("the period must be larger than zero"),
+            }));
+        }
+        let infinite = f64::INFINITY;
+        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
+        let mut run = self.run(from)?;
+        let mut sizes = run.sizes;
+        let mut slopes = self.slopes(&run.start, self.section)?;
+        for _ in 0..CORRECTIONS {
+            // What comes back already is left by whole corrections, which square what is left, or not at all: the rest is rounding.
+            let dampings = match self.missed(&run, &slopes, &sizes) {
+                Some(_) => DAMPINGS,
+                None => 1,
+            };
+            let Some(next) = self.descend(&run, &slopes, &mut units, dampings) else {
+                break;
+            };
+            run = next;
+            sizes.0 = sizes.0.sup(&run.sizes.0);
+            sizes.1 = sizes.1.sup(&run.sizes.1);
+            slopes = self.slopes(&run.start, self.section)?;
+        }
+        if let Some(untrimmed) = self.missed(&run, &slopes, &sizes) {
+            return Err(untrimmed);
+        }
+        if let Some(untrimmed) = self.driven_otherwise(&run)? {
+            return Err(untrimmed);
+        }
+        let (time, start) = self.off_thresholds(&run)?;
+        let from = Self {
+            time,
+            period: run.period,
+            ..*self
+        };
+        let (mut monodromy, end) = from.monodromy(start)?;
+        if !from.leads_along((&start, &end), &run.strokes, &monodromy) {
+            monodromy.fill(f64::NAN);
+        }
+        Ok(Cycle {
+            state: run.start.state,
+            input: run.start.input,
+            period: run.period,
+            monodromy,
         })
     }
 }

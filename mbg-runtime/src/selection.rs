@@ -51,17 +51,16 @@ impl<const N: usize, const M: usize> Selection<N, M> {
         }
     }
 
-    /// The same with states that change alike differing as in the guess: those that are to be found and to stay as they are. Loops
-    /// that are closed decide that themselves.
-    pub(crate) fn keeping(&self, meta: &Meta) -> Option<Self> {
+    /// Among which states those that change alike are to differ as in the guess: those that are to be found and to stay as they are.
+    /// None where loops are closed, which decide that themselves.
+    pub(crate) fn may_keep(&self, meta: &Meta) -> Option<[bool; N]> {
         let kept =
             core::array::from_fn(|state| !self.fixed.0[state] && self.changes[state] == Some(0.0));
-        let kept = Self { kept, ..*self };
         meta.closures.is_empty().then_some(kept)
     }
 
     /// The same with differences kept among these.
-    pub(crate) const fn keeping_among(&self, kept: [bool; N]) -> Self {
+    pub(crate) const fn keeping(&self, kept: [bool; N]) -> Self {
         Self { kept, ..*self }
     }
 

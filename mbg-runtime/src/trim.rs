@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::apart::apart;
+use crate::search::{Asked, Search};
 use crate::selection::{Selection, is_named};
 use crate::solve::{Row, Rows, Sizes};
 use crate::{Convertible, Linearised, Untrimmed};
@@ -201,83 +201,7 @@ where
     /// change alike, a point where constraints depend on each other, and what [`System::close`](crate::System::close) and
     /// [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
-        self.selection.check()?;
-        let Some(selection) = self.selection.keeping(S::META) else {
-            return self.found(self.start);
-        };
-        self.reached(&selection).or_else(|(missed, other)| {
-            let point = other.ok_or(missed)?;
-            let untargeted = Self {
-                selection: self.selection.without_targets(None),
-                outputs: [None; P],
-                ..*self
-            };
-            // Unless none is reached without them it is targets that ask for other differences.
-            match untargeted.reached(&selection.without_targets(None)) {
-                Err((missed, Some(_))) => Err(missed),
-                _ => Ok(point),
-            }
-        })
-    }
-
-    /// The point with differences as this selection keeps them, or one without them where it is not known that no motion leads there;
-    /// else why there is none, and one that no motion reaches.
-    fn reached(
-        &self,
-        selection: &Selection<N, M>,
-    ) -> Result<Trimmed<N, M>, (Untrimmed, Option<Trimmed<N, M>>)> {
-        let keeping = |kept| Self {
-            selection: selection.keeping_among(kept),
-            ..*self
-        };
-        if let Ok(point) = keeping(selection.kept).found(self.start) {
-            return Ok(point);
-        }
-        let point = self.found(self.start).map_err(|missed| (missed, None))?;
-        let ends = (&self.start, &point);
-        let apart = apart(self.system, self.time, &selection.kept, ends, APART);
-        let Some((apart, kept)) = apart else {
-            return Ok(point);
-        };
-        // With these alone, or from there, the one with the differences of the guess may be found.
-        let keeping = keeping(kept);
-        let found = keeping.found(self.start);
-        let found = found.or_else(|_| keeping.found(point));
-        found.map_err(|_| (apart, Some(point)))
-    }
-
-    /// The point to which corrections lead from another one.
-    fn found(&self, from: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
-        let mut point = self.closed(from)?;
-        let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
-        let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
-        let infinite = f64::INFINITY;
-        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
-        for _ in 0..ITERATIONS {
-            sizes.0.zip_apply(&point.state, larger);
-            sizes.1.zip_apply(&point.input, larger);
-            let rounding = self.rounding(&point);
-            let mut rows = self.rows(&point, &rounding)?;
-            match self.descend(&point, &mut rows, &rounding, &mut units) {
-                Some(next) => point = next,
-                None => break,
-            }
-        }
-        let rounding = self.rounding(&point);
-        let mut rows = self.rows(&point, &rounding)?;
-        let seen = rows.seen(&sizes, TINY, &self.tangents(&point));
-        // NaN is the worst, whatever its sign.
-        let parts = rows.iter().map(|row| row.part_left(&seen).abs());
-        let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        match worst {
-            // NaN is not small.
-            Some((row, left)) if !matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) => {
-                Err(self.missed(&point, row, &mut rows))
-            }
-            _ => self
-                .singular(&point, (&rows, &rounding))
-                .map_or(Ok(point), Err),
-        }
+        self.search()
     }
 
     /// An input that is as arbitrary as forces are where constraints depend on each other: closing leaves states open by more than
@@ -554,6 +478,72 @@ where
             }
         }
         tangents
+    }
+}
+
+impl<S, const N: usize, const M: usize, const P: usize> Search<S, N, M, P> for Trim<'_, S, N, M, P>
+where
+    S: Convertible<f64, N, M, P>,
+{
+    type Found = Trimmed<N, M>;
+    const APART: f64 = APART;
+
+    fn asked(&self) -> Asked<'_, S, N, M> {
+        Asked {
+            system: self.system,
+            time: self.time,
+            start: self.start,
+            selection: self.selection,
+        }
+    }
+
+    fn choosing(&self, selection: Selection<N, M>) -> Self {
+        Self { selection, ..*self }
+    }
+
+    fn without_targets(&self) -> Self {
+        Self {
+            selection: self.selection.without_targets(None),
+            outputs: [None; P],
+            ..*self
+        }
+    }
+
+    fn point(found: &Trimmed<N, M>) -> Trimmed<N, M> {
+        *found
+    }
+
+    fn found(&self, from: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
+        let mut point = self.closed(from)?;
+        let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
+        let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
+        let infinite = f64::INFINITY;
+        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
+        for _ in 0..ITERATIONS {
+            sizes.0.zip_apply(&point.state, larger);
+            sizes.1.zip_apply(&point.input, larger);
+            let rounding = self.rounding(&point);
+            let mut rows = self.rows(&point, &rounding)?;
+            match self.descend(&point, &mut rows, &rounding, &mut units) {
+                Some(next) => point = next,
+                None => break,
+            }
+        }
+        let rounding = self.rounding(&point);
+        let mut rows = self.rows(&point, &rounding)?;
+        let seen = rows.seen(&sizes, TINY, &self.tangents(&point));
+        // NaN is the worst, whatever its sign.
+        let parts = rows.iter().map(|row| row.part_left(&seen).abs());
+        let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        match worst {
+            // NaN is not small.
+            Some((row, left)) if !matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) => {
+                Err(self.missed(&point, row, &mut rows))
+            }
+            _ => self
+                .singular(&point, (&rows, &rounding))
+                .map_or(Ok(point), Err),
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use super::event::Direction;
 use super::jumps::{Ran, Runs, walk_over_jumps};
 use super::over::Place;
 use super::problem::Problem;
-use super::slide::{Ends, Walked};
+use super::slide::{Nowhere, Walked};
 use super::sliding::output_along;
 use super::surfaces::Surfaces;
 use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
@@ -341,13 +341,7 @@ where
 {
     // Where the next piece begins, it is found that a motion stays there.
     Ok(
-        match walk_over_jumps(
-            &mut Parts(integrator),
-            problem,
-            ends,
-            Ends::Nowhere,
-            observer,
-        )? {
+        match walk_over_jumps(&mut Parts(integrator), problem, ends, Nowhere, observer)? {
             Walked::Ended(x) | Walked::Stays((_, x), _) => ControlFlow::Continue(x),
             Walked::Left => ControlFlow::Break(()),
         },

@@ -72,7 +72,7 @@ pub(super) fn walk_over_jumps<R, T, S, I, const N: usize, const M: usize, const 
     runs: &mut R,
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     (here, end): (Place<T, N>, T),
-    ends: Ends,
+    ends: impl Ends,
     observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
 ) -> Result<Walked<T, N>, Stopped>
 where
@@ -93,7 +93,7 @@ where
             return Ok(Walked::Ended(way.here.1));
         };
         let here = problem.point(way.here);
-        if let Some(surfaces) = problem.ends_at(&here, ends) {
+        if let Some(surfaces) = ends.at(problem, &here) {
             return Ok(Walked::Stays(way.here, surfaces));
         }
         let length = jump.length;

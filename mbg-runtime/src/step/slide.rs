@@ -24,13 +24,132 @@ pub(super) enum Walked<T, const N: usize> {
     Stays(Place<T, N>, Surfaces<T>),
 }
 
-/// At which of the thresholds that it goes over a walk ends.
+/// At which thresholds a walk ends.
+pub(super) trait Ends: Copy {
+    /// Of those between two points next to each other.
+    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized;
+
+    /// Of those at which a point is, as far as numbers tell.
+    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized;
+}
+
+/// At none.
 #[derive(Clone, Copy)]
-pub(super) enum Ends {
-    Nowhere,
-    WhereItStays,
-    /// Beside thresholds at which a motion stays laws are asked a little off it: what it comes to is to be found with these.
-    Everywhere,
+pub(super) struct Nowhere;
+
+impl Ends for Nowhere {
+    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        _: &mut Problem<'_, T, S, I, N, M, P>,
+        _: &Point<T, N>,
+        _: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        None
+    }
+
+    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        _: &mut Problem<'_, T, S, I, N, M, P>,
+        _: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        None
+    }
+}
+
+/// At those at which the motion stays.
+#[derive(Clone, Copy)]
+pub(super) struct WhereItStays;
+
+impl Ends for WhereItStays {
+    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let passed = problem.met_between(from, to);
+        passed.filter(|passed| problem.stays(to, passed))
+    }
+
+    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let met = problem.next_to(here);
+        met.filter(|met| problem.stays(here, met))
+    }
+}
+
+/// At all that it goes over. Beside thresholds at which a motion stays laws are asked a little off it: what it comes to is to be found
+/// with these.
+#[derive(Clone, Copy)]
+pub(super) struct WhereItGoesOver;
+
+impl Ends for WhereItGoesOver {
+    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        from: &Point<T, N>,
+        to: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        problem.between(from, to)
+    }
+
+    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        _: &mut Problem<'_, T, S, I, N, M, P>,
+        _: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        None
+    }
 }
 
 /// Where a run goes on behind a threshold, with when the next may be met, if it does.
@@ -48,7 +167,7 @@ where
         &mut self,
         here: &Point<T, N>,
         (rest, length, end): (T, f64, T),
-        ends: Ends,
+        ends: impl Ends,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Beyond<T, N>, Stopped> {
         let way = ((here.time, here.state), (rest, &here.slope));
@@ -61,39 +180,11 @@ where
         }
         let next = self.point((time, state));
         if S::HAS_COURSES
-            && let Some(passed) = self.ends_between(here, &next, ends)
+            && let Some(passed) = ends.between(self, here, &next)
         {
             return Ok(ControlFlow::Break(Walked::Stays((time, state), passed)));
         }
         Ok(ControlFlow::Continue((next, watched)))
-    }
-
-    /// The thresholds between two points next to each other, if a walk ends there.
-    fn ends_between(
-        &mut self,
-        from: &Point<T, N>,
-        to: &Point<T, N>,
-        ends: Ends,
-    ) -> Option<Surfaces<T>> {
-        match ends {
-            Ends::Nowhere => None,
-            Ends::WhereItStays => {
-                let passed = self.met_between(from, to);
-                passed.filter(|passed| self.stays(to, passed))
-            }
-            Ends::Everywhere => self.between(from, to),
-        }
-    }
-
-    /// The thresholds at which a point is, as far as numbers tell, if a walk ends there.
-    pub(super) fn ends_at(&mut self, here: &Point<T, N>, ends: Ends) -> Option<Surfaces<T>> {
-        match ends {
-            Ends::Nowhere => None,
-            _ => {
-                let met = self.next_to(here);
-                met.filter(|met| self.stays(here, met))
-            }
-        }
     }
 
     /// Whether the motion stays at some of these thresholds.
@@ -118,7 +209,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         place_and_end: (Place<T, N>, T),
-        ends: Ends,
+        ends: impl Ends,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Walked<T, N>, Stopped>
     where
@@ -152,7 +243,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     return Ok(ControlFlow::Continue(here.1));
                 }
             }
-            match self.walk(problem, (here, end), Ends::WhereItStays, observer)? {
+            match self.walk(problem, (here, end), WhereItStays, observer)? {
                 Walked::Ended(x) => return Ok(ControlFlow::Continue(x)),
                 Walked::Left => return Ok(ControlFlow::Break(())),
                 Walked::Stays(place, others) => (here, surfaces) = (place, Some(others)),
@@ -186,7 +277,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
             surfaces = sliding.surfaces;
             let mut along = problem.of(&sliding);
             let (mut left, mut undone) = (None, 0);
-            let walked = self.walk(&mut along, (here, end), Ends::Everywhere, &mut |step| {
+            let walked = self.walk(&mut along, (here, end), WhereItGoesOver, &mut |step| {
                 let hold = |t: T, x: &SVector<T, N>, memory: S::Memory| {
                     sliding.hold(t, x, &mut { memory })
                 };

@@ -54,6 +54,25 @@ fn a_clutch_passes_on_its_capacity_while_it_slips() {
 }
 
 #[test]
+fn a_freewheel_takes_the_load_along_one_way() {
+    let outputs = "output effort: N*m = part.effort; output slip: rad/s = part.slip;";
+    let sharp = shafts("Freewheel { capacity: capacity } (a, b)", outputs);
+    let law = "Freewheel { capacity: capacity, speed: width } (a, b)";
+    let smooth = shafts(law, outputs);
+    for [a, b] in SPEEDS {
+        let slip: f64 = a - b;
+        let share = if slip > 0.0 { 1.0 } else { 0.0 };
+        for (model, share) in [(&sharp, share), (&smooth, (slip / 0.5).tanh().max(0.0))] {
+            let torque = 30.0 * share;
+            let at = |routine| at(model, routine, [a, b], &[]);
+            assert_near(&at(Routines::DERIVATIVE), &[-torque, torque], 1e-13);
+            assert_near(&at(Routines::OUTPUT)[1..], &[torque, slip], 1e-13);
+            assert_near(&at(Routines::POWER), &[0.0, torque * slip], 1e-13);
+        }
+    }
+}
+
+#[test]
 fn a_brake_holds_against_the_motion() {
     let outputs = "output effort: N*m = part.effort;";
     let sharp = shafts("Brake { capacity: capacity } (a)", outputs);

@@ -33,6 +33,11 @@ fn parts_of_drivelines_are_told_by_their_names_here() {
             "g: Clutch { capacity: 3.0 } (a, b);",
         ),
         (
+            "g: OneWayClutch { capacity: 3.0 } (a, b);",
+            "Freewheel",
+            "g: Freewheel { capacity: 3.0 } (a, b);",
+        ),
+        (
             "g: Disc_Brake { capacity: 3.0 } (a);",
             "Brake",
             "g: Brake { capacity: 3.0 } (a);",

@@ -1,6 +1,6 @@
 //! Drivelines.
 
-use mbg_runtime::{Adaptive, Dop853, Integrator, Smooth, System, mbg};
+use mbg_runtime::{Adaptive, Dop853, Fixed, Integrator, Pulse, Rk4, Rodas5P, Smooth, System, mbg};
 use nalgebra::SVector;
 
 use super::balance;
@@ -132,4 +132,69 @@ fn a_clutch_locks_and_both_shafts_turn_as_one() {
     for speed in speeds.iter() {
         assert!((speed - common).abs() < 1e-7, "{speeds}");
     }
+}
+
+mbg! {
+    /// An engine takes a rotor along through a freewheel, fails and stops, while the rotor runs free.
+    pub(crate) model Autorotation {
+        input torque: N*m;
+        1 engine {
+            I turbine { inertia: 0.5, initial_flow: 20.0 }
+            Se drive { effort: torque }
+            R pumping { effort: 4.0 * sign(f) }
+        }
+        1 rotor { I blades { inertia: 2.5, initial_flow: 50.0 } R air { effort: 6.0 * sign(f) } }
+        freewheel: Freewheel { capacity: 200.0 } (engine, rotor);
+        output engine_speed: rad/s = engine.f;
+        output rotor_speed: rad/s = rotor.f;
+        output effort: N*m = freewheel.effort;
+    }
+}
+
+/// Speeds of engine and rotor, and the effort between them: the engine, which 25 N·m drive for 6 s, catches up, takes the rotor along,
+/// fails, and stands when the rotor still turns.
+fn autorotation(t: f64) -> [f64; 3] {
+    let met = (50.0 - 20.0) / (21.0 / 0.5 + 6.0 / 2.5);
+    let (speed, gain) = (50.0 - 6.0 / 2.5 * met, (25.0 - 4.0 - 6.0) / 3.0);
+    let left = |loss: f64| (speed + gain * (6.0 - met) - loss * (t - 6.0)).max(0.0);
+    if t < met {
+        [20.0 + 42.0 * t, 50.0 - 2.4 * t, 0.0]
+    } else if t < 6.0 {
+        let both = speed + gain * (t - met);
+        [both, both, 6.0 + 2.5 * gain]
+    } else {
+        [left(4.0 / 0.5), left(6.0 / 2.5), 0.0]
+    }
+}
+
+/// The largest error of what an integrator finds of that while the rotor turns.
+fn worst_of_autorotation(solver: &impl Integrator<2>) -> f64 {
+    let model = Autorotation::<f64>::new(AutorotationParameters::default()).unwrap();
+    let drive = Pulse {
+        amplitude: SVector::from([25.0]),
+        start: 0.0,
+        end: 6.0,
+    };
+    let times: Vec<f64> = (1..=370)
+        .map(|place| 0.1 * f64::from(place) - 0.013)
+        .collect();
+    let mut worst = 0.0_f64;
+    let start = model.initial_state();
+    let run = solver.sample_outputs(&model, &drive, 0.0, start, &times, |t, _, y| {
+        for (found, expected) in y.iter().zip(autorotation(t)) {
+            worst = larger(worst, (found - expected).abs());
+        }
+    });
+    assert!(run.is_ok_and(|run| run.steps < 5000), "{run:?}");
+    worst
+}
+
+#[test]
+fn a_rotor_runs_free_of_an_engine_that_fails() {
+    let worst = [
+        worst_of_autorotation(&Adaptive::new(Dop853, 1e-9, 1e-9)),
+        worst_of_autorotation(&Adaptive::new(Rodas5P, 1e-9, 1e-9)),
+        worst_of_autorotation(&Fixed::new(Rk4, 0.01)),
+    ];
+    assert!(worst.iter().all(|worst| *worst < 1e-6), "{worst:?}");
 }

@@ -84,6 +84,17 @@ const COMPONENTS: &[(&[&str], &str)] = &[
     ),
     (&["gearbox"], "Gear"),
     (&["discclutch", "coneclutch", "frictionclutch"], "Clutch"),
+    (
+        &[
+            "onewayclutch",
+            "overrunningclutch",
+            "sprag",
+            "spragclutch",
+            "freewheelunit",
+            "ratchet",
+        ],
+        "Freewheel",
+    ),
     (&["discbrake", "drumbrake", "handbrake"], "Brake"),
     (
         &["bearingfriction", "dryfriction", "coulombfriction"],

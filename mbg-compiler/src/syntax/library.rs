@@ -41,6 +41,7 @@ files! {
     "Fixed": "fixed.mbg",
     "Free": "free.mbg",
     "FreeRotation": "free_rotation.mbg",
+    "Freewheel": "freewheel.mbg",
     "Friction": "friction.mbg",
     "Gear": "gear.mbg",
     "Gimbal": "gimbal.mbg",

@@ -9,7 +9,7 @@ use super::event::Direction;
 use super::over::Place;
 use super::problem::Problem;
 use super::sliding::Sliding;
-use super::surfaces::Surfaces;
+use super::surfaces::{Surfaces, is_later};
 use super::thresholds::Point;
 use super::{Stopped, less, seen};
 use crate::{Input, Real, System};
@@ -265,6 +265,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
+        let mut refused = Surfaces::NONE;
         while less(here.0, end) {
             let model = (problem.system, problem.input);
             let times = (problem.since, problem.inside, problem.whole);
@@ -315,13 +316,24 @@ pub(super) trait Walk<T: Real, const N: usize> {
                 (Walked::Ended(x), _) => here = (end, x),
                 (Walked::Stays(place, others), _) => {
                     here = place;
-                    others.iter().for_each(|other| surfaces.add(*other));
+                    surfaces = surfaces.with(&others);
                 }
-                // Laws that jump no more where the motion stands, or never did, are gone on behind.
-                (Walked::Left, Some(place)) if !less(here.0, place.0) => {
-                    return Ok(ControlFlow::Continue(place));
+                (Walked::Left, Some(place)) => {
+                    // Which of thresholds along each other holds it is found by trying where numbers tell them apart no more.
+                    let is_at_once = !is_later(here.0, place.0);
+                    refused = match is_at_once {
+                        true => refused.with(&surfaces),
+                        false => Surfaces::NONE,
+                    };
+                    if let Some(others) = problem.at_start(place) {
+                        surfaces = surfaces.with(&others);
+                    }
+                    surfaces = surfaces.without(&refused);
+                    here = place;
+                    if surfaces.count() == 0 {
+                        break;
+                    }
                 }
-                (Walked::Left, Some(place)) => here = place,
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),
             }
         }

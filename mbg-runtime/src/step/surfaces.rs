@@ -28,7 +28,13 @@ pub(super) struct Surfaces<T> {
 }
 
 impl<T: Real> Surfaces<T> {
-    const NONE: Self = Self { list: [None; MOST] };
+    pub(super) const NONE: Self = Self { list: [None; MOST] };
+
+    pub(super) fn one(surface: Surface<T>) -> Self {
+        let mut one = Self::NONE;
+        one.add(surface);
+        one
+    }
 
     pub(super) fn count(&self) -> usize {
         self.iter().count()
@@ -51,6 +57,20 @@ impl<T: Real> Surfaces<T> {
         {
             *free = Some(surface);
         }
+    }
+
+    /// These and others.
+    pub(super) fn with(mut self, others: &Self) -> Self {
+        others.iter().for_each(|other| self.add(*other));
+        self
+    }
+
+    /// These without others.
+    pub(super) fn without(&self, others: &Self) -> Self {
+        let mut without = Self::NONE;
+        let left = self.iter().filter(|it| others.of(it.course).is_none());
+        left.for_each(|it| without.add(*it));
+        without
     }
 
     /// Leaves one out.
@@ -131,6 +151,11 @@ where
         });
         surfaces
     }
+}
+
+/// Whether a time is later than another one by more than numbers may blur.
+pub(super) fn is_later<T: Real>(time: T, later: T) -> bool {
+    seen(later - time) > PLACES * T::EPSILON * later.magnitude()
 }
 
 fn is_between<T: Real>(course: &Course<'_, T>, level: T) -> bool {

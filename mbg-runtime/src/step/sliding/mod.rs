@@ -68,6 +68,35 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
     /// beside the others, on the side to which it goes. None where it leaves all. Counts evaluations of the model.
     pub(super) fn settled<const M: usize, const P: usize>(
+        model: (&'a S, &'a I),
+        times: (T, (T, T), f64),
+        (t, x): (T, &mut SVector<T, N>),
+        surfaces: Surfaces<T>,
+        (memory, evaluations): (&mut S::Memory, &mut u64),
+    ) -> Option<Self>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut settled = |x: &mut SVector<T, N>, surfaces| {
+            let known = (&mut *memory, &mut *evaluations);
+            Self::settled_among(model, times, (t, x), surfaces, known)
+        };
+        let start = *x;
+        let among_all = settled(x, surfaces);
+        if among_all.is_some() || surfaces.count() < 2 {
+            return among_all;
+        }
+        // What two surfaces make different that are almost along each other cannot be told apart: one of them may be left first.
+        let mut alone = surfaces.iter().map(|surface| Surfaces::one(*surface));
+        alone.find_map(|surface| {
+            let mut there = start;
+            settled(&mut there, surface).inspect(|_| *x = there)
+        })
+    }
+
+    /// The same where the surface is left first along which the motion would be farthest beyond the means of both sides.
+    fn settled_among<const M: usize, const P: usize>(
         (system, input): (&'a S, &'a I),
         (since, inside, whole): (T, (T, T), f64),
         (t, x): (T, &mut SVector<T, N>),

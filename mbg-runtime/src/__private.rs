@@ -288,7 +288,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
                 .iter()
                 .fold(size(&x, &start.1, 0.0), |size, it| size + it.magnitude()),
         };
-    let tolerance = CLOSED * rounding;
+    let tolerance = (CLOSED * rounding).max(least::<T>());
     let held = |x: &SVector<T, N>| hold(evaluate(x));
     let found = project_from(x, hold(start), (tolerance, rank), (held, residuals));
     let nearly = T::from_f64(NEARLY * tolerance);
@@ -310,6 +310,15 @@ pub fn close<T: Real, const M: usize, const N: usize>(
         singular: positions && residual < rounding / T::EPSILON * T::SINGULAR,
         locked: (positions && constraints >= coordinates).then_some((constraints, coordinates)),
     })
+}
+
+/// A number that is smaller may lack digits.
+fn least<T: Real>() -> f64 {
+    let least = match T::EPSILON > 1e-10 {
+        true => f64::from(f32::MIN_POSITIVE),
+        false => f64::MIN_POSITIVE,
+    };
+    least / T::EPSILON
 }
 
 /// How many constraints there are with the coordinates that this one holds, with those that these hold, and so on, and how

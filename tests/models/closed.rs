@@ -1,6 +1,8 @@
 //! Mechanisms whose loops are closed by multipliers.
 
-use mbg_runtime::{Adaptive, Constant, Dop853, Integrator, Real, Rk4, System, mbg};
+use mbg_runtime::{
+    Adaptive, Constant, Dop853, Fixed, Gauss6, Integrator, Method, Real, Rk4, System, mbg,
+};
 use nalgebra::SVector;
 
 use crate::references::errors::{apart, larger};
@@ -562,4 +564,42 @@ fn the_momentum_of_a_light_rod_does_not_hold_rates() {
         let found = angle::<f32>(length, mass, 1e-5);
         assert!((found - expected).abs() < 1e-4, "{length} {mass} {found}");
     }
+}
+
+mbg! {
+    /// A crank with a piston that a damper brings to rest.
+    #[derivative]
+    pub(crate) model Damped {
+        causality componentwise;
+        1 ground[3]; 1 tip[3]; 1 end[3]; 1 slide[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        crank: PlanarLink {
+            mass: 1.0, inertia: 0.1, centre: [0.0, 0.0], end: [0.1, 0.0],
+            initial: 0.5, initial_rate: 1.0, damping: 10.0
+        } (ground, tip);
+        rod: PlanarLink { mass: 0.1, inertia: 0.001, centre: [0.1, 0.0], end: [0.3, 0.0], initial: -0.66 } (tip, end);
+        guide: PlanarPrismatic { initial: 0.38 } (ground, slide);
+        piston: PlanarPointMass { mass: 0.1 } (slide);
+        pin: PlanarCut (end, slide);
+    }
+}
+
+/// Squares of what is left of its rates are too small for numbers, at the end the rates themselves.
+#[test]
+fn a_loop_comes_to_rest() {
+    fn fastest<T: Real>(method: impl Method, seconds: f64) -> f64 {
+        let model = Damped::new(DampedParameters::<T>::default()).unwrap();
+        let mut last = model.initial_state();
+        let [start, end] = [0.0, seconds].map(T::from_f64);
+        Fixed::new(method, 1e-3)
+            .integrate(&model, &(), start, end, last, |step| last = *step.state())
+            .unwrap();
+        last.iter()
+            .skip(3)
+            .fold(0.0, |most, rate| larger(most, rate.magnitude()))
+    }
+    assert!(fastest::<f32>(Rk4, 3.0) < 1e-36);
+    assert!(fastest::<f32>(Gauss6::default(), 3.0) < 1e-36);
+    assert!(fastest::<f64>(Rk4, 10.0) < 1e-300);
+    assert!(fastest::<f64>(Gauss6::default(), 10.0) < 1e-300);
 }

@@ -319,8 +319,11 @@ fn descend<T: Real, const M: usize, const N: usize>(
     residual_at: &impl Fn(&SVector<T, N>) -> SVector<T, M>,
 ) -> Option<(SVector<T, N>, SVector<T, M>)> {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    let here = square(residual);
     let open = largest(residual.data.0[0]);
+    // Squares of what is left of a mechanism that comes to rest would be too small for numbers.
+    let unit = one / zero.select_less(open, open, one);
+    let square = |residual: &SVector<T, M>| square(&residual.map(|it| unit * it));
+    let here = square(residual);
     let mut damping = one;
     for _ in 0..dampings {
         let next = point.zip_map(step, |q, step| q - damping * step);

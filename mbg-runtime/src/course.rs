@@ -6,7 +6,7 @@ use crate::Real;
 use crate::step::seen;
 
 /// How much farther than a step the way from its start is looked at.
-const FARTHER: f64 = 1.25;
+pub(crate) const FARTHER: f64 = 1.25;
 
 /// How an argument of choices in the laws goes between two points, as [`System::courses`](crate::System::courses) tells it.
 #[derive(Clone, Copy, Debug)]

@@ -11,8 +11,9 @@ use super::slide::{Ends, Walked};
 use super::{Stopped, less, seen};
 use crate::{Input, Real, System};
 
-/// The part of the way to a jump that steps go.
-const BEFORE: f64 = 1.0 - 1e-6;
+/// The part of the way to a jump that steps leave, at least and at most: by how much its place may be off, which is less the nearer it
+/// is beside the step that met it. Stages that are beyond it would lead back.
+const LEFT: [f64; 2] = [1e-6, 0.1];
 /// A law jumps if it differs by more than this part of itself, or so many units of the last place.
 const JUMP: f64 = 1e-7;
 const JUMP_PLACES: f64 = 64.0;
@@ -31,6 +32,14 @@ pub(super) struct Jump<T, const N: usize> {
     pub(super) length: f64,
     /// Whether no more is known than that a line leads there.
     pub(super) is_guess: bool,
+}
+
+impl<T, const N: usize> Jump<T, N> {
+    /// How far a step is to go that ends before it.
+    fn almost(&self) -> f64 {
+        let [least, most] = LEFT;
+        self.ahead * (1.0 - (self.ahead / self.length).max(least).min(most))
+    }
 }
 
 /// How far a run over a part of a piece has come.
@@ -157,7 +166,7 @@ impl<T: Real, const N: usize> Way<T, N> {
     {
         let t = self.here.0;
         let target = match &self.near {
-            Some(jump) => end.min(t + T::from_f64(BEFORE * jump.ahead)),
+            Some(jump) => end.min(t + T::from_f64(jump.almost())),
             None => end,
         };
         if !less(t, target) {
@@ -181,7 +190,7 @@ impl<T: Real, const N: usize> Way<T, N> {
                 Followed::There
             }
             (Ran::Met(jump), _) => {
-                (self.here, self.near) = (jump.start, Some(jump));
+                self.meet(jump);
                 Followed::Over
             }
             (Ran::Left, None) => Followed::Left,
@@ -189,10 +198,18 @@ impl<T: Real, const N: usize> Way<T, N> {
                 problem.statistics.steps -= 1;
                 problem.statistics.rejected += 1;
                 problem.memory = memory;
-                (self.here, self.near) = (jump.start, Some(jump));
+                self.meet(jump);
                 Followed::Over
             }
         })
+    }
+
+    /// Comes nearer to a jump that a step has met: how near is near enough goes by the first step that has.
+    fn meet(&mut self, jump: Jump<T, N>) {
+        let before = self.near.as_ref().map_or(0.0, |near| near.length);
+        let length = jump.length.max(before);
+        self.here = jump.start;
+        self.near = Some(Jump { length, ..jump });
     }
 
     /// How long it is to a jump that is almost met; none if it is not there, or is to be come nearer to.

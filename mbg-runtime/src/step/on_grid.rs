@@ -15,7 +15,7 @@ use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked};
 use super::thresholds::Point;
 use super::{Cause, Stopped, check_result, seen};
-use crate::course::lane;
+use crate::course::{FARTHER, lane};
 use crate::{Input, Real, System};
 
 /// A method along its grid.
@@ -112,7 +112,7 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                     let jacobian = work.place_of_jacobian(&from);
                     problem.statistics.rejected += 1;
                     let near = match self.looks && !often(&mut self.lost, seen(t)) {
-                        true => near(problem, &mut across, (&from, memory)),
+                        true => near(problem, &mut across, (&from, self.fixed.step, memory)),
                         false => Near::Nothing,
                     };
                     if near.may_be_halved(jacobian.is_some()) && parts.halve() {
@@ -132,7 +132,11 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                 if S::HAS_COURSES
                     && self.looks
                     && !is_clear
-                    && let Some(jump) = touched(problem, (&from, &trial.change), watched)
+                    && let Some(jump) = touched(
+                        problem,
+                        (&from, &trial.change, self.fixed.step),
+                        (watched, work.place_of_jacobian(&from).is_some()),
+                    )
                 {
                     problem.memory = memory;
                     return Ok(Ran::Met(jump));
@@ -203,13 +207,13 @@ impl<T, const N: usize> Near<T, N> {
     }
 }
 
-/// The part of a straight way to a threshold that is gone.
-const STRAIGHT: f64 = 0.9;
+/// How much of its way an argument may have missed by how its rate changes within a step.
+const ASTRAY: f64 = 0.01;
 
-/// Most of the line from the start of a step to a threshold of the laws, if it comes to one within a length.
+/// The line from the start of a step, or of a part of one, to a threshold of the laws, if it comes to one within a length.
 fn line_to_threshold<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, T, S, I, N, M, P>,
-    from: &Start<T, N>,
+    (from, whole): (&Start<T, N>, f64),
     way: f64,
 ) -> Option<Jump<T, N>>
 where
@@ -222,8 +226,8 @@ where
     // What begins at one leaves it behind.
     (seen(ahead) > 0.0).then(|| Jump {
         start,
-        ahead: STRAIGHT * seen(ahead),
-        length: seen(from.span.length),
+        ahead: seen(ahead),
+        length: whole,
         is_guess: true,
     })
 }
@@ -253,23 +257,58 @@ where
     is_clear
 }
 
-/// The line from the start of a step over a threshold that the step itself has not passed, as where it meets a jump that leads back
-/// at its stages; and not before a time.
+/// The line from the start of a step over a threshold, or almost, that the step itself has not passed, as where it meets a jump that
+/// leads back at its stages; and not before a time. The stages of methods that take a Jacobian are bound to its end.
 fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
-    problem: &Problem<'_, T, S, I, N, M, P>,
-    (from, change): (&Start<T, N>, &SVector<T, N>),
-    watched: f64,
+    problem: &mut Problem<'_, T, S, I, N, M, P>,
+    (from, change, whole): (&Start<T, N>, &SVector<T, N>, f64),
+    (watched, is_bound): (f64, bool),
 ) -> Option<Jump<T, N>>
 where
     T: Real,
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    let line = line_to_threshold(problem, from, seen(from.span.length))?;
+    let length = seen(from.span.length);
+    let mut line = line_to_threshold(problem, (from, whole), FARTHER * length)?;
     let end = (from.span.end, from.x + change);
     let is_late = seen(line.start.0) + line.ahead >= watched;
-    let is_passed = problem.reached(&line.start, &end).is_some();
-    (is_late && !is_passed).then_some(line)
+    if !is_late || problem.reached(&line.start, &end).is_some() {
+        return None;
+    }
+    if line.ahead > length {
+        if is_bound || !is_led_back(problem, &line.start, end) {
+            return None;
+        }
+        // Some stage was beyond it already.
+        line.ahead = 0.5 * length;
+    }
+    Some(line)
+}
+
+/// Whether an argument has not gone the way that it should have by its rates at both ends of a step.
+#[cold]
+fn is_led_back<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &mut Problem<'_, T, S, I, N, M, P>,
+    start: &Place<T, N>,
+    end: Place<T, N>,
+) -> bool
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let memory = problem.memory;
+    let [first, last] = [*start, end].map(|place| problem.point(place));
+    problem.memory = memory;
+    let mut is_led_back = false;
+    problem.courses(&first, &last, |course, lasting| {
+        let ([from, rate], [to, later]) = (course.from.map(seen), course.to.map(seen));
+        let way = 0.5 * (rate + later) * seen(lasting);
+        let is_astray = ((to - from) - way).abs() > ASTRAY * way.abs();
+        is_led_back |= is_astray && !course.is_clear(lasting);
+    });
+    is_led_back
 }
 
 /// What there is ahead of a step that is lost: stages on both sides of a jump are not found, and another method goes over it.
@@ -278,7 +317,7 @@ where
 fn near<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     across: &mut Across<T, N>,
-    (from, memory): (&Start<T, N>, S::Memory),
+    (from, whole, memory): (&Start<T, N>, f64, S::Memory),
 ) -> Near<T, N>
 where
     T: Real,
@@ -286,7 +325,7 @@ where
     I: Input<T, M> + ?Sized,
 {
     let length = seen(from.span.length);
-    let line = line_to_threshold(problem, from, 2.0 * length);
+    let line = line_to_threshold(problem, (from, whole), 2.0 * length);
     let Some(line) = line else {
         return Near::Nothing;
     };

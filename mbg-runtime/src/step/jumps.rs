@@ -107,6 +107,11 @@ where
         }
         let length = jump.length;
         let Some(rest) = way.rest(problem, &here.slope, jump) else {
+            if way.near.is_none()
+                && let Some(surfaces) = ends.behind(problem, &here)
+            {
+                return Ok(Walked::Stays(way.here, surfaces));
+            }
             continue;
         };
         let ahead = (rest, length, end);

@@ -48,6 +48,17 @@ pub(super) trait Ends: Copy {
         T: Real,
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
+
+    /// Of those at which a point is, where none that was come near to is ahead any more.
+    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized;
 }
 
 /// At none.
@@ -70,6 +81,19 @@ impl Ends for Nowhere {
     }
 
     fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        _: &mut Problem<'_, T, S, I, N, M, P>,
+        _: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        None
+    }
+
+    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
         self,
         _: &mut Problem<'_, T, S, I, N, M, P>,
         _: &Point<T, N>,
@@ -116,14 +140,27 @@ impl Ends for WhereItStays {
         let met = problem.next_to(here);
         met.filter(|met| problem.stays(here, met))
     }
+
+    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        _: &mut Problem<'_, T, S, I, N, M, P>,
+        _: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        None
+    }
 }
 
-/// At all that it goes over. Beside thresholds at which a motion stays laws are asked a little off it: what it comes to is to be found
+/// At all that it meets. Beside thresholds at which a motion stays laws are asked a little off it: what it comes to is to be found
 /// with these.
 #[derive(Clone, Copy)]
-pub(super) struct WhereItGoesOver;
+pub(super) struct WhereItMeetsOne;
 
-impl Ends for WhereItGoesOver {
+impl Ends for WhereItMeetsOne {
     fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
@@ -149,6 +186,19 @@ impl Ends for WhereItGoesOver {
         I: Input<T, M> + ?Sized,
     {
         None
+    }
+
+    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+    ) -> Option<Surfaces<T>>
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        problem.next_to(here)
     }
 }
 
@@ -275,10 +325,10 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, known) else {
                 break;
             };
-            surfaces = sliding.surfaces;
+            let asked = core::mem::replace(&mut surfaces, sliding.surfaces);
             let mut along = problem.of(&sliding);
             let (mut left, mut undone) = (None, 0);
-            let walked = self.walk(&mut along, (here, end), WhereItGoesOver, &mut |step| {
+            let walked = self.walk(&mut along, (here, end), WhereItMeetsOne, &mut |step| {
                 let hold = |t: T, x: &SVector<T, N>, memory: S::Memory| {
                     sliding.hold(t, x, &mut { memory })
                 };
@@ -315,8 +365,13 @@ pub(super) trait Walk<T: Real, const N: usize> {
             match (walked, left) {
                 (Walked::Ended(x), _) => here = (end, x),
                 (Walked::Stays(place, others), _) => {
+                    let is_news = others.without(&asked).count() > 0;
+                    let goes_on = is_news || is_later(here.0, place.0);
                     here = place;
                     surfaces = surfaces.with(&others);
+                    if !goes_on {
+                        break;
+                    }
                 }
                 (Walked::Left, Some(place)) => {
                     // Which of thresholds along each other holds it is found by trying where numbers tell them apart no more.

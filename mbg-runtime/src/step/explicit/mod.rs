@@ -133,6 +133,9 @@ pub trait Tabulated<const S: usize, const F: usize>: Copy {
     const TABLEAU: Tableau<S, F>;
 }
 
+/// So many times as far apart as those of a step slopes of stages for the dense output may be beyond these.
+const FARTHER: f64 = 1.0;
+
 /// The slopes of the last step.
 pub struct Slopes<A, T, const N: usize, const S: usize, const F: usize> {
     slopes: [SVector<T, N>; F],
@@ -178,6 +181,25 @@ where
             last = problem.slope(t, &x);
             self.slopes[STAGE] = last;
         });
+    }
+}
+
+impl<A, T: Real, const N: usize, const S: usize, const F: usize> Slopes<A, T, N, S, F> {
+    /// Whether a stage for the dense output alone was beyond a threshold, which no error tells: its slope is far from those of the
+    /// step.
+    fn is_astray(&self) -> bool {
+        let (own, further) = self.slopes.split_at((S + 1).min(F));
+        (0..N).any(|state| {
+            let slopes = own.iter().map(|slope| seen(slope[state]));
+            let (least, most) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |known, slope| {
+                (known.0.min(slope), known.1.max(slope))
+            });
+            let farther = FARTHER * (most - least);
+            further.iter().any(|slope| {
+                let slope = seen(slope[state]);
+                slope < least - farther || slope > most + farther
+            })
+        })
     }
 }
 
@@ -259,6 +281,9 @@ where
         let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
         let mut polynomial =
             Polynomial::cubic((&start.x, scaled(start.slope)), (end, scaled(last)));
+        if Y::HAS_COURSES && self.is_astray() {
+            return polynomial;
+        }
         let higher = polynomial.coefficients.iter_mut().skip(3);
         for (coefficient, weights) in higher.zip(A::TABLEAU.dense) {
             *coefficient = scaled(combination(weights, &self.slopes));

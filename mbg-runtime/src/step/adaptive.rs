@@ -213,7 +213,8 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
         let mut watch = Watch::new(seen(end - start));
         loop {
             self.check_count(problem, t, &pace.control)?;
-            let length = steps.length::<S, M, P>(pace.control.length, pace.refused);
+            let asked = (pace.control.length, pace.refused);
+            let length = steps.length(problem, &(t, x), asked);
             let length = pace.approach.length(length.min(self.longest));
             let (span, last) = next_span(t, end, length)?;
             if watch.is_blind(problem, &span) {
@@ -322,7 +323,7 @@ impl Pace {
         match come {
             Come::Away => {
                 problem.probes.heed(time, length, trial.coarse);
-                steps.accept::<S, M, P>(&mut self.control, length, trial.error);
+                steps.accept::<S, M, P>(&mut self.control, start, trial.error);
             }
             Come::Lost(length) => self.control.shorten(length),
             _ => {}

@@ -6,7 +6,9 @@ use super::control::Control;
 use super::dense::Polynomial;
 use super::explicit::Dop853;
 use super::method::{Estimating, Family, Start, Stepper, Trial};
+use super::over::Place;
 use super::problem::Problem;
+use super::seen;
 use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 
@@ -24,6 +26,10 @@ pub(super) enum Taken<T, const N: usize> {
 const REFUSED: u32 = 2;
 /// So may be one that is shorter than the steps before it by this factor.
 const SHORT: f64 = 0.1;
+/// By how much more forces answer to what is off the loops where one is near: by as much as it is nearer than at the steps before.
+const NEARER: f64 = 3.0;
+/// By what part of a step a state is moved off the loops to see that.
+const OFF_LOOPS: f64 = 1e-4;
 /// How much of the length of steps is remembered from step to step.
 const REMEMBERED: f64 = 0.9;
 /// What is tried, in lengths of the steps before: what a stage is off by depends on how near it comes.
@@ -41,7 +47,8 @@ const DIGITS: [f64; 3] = [0.1, 1.0, 10.0];
 /// steps before. Its error has rounding divided by the square of the distance in it, which the next closing takes away, so that
 /// it is not asked for many more digits than half of those of the scalar.
 ///
-/// Steps that are short for another reason are short in this way, too, and the method goes on by itself.
+/// Steps that are short for another reason, such as a valve that closes, are left to the method: forces then answer no more than before
+/// to what is off the loops.
 pub(super) struct Crossing<'a, Scheme: Family, T: Real, const N: usize> {
     method: &'a Scheme,
     work: &'a mut Scheme::Work<T, N>,
@@ -49,6 +56,8 @@ pub(super) struct Crossing<'a, Scheme: Family, T: Real, const N: usize> {
     tolerances: [Tolerance<N>; DIGITS.len()],
     /// The length of the longest of the last steps.
     usual: f64,
+    /// Where the last step began that was as long.
+    far: Option<Place<T, N>>,
     /// How many steps across have been tried; none while the method itself steps.
     tried: usize,
     /// Whether the step at hand is one across.
@@ -72,6 +81,7 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
             explicit: Stepper::new(&Dop853),
             tolerances: DIGITS.map(tolerance),
             usual: 0.0,
+            far: None,
             tried: 0,
             is_across: false,
         }
@@ -85,17 +95,23 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         !S::META.closures.is_empty() && self.is_across
     }
 
-    /// The length to try where the control has come to this one, after so many refusals.
-    pub(super) fn length<S, const M: usize, const P: usize>(
+    /// The length to try from a place where the control has come to this one, after so many refusals.
+    pub(super) fn length<S, I, const M: usize, const P: usize>(
         &mut self,
-        length: f64,
-        refused: u32,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Place<T, N>,
+        (length, refused): (f64, u32),
     ) -> f64
     where
         S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
     {
         let is_short = refused >= REFUSED || length < SHORT * self.usual;
-        let begins = is_short && self.usual > 0.0;
+        let begins = !S::META.closures.is_empty()
+            && is_short
+            && self.usual > 0.0
+            && self.tried == 0
+            && self.is_nearer(problem, here);
         let is_left = self.tried < LENGTHS.len() * DIGITS.len();
         self.is_across = !S::META.closures.is_empty() && (begins || self.tried > 0) && is_left;
         if !self.is_across {
@@ -103,6 +119,52 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         }
         self.tried += 1;
         LENGTHS[(self.tried - 1) % LENGTHS.len()] * self.usual
+    }
+
+    /// Whether a place is nearer to a singular position than where steps were long, as far as can be told.
+    #[cold]
+    #[inline(never)]
+    fn is_nearer<S, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Place<T, N>,
+    ) -> bool
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let Some(far) = &self.far else {
+            return true;
+        };
+        let way = here.1 - far.1;
+        let [here, far] = [here, far].map(|place| self.answer(problem, place, &way));
+        // Written so that what is no number is nearer.
+        !(here <= NEARER * far)
+    }
+
+    /// How much derivatives answer to what of a move, about along a way, is off the loops.
+    fn answer<S, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (t, x): &Place<T, N>,
+        way: &SVector<T, N>,
+    ) -> f64
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let moved = SVector::from_fn(|state, _| {
+            let part = ((7 * state + 3) % 11) as f64 / 11.0 - 0.5;
+            x[state] + T::from_f64(OFF_LOOPS * part) * way[state]
+        });
+        let Ok(closed) = problem.close(*t, moved) else {
+            return f64::NAN;
+        };
+        let memory = problem.memory;
+        let [off, on] = [moved, closed].map(|x| problem.slope(*t, &x));
+        problem.memory = memory;
+        let measure = self.tolerances[0].around(x);
+        measure.norm(&(off - on)) / measure.norm(&(moved - closed))
     }
 
     /// The tolerance of the step at hand, where it is one across.
@@ -210,12 +272,16 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
     pub(super) fn accept<S, const M: usize, const P: usize>(
         &mut self,
         control: &mut Control,
-        length: f64,
+        start: &Start<T, N>,
         error: f64,
     ) where
         S: System<T, N, M, P>,
     {
+        let length = seen(start.span.length);
         let is_across = self.is_across::<S, M, P>();
+        if !S::META.closures.is_empty() && length >= REMEMBERED * self.usual {
+            self.far = Some((start.span.start, start.x));
+        }
         // Where no step across was found the method's own is what is usual.
         let fails = self.tried > 0 && !is_across;
         self.usual = if fails {

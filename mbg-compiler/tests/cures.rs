@@ -450,3 +450,144 @@ fn a_law_in_another_unit_is_told_and_not_bonds_beside_it() {
         1 a { I mass { inertia: m } } 1 b { I coil { inertia: l } } a -> n -> b; }";
     assert!(told(joined).contains("joins efforts"), "{}", told(joined));
 }
+
+/// A hinged flap beside a shaft, with a stop at the rate of the flap.
+fn stopped(given: &str, joint: &str) -> String {
+    format!(
+        "#[derivative] model M {{ 1 ground[6]; 1 rod[6]; 1 wheel[6]; Sf wall[6] {{ flow: 0.0 }} -> ground;
+         flap: Revolute {{ axis: 1 }} (ground, rod); plate: Body {{ mass: 1.0, inertia: 1.0 }} (rod);
+         shaft: Revolute {{ axis: 1 }} (ground, wheel); disc: Body {{ mass: 1.0, inertia: 1.0 }} (wheel);
+         1 slide {{ I sledge {{ inertia: 1.0 }} }}
+         stop: Stop {{ {given}, lower: -0.2, upper: 0.2, stiffness: 1e4 }} ({joint}); }}"
+    )
+}
+
+#[test]
+fn a_stop_is_given_what_changes_as_its_junction_flows() {
+    insta::assert_snapshot!(told(&stopped("displacement: 0.3", "flap.rate")), @"
+    5:10 the displacement of `stop.lower_spring` does not change as `stop.lower_spring` flows [MBG0309]
+      it has another rate than the flow into `stop.lower_spring`
+      help: write `displacement: flap.angle`, which changes as `flap.rate` flows
+    ");
+    for given in [
+        "displacement: 0.3",
+        "displacement: shaft.angle",
+        "displacement: -flap.angle",
+    ] {
+        let typed = typed(&stopped(given, "flap.rate"));
+        assert_eq!(typed, ["displacement: flap.angle", "flap.rate"]);
+        assert_eq!(told(&stopped(&typed[0], "flap.rate")), "");
+    }
+    // Where nothing changes so there is an integral of it.
+    let typed = typed(&stopped("displacement: 0.1", "slide"));
+    assert_eq!(
+        typed,
+        ["integral slide_way = slide.f;", "displacement: slide_way"]
+    );
+    let mended = stopped(&typed[1], "slide");
+    assert_eq!(
+        told(&mended.replace("stop:", &format!("{} stop:", typed[0]))),
+        ""
+    );
+}
+
+#[test]
+fn values_of_a_choice_are_told_with_their_braces() {
+    insta::assert_snapshot!(told(&by_law("if u > 0.0 5.0 else 0.0")), @"
+    1:91 the values of a choice stand in braces [MBG0101]
+      help: write `if u > 0.0 { 5.0 } else { 0.0 }`
+    ");
+    for (slip, written) in [
+        ("if u > 0.0 5.0 else 0.0", "if u > 0.0 { 5.0 } else { 0.0 }"),
+        ("if (u > 0.0) 5.0 else u", "if (u > 0.0) { 5.0 } else { u }"),
+        (
+            "if (u > 0.0) -5.0 else u",
+            "if (u > 0.0) { -5.0 } else { u }",
+        ),
+        (
+            "if (u > 0.0) (5.0) else (u)",
+            "if (u > 0.0) { (5.0) } else { (u) }",
+        ),
+        ("if u > 0.0 { 5.0 } else u", "if u > 0.0 { 5.0 } else { u }"),
+        (
+            "if u > t { 5.0 * t } else u",
+            "if u > t { 5.0 * t } else { u }",
+        ),
+        (
+            "if u > t 5.0 * t else { u }",
+            "if u > t { 5.0 * t } else { u }",
+        ),
+        ("if u > t sin(t) else u", "if u > t { sin(t) } else { u }"),
+        (
+            "if u > t 5.0 * u else if u < 2.0 3.0 else u",
+            "if u > t { 5.0 * u } else if u < 2.0 { 3.0 } else { u }",
+        ),
+    ] {
+        assert_eq!(typed(&by_law(slip)), [written]);
+        assert_eq!(told(&by_law(written)), "");
+    }
+    let nested = by_law("2.0 * (if u > 0.0 5.0 else u)");
+    assert_eq!(typed(&nested), ["if u > 0.0 { 5.0 } else { u }"]);
+    // The other value is the user's to say.
+    assert_eq!(
+        typed(&by_law("if u > 0.0 5.0")),
+        ["if u > 0.0 { 5.0 } else { … }"]
+    );
+    // Values side by side inside of braces lack an operator still.
+    let joined = told(&by_law("if u > 0.0 { 5.0 t } else { u }"));
+    assert!(
+        joined.contains("expected an operator between `5.0` and `t`"),
+        "{joined}"
+    );
+}
+
+#[test]
+fn numbers_of_a_loop_are_compared_with_whole_ones() {
+    let rows = |condition: &str| {
+        format!(
+            "model M {{ rows: for k in 0..3 {{ 1 v {{ I b {{ inertia: 1.0 }} R air {{ effort: if {condition} {{ 2.0 * f }} else {{ f }} }} }} }} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&rows("k == 0.0")), @"
+    1:81 `k` is a whole number here, and `0.0` is none [MBG0213]
+      help: write `k == 0`
+    ");
+    for (slip, whole, before, behind) in [
+        ("k == 0.0 || k == 2", "k == 0", "", " || k == 2"),
+        ("k == 0 || k == 2.0", "k == 2", "k == 0 || ", ""),
+        ("2.0 != k", "2 != k", "", ""),
+        ("k + 1 == 2.", "k + 1 == 2", "", ""),
+    ] {
+        assert_eq!(typed(&rows(slip)), [whole]);
+        assert_eq!(told(&rows(&format!("{before}{whole}{behind}"))), "");
+    }
+    // Of a value that is no whole number, or between two of them, there is none.
+    assert!(!told(&rows("k == 0.5")).contains("write `k"));
+    let switch = told(&by_law("if u == 0.0 { 1.0 } else { 2.0 }"));
+    assert!(
+        switch.contains("of a value that is 0 or 1 write `u < 0.5`"),
+        "{switch}"
+    );
+}
+
+/// What a component makes of a way of no length is told of none of its values, nor of those of another one.
+#[test]
+fn a_line_from_a_frame_to_itself_is_one_mistake() {
+    for by in ["[0.1, 0.0, 0.0]", "[0.1, 0.0, way]"] {
+        for line in ["force: 2.0", "stiffness: 2.0, rest: 0.1"] {
+            let scene = |ends: &str| {
+                let more = format!(
+                    "1 tip[6]; arm: Offset {{ by: {by} }} (hull, tip); line: LineForce {{ {line} }} ({ends});"
+                );
+                floating("", &more).replace("input u;", "param way = 0.1;")
+            };
+            insta::allow_duplicates! {
+                insta::assert_snapshot!(told(&scene("tip, tip")).split_once(' ').unwrap().1, @"
+                `line` leads from `tip` to itself [MBG0209]
+                  help: give it two different junctions
+                ");
+            }
+            assert_eq!(told(&scene("ground, tip")), "");
+        }
+    }
+}

@@ -5,8 +5,8 @@
 //! have them, each law fits the effort and the flow at its element, and effort times flow is power in every true bond.
 //!
 //! A unit that is not declared is an unknown, for which the equations are solved as they come; a mistake is told where
-//! they first contradict each other. A number with a decimal point may carry any unit; a whole number counts, and is pure
-//! as a factor. A model that declares no unit at all is not looked at.
+//! they first contradict each other, or at the one value without which all others agree. A number with a decimal point may
+//! carry any unit; a whole number counts, and is pure as a factor. A model that declares no unit at all is not looked at.
 
 mod converters;
 mod densities;

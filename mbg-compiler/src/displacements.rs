@@ -5,7 +5,7 @@
 //! nothing drifts. That the displacement changes as the storage flows is proven as soon as the flows are known. Errors:
 //! `MBG0216`, `MBG0218`, `MBG0309`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Span;
 
@@ -15,7 +15,7 @@ use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
 use crate::elaborate::Elaborated;
 use crate::equations::Scalars;
-use crate::graph::{Element, ElementId, Law, Storage, component_name};
+use crate::graph::{Element, ElementId, End, Law, Storage, component_name, instance_of};
 use crate::structure::Solution;
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Expression, Pool, Substitution, Symbol};
@@ -152,13 +152,17 @@ pub fn check(
     pool: &mut Pool,
     diagnostics: &mut Diagnostics,
 ) {
+    let mut told_of = BTreeSet::new();
     for (id, element, storage) in storages(model) {
         let mut entries = storage.displacement.iter().flatten().enumerate();
         let other = entries.find(|(component, value)| {
             let flow = storage_rate(model, scalars, solution, id, *component);
             !changes_by(model, **value, &[flow], rates, pool)
         });
-        if let Some((component, _)) = other {
+        // A component makes one mistake of what it is given, at all of its storages.
+        if let Some((component, _)) = other
+            && element.instance().is_none_or(|it| told_of.insert(it))
+        {
             let name = &element.name;
             let whose = match storage.coenergy.len() {
                 1 => "it".to_owned(),
@@ -169,19 +173,77 @@ pub fn check(
             let report = report.note(format!(
                 "{whose} has another rate than the flow into `{name}`"
             ));
-            // What a component is given may change by itself.
-            let report = match element.instance() {
-                Some(_) => report.help(
+            let helps = match (element.instance(), outside(model, id, element)) {
+                (None, _) => vec![
+                    BOND.to_owned(),
+                    "or leave `displacement` out: then it is a state".to_owned(),
+                ],
+                // What a component is given may change by itself.
+                (Some(_), None) => vec![
                     "if a length that a component is given changes, give it the rate, too, as `rest_rate` of a `LineForce` \
-                     whose `rest` is an integral of that",
-                ),
-                None => report,
+                     whose `rest` is an integral of that"
+                        .to_owned(),
+                    BOND.to_owned(),
+                ],
+                (Some(_), Some(junction)) => {
+                    let flow = storage_rate(model, scalars, solution, id, component);
+                    vec![changing_with(model, junction, flow, rates, pool)]
+                }
             };
-            diagnostics.report(
-                report
-                    .help("bond it where the flow is the rate of what is told")
-                    .help("or leave `displacement` out: then it is a state"),
-            );
+            let mut report = report;
+            report.helps = helps;
+            diagnostics.report(report);
+        }
+    }
+}
+
+const BOND: &str = "bond it where the flow is the rate of what is told";
+
+/// The junction of one component outside of the component in use that an element belongs to, where it is bonded to one.
+fn outside<'m>(model: &'m Elaborated, id: ElementId, element: &Element) -> Option<&'m str> {
+    let graph = &model.graph;
+    let instance = element.instance()?;
+    let junction = graph.bonds.iter().find_map(|bond| {
+        match [(&bond.from, &bond.to), (&bond.to, &bond.from)]
+            .into_iter()
+            .find(|(end, _)| matches!(end, End::OnePort(own) if *own == id))?
+        {
+            (_, End::Junction(junction, _)) => Some(&graph.junctions[junction.0]),
+            _ => None,
+        }
+    })?;
+    let inside = junction.name.strip_prefix(instance);
+    let is_inside = inside.is_some_and(|rest| rest.starts_with('.'));
+    (!is_inside && junction.dimension == 1).then_some(&junction.name)
+}
+
+/// What to type where a displacement is not the one whose rate the flow of a junction is: a state that is, such as the angle of a
+/// joint, or an integral.
+fn changing_with(
+    model: &Elaborated,
+    junction: &str,
+    flow: Expression,
+    rates: &[Expression],
+    pool: &mut Pool,
+) -> String {
+    let mut own: Vec<usize> = (0..model.states.len()).collect();
+    let told = told(model);
+    own.retain(|state| !told.contains_key(state) && rates[*state] != Expression::ZERO);
+    // The angle of the joint itself comes first.
+    let instance = instance_of(junction);
+    own.sort_by_key(|state| instance_of(&model.states[*state].variable.name) != instance);
+    let changing = own.into_iter().find(|state| {
+        let value = pool.symbol(Symbol::State(*state));
+        changes_by(model, value, &[flow], rates, pool)
+    });
+    match changing {
+        Some(state) => {
+            let name = &model.states[state].variable.name;
+            format!("write `displacement: {name}`, which changes as `{junction}` flows")
+        }
+        None => {
+            let name = format!("{}_way", junction.replace(['.', '[', ']'], "_"));
+            format!("declare `integral {name} = {junction}.f;`, and write `displacement: {name}`")
         }
     }
 }

@@ -341,3 +341,253 @@ fn what_a_brake_or_a_clutch_is_given_lies_between_nothing_and_all() {
     assert_eq!(told(&brake), "");
     assert!(told(&brake.replace("engagement: 0", "engagement: 1.5")).contains("`engagement <= 1`"));
 }
+
+/// A storage with a wrong unit says what efforts and flows are, which all that is right contradicts.
+#[test]
+fn the_one_value_in_another_unit_is_told_and_not_what_contradicts_it() {
+    let tank = |unit: &str, oil: &str| {
+        format!(
+            "model M {{ param given: {unit} = 1e5; input supply: m^3/s;
+             0 chamber {{ C oil {{ {oil} }} Sf pump {{ flow: supply }} }} 0 sump {{ Se air {{ effort: 0.0 }} }}
+             out: Orifice {{ area: 1e-6 }} (chamber, sump); output p: Pa = chamber.e; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&tank("Pa", "stiffness: given")), @"
+    2:45 `stiffness` of `oil` must be `Pa/m^3` here, and this is `Pa` [MBG0501]
+      the effort is `Pa` and the flow `m^3/s` there
+    ");
+    assert_eq!(told(&tank("Pa/m^3", "stiffness: given")), "");
+    let initial = "stiffness: 1e13, initial: given";
+    insta::assert_snapshot!(told(&tank("Pa", initial)), @"
+    2:60 `initial` of `oil` must be `m^3` here, and this is `Pa` [MBG0501]
+      the effort is `Pa` and the flow `m^3/s` there
+      help: write `initial: given / 1e13`
+    ");
+    assert_eq!(told(&tank("Pa", &format!("{initial} / 1e13"))), "");
+    insta::assert_snapshot!(told(&tank("m^2", "compliance: given")), @"
+    2:46 `compliance` of `oil` must be `m^3/Pa` here, and this is `m^2` [MBG0501]
+      the effort is `Pa` and the flow `m^3/s` there
+    ");
+    assert_eq!(told(&tank("m^3/Pa", "compliance: given")), "");
+    let rod = |initial: &str| {
+        format!(
+            "model M {{ param start: N = 1.0; input force: N; 1 rod {{ I m {{ inertia: 2.0 }}
+             C spring {{ stiffness: 1e3, initial: {initial} }} Se push {{ effort: force }} }} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&rod("start")), @"
+    2:50 `initial` of `spring` must be `m` here, and this is `N` [MBG0501]
+      the effort is `N` and the flow `m/s` there
+      help: write `initial: start / 1e3`
+    ");
+    assert_eq!(told(&rod("start / 1e3")), "");
+}
+
+/// Inside of a component nothing can be changed, and bonds join what they should.
+#[test]
+fn an_argument_in_another_unit_is_told_where_it_is_given() {
+    let shafts = |unit: &str, call: &str| {
+        format!(
+            "model M {{ param k: {unit} = 3.0; param j: kg*m^2 = 1.0; input torque: N*m;
+             1 a {{ I ja {{ inertia: j }} Se drive {{ effort: torque }} }} 1 b {{ I jb {{ inertia: j }} }}
+             {call} output w: rad/s = b.f; }}
+             component Coupling(port 1 a, port 1 b) {{ param stiffness; param damping;
+             1 both {{ C spring {{ stiffness: stiffness }} R damper {{ resistance: damping }} }} 0 shaft; a -> shaft -> b; shaft -> both; }}"
+        )
+    };
+    let elastic = "shaft: ElasticShaft { stiffness: k } (a, b);";
+    insta::assert_snapshot!(told(&shafts("N/m", elastic)), @"
+    3:47 `stiffness` of `shaft` must be `N*m` here, and this is `N/m` [MBG0501]
+      the effort is `N*m` and the flow `1/s` there
+    ");
+    assert_eq!(told(&shafts("N*m", elastic)), "");
+    assert_eq!(told(&shafts("N*m/rad", elastic)), "");
+    let own = "shaft: Coupling { stiffness: k, damping: 1.0 } (a, b);";
+    insta::assert_snapshot!(told(&shafts("N/m", own)), @"
+    5:124 `shaft.shaft -> shaft.both` joins efforts: `N*m` before it, `N` after it [MBG0501]
+      help: a transformer or a gyrator goes between two domains: `a -> TF gear { flow: ratio } -> b;`
+      help: or the bond is right, and `stiffness` of `shaft` must be `N*m` there and is `N/m`
+    ");
+    assert_eq!(told(&shafts("N*m", own)), "");
+    // Of two arguments of one value it is not known which one a law reads.
+    let twice = "shaft: Coupling { stiffness: k, damping: k } (a, b);";
+    insta::assert_snapshot!(told(&shafts("N*m", twice)), @"
+    5:80 `resistance` of `shaft.damper` must be `N*m*s` here, and this is `N*m` [MBG0501]
+      the effort is `N*m` and the flow `1/s` there
+    ");
+}
+
+/// Far behind the law that is wrong, and one of many that a loop repeats.
+#[test]
+fn a_law_in_another_unit_is_told_and_not_bonds_beside_it() {
+    let row = |unit: &str| {
+        format!(
+            "model M {{ param k: {unit} = 1.0; param m: kg = 1.0; input force: N; Se push {{ effort: force }} -> cars[0].a;
+             cars: for k in 0..4 {{ 1 a {{ I mass {{ inertia: m }} }} }}
+             links: for n in 0..3 {{ 0 z {{ C spring {{ stiffness: k }} }} cars[n].a -> z -> cars[n + 1].a; }}
+             output v: m/s = cars[3].a.f; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&row("N*m/rad")), @"
+    3:65 `stiffness` of `links[0].spring` must be `N/m` here, and this is `N*m` [MBG0501]
+      the effort is `N` and the flow `m/s` there
+    ");
+    assert_eq!(told(&row("N/m")), "");
+    let motor = |unit: &str| {
+        format!(
+            "model M {{ param k: N*m/A = 0.1; param r: ohm = 1.0; param j: {unit} = 1.0; input v: V;
+             1 wire {{ Se s {{ effort: v }} R w {{ resistance: r }} I l {{ inertia: 0.01 }} }} wire -> GY motor {{ effort: k }} -> shaft;
+             1 shaft {{ I rotor {{ inertia: j }} }} output w: rad/s = shaft.f; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&motor("kg")), @"
+    3:43 `inertia` of `rotor` must be `kg*m^2` here, and this is `kg` [MBG0501]
+      the effort is `N*m` and the flow `1/s` there
+    ");
+    assert_eq!(told(&motor("kg*m^2")), "");
+    // Which of two is wrong cannot be known: a bond that joins two domains is told as before.
+    let joined = "model M { param m: kg = 1.0; param l: H = 1.0; 0 n { R r { resistance: 1.0 } }
+        1 a { I mass { inertia: m } } 1 b { I coil { inertia: l } } a -> n -> b; }";
+    assert!(told(joined).contains("joins efforts"), "{}", told(joined));
+}
+
+/// A hinged flap beside a shaft, with a stop at the rate of the flap.
+fn stopped(given: &str, joint: &str) -> String {
+    format!(
+        "#[derivative] model M {{ 1 ground[6]; 1 rod[6]; 1 wheel[6]; Sf wall[6] {{ flow: 0.0 }} -> ground;
+         flap: Revolute {{ axis: 1 }} (ground, rod); plate: Body {{ mass: 1.0, inertia: 1.0 }} (rod);
+         shaft: Revolute {{ axis: 1 }} (ground, wheel); disc: Body {{ mass: 1.0, inertia: 1.0 }} (wheel);
+         1 slide {{ I sledge {{ inertia: 1.0 }} }}
+         stop: Stop {{ {given}, lower: -0.2, upper: 0.2, stiffness: 1e4 }} ({joint}); }}"
+    )
+}
+
+#[test]
+fn a_stop_is_given_what_changes_as_its_junction_flows() {
+    insta::assert_snapshot!(told(&stopped("displacement: 0.3", "flap.rate")), @"
+    5:10 the displacement of `stop.lower_spring` does not change as `stop.lower_spring` flows [MBG0309]
+      it has another rate than the flow into `stop.lower_spring`
+      help: write `displacement: flap.angle`, which changes as `flap.rate` flows
+    ");
+    for given in [
+        "displacement: 0.3",
+        "displacement: shaft.angle",
+        "displacement: -flap.angle",
+    ] {
+        let typed = typed(&stopped(given, "flap.rate"));
+        assert_eq!(typed, ["displacement: flap.angle", "flap.rate"]);
+        assert_eq!(told(&stopped(&typed[0], "flap.rate")), "");
+    }
+    // Where nothing changes so there is an integral of it.
+    let typed = typed(&stopped("displacement: 0.1", "slide"));
+    assert_eq!(
+        typed,
+        ["integral slide_way = slide.f;", "displacement: slide_way"]
+    );
+    let mended = stopped(&typed[1], "slide");
+    assert_eq!(
+        told(&mended.replace("stop:", &format!("{} stop:", typed[0]))),
+        ""
+    );
+}
+
+#[test]
+fn values_of_a_choice_are_told_with_their_braces() {
+    insta::assert_snapshot!(told(&by_law("if u > 0.0 5.0 else 0.0")), @"
+    1:91 the values of a choice stand in braces [MBG0101]
+      help: write `if u > 0.0 { 5.0 } else { 0.0 }`
+    ");
+    for (slip, written) in [
+        ("if u > 0.0 5.0 else 0.0", "if u > 0.0 { 5.0 } else { 0.0 }"),
+        ("if (u > 0.0) 5.0 else u", "if (u > 0.0) { 5.0 } else { u }"),
+        (
+            "if (u > 0.0) -5.0 else u",
+            "if (u > 0.0) { -5.0 } else { u }",
+        ),
+        (
+            "if (u > 0.0) (5.0) else (u)",
+            "if (u > 0.0) { (5.0) } else { (u) }",
+        ),
+        ("if u > 0.0 { 5.0 } else u", "if u > 0.0 { 5.0 } else { u }"),
+        (
+            "if u > t { 5.0 * t } else u",
+            "if u > t { 5.0 * t } else { u }",
+        ),
+        (
+            "if u > t 5.0 * t else { u }",
+            "if u > t { 5.0 * t } else { u }",
+        ),
+        ("if u > t sin(t) else u", "if u > t { sin(t) } else { u }"),
+        (
+            "if u > t 5.0 * u else if u < 2.0 3.0 else u",
+            "if u > t { 5.0 * u } else if u < 2.0 { 3.0 } else { u }",
+        ),
+    ] {
+        assert_eq!(typed(&by_law(slip)), [written]);
+        assert_eq!(told(&by_law(written)), "");
+    }
+    let nested = by_law("2.0 * (if u > 0.0 5.0 else u)");
+    assert_eq!(typed(&nested), ["if u > 0.0 { 5.0 } else { u }"]);
+    // The other value is the user's to say.
+    assert_eq!(
+        typed(&by_law("if u > 0.0 5.0")),
+        ["if u > 0.0 { 5.0 } else { … }"]
+    );
+    // Values side by side inside of braces lack an operator still.
+    let joined = told(&by_law("if u > 0.0 { 5.0 t } else { u }"));
+    assert!(
+        joined.contains("expected an operator between `5.0` and `t`"),
+        "{joined}"
+    );
+}
+
+#[test]
+fn numbers_of_a_loop_are_compared_with_whole_ones() {
+    let rows = |condition: &str| {
+        format!(
+            "model M {{ rows: for k in 0..3 {{ 1 v {{ I b {{ inertia: 1.0 }} R air {{ effort: if {condition} {{ 2.0 * f }} else {{ f }} }} }} }} }}"
+        )
+    };
+    insta::assert_snapshot!(told(&rows("k == 0.0")), @"
+    1:81 `k` is a whole number here, and `0.0` is none [MBG0213]
+      help: write `k == 0`
+    ");
+    for (slip, whole, before, behind) in [
+        ("k == 0.0 || k == 2", "k == 0", "", " || k == 2"),
+        ("k == 0 || k == 2.0", "k == 2", "k == 0 || ", ""),
+        ("2.0 != k", "2 != k", "", ""),
+        ("k + 1 == 2.", "k + 1 == 2", "", ""),
+    ] {
+        assert_eq!(typed(&rows(slip)), [whole]);
+        assert_eq!(told(&rows(&format!("{before}{whole}{behind}"))), "");
+    }
+    // Of a value that is no whole number, or between two of them, there is none.
+    assert!(!told(&rows("k == 0.5")).contains("write `k"));
+    let switch = told(&by_law("if u == 0.0 { 1.0 } else { 2.0 }"));
+    assert!(
+        switch.contains("of a value that is 0 or 1 write `u < 0.5`"),
+        "{switch}"
+    );
+}
+
+/// What a component makes of a way of no length is told of none of its values, nor of those of another one.
+#[test]
+fn a_line_from_a_frame_to_itself_is_one_mistake() {
+    for by in ["[0.1, 0.0, 0.0]", "[0.1, 0.0, way]"] {
+        for line in ["force: 2.0", "stiffness: 2.0, rest: 0.1"] {
+            let scene = |ends: &str| {
+                let more = format!(
+                    "1 tip[6]; arm: Offset {{ by: {by} }} (hull, tip); line: LineForce {{ {line} }} ({ends});"
+                );
+                floating("", &more).replace("input u;", "param way = 0.1;")
+            };
+            insta::allow_duplicates! {
+                insta::assert_snapshot!(told(&scene("tip, tip")).split_once(' ').unwrap().1, @"
+                `line` leads from `tip` to itself [MBG0209]
+                  help: give it two different junctions
+                ");
+            }
+            assert_eq!(told(&scene("ground, tip")), "");
+        }
+    }
+}

@@ -593,6 +593,9 @@ fn displacements_that_are_told_wrongly_are_refused() {
     ");
     insta::assert_snapshot!(of("displacement"), @"1:95 expected `displacement: value` [MBG0213]");
     insta::assert_snapshot!(of("displacement: [way, way]"), @"1:109 expected a number, found a vector of 2 [MBG0204]");
-    insta::assert_snapshot!(of("displacement: way * way"), @"1:41 the rate must be `m/s` here, and this is `m^2/s` [MBG0501]");
+    insta::assert_snapshot!(of("displacement: way * way"), @"
+    1:109 `displacement` of `c` must be `m` here, and this is `m^2` [MBG0501]
+      the effort is `N` and the flow `m/s` there
+    ");
     insta::assert_snapshot!(of("displacement: way / 0.0"), @"1:113 this divides by zero, whatever the state [MBG0216]");
 }

@@ -173,7 +173,7 @@ fn write_unknown(
         _ if name.ends_with(']') => {
             ": components of vectors are called `.x`, `.y` and `.z`, of longer ones `.0` and so on"
         }
-        "state" => ": a position or an angle that nothing reads is none",
+        "state" | "state or input" => ": a position or an angle that nothing reads is none",
         _ => "",
     })
 }

@@ -466,7 +466,7 @@ fn what_cannot_be_is_told() {
     let told = |trim: PeriodicTrim<'_, _, _, 2, 2, 1>| trim.solve().unwrap_err().to_string();
     assert_eq!(
         told(chopper.fix("voltage")),
-        "the model has no state or input `voltage`"
+        "the model has no state or input `voltage`: a position or an angle that nothing reads is none"
     );
     assert!(told(chopper.grows("current", 1.0)).starts_with("the model has no state `current`"));
     assert!(told(chopper.find_period("supply")).starts_with("the model has no state `supply`"));

@@ -373,7 +373,7 @@ fn what_cannot_be_is_told() {
     let told = |trim: Trim<'_, _, 13, 4, 9>| trim.solve().unwrap_err().to_string();
     assert_eq!(
         told(Trim::new(&craft).fix("free.positon").fix("thrusts")),
-        "the model has no state or input `free.positon`"
+        "the model has no state or input `free.positon`: a position or an angle that nothing reads is none"
     );
     assert_eq!(
         told(Trim::new(&craft).rate("x", 1.0)),

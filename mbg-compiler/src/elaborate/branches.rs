@@ -5,7 +5,7 @@ use syn::{BinOp, Expr, UnOp};
 
 use super::expressions::{Evaluator, Names, Result, Value, fail, number};
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Function};
 use crate::syntax::dump;
 
@@ -82,6 +82,9 @@ impl<N: Names> Evaluator<'_, N> {
                 });
             }
             BinOp::Eq(_) | BinOp::Ne(_) => {
+                if let Some(report) = self.of_whole_numbers(binary) {
+                    return Err(report);
+                }
                 let report = error(codes::EXPRESSION, binary.op.span(), NO_TEST);
                 let is_one = match dump::expression(&binary.right).as_str() {
                     "1" | "1.0" => true,
@@ -95,6 +98,28 @@ impl<N: Names> Evaluator<'_, N> {
         };
         let (left, right) = (self.test(&binary.left)?, self.test(&binary.right)?);
         Ok(join(Box::new(left), Box::new(right)))
+    }
+
+    /// What to type where a whole number, such as that of a loop, is compared with `2.0`.
+    fn of_whole_numbers(&self, binary: &syn::ExprBinary) -> Option<Box<Diagnostic>> {
+        let mut meant = binary.clone();
+        let (side, other) = match (whole(&binary.left), whole(&binary.right)) {
+            (Some(left), None) => {
+                *meant.left = left;
+                (&*binary.left, &*binary.right)
+            }
+            (None, Some(right)) => {
+                *meant.right = right;
+                (&*binary.right, &*binary.left)
+            }
+            _ => return None,
+        };
+        let meant = Expr::Binary(meant);
+        self.names.decide(&meant).ok()?;
+        let [side, other, meant] = [side, other, &meant].map(dump::expression);
+        let message = format!("`{other}` is a whole number here, and `{side}` is none");
+        let report = error(codes::EXPRESSION, binary.op.span(), message);
+        Some(Box::new(report.help(format!("write `{meant}`"))))
     }
 
     /// One of two values, by selections inside each other.
@@ -122,6 +147,15 @@ impl<N: Names> Evaluator<'_, N> {
             _ => fail(block.span(), "expected one expression"),
         }
     }
+}
+
+/// A number without the point behind which nothing stands.
+fn whole(number: &Expr) -> Option<Expr> {
+    let text = dump::expression(number);
+    let (digits, fraction) = text.split_once('.')?;
+    let is_whole = fraction.chars().all(|digit| digit == '0');
+    let number: u64 = digits.parse().ok().filter(|_| is_whole)?;
+    syn::parse_str(&number.to_string()).ok()
 }
 
 /// How to ask whether a value that is 0 or 1 is 1.

@@ -31,8 +31,21 @@ pub struct Claims {
     pub units: Vec<(Symbol, Unit, Site)>,
     /// The values that are hidden here, by number of `Symbol::Unknown`.
     pub hidden: Vec<Hidden>,
+    /// Arguments of components without a unit of their own.
+    pub arguments: Vec<Argument>,
     /// Efforts and flows that the entries read.
     pub signals: Signals,
+}
+
+/// A number that a component is given, of which the laws inside say the unit.
+#[derive(Clone)]
+pub struct Argument {
+    /// The path of the parameter.
+    pub path: String,
+    /// The number.
+    pub value: Expression,
+    /// Where it is written.
+    pub place: Site,
 }
 
 /// A value behind a symbol.
@@ -198,7 +211,10 @@ impl Builder<'_> {
         let unit = match known.unit {
             Some(unit) => unit.clone(),
             None if known.name == GRAVITY => units::acceleration(),
-            None => return value,
+            None => {
+                self.claim_argument(definition, &value);
+                return value;
+            }
         };
         let (scope, name, path, span) = (
             known.scope,
@@ -225,6 +241,20 @@ impl Builder<'_> {
         match value {
             Value::Scalar(_) => Value::Scalar(hidden.entries[0]),
             Value::Matrix(_) => Value::Matrix(Product::of(Factor::Dense(hidden))),
+        }
+    }
+
+    /// Remembers a number that a component is given.
+    fn claim_argument(&mut self, definition: usize, value: &Value) {
+        let known = &self.definitions[definition];
+        if let (Some(claims), Some(_), Value::Scalar(value)) =
+            (&mut self.claims, known.parameter, value)
+        {
+            claims.arguments.push(Argument {
+                path: known.path.clone(),
+                value: *value,
+                place: self.scopes.place(known.scope, known.value.span()),
+            });
         }
     }
 

@@ -165,6 +165,12 @@ impl<'a> Builder<'a> {
             let report = error(codes::TOO_MANY_BONDS, reference.span, message);
             self.tell(scope, report.help("give it two different junctions"));
             self.is_misled = true;
+            // What it makes of a way of no length is no other mistake.
+            let prefix = self.scopes[inner].prefix.clone();
+            let inside = self.scopes.0.iter_mut();
+            inside
+                .filter(|it| it.prefix.starts_with(&prefix))
+                .for_each(|it| it.is_broken = true);
         }
     }
 

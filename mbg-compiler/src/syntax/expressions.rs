@@ -8,7 +8,7 @@ use syn::{Expr, ExprRange, RangeLimits};
 use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
 use super::recovery::opens;
-use super::ternaries::ternary;
+use super::ternaries::{ternary, without_braces};
 use super::{dump, raw, slips, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -125,7 +125,7 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         if let Some(report) = slips::without_zero(&law) {
             return report;
         }
-        let slip = slips::side_by_side(&law);
+        let slip = without_braces(&law).or_else(|| slips::side_by_side(&law));
         let slip = slip.or_else(|| keyword(&law)).or_else(|| slips::bars(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })

@@ -253,7 +253,7 @@ fn is_between(word: &Ident) -> bool {
 }
 
 /// Whether a value can end or begin with this token.
-fn is_operand(token: &TokenTree) -> bool {
+pub(super) fn is_operand(token: &TokenTree) -> bool {
     match token {
         TokenTree::Ident(word) => !is_between(word),
         TokenTree::Literal(_) => true,

@@ -1,11 +1,12 @@
 //! Choices between two values as other languages write them, and what to type instead.
 
-use proc_macro2::TokenTree;
+use proc_macro2::{Delimiter, TokenTree};
+use quote::ToTokens;
 use syn::Expr;
 
-use super::dump;
 use super::slips::is_mark;
 use super::words::THEN;
+use super::{dump, slips};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 
@@ -42,6 +43,64 @@ pub(super) fn ternary<'t>(
         }
         _ => None,
     })
+}
+
+/// What to write for `if a b else c`, whose values lack their braces, among these tokens or in a group of theirs.
+pub(super) fn without_braces(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    let begin = tokens.iter().position(|token| is_word(token, "if"));
+    if let Some((choice, Some(at))) = begin.and_then(|begin| braced(&tokens[begin..])) {
+        let message = "the values of a choice stand in braces";
+        return Some(told(at, message, &choice));
+    }
+    tokens.iter().find_map(|token| match token {
+        TokenTree::Group(group) => {
+            let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+            without_braces(&inside)
+        }
+        _ => None,
+    })
+}
+
+/// A choice with its braces, and where the first of its values begins that lacks them.
+fn braced(choice: &[TokenTree]) -> Option<(String, Option<&TokenTree>)> {
+    let rest = &choice[1..];
+    let is_else = |token: &TokenTree| is_word(token, "else");
+    let other = rest.iter().position(is_else).unwrap_or(rest.len());
+    let (condition, first, lacks_first) = split(&rest[..other])?;
+    let behind = rest.get(other + 1..).unwrap_or_default();
+    let (second, lacks_second) = match behind {
+        [] => ("{ … }".to_owned(), None),
+        [TokenTree::Group(group)] if group.delimiter() == Delimiter::Brace => {
+            (dump::tokens(group.to_token_stream()), None)
+        }
+        [word, ..] if is_word(word, "if") => braced(behind)?,
+        [begin, ..] => (format!("{{ {} }}", value(behind)), Some(begin)),
+    };
+    let lacking = lacks_first.or(lacks_second);
+    Some((written(condition, &first, &second), lacking))
+}
+
+/// The condition and the first value of a choice, and where that begins if it lacks its braces.
+fn split(head: &[TokenTree]) -> Option<(&[TokenTree], String, Option<&TokenTree>)> {
+    let (last, before) = head.split_last()?;
+    if let TokenTree::Group(group) = last
+        && group.delimiter() == Delimiter::Brace
+    {
+        let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+        return Some((before, value(&inside), None));
+    }
+    let is_comparison =
+        |part: &[TokenTree]| part.len() == 1 && matches!(read(part), Some(Expr::Paren(_)));
+    let reads = |at: &usize| {
+        let (condition, behind) = head.split_at(*at);
+        let is_joint = slips::is_operand(&head[at - 1]) && slips::is_operand(&head[*at]);
+        (is_joint || is_comparison(condition))
+            && read(condition).is_some()
+            && read(behind).is_some()
+    };
+    let at = (1..head.len()).find(reads)?;
+    let (condition, behind) = head.split_at(at);
+    Some((condition, value(behind), Some(&head[at])))
 }
 
 fn told(at: &TokenTree, message: &str, choice: &str) -> Box<Diagnostic> {

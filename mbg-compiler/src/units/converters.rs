@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use proc_macro2::Span;
 
 use super::dimension::Dimension;
-use super::{Inverted, checked, expression_text, is_two_port};
+use super::{Inverted, Otherwise, checked, expression_text, is_two_port};
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::Elaborated;
 use crate::elaborate::claims::{Claim, Claims, Subject};
@@ -31,7 +31,11 @@ pub(super) fn advice(
     }
     let agrees = |trial: &Elaborated, inverted: &Inverted| {
         let mut told = Diagnostics::new();
-        checked(trial, claims, pool, declared.clone(), inverted, &mut told);
+        let otherwise = Otherwise {
+            inverted: inverted.clone(),
+            ..Otherwise::default()
+        };
+        checked(trial, claims, pool, declared.clone(), &otherwise, &mut told);
         !told.any()
     };
     let mut found = Vec::new();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::dimension::Dimension;
 use super::report::unit_text;
-use super::{Inverted, checked, pseudo, watt};
+use super::{Otherwise, checked, pseudo, watt};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::Elaborated;
@@ -63,7 +63,7 @@ fn agreeing(
         model.graph.junctions[id.0].pseudo = true;
     }
     let mut told = Diagnostics::new();
-    let as_written = Inverted::default();
+    let as_written = Otherwise::default();
     let units = checked(
         &model,
         claims,

@@ -5,8 +5,8 @@
 //! have them, each law fits the effort and the flow at its element, and effort times flow is power in every true bond.
 //!
 //! A unit that is not declared is an unknown, for which the equations are solved as they come; a mistake is told where
-//! they first contradict each other. A number with a decimal point may carry any unit; a whole number counts, and is pure
-//! as a factor. A model that declares no unit at all is not looked at.
+//! they first contradict each other, or at the one value without which all others agree. A number with a decimal point may
+//! carry any unit; a whole number counts, and is pure as a factor. A model that declares no unit at all is not looked at.
 
 mod converters;
 mod densities;
@@ -19,6 +19,7 @@ mod pseudo;
 mod report;
 mod sources;
 mod spellings;
+mod suspects;
 
 use std::collections::BTreeMap;
 
@@ -28,6 +29,7 @@ use self::dimension::{Dimension, Ratio, Unknowns};
 use self::inference::{Inference, Measure, Mismatch};
 use self::ports::Ports;
 use self::report::Reporter;
+use self::suspects::Suspect;
 use crate::causality::report::alternatives;
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::claims::{self, Claim, Claims, Subject};
@@ -64,7 +66,7 @@ pub fn check(
         return;
     };
     let mut found = Diagnostics::new();
-    let as_written = Inverted::default();
+    let as_written = Otherwise::default();
     checked(
         elaborated,
         &claims,
@@ -85,8 +87,13 @@ pub fn check(
             return diagnostics.report(report);
         }
     }
-    for (position, report) in found.list().iter().enumerate() {
-        let mut report = report.clone();
+    let mut found = found.list().to_vec();
+    if converters.is_empty()
+        && let Some(cause) = suspects::cause(elaborated, &claims, &pool, &declared)
+    {
+        found = vec![cause];
+    }
+    for (position, mut report) in found.into_iter().enumerate() {
         if position == 0 && !converters.is_empty() {
             report.helps = alternatives(converters.clone());
         } else if position == 0 {
@@ -97,17 +104,24 @@ pub fn check(
     }
 }
 
-/// Two-ports whose laws are taken for their inverses, to see whether units agree then.
+/// Two-ports whose laws are taken for their inverses.
 type Inverted = std::collections::BTreeSet<ElementId>;
 
-/// Checks units of which these are declared, with the laws of some two-ports inverted; the result has the effort and the flow of
-/// the first component of each junction.
+/// What is taken otherwise than it is written, to see whether units agree then.
+#[derive(Default)]
+struct Otherwise {
+    inverted: Inverted,
+    /// What is looked at when all others have said what units are.
+    suspect: Suspect,
+}
+
+/// Checks units of which these are declared; the result has the effort and the flow of the first component of each junction.
 fn checked(
     model: &Elaborated,
     claims: &Claims,
     pool: &Pool,
     declared: BTreeMap<Symbol, Dimension>,
-    inverted: &Inverted,
+    otherwise: &Otherwise,
     diagnostics: &mut Diagnostics,
 ) -> Vec<[Dimension; 2]> {
     let mut reporter = Reporter::new(model, claims, pool, diagnostics);
@@ -119,7 +133,7 @@ fn checked(
         model,
         ports,
         inference,
-        inverted,
+        otherwise,
         reporter,
     };
     checker.run(&claims.list);
@@ -240,6 +254,8 @@ enum Phase {
     /// Values of what has a unit of its own: where they read a flow, its unit is found without them.
     Declared,
     Answers,
+    /// What may be wrong alone.
+    Suspect,
     /// Laws of numbers alone: a factor of one is not written, so that their units are no more than a guess.
     Numeric,
 }
@@ -248,7 +264,7 @@ struct Checker<'a> {
     model: &'a Elaborated,
     ports: Ports,
     inference: Inference<'a>,
-    inverted: &'a Inverted,
+    otherwise: &'a Otherwise,
     reporter: Reporter<'a>,
 }
 
@@ -260,11 +276,11 @@ impl Checker<'_> {
             Phase::Bonds,
             Phase::Declared,
             Phase::Answers,
+            Phase::Suspect,
             Phase::Numeric,
         ] {
-            if phase == Phase::Bonds {
-                self.junction_bonds();
-                continue;
+            if matches!(phase, Phase::Bonds | Phase::Suspect) {
+                self.junction_bonds(phase == Phase::Suspect);
             }
             if phase == Phase::Numeric && !self.reporter.any() {
                 self.roots();
@@ -275,7 +291,13 @@ impl Checker<'_> {
                     continue;
                 }
                 // Parts belong to what is made of them.
-                if self.phase(claim) == phase {
+                let is_suspect = self.otherwise.suspect.has_claim(position);
+                let own = if is_suspect {
+                    Phase::Suspect
+                } else {
+                    self.phase(claim)
+                };
+                if own == phase {
                     for claim in &claims[start..=position] {
                         self.claim(claim);
                     }
@@ -308,15 +330,16 @@ impl Checker<'_> {
         }
     }
 
-    /// Bonds between junctions, and between both ends of a closure.
-    fn junction_bonds(&mut self) {
+    /// Bonds between junctions, and between both ends of a closure: those that may be wrong alone, or all others.
+    fn junction_bonds(&mut self, suspect: bool) {
         let graph = &self.model.graph;
+        let is_due = |origin| self.otherwise.suspect.has_bond(origin) == suspect;
         for bond in &graph.bonds {
-            if ports::joins_junctions(bond) {
+            if ports::joins_junctions(bond) && is_due(bond.origin) {
                 self.bond(&bond.from, &bond.to, bond.origin);
             }
         }
-        for closure in &graph.closures {
+        for closure in graph.closures.iter().filter(|it| is_due(it.origin)) {
             let [first, last] = closure.bonds.map(|bond| &graph.bonds[bond.0]);
             self.bond(&first.from, &last.to, closure.origin);
         }
@@ -433,7 +456,7 @@ impl Checker<'_> {
                 .wanted(&self.model.graph, id, word, place, found.len())
             {
                 measures.push(measure.clone());
-                wanted.push(match self.inverted.contains(&id) {
+                wanted.push(match self.otherwise.inverted.contains(&id) {
                     true => Dimension::pure().over(&unit),
                     false => unit,
                 });
@@ -441,7 +464,8 @@ impl Checker<'_> {
         }
         if let Some((wanted, found)) = self.first_other(&measures, &wanted) {
             let name = &self.model.graph.elements[id.0].name;
-            let what = format!("`{word}` of `{name}`");
+            let argument = self.otherwise.suspect.argument();
+            let what = argument.unwrap_or_else(|| format!("`{word}` of `{name}`"));
             let note = self.surroundings(id);
             let given = usize::from(self.model.graph.elements[id.0].kind == ElementKind::I);
             let given = &self.ports.inner[id.0][0][given];

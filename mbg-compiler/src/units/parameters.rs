@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::dimension::Dimension;
 use super::report::in_another_unit;
-use super::{Inverted, checked, symbol_text};
+use super::{Otherwise, checked, symbol_text};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::elaborate::Elaborated;
 use crate::elaborate::claims::{Claim, Claims, Subject};
@@ -33,7 +33,14 @@ pub(super) fn advice(
         let mut others = declared.clone();
         others.remove(symbol);
         let mut told = Diagnostics::new();
-        checked(model, claims, pool, others, &Inverted::default(), &mut told);
+        checked(
+            model,
+            claims,
+            pool,
+            others,
+            &Otherwise::default(),
+            &mut told,
+        );
         !told.any()
     };
     let units = claims.units.iter();

@@ -8,6 +8,8 @@ use nalgebra::SVector;
 
 #[path = "sliding/constant_steps.rs"]
 mod constant_steps;
+#[path = "sliding/several.rs"]
+mod several;
 
 mbg! {
     /// A block on a floor that a spring pulls.

@@ -61,3 +61,85 @@ fn what_is_no_assertion_is_told() {
     insta::assert_snapshot!(told(&text("assert way < force;", "0.0", "1.0")), @"4:55 `way` is `m` and `force` is `N`: they are neither added nor compared [MBG0501]");
     insta::assert_snapshot!(told(&text("assert;", "0.0", "1.0")), @"4:54 expected a comparison after `assert`, found `;` [MBG0101]");
 }
+
+/// What the pages of the library say of parameters: laws would be no numbers, or push the wrong way, else.
+#[test]
+fn parts_of_the_library_tell_what_their_parameters_must_be() {
+    let scene = |part: &str| {
+        format!(
+            "model M {{ 1 ground[3]; 1 tip[3]; 0 p; 0 r; 1 v; 1 w;
+             Sf fixed[3] {{ flow: 0.0 }} -> ground; hinge: PlanarRevolute (ground, tip); bob: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (tip);
+             r -> R leak {{ conductance: 1e-5 }}; p -> R other {{ conductance: 1e-5 }}; v -> I m {{ inertia: 1.0 }}; w -> I n {{ inertia: 1.0 }};
+             part: {part}; }}"
+        )
+    };
+    let parts = [
+        (
+            "(p, r)",
+            "Orifice { area: 1e-4, transition: ",
+            "transition > 0",
+        ),
+        ("(p, r)", "Orifice { area: 1e-4, density: ", "density > 0"),
+        (
+            "(p)",
+            "Accumulator { precharge: 1e5, volume: ",
+            "volume > 0",
+        ),
+        (
+            "(p)",
+            "Accumulator { volume: 1e-3, precharge: ",
+            "precharge > 0",
+        ),
+        ("(p, r)", "Diode { thermal: ", "thermal > 0"),
+        ("(v, w)", "Clutch { capacity: 1.0, speed: ", "speed > 0"),
+        ("(v)", "Brake { capacity: 1.0, speed: ", "speed > 0"),
+        ("(v, w)", "Freewheel { capacity: 1.0, speed: ", "speed > 0"),
+        ("(v)", "Friction { sliding: 1.0, speed: ", "speed > 0"),
+        (
+            "(v, w)",
+            "Gear { radius_a: 1.0, radius_b: ",
+            "radius_b != 0",
+        ),
+        (
+            "(v, w)",
+            "Gear { blocked: compliant, radius_b: 1.0, radius_a: ",
+            "radius_a != 0",
+        ),
+        (
+            "(v, w)",
+            "Rack { blocked: compliant, radius: ",
+            "radius != 0",
+        ),
+        ("(ground, tip)", "PlanarRod { length: ", "length > 0"),
+        (
+            "(tip)",
+            "PlanarContact { stiffness: 1e5, friction: 0.5, friction_speed: ",
+            "speed > 0",
+        ),
+    ];
+    for (ports, part, condition) in parts {
+        let told = told(&scene(&format!("{part}0.0 }} {ports}")));
+        assert!(
+            told.contains(&format!("`{condition}` is asserted of")),
+            "{part}: {told}"
+        );
+    }
+    let full = "Accumulator { precharge: 1e5, volume: 1e-3, initial: 1e-3 } (p)";
+    let full = told(&scene(full));
+    assert!(
+        full.contains("`initial < volume` is asserted of `part`, and these are 0.001 and 0.001"),
+        "{full}"
+    );
+    // Those of a model are checked by `new`, and signals are what they are.
+    let model = compiled(
+        "model M { param laminar: Pa = 1e3; input density: kg/m^3; 0 p { C oil { stiffness: 1e9 } } 0 r { R leak { conductance: 1e-9 } }
+         edge: Orifice { area: 1e-4, transition: laminar, density: density } (p, r); }",
+    );
+    let asserted = model
+        .checks
+        .iter()
+        .filter(|it| it.reason.contains("asserted"));
+    let asserted = asserted.map(|it| (it.name.as_str(), it.reason.as_str()));
+    let expected = ("laminar", "`transition > 0` is asserted");
+    assert_eq!(asserted.collect::<Vec<_>>(), [expected]);
+}

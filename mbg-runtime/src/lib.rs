@@ -67,6 +67,7 @@ mod apart;
 pub mod attitude;
 #[cfg(feature = "dispatch")]
 pub mod batch;
+mod beside;
 #[cfg(all(test, feature = "macros"))]
 mod called;
 mod columns;

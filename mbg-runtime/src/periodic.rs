@@ -1,5 +1,7 @@
 //! Motions that come back: rotors in forward flight, converters that switch, what swings by itself.
 
+mod rounding;
+
 use core::cmp::Ordering;
 
 use nalgebra::{Complex, SMatrix, SVector};
@@ -267,9 +269,9 @@ where
     /// # Errors
     ///
     /// A name that the model has not, a motion from the guess that cannot go on, one on which the state that tells the period is not
-    /// met again, one that does not come back: some state differs by more than a millionth of the terms it is made of, or does not
-    /// unless states that change alike differ otherwise, and one whose laws do not come back with it, since what drives it has
-    /// another period.
+    /// met again, one that does not come back: some state differs by more than a millionth of the terms it is made of, and by more
+    /// than what rounding of the laws makes of it, or does not unless states that change alike differ otherwise, and one whose laws do
+    /// not come back with it, since what drives it has another period.
     pub fn solve(&self) -> Result<Cycle<N, M>, Untrimmed> {
         self.search()
     }
@@ -326,16 +328,23 @@ where
         let Trimmed { state, input } = run.start;
         // By how much each state would change otherwise within a period: laws need not jump at the same times to a rounding.
         let mut changes = SVector::<f64, N>::zeros();
+        let mut rounded = changes;
         let add = |[start, end]: [f64; 2], state: &SVector<f64, N>| {
+            let point = Trimmed {
+                state: state + grown,
+                input,
+            };
+            rounded += self.rounded([start, end].map(|time| time + run.period), &point);
             let part = (end - start) / f64::from(COMPARED);
             for number in 0..COMPARED {
                 let time = start + (f64::from(number) + 0.5) * part;
-                let [now, later] = [(time, *state), (time + run.period, state + grown)]
+                let [now, later] = [(time, *state), (time + run.period, point.state)]
                     .map(|(time, state)| self.derivative(time, &state, &input));
                 changes += part * (later - now).abs();
             }
         };
         self.follow(self.system, &state, &Constant(input), self.section, add)?;
+        let changes = changes.zip_map(&rounded, rounding::beyond);
         let parts = changes.zip_map(&run.sizes.0, |change, size| change / size);
         let worst = parts.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
         Ok(worst.and_then(|(place, part)| {
@@ -675,12 +684,17 @@ where
         let mut run = self.run(from)?;
         let mut sizes = run.sizes;
         let mut slopes = self.slopes(&run.start, self.section)?;
-        for _ in 0..CORRECTIONS {
+        for number in 0..CORRECTIONS {
             // What comes back already is left by whole corrections, which square what is left, or not at all: the rest is rounding.
             let dampings = match self.missed(&run, &slopes, &sizes) {
                 Some(_) => DAMPINGS,
                 None => 1,
             };
+            if (number == 0 || dampings == 1)
+                && self.beyond_rounding(&run) == SVector::<f64, N>::zeros()
+            {
+                break;
+            }
             let Some(next) = self.descend(&run, &slopes, &mut units, dampings) else {
                 break;
             };
@@ -689,8 +703,12 @@ where
             sizes.1 = sizes.1.sup(&run.sizes.1);
             slopes = self.slopes(&run.start, self.section)?;
         }
-        if let Some(untrimmed) = self.missed(&run, &slopes, &sizes) {
-            return Err(untrimmed);
+        if self.missed(&run, &slopes, &sizes).is_some() {
+            // Only then, for it takes as long as a correction.
+            run.left = self.beyond_rounding(&run);
+            if let Some(untrimmed) = self.missed(&run, &slopes, &sizes) {
+                return Err(untrimmed);
+            }
         }
         if let Some(untrimmed) = self.driven_otherwise(&run)? {
             return Err(untrimmed);

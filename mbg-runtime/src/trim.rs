@@ -4,6 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::beside::{BESIDE, ROUNDING, aside};
 use crate::search::{Asked, Search};
 use crate::selection::{Selection, is_named};
 use crate::solve::{Row, Rows, Sizes};
@@ -35,10 +36,6 @@ const TORN: f64 = 1e-3;
 const SAME: f64 = 8.0 * f64::EPSILON;
 /// What such states differ by may change by this part of them: by rounding, too.
 const APART: f64 = 1e-9;
-/// How many points a few units in the last place away tell what of a condition is rounding.
-const BESIDE: usize = 8;
-/// What is rounding, in units of how far apart its values are there.
-const ROUNDING: f64 = 64.0;
 
 /// A state and an input at which rates and outputs have wanted values: an operating point, to rest at, to start from, and
 /// to linearise at.
@@ -345,11 +342,6 @@ where
     /// one side.
     #[inline(never)]
     fn rounding(&self, point: &Trimmed<N, M>) -> Left<N, P> {
-        let aside = |beside: usize, number: usize, value: f64| {
-            let units = (((number + 1) * (2 * beside + 3)) % 11 + 1) as f64;
-            let sign = 1.0 - 2.0 * (number % 2) as f64;
-            value * (1.0 + sign * units * f64::EPSILON)
-        };
         let at = |beside| {
             self.left(&Trimmed {
                 state: (point.state).map_with_location(|number, _, x| aside(beside, number, x)),

@@ -89,6 +89,44 @@ mbg! {
         rubs: Friction { sliding: 1.0, breakaway: 1.5, at_rest: holds, stribeck_speed: 0.3 } (slip);
     }
 
+    /// A hub on a mount, with two blades whose forces cancel out, but for what the phase between them is not half a turn.
+    model Balanced {
+        param thrust: N = 1e4;
+        param phase: rad = 0.0;
+        integral psi: rad = 20.0;
+        1 hub {
+            I mass { inertia: 1.0 }
+            C mount { stiffness: 100.0 }
+            R damper { resistance: 1.0 }
+            Se blades { effort: thrust * (cos(psi) + cos(psi + 3.141592653589793 + phase)) }
+        }
+    }
+
+    /// A blade that a damper of dry friction holds at its hinge.
+    model Held {
+        param air: N*m = 50.0;
+        param friction: N*m = 60.0;
+        1 lag {
+            I blade { inertia: 150.0 }
+            C spring { stiffness: 5400.0 }
+            R damper { effort: friction * sign(f) }
+            Se push { effort: air * sin(20.0 * t) }
+        }
+    }
+
+    /// What a wheel pushes one way, through air if there is any; the wheel turns as fast as it is told.
+    model Pushed {
+        param air: N*s/m = 1e-3;
+        param push: N = 1.0;
+        input faster: rad/s;
+        integral psi: rad = 20.0 + faster;
+        1 way {
+            I mass { inertia: 1.0 }
+            R drag { resistance: air }
+            Se wheel { effort: push * (1.0 + cos(psi)) }
+        }
+    }
+
     /// A top without weight.
     model Top {
         1 turning[3] { I body { inertia: diag(1.0, 2.0, 3.0), gyroscopic, initial_flow: [0.1, 5.0, 0.2] } }
@@ -425,6 +463,115 @@ fn what_friction_and_an_escapement_do_at_rest_is_in_the_multipliers() {
         multipliers.sort_by(f64::total_cmp);
         let errors = [multipliers[0] - decay * decay, multipliers[1] - 1.0];
         assert!(errors.iter().all(|it| it.abs() < 1e-9), "{errors:?}");
+    }
+}
+
+/// The multipliers are those of q'' + q' + 100 q over a turn, whose roots are −1/2 ± i √99.75.
+#[test]
+fn forces_that_cancel_out_leave_a_hub_at_rest() {
+    let turn = TAU / 20.0;
+    let decay = f64::exp(-turn);
+    let trace = 2.0 * f64::exp(-0.5 * turn) * f64::cos(99.75_f64.sqrt() * turn);
+    macro_rules! by {
+        ($($solver:expr, $error:expr;)*) => { $(
+            for (thrust, start) in [(1e4, 0.0), (1e4, 0.1), (1.0, 0.0), (1.0, 0.1), (1e-6, 0.0)] {
+                let model = Balanced::<f64>::new(BalancedParameters { thrust, phase: 0.0 }).unwrap();
+                let cycle = PeriodicTrim::new(&model, &$solver, turn)
+                    .state(&SVector::from([0.0, start, 0.0]))
+                    .grows("psi", TAU)
+                    .solve()
+                    .unwrap();
+                let rest = cycle.state.fixed_rows::<2>(0).norm();
+                assert!(rest < 1e-15 * (thrust + 100.0), "{thrust} {start}: {rest:e}");
+                let hub = cycle.monodromy.fixed_view::<2, 2>(0, 0);
+                let errors = [hub.trace() - trace, hub.determinant() - decay];
+                assert!(errors.iter().all(|it| it.abs() < $error), "{errors:?}");
+            }
+        )* };
+    }
+    by! {
+        Adaptive::new(Dop853, 1e-11, 1e-11), 1e-8;
+        Adaptive::new(Dop853, 1e-13, 1e-13), 1e-8;
+        Adaptive::new(Dop853, 1e-6, 1e-6), 1e-5;
+        Fixed::new(Rk4, 1e-3), 1e-8;
+    }
+}
+
+/// What is a billionth of the terms is no rounding: it swings as q'' + q' + 100 q = thrust · phase · sin(20 t).
+#[test]
+fn what_hardly_cancels_out_moves_a_hub() {
+    let (thrust, phase) = (1e4, 1e-9);
+    let model = Balanced::<f64>::new(BalancedParameters { thrust, phase }).unwrap();
+    let exact = exact();
+    let turning = PeriodicTrim::new(&model, &exact, TAU / 20.0).grows("psi", TAU);
+    let found = turning.fix("psi").solve().unwrap().state;
+    let expected = [-300.0 * 20.0, -20.0].map(|it| thrust * phase * it / (300.0 * 300.0 + 400.0));
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(
+            (found / expected - 1.0).abs() < 1e-4,
+            "{found:e} {expected:e}"
+        );
+    }
+}
+
+#[test]
+fn what_friction_holds_all_the_time_comes_back() {
+    let exact = exact();
+    for (air, friction, start) in [
+        (50.0, 60.0, 1e-3),
+        (1e-9, 1.2e-9, 1e-14),
+        (1e6, 1.2e6, 1e-3),
+    ] {
+        let model = Held::<f64>::new(HeldParameters { air, friction }).unwrap();
+        let over = |period| {
+            PeriodicTrim::new(&model, &exact, period)
+                .state(&SVector::from([0.0, start]))
+                .solve()
+        };
+        let cycle = over(TAU / 20.0).unwrap();
+        assert_eq!(cycle.state, SVector::from([0.0, start]));
+        assert_eq!(sizes(&cycle), [1.0, 0.0]);
+        // That of the laws is another one by a millionth.
+        let driven = over((1.0 + 1e-6) * TAU / 20.0);
+        assert!(
+            matches!(
+                driven,
+                Err(Untrimmed::Driven {
+                    name: "blade.p",
+                    ..
+                })
+            ),
+            "{driven:?}"
+        );
+    }
+}
+
+/// Its speed is push / air on the mean, and with a wave beside it. The angle of the wheel is as large as it grows but for its last digits,
+/// whatever has an influence on it.
+#[test]
+fn an_angle_that_grows_as_it_is_to_is_not_missed() {
+    let model = Pushed::<f64>::new(PushedParameters::default()).unwrap();
+    let exact = exact();
+    let turning = PeriodicTrim::new(&model, &exact, TAU / 20.0).grows("psi", TAU);
+    let cycle = turning.solve().unwrap();
+    let [speed, psi] = cycle.state.into();
+    let expected = 1e3 + (1e-3 * psi.cos() + 20.0 * psi.sin()) / (400.0 + 1e-6);
+    assert!((speed - expected).abs() < 1e-5, "{speed} {expected}");
+    // Without air it is faster after every turn, however small all is.
+    for push in [1.0, 1e-9, 1e-20] {
+        let model = Pushed::<f64>::new(PushedParameters { push, air: 0.0 }).unwrap();
+        let open = PeriodicTrim::new(&model, &exact, TAU / 20.0)
+            .grows("psi", TAU)
+            .solve();
+        let Err(Untrimmed::Open {
+            name: "mass.p",
+            reached,
+            ..
+        }) = open
+        else {
+            panic!("{open:?}")
+        };
+        assert!((0.2..0.4).contains(&(reached / push)), "{reached:e}");
     }
 }
 

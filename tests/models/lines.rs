@@ -8,6 +8,28 @@ use super::audit::assert_sound_about_the_start;
 mbg! {
     include "tests/models/lines.mbg";
     include "examples/gallery/container.mbg";
+
+    /// A bob that a rope holds in a plane, and one in space.
+    model Roped {
+        param stiffness: N/m = 100.0;
+        1 ground[3]; 1 pole[6];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        Sf rooted[6] { flow: 0.0 } -> pole;
+        1 bob[3] { I mass { inertia: 2.0 } }
+        integral x: m = bob.f.y, initial: 1.2;
+        integral y: m = bob.f.z;
+        rope: PlanarLineForce {
+            kind: rope, stiffness: stiffness, rest: 1.0, damping: 20.0, position_b: [x, y]
+        } (ground, bob);
+        1 stone[6] { I rock { inertia: 2.0 } }
+        integral east: m = stone.f[3], initial: 1.2;
+        integral north: m = stone.f[4];
+        integral up: m = stone.f[5];
+        line: LineForce {
+            kind: rope, stiffness: stiffness, rest: 1.0, damping: 20.0, orientation_b: 1.0, position_b: [east, north, up]
+        } (pole, stone);
+        pulls: LineForce { kind: rope, rest: 1.0, damping: 5.0, orientation_b: 1.0, position_b: [east, north, up] } (pole, stone);
+    }
 }
 
 const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
@@ -130,7 +152,7 @@ fn bodies_on_lines_move_as_by_newton_and_euler() {
         slack += u32::from((ends[0][0] - ends[1][0]).norm() < 0.8);
         let rope = tension(ends, |length, rate| {
             3.0 + if length > 0.8 {
-                80.0 * (length - 0.8) + 0.7 * rate
+                f64::max(80.0 * (length - 0.8) + 0.7 * rate, 0.0)
             } else {
                 0.0
             }
@@ -173,6 +195,47 @@ fn what_is_stored_is_in_the_balance_and_jacobians_are_right() {
     sound!(Springy, SpringyParameters);
     sound!(Wound, WoundParameters);
     sound!(Container, ContainerParameters);
+    sound!(Roped, RopedParameters);
+}
+
+/// The tension is 100 (length − 1) + 20 rate where that is not negative, with one more damper in space: it is what the momenta lose.
+#[test]
+fn ropes_do_not_push() {
+    let model = Roped::<f64>::new(RopedParameters::default()).unwrap();
+    for (length, rate, expected) in [
+        (1.2, -10.0, 0.0),
+        (1.2, -1.0, 0.0),
+        (1.2, -0.5, 10.0),
+        (1.2, 0.0, 20.0),
+        (1.2, 1.0, 40.0),
+        (1.0 + 1e-9, -1.0, 0.0),
+        (0.9, 1.0, 0.0),
+        (0.9, -1.0, 0.0),
+    ] {
+        let place = |name| Roped::<f64>::META.state(name).unwrap();
+        let mut x = model.initial_state();
+        let [bob, stone] = ["mass.p.y", "rock.p.3"].map(place);
+        (x[place("x")], x[place("east")]) = (length, length);
+        (x[bob], x[stone]) = (2.0 * rate, 2.0 * rate);
+        let slopes = model.derivative(0.0, &x, &SVector::zeros(), &mut ());
+        let is_long = f64::from(u8::from(length > 1.0));
+        let more = is_long * f64::max(5.0 * rate, 0.0);
+        for tension in [-slopes[bob], -slopes[stone] - more] {
+            assert!(
+                (tension - expected).abs() < 1e-12,
+                "{length} {rate}: {tension} instead of {expected}"
+            );
+        }
+        // What ropes take from a motion is stored or becomes heat, which is never negative.
+        let power = model.power(0.0, &x, &SVector::zeros(), &mut ());
+        let stored = is_long * 100.0 * (length - 1.0) * rate;
+        let heat = 2.0 * (expected * rate - stored) + more * rate;
+        assert!(
+            (power.dissipated - heat).abs() < 1e-12 * (1.0 + heat),
+            "{length} {rate}: {power:?} {heat}"
+        );
+        assert!(power.dissipated >= 0.0);
+    }
 }
 
 #[test]

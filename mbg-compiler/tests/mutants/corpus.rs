@@ -87,7 +87,7 @@ const OTHERS: [&str; 8] = [
         bar: ElasticShaft { stiffness: 2e3, damping: 1.0, initial: 0.01 } (shaft, pinion);
         axle: Differential { ratio: 4.0 } (pinion, left, right); lash: Backlash { gap: 0.01, stiffness: 1e4 } (left, sun);
         hub: Planetary { ratio: 3.0 } (sun, right, ring); shoe: Brake { capacity: 50.0, speed: 0.1 } (ring);
-        1 fan { I blades { inertia: 0.1 } } sprag: Freewheel { capacity: 90.0, speed: 0.1 } (engine, fan);
+        1 drum { I barrel { inertia: 2.0 } } sprags: Freewheel { capacity: 90.0, speed: 0.1 } (right, drum);
     }",
     "model Lift {
         0 tank; Se open { effort: 1e5 } -> tank; 0 line; 0 ring; 1 shaft { I rotor { inertia: 0.1 } } 1 rod { I load { inertia: 5.0 } }

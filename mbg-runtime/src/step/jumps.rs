@@ -35,10 +35,10 @@ pub(super) struct Jump<T, const N: usize> {
 }
 
 impl<T, const N: usize> Jump<T, N> {
-    /// How far a step is to go that ends before it.
-    fn almost(&self) -> f64 {
+    /// How much of the way to it a step is to leave that ends before it.
+    fn left(&self) -> f64 {
         let [least, most] = LEFT;
-        self.ahead * (1.0 - (self.ahead / self.length).max(least).min(most))
+        self.ahead * (self.ahead / self.length).max(least).min(most)
     }
 }
 
@@ -171,7 +171,11 @@ impl<T: Real, const N: usize> Way<T, N> {
     {
         let t = self.here.0;
         let target = match &self.near {
-            Some(jump) => end.min(t + T::from_f64(jump.almost())),
+            Some(jump) => {
+                // At the jump itself laws may be those behind it.
+                let left = jump.left().max(problem.apart(t, 0.0));
+                end.min(t + T::from_f64(jump.ahead - left))
+            }
             None => end,
         };
         if !less(t, target) {

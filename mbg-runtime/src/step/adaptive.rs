@@ -213,8 +213,7 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
         let mut watch = Watch::new(seen(end - start));
         loop {
             self.check_count(problem, t, &pace.control)?;
-            let asked = (pace.control.length, pace.refused);
-            let length = steps.length(problem, &(t, x), asked);
+            let length = steps.length(problem, &(t, x), (pace.control.length, pace.refused));
             let length = pace.approach.length(length.min(self.longest));
             let (span, last) = next_span(t, end, length)?;
             if watch.is_blind(problem, &span) {

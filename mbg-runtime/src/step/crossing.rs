@@ -1,5 +1,7 @@
 //! Steps across singular positions of closed loops.
 
+use core::cmp::Ordering;
+
 use nalgebra::SVector;
 
 use super::control::Control;
@@ -139,7 +141,10 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         let way = here.1 - far.1;
         let [here, far] = [here, far].map(|place| self.answer(problem, place, &way));
         // Written so that what is no number is nearer.
-        !(here <= NEARER * far)
+        !matches!(
+            here.partial_cmp(&(NEARER * far)),
+            Some(Ordering::Less | Ordering::Equal)
+        )
     }
 
     /// How much derivatives answer to what of a move, about along a way, is off the loops.

@@ -127,10 +127,9 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                         .map_err(|stopped| problem.traced(stopped, &from, jacobian))?;
                     return Err(Stopped::new(t, Cause::Diverged));
                 }
-                let is_clear =
-                    S::HAS_COURSES && self.looks && is_clear(problem, &from, &trial.change);
-                if S::HAS_COURSES
-                    && self.looks
+                let looks = S::HAS_COURSES && self.looks;
+                let is_clear = looks && is_clear(problem, &from, &trial.change);
+                if looks
                     && !is_clear
                     && let Some(jump) = touched(
                         problem,

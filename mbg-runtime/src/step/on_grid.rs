@@ -9,7 +9,7 @@ use super::dense::Step;
 use super::fixed::Fixed;
 use super::grid::{FINEST, Grid, Parts};
 use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
-use super::method::{Method, Start, Stepper};
+use super::method::{Method, Start, Stepper, along};
 use super::over::Place;
 use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked};
@@ -220,12 +220,22 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
+    let way = T::from_f64(way);
     let start = (from.span.start, from.x);
-    let ahead = problem.straight_to_threshold(&start, &from.slope, way)?;
-    // What begins at one leaves it behind.
-    (seen(ahead) > 0.0).then(|| Jump {
+    let end = (start.0 + way, along(&start.1, way, &from.slope));
+    let [first, last] = [start, end].map(|(time, state)| Point {
+        time,
+        state,
+        slope: from.slope,
+    });
+    let ahead = problem.soonest(&first, &last, |course, lasting| {
+        // What begins at one leaves it behind.
+        let ahead = course.reached(lasting).map(seen);
+        ahead.filter(|ahead| *ahead > 0.0)
+    })?;
+    Some(Jump {
         start,
-        ahead: seen(ahead),
+        ahead,
         length: whole,
         is_guess: true,
     })

@@ -73,6 +73,14 @@ impl<T: Real> Surfaces<T> {
         without
     }
 
+    /// The same with the first ones last.
+    pub(super) fn turned(&self, by: usize) -> Self {
+        let mut turned = Self::NONE;
+        let from_there = self.iter().skip(by).chain(self.iter().take(by));
+        from_there.for_each(|it| turned.add(*it));
+        turned
+    }
+
     /// Leaves one out.
     pub(super) fn leave(&mut self, place: usize) -> Option<Surface<T>> {
         let rest = self.list.get_mut(place..)?;

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 use super::seen;
 use super::surfaces::{MOST, Surfaces};
-use crate::{Input, Real, System};
+use crate::{Course, Input, Real, System};
 use sides::shortest;
 
 /// The part of a run, and of a step, over which an input is taken to be smooth.
@@ -20,6 +20,9 @@ const PART: f64 = 0.25;
 const BESIDE: f64 = 4.0;
 /// So many times as far beside a surface a law is asked whether it jumps there.
 const WIDE: f64 = 1024.0;
+
+/// Gradients depend on each other if no more than this part of one is beside the others.
+const DEPENDENT: f64 = 1e-11;
 
 /// One for each surface.
 type Each<V> = [V; MOST];
@@ -38,6 +41,8 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     /// For how long the input is smooth, about.
     ahead: Cell<f64>,
     pub(super) surfaces: Surfaces<T>,
+    /// Others on which the motion is wherever it is on these, with how far from them it is by rounding.
+    along: (Surfaces<T>, Each<T>),
     /// How states change that go across each surface, at a rate of one, and along the others.
     across: Each<SVector<T, N>>,
     /// How the argument of each changes with the states, where the motion has come to.
@@ -87,11 +92,14 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         if among_all.is_some() || surfaces.count() < 2 {
             return among_all;
         }
-        // What two surfaces make different that are almost along each other cannot be told apart: one of them may be left first.
-        let mut alone = surfaces.iter().map(|surface| Surfaces::one(*surface));
-        alone.find_map(|surface| {
+        // What surfaces make different that are almost along each other cannot be told apart, and which of those that depend on each
+        // other hold is not known: each of them may be the one that is left first, or does not count.
+        let count = surfaces.count();
+        let turned = (1..count).map(|by| surfaces.turned(by));
+        let mut others = turned.chain(surfaces.iter().map(|surface| Surfaces::one(*surface)));
+        others.find_map(|surfaces| {
             let mut there = start;
-            settled(&mut there, surface).inspect(|_| *x = there)
+            settled(&mut there, surfaces).inspect(|_| *x = there)
         })
     }
 
@@ -115,12 +123,22 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             inside,
             ahead: Cell::new(whole * SHORT),
             surfaces,
+            along: (Surfaces::NONE, [T::from_f64(0.0); MOST]),
             across: none,
             gradients: Cell::new(none),
             evaluations: Cell::new(0),
         };
         let at = sliding.on_piece(t);
         sliding.look(&at, x, memory);
+        if let Some((surfaces, along)) = sliding.dependent(x) {
+            let known = (memory, evaluations);
+            let model = (system, input);
+            let times = (since, inside, whole);
+            let settled = Self::settled_among(model, times, (t, x), surfaces, known);
+            // Others are as these are only where it stays on all of these.
+            let settled = settled.filter(|settled| settled.surfaces == surfaces);
+            return settled.map(|settled| Self { along, ..settled });
+        }
         let gradients = sliding.gradients.get();
         // To each surface and along all others.
         let ways = shortest(&gradients, surfaces.count());
@@ -160,6 +178,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let stays = sliding.surfaces.count() > 0;
         let left = Self {
             surfaces,
+            along: sliding.along,
             across: ways,
             gradients: Cell::new(gradients),
             ahead: Cell::new(sliding.ahead.get()),
@@ -168,6 +187,40 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         };
         *x = left.put_aside((&at, x), (&asides, stays), memory);
         stays.then_some(sliding)
+    }
+
+    /// Surfaces that do not depend on each other, and those on which the motion is wherever it is on these; if there are such.
+    fn dependent(&self, x: &SVector<T, N>) -> Option<(Surfaces<T>, (Surfaces<T>, Each<T>))> {
+        let gradients = self.gradients.get();
+        let aside = self.aside(x);
+        let mut basis = [SVector::<f64, N>::zeros(); MOST];
+        let (mut own, mut along) = (Surfaces::NONE, Surfaces::NONE);
+        let mut apart = [T::from_f64(0.0); MOST];
+        for (place, surface) in self.surfaces.iter().enumerate() {
+            let gradient = gradients[place].map(seen);
+            let mut rest = gradient / gradient.norm();
+            for known in basis.iter().take(own.count()) {
+                rest -= known * known.dot(&rest);
+            }
+            let left = rest.norm();
+            if left < DEPENDENT {
+                apart[along.count()] = T::from_f64(BESIDE) * aside[place];
+                along.add(*surface);
+            } else {
+                basis[own.count()] = rest / left;
+                own.add(*surface);
+            }
+        }
+        (along.count() > 0).then_some((own, (along, apart)))
+    }
+
+    /// Whether an argument is at its threshold because others are.
+    fn is_along(&self, number: usize, course: &Course<'_, T>) -> bool {
+        let (along, apart) = &self.along;
+        along.of(number).is_some_and(|(place, level)| {
+            let mut values = [course.from[0], course.to[0]].into_iter();
+            values.all(|it| (it - level).magnitude() <= seen(apart[place]))
+        })
     }
 
     /// Leaves a surface, which is one of all.

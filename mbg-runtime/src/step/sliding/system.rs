@@ -164,7 +164,7 @@ where
         let from = (from, [&x, slope], [u, rate]);
         let to = (to, [&ahead, slope_ahead], [u_ahead, rate_ahead]);
         self.system.courses(from, to, memory, |course| {
-            let stays = self.surfaces.of(number).is_some();
+            let stays = self.surfaces.of(number).is_some() || self.is_along(number, &course);
             let thresholds = if stays { &[] } else { course.thresholds };
             each(Course {
                 thresholds,

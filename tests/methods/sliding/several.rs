@@ -1,8 +1,8 @@
 //! Thresholds that are along each other, or are met one after the other.
 
 use mbg_runtime::{
-    Adaptive, Auto, Constant, Dop853, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Radau5,
-    Radau9, Rk4, Rodas5P, System, Tsit5, mbg,
+    Adaptive, Auto, Constant, Dop853, Fixed, Gauss6, ImplicitMidpoint, Radau5, Radau9, Rk4,
+    Rodas5P, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -99,6 +99,30 @@ mbg! {
         output efforts[2]: N*m = [port.effort, starboard.effort];
         output speed: rad/s = shaft.f;
         output slips[2]: rad/s = [port.slip, starboard.slip];
+    }
+
+    /// Brakes on two shafts, and a clutch between them: where two of them hold, the third one does.
+    model Braked {
+        param torque: N*m = 0.5;
+        param speed: rad/s = 0.0;
+        1 a { I motor { inertia: 1.0, initial_flow: speed } Se drive { effort: torque } }
+        1 b { I load { inertia: 1.0 } }
+        near: Brake { capacity: 1.0 } (a);
+        far: Brake { capacity: 1.0 } (b);
+        between: Clutch { capacity: 1.0 } (a, b);
+        output speeds[2]: rad/s = [a.f, b.f];
+        output efforts[3]: N*m = [near.effort, far.effort, between.effort];
+    }
+
+    /// The same on three shafts in a ring.
+    model Ring {
+        1 a { I first { inertia: 1.0 } Se drive { effort: 0.5 } }
+        1 b { I second { inertia: 1.0 } }
+        1 c { I third { inertia: 1.0 } }
+        x: Clutch { capacity: 1.0 } (a, b);
+        y: Clutch { capacity: 1.0 } (b, c);
+        z: Clutch { capacity: 1.0 } (c, a);
+        output speeds[3]: rad/s = [a.f, b.f, c.f];
     }
 
     /// A pump through a check valve into a chamber with a relief valve, and a rod whose seal rubs.
@@ -248,5 +272,28 @@ fn what_rests_beside_a_threshold_stays_there() {
         let (state, _, _) = last(&model, &Constant(SVector::from([1.0])), 500.0, &solver);
         let errors = state - SVector::from([4.0, 3.0, 0.0]);
         assert!(errors.amax() < 1e-6, "{tolerance:e}: {errors}");
+    }
+}
+
+#[test]
+fn what_holds_by_others_holds_too() {
+    for (torque, speed) in [(0.5, 0.0), (1.5, 0.0), (0.0, 1.0), (0.5, 1.0)] {
+        let model = Braked::<f64>::new(BrakedParameters { torque, speed }).unwrap();
+        for (name, _, outputs) in by_all(&model, 4.0, 1e-9, 0.01) {
+            let [a, b, near, far, between] = outputs.into();
+            // All that holds is in balance, each within its capacity.
+            let errors = [a, b, near + between - torque, far - between];
+            assert!(errors.iter().all(|it| it.abs() < 1e-9), "{name}: {outputs}");
+            let efforts = [near, far, between];
+            assert!(
+                efforts.iter().all(|it| it.abs() <= 1.0 + 1e-9),
+                "{name}: {outputs}"
+            );
+        }
+    }
+    let model = Ring::<f64>::new(RingParameters::default()).unwrap();
+    for (name, _, outputs) in by_all(&model, 4.0, 1e-9, 0.01) {
+        let errors = outputs.map(|speed| speed - 0.5 * 4.0 / 3.0);
+        assert!(errors.amax() < 1e-9, "{name}: {outputs}");
     }
 }

@@ -26,6 +26,8 @@ const DEPENDENT: f64 = 1e-11;
 
 /// One for each surface.
 type Each<V> = [V; MOST];
+/// Surfaces on which a motion is by others, and how far from each it may be by rounding.
+type Along<T> = (Surfaces<T>, Each<T>);
 
 /// The laws of a model whose motion stays at thresholds of them: friction that holds, a relay that goes on and off without end.
 ///
@@ -41,8 +43,8 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     /// For how long the input is smooth, about.
     ahead: Cell<f64>,
     pub(super) surfaces: Surfaces<T>,
-    /// Others on which the motion is wherever it is on these, with how far from them it is by rounding.
-    along: (Surfaces<T>, Each<T>),
+    /// Others on which the motion is wherever it is on these.
+    along: Along<T>,
     /// How states change that go across each surface, at a rate of one, and along the others.
     across: Each<SVector<T, N>>,
     /// How the argument of each changes with the states, where the motion has come to.
@@ -190,7 +192,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     }
 
     /// Surfaces that do not depend on each other, and those on which the motion is wherever it is on these; if there are such.
-    fn dependent(&self, x: &SVector<T, N>) -> Option<(Surfaces<T>, (Surfaces<T>, Each<T>))> {
+    fn dependent(&self, x: &SVector<T, N>) -> Option<(Surfaces<T>, Along<T>)> {
         let gradients = self.gradients.get();
         let aside = self.aside(x);
         let mut basis = [SVector::<f64, N>::zeros(); MOST];

@@ -291,6 +291,13 @@ fn what_holds_by_others_holds_too() {
             );
         }
     }
+    let model = Braked::<f32>::new(BrakedParameters {
+        torque: 1.5,
+        speed: 1.0,
+    })
+    .unwrap();
+    let (state, _, _) = last(&model, &(), 4.0, &Fixed::new(Rk4, 0.01));
+    assert!(state.amax() < 1e-6, "{state}");
     let model = Ring::<f64>::new(RingParameters::default()).unwrap();
     for (name, _, outputs) in by_all(&model, 4.0, 1e-9, 0.01) {
         let errors = outputs.map(|speed| speed - 0.5 * 4.0 / 3.0);

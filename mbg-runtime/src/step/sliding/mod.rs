@@ -21,8 +21,8 @@ const BESIDE: f64 = 4.0;
 /// So many times as far beside a surface a law is asked whether it jumps there.
 const WIDE: f64 = 1024.0;
 
-/// Gradients depend on each other if no more than this part of one is beside the others.
-const DEPENDENT: f64 = 1e-11;
+/// Gradients depend on each other if no more of one is beside the others than so many units of its last place.
+const DEPENDENT: f64 = 4096.0;
 
 /// One for each surface.
 type Each<V> = [V; MOST];
@@ -205,7 +205,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 rest -= known * known.dot(&rest);
             }
             let left = rest.norm();
-            if left < DEPENDENT {
+            if left < DEPENDENT * T::EPSILON {
                 apart[along.count()] = T::from_f64(BESIDE) * aside[place];
                 along.add(*surface);
             } else {

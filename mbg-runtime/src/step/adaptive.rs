@@ -193,7 +193,7 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         ((start, mut x), end): (Place<T, N>, T),
-        ends: impl Ends,
+        ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Walked<T, N>, Stopped>
     where

@@ -81,7 +81,7 @@ pub(super) fn walk_over_jumps<R, T, S, I, const N: usize, const M: usize, const 
     runs: &mut R,
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     (here, end): (Place<T, N>, T),
-    ends: impl Ends,
+    ends: impl Ends<T, S, I, N, M, P>,
     observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
 ) -> Result<Walked<T, N>, Stopped>
 where

@@ -53,7 +53,7 @@ impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, 
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (here, end): (Place<T, N>, T),
-        ends: impl Ends,
+        ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Walked<T, N>, Stopped>
     where

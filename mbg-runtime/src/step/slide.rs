@@ -24,134 +24,81 @@ pub(super) enum Walked<T, const N: usize> {
     Stays(Place<T, N>, Surfaces<T>),
 }
 
-/// At which thresholds a walk ends.
-pub(super) trait Ends: Copy {
+/// At which thresholds a walk ends: at none unless it is told.
+pub(super) trait Ends<T, S, I: ?Sized, const N: usize, const M: usize, const P: usize>:
+    Copy
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M>,
+{
     /// Of those between two points next to each other.
-    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+    fn between(
         self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        from: &Point<T, N>,
-        to: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized;
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        _points: [&Point<T, N>; 2],
+    ) -> Option<Surfaces<T>> {
+        None
+    }
 
     /// Of those at which a point is, as far as numbers tell.
-    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+    fn at(
         self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        here: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized;
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        _here: &Point<T, N>,
+    ) -> Option<Surfaces<T>> {
+        None
+    }
 
     /// Of those at which a point is, where none that was come near to is ahead any more.
-    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
+    fn behind(
         self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        here: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized;
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        _here: &Point<T, N>,
+    ) -> Option<Surfaces<T>> {
+        None
+    }
 }
 
 /// At none.
 #[derive(Clone, Copy)]
 pub(super) struct Nowhere;
 
-impl Ends for Nowhere {
-    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
-        self,
-        _: &mut Problem<'_, T, S, I, N, M, P>,
-        _: &Point<T, N>,
-        _: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        None
-    }
-
-    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
-        self,
-        _: &mut Problem<'_, T, S, I, N, M, P>,
-        _: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        None
-    }
-
-    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
-        self,
-        _: &mut Problem<'_, T, S, I, N, M, P>,
-        _: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        None
-    }
+impl<T, S, I, const N: usize, const M: usize, const P: usize> Ends<T, S, I, N, M, P> for Nowhere
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
 }
 
 /// At those at which the motion stays.
 #[derive(Clone, Copy)]
 pub(super) struct WhereItStays;
 
-impl Ends for WhereItStays {
-    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+impl<T, S, I, const N: usize, const M: usize, const P: usize> Ends<T, S, I, N, M, P>
+    for WhereItStays
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    fn between(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
-        from: &Point<T, N>,
-        to: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
+        [from, to]: [&Point<T, N>; 2],
+    ) -> Option<Surfaces<T>> {
         let passed = problem.met_between(from, to);
         passed.filter(|passed| problem.stays(to, passed))
     }
 
-    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
+    fn at(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         here: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
+    ) -> Option<Surfaces<T>> {
         let met = problem.next_to(here);
         met.filter(|met| problem.stays(here, met))
-    }
-
-    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
-        self,
-        _: &mut Problem<'_, T, S, I, N, M, P>,
-        _: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        None
     }
 }
 
@@ -160,44 +107,26 @@ impl Ends for WhereItStays {
 #[derive(Clone, Copy)]
 pub(super) struct WhereItMeetsOne;
 
-impl Ends for WhereItMeetsOne {
-    fn between<T, S, I, const N: usize, const M: usize, const P: usize>(
+impl<T, S, I, const N: usize, const M: usize, const P: usize> Ends<T, S, I, N, M, P>
+    for WhereItMeetsOne
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    fn between(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
-        from: &Point<T, N>,
-        to: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
+        [from, to]: [&Point<T, N>; 2],
+    ) -> Option<Surfaces<T>> {
         problem.between(from, to)
     }
 
-    fn at<T, S, I, const N: usize, const M: usize, const P: usize>(
-        self,
-        _: &mut Problem<'_, T, S, I, N, M, P>,
-        _: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        None
-    }
-
-    fn behind<T, S, I, const N: usize, const M: usize, const P: usize>(
+    fn behind(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         here: &Point<T, N>,
-    ) -> Option<Surfaces<T>>
-    where
-        T: Real,
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
+    ) -> Option<Surfaces<T>> {
         problem.next_to(here)
     }
 }
@@ -217,7 +146,7 @@ where
         &mut self,
         here: &Point<T, N>,
         (rest, length, end): (T, f64, T),
-        ends: impl Ends,
+        ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Beyond<T, N>, Stopped> {
         let way = ((here.time, here.state), (rest, &here.slope));
@@ -230,7 +159,7 @@ where
         }
         let next = self.point((time, state));
         if S::HAS_COURSES
-            && let Some(passed) = ends.between(self, here, &next)
+            && let Some(passed) = ends.between(self, [here, &next])
         {
             return Ok(ControlFlow::Break(Walked::Stays((time, state), passed)));
         }
@@ -259,7 +188,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         place_and_end: (Place<T, N>, T),
-        ends: impl Ends,
+        ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Walked<T, N>, Stopped>
     where

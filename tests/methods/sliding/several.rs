@@ -9,46 +9,44 @@ use nalgebra::SVector;
 use super::last;
 
 mbg! {
-    /// A box slides down a slope on two feet, and stops.
-    model Feet {
-        param slope: rad = 0.1;
-        gravity [9.81 * sin(slope), -9.81 * cos(slope)];
-        1 case[3] coordinate, initial_flow: [0.0, 2.0, 0.0]; 1 left[3]; 1 right[3];
-        body: PlanarBody { mass: 3.0, inertia: 0.05 } (case);
+    /// A box on two feet on a slope; at rest they hold, or creep.
+    component Chest(port 1 case[3]) {
+        param at_rest: creeps | holds = creeps;
         integral angle: rad = case.f.x;
         integral x: m = case.f.y;
         integral y: m = case.f.z, initial: 0.1;
+        let rubs: N = rear.rubbing.contact.e + fore.rubbing.contact.e;
+
+        1 left[3]; 1 right[3];
+        body: PlanarBody { mass: 3.0, inertia: 0.05 } (case);
         back: PlanarOffset { x: -0.2, y: -0.1, angle_a: angle, position_a: [x, y] } (case, left);
         front: PlanarOffset { x: 0.2, y: -0.1, angle_a: angle, position_a: [x, y] } (case, right);
         rear: PlanarContact {
-            stiffness: 1e5, dissipation: 0.5, friction: 0.3, at_rest: holds, position_at: back.position_b
+            stiffness: 1e5, dissipation: 0.5, friction: 0.3, at_rest: at_rest, friction_speed: 1e-6,
+            position_at: back.position_b
         } (left);
         fore: PlanarContact {
-            stiffness: 1e5, dissipation: 0.5, friction: 0.3, at_rest: holds, position_at: front.position_b
+            stiffness: 1e5, dissipation: 0.5, friction: 0.3, at_rest: at_rest, friction_speed: 1e-6,
+            position_at: front.position_b
         } (right);
-        output place: m = x;
-        output rubs: N = rear.rubbing.contact.e + fore.rubbing.contact.e;
+    }
+
+    /// It slides down, and stops.
+    model Feet {
+        gravity [9.81 * sin(0.1), -9.81 * cos(0.1)];
+        1 case[3] coordinate, initial_flow: [0.0, 2.0, 0.0];
+        chest: Chest { at_rest: holds } (case);
+        output place: m = chest.x;
+        output rubs: N = chest.rubs;
     }
 
     /// The same, whose feet creep.
     model Creeping {
-        param slope: rad = 0.1;
-        gravity [9.81 * sin(slope), -9.81 * cos(slope)];
-        1 case[3] coordinate, initial_flow: [0.0, 2.0, 0.0]; 1 left[3]; 1 right[3];
-        body: PlanarBody { mass: 3.0, inertia: 0.05 } (case);
-        integral angle: rad = case.f.x;
-        integral x: m = case.f.y;
-        integral y: m = case.f.z, initial: 0.1;
-        back: PlanarOffset { x: -0.2, y: -0.1, angle_a: angle, position_a: [x, y] } (case, left);
-        front: PlanarOffset { x: 0.2, y: -0.1, angle_a: angle, position_a: [x, y] } (case, right);
-        rear: PlanarContact {
-            stiffness: 1e5, dissipation: 0.5, friction: 0.3, friction_speed: 1e-6, position_at: back.position_b
-        } (left);
-        fore: PlanarContact {
-            stiffness: 1e5, dissipation: 0.5, friction: 0.3, friction_speed: 1e-6, position_at: front.position_b
-        } (right);
-        output place: m = x;
-        output rubs: N = rear.rubbing.contact.e + fore.rubbing.contact.e;
+        gravity [9.81 * sin(0.1), -9.81 * cos(0.1)];
+        1 case[3] coordinate, initial_flow: [0.0, 2.0, 0.0];
+        chest: Chest (case);
+        output place: m = chest.x;
+        output rubs: N = chest.rubs;
     }
 
     /// A ball slides on an alley until it rolls.
@@ -68,7 +66,11 @@ mbg! {
     /// A body pushes another one until a force takes that away, and catches up.
     model Pusher {
         1 a { I behind { inertia: 1.0, initial_flow: 1.0 } Se drive { effort: 3.0 } }
-        1 c { I ahead { inertia: 1.0, initial_flow: 1.0 } Se pull { effort: if t < 1.0037 { 0.0 } else { 8.0 } } R air { resistance: 1.0 } }
+        1 c {
+            I ahead { inertia: 1.0, initial_flow: 1.0 }
+            Se pull { effort: if t < 1.0037 { 0.0 } else { 8.0 } }
+            R air { resistance: 1.0 }
+        }
         wheel: Freewheel { capacity: 50.0 } (a, c);
         output speeds[2]: m/s = [a.f, c.f];
     }

@@ -254,7 +254,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, known) else {
                 break;
             };
-            let asked = core::mem::replace(&mut surfaces, sliding.surfaces);
+            let asked = core::mem::replace(&mut surfaces, sliding.all());
             let mut along = problem.of(&sliding);
             let (mut left, mut undone) = (None, 0);
             let walked = self.walk(&mut along, (here, end), WhereItMeetsOne, &mut |step| {

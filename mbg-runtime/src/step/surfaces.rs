@@ -166,7 +166,7 @@ pub(super) fn is_later<T: Real>(time: T, later: T) -> bool {
     seen(later - time) > PLACES * T::EPSILON * later.magnitude()
 }
 
-fn is_between<T: Real>(course: &Course<'_, T>, level: T) -> bool {
+pub(super) fn is_between<T: Real>(course: &Course<'_, T>, level: T) -> bool {
     let [from, to] = [course.from, course.to].map(|it| seen(it[0] - level));
     from * to <= 0.0 && from != to
 }

@@ -4,14 +4,14 @@ use nalgebra::{SMatrix, SVector};
 
 use super::super::seen;
 use super::super::surfaces::MOST;
+use super::choice::{Choice, chosen};
+use super::line::Line;
 use super::{Each, Moment, Sliding};
 use crate::solve::Regular;
 use crate::{Real, System};
 
 /// So many surfaces are few.
 const FEW: usize = 3;
-/// How far beside a threshold laws are asked, in units of the rounding of its argument.
-const ASIDE: f64 = 64.0;
 /// What a law that bends differs by on both sides grows with their distance, by this part at least.
 const BENT: f64 = 0.125;
 /// A sum is zero but for rounding within so many units of the last place of its terms.
@@ -20,19 +20,21 @@ const PLACES: f64 = 8.0;
 const JUMP: f64 = 1e-7;
 const JUMP_PLACES: f64 = 64.0;
 
-/// What a model says on the sides of surfaces.
+/// What a model says on the sides of surfaces, along a line that crosses each.
 pub(super) struct Sides<T, const N: usize> {
-    /// A state below all surfaces, and for each one that is above it alone.
-    states: [SVector<T, N>; 1 + MOST],
-    /// The derivative below all, and how much more it is above each.
+    line: Line<T, N>,
+    /// The derivative before all, and how much more it is behind each.
     base: SVector<T, N>,
     pub(super) jumps: Each<SVector<T, N>>,
-    /// How much faster the argument of each surface goes above each.
+    /// How fast the argument of each goes before all, and how much faster behind each.
+    first: Each<T>,
+    faster: SMatrix<T, MOST, MOST>,
+    /// The same of those that are free.
     pub(super) rates: Factors<T>,
-    /// Whether its own argument goes slower above each, and by how much.
+    /// Whether its own argument goes slower ahead of each, and by how much.
     pub(super) leads_back: Each<bool>,
     slower: Each<f64>,
-    /// Which part of the mean is above each.
+    /// Which part of the mean is behind each.
     pub(super) parts: Each<T>,
 }
 
@@ -59,11 +61,13 @@ impl<T: Real, const N: usize> Sides<T, N> {
         count: usize,
         mut of: impl FnMut(&SVector<T, N>) -> SMatrix<T, R, C>,
     ) -> SMatrix<T, R, C> {
-        let [below, above @ ..] = &self.states;
-        let base = of(below);
-        let mut mean = base;
-        for (state, part) in above.iter().zip(&self.parts).take(count) {
-            mean += (of(state) - base).map(|jump| *part * jump);
+        let [start, behind @ ..] = &self.line.states;
+        let mut before = of(start);
+        let mut mean = before;
+        for (state, place) in behind.iter().zip(&self.line.order).take(count) {
+            let there = of(state);
+            mean += (there - before).map(|jump| self.parts[*place] * jump);
+            before = there;
         }
         mean
     }
@@ -73,13 +77,51 @@ impl<T: Real, const N: usize> Sides<T, N> {
         self.slower[place] > BENT * factor * nearer.slower[place]
     }
 
-    /// How far beyond all means of both sides the motion along a surface would be.
-    pub(super) fn beyond(&self, place: usize) -> f64 {
-        let part = seen(self.parts[place]);
-        match part.is_nan() {
-            true => f64::INFINITY,
-            false => (-part).max(part - 1.0).max(0.0),
+    /// How far the mean is from leaving a surface, as a part of what the laws differ by there.
+    pub(super) fn held(&self, place: usize) -> T {
+        let part = self.parts[place];
+        part.min(T::from_f64(1.0) - part)
+    }
+
+    /// How the motion is at each of so many surfaces, where some are not open.
+    pub(super) fn chosen(&self, known: &[Option<Choice>]) -> Option<Each<Choice>> {
+        let forward = &self.line.forward;
+        let first = core::array::from_fn(|row| forward[row] * seen(self.first[row]));
+        let faster = SMatrix::from_fn(|row, column| forward[row] * seen(self.faster[(row, column)]));
+        chosen((&first, &faster), known)
+    }
+
+    /// The part of the mean that is above a surface.
+    pub(super) fn above(&self, place: usize, choice: Choice) -> f64 {
+        let part = choice.part();
+        match self.line.forward[place] > 0.0 {
+            true => part,
+            false => 1.0 - part,
         }
+    }
+
+    /// The side of a surface on which what goes so is, below or above.
+    pub(super) fn side(&self, place: usize, choice: Choice) -> f64 {
+        match choice {
+            Choice::Stays(_) => 0.0,
+            Choice::Before => -self.line.forward[place],
+            Choice::Ahead => self.line.forward[place],
+        }
+    }
+
+    /// What goes to a side is as if it did by this choice.
+    pub(super) fn to_side(&self, place: usize, side: f64) -> Choice {
+        match side * self.line.forward[place] > 0.0 {
+            true => Choice::Ahead,
+            false => Choice::Before,
+        }
+    }
+
+    /// How fast the argument of a surface goes in the mean of these.
+    pub(super) fn rate(&self, place: usize, choices: &[Choice]) -> f64 {
+        let parts = choices.iter().enumerate();
+        let faster = parts.map(|(other, choice)| seen(self.faster[(place, other)]) * choice.part());
+        seen(self.first[place]) + faster.sum::<f64>()
     }
 
     /// How states change that go across each surface alone.
@@ -100,7 +142,7 @@ impl<T: Real, const N: usize> Sides<T, N> {
 
 impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     /// The arguments of all surfaces, beyond these, and how fast they change, at two states that change so.
-    fn told<const M: usize, const P: usize>(
+    pub(super) fn told<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,
         places: [(&SVector<T, N>, &SVector<T, N>); 2],
@@ -145,70 +187,6 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         self.gradients.set(gradients);
     }
 
-    /// How far from each surface its argument is surely beyond it.
-    pub(super) fn aside(&self, x: &SVector<T, N>) -> Each<T> {
-        let mut aside = [T::from_f64(T::EPSILON * T::EPSILON); MOST];
-        let gradients = self.gradients.get();
-        for ((aside, surface), gradient) in
-            aside.iter_mut().zip(self.surfaces.iter()).zip(&gradients)
-        {
-            let terms = gradient
-                .iter()
-                .zip(x)
-                .map(|(by, state)| (*by * *state).magnitude());
-            let size = terms.fold(surface.level.magnitude(), |size, term| size + term);
-            *aside += T::from_f64(ASIDE * T::EPSILON * size);
-        }
-        aside
-    }
-
-    /// How arguments go across surfaces, with their distances from these.
-    pub(super) fn distances<const M: usize, const P: usize>(
-        &self,
-        at: &Moment<T, M>,
-        x: &SVector<T, N>,
-        memory: &S::Memory,
-    ) -> (Each<T>, Factors<T>)
-    where
-        S: System<T, N, M, P>,
-    {
-        let rest = SVector::from_element(T::from_f64(0.0));
-        let mut distances = [T::from_f64(0.0); MOST];
-        let mut rates = SMatrix::from_element(T::from_f64(0.0));
-        let count = self.surfaces.count();
-        for (own, across) in self.across.iter().take(count).enumerate() {
-            let [[_, at_rest], [there, faster]] = self.told(at, [(x, &rest), (x, across)], memory);
-            distances = there;
-            for other in 0..count {
-                rates[(other, own)] = faster[other] - at_rest[other];
-            }
-        }
-        (distances, Factors::of(&rates, count))
-    }
-
-    /// A state moved across the surfaces.
-    pub(super) fn moved(&self, x: &SVector<T, N>, ways: Each<T>) -> SVector<T, N> {
-        let mut moved = *x;
-        for (across, way) in self.across.iter().zip(&ways) {
-            moved += across.map(|across| *way * across);
-        }
-        moved
-    }
-
-    /// The state on the surfaces next to one.
-    pub(super) fn onto<const M: usize, const P: usize>(
-        &self,
-        at: &Moment<T, M>,
-        x: &SVector<T, N>,
-        memory: &S::Memory,
-    ) -> SVector<T, N>
-    where
-        S: System<T, N, M, P>,
-    {
-        let (distances, rates) = self.distances(at, x, memory);
-        self.moved(x, rates.solve(distances.map(|it| -it)))
-    }
-
     /// What the model says on the sides of the surfaces, so many times as far from these as need be.
     // Of all that asks for it there is one copy: it is much code, and none that a run waits for.
     #[inline(never)]
@@ -221,51 +199,56 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     where
         S: System<T, N, M, P>,
     {
-        let [zero, two] = [0.0, 2.0].map(T::from_f64);
-        let count = self.surfaces.count();
-        let (distances, moves) = self.distances(at, x, memory);
-        let aside = self.aside(x).map(|aside| T::from_f64(factor) * aside);
-        let mut states = [*x; 1 + MOST];
-        let down = core::array::from_fn(|place| match place < count {
-            true => -(aside[place] + distances[place]),
-            false => zero,
-        });
-        states[0] = self.moved(x, moves.solve(down));
-        let base = (self.system).derivative(at.time, &states[0], &at.input, memory);
+        let zero = T::from_f64(0.0);
+        let (count, free) = (self.surfaces.count(), self.free);
+        let line = self.line(at, (x, factor), memory);
+        let base = (self.system).derivative(at.time, &line.states[0], &at.input, memory);
+        let mut slope = base;
         let mut jumps = [SVector::from_element(zero); MOST];
-        let mut rates = SMatrix::from_element(zero);
-        let mut right = [zero; MOST];
+        let mut first = [zero; MOST];
+        let mut faster = SMatrix::from_element(zero);
         let (mut leads_back, mut slower) = ([false; MOST], [0.0; MOST]);
         let jump = JUMP.max(JUMP_PLACES * T::EPSILON);
         let gradients = self.gradients.get();
-        for own in 0..count {
-            let mut up = [zero; MOST];
-            up[own] = two * aside[own];
-            let above = self.moved(&states[0], moves.solve(up));
-            let slope = (self.system).derivative(at.time, &above, &at.input, memory);
-            let [[_, below], [_, faster]] =
-                self.told(at, [(&states[0], &base), (&above, &slope)], memory);
-            jumps[own] = slope - base;
-            for other in 0..count {
-                rates[(other, own)] = faster[other] - below[other];
-                right[other] = -below[other];
+        for (number, own) in line.order.iter().copied().enumerate().take(count) {
+            let [before, behind] = [&line.states[number], &line.states[1 + number]];
+            let next = (self.system).derivative(at.time, behind, &at.input, memory);
+            let [[_, rates], [_, rates_behind]] =
+                self.told(at, [(before, &slope), (behind, &next)], memory);
+            if number == 0 {
+                first = rates;
             }
-            let terms = gradients[own].iter().zip(base.iter().zip(&slope));
+            jumps[own] = next - slope;
+            for other in 0..count {
+                faster[(other, own)] = rates_behind[other] - rates[other];
+            }
+            let terms = gradients[own].iter().zip(slope.iter().zip(&next));
             let size = terms.fold(0.0, |size, (by, (a, b))| {
                 size + by.magnitude() * (a.magnitude() + b.magnitude())
             });
-            slower[own] = -seen(rates[(own, own)]);
+            slower[own] = -line.forward[own] * seen(faster[(own, own)]);
             leads_back[own] = slower[own] > jump * size;
-            states[1 + own] = above;
+            slope = next;
         }
         self.evaluations
             .set(self.evaluations.get() + 1 + count as u64);
-        let rates = Factors::of(&rates, count);
-        let parts = rates.solve(right);
+        let rates = Factors::of(&faster, free);
+        let mut shares = self.shares;
+        for place in (free..count).filter(|place| line.forward[*place] < 0.0) {
+            shares[place] = T::from_f64(1.0) - shares[place];
+        }
+        let right = core::array::from_fn(|row| {
+            let bound = (free..count).map(|place| shares[place] * faster[(row, place)]);
+            bound.fold(-first[row], |rate, by| rate - by)
+        });
+        let mut parts = rates.solve(right);
+        parts[free..].copy_from_slice(&shares[free..]);
         Sides {
-            states,
+            line,
             base,
             jumps,
+            first,
+            faster,
             rates,
             leads_back,
             slower,
@@ -306,7 +289,7 @@ pub(super) enum Factors<T> {
 
 impl<T: Real> Factors<T> {
     /// Of the first rows and columns.
-    fn of(matrix: &SMatrix<T, MOST, MOST>, count: usize) -> Self {
+    pub(super) fn of(matrix: &SMatrix<T, MOST, MOST>, count: usize) -> Self {
         match count {
             1 => Self::One(match matrix[(0, 0)].magnitude() {
                 // Where nothing jumps any more there is no mean.

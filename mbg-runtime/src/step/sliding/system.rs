@@ -64,7 +64,7 @@ where
             self.system.jacobian_state(t, x, u, memory)
         });
         // The model is asked on the surfaces, wherever beside them the state is.
-        for (across, gradient) in self.across.iter().zip(&self.gradients.get()) {
+        for (across, gradient) in self.across.iter().zip(&self.gradients.get()).take(self.free) {
             let zero = SVector::from_element(T::from_f64(0.0));
             let columns = jacobian.column_iter().zip(across);
             let change = columns.fold(zero, |sum: SVector<T, N>, (column, way)| {
@@ -164,7 +164,7 @@ where
         let from = (from, [&x, slope], [u, rate]);
         let to = (to, [&ahead, slope_ahead], [u_ahead, rate_ahead]);
         self.system.courses(from, to, memory, |course| {
-            let stays = self.surfaces.of(number).is_some() || self.is_along(number, &course);
+            let stays = self.surfaces.of(number).is_some() || self.is_twin(number, &course);
             let thresholds = if stays { &[] } else { course.thresholds };
             each(Course {
                 thresholds,
@@ -223,7 +223,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         for mut column in jacobian.column_iter_mut() {
             let zero = T::from_f64(0.0);
             let mut away = [zero; MOST];
-            for (away, gradient) in away.iter_mut().zip(&gradients).take(count) {
+            for (away, gradient) in away.iter_mut().zip(&gradients).take(self.free) {
                 let pairs = gradient.iter().zip(column.iter());
                 *away = pairs.fold(zero, |sum, (by, change)| by.multiply_add(*change, sum));
             }

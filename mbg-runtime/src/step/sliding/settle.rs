@@ -1,0 +1,364 @@
+//! Which laws hold next to thresholds.
+
+use core::cell::Cell;
+
+use nalgebra::SVector;
+
+use super::super::seen;
+use super::super::surfaces::{MOST, Surface, Surfaces, is_between};
+use super::choice::Choice;
+use super::sides::{Sides, shortest};
+use super::{Each, Moment, SHORT, Sliding};
+use crate::{Input, Real, System};
+
+/// What does not stay is put so many times as far beside a surface as those that do are asked.
+const BESIDE: f64 = 4.0;
+/// So many times as far beside a surface a law is asked whether it jumps there.
+const WIDE: f64 = 1024.0;
+/// Gradients depend on each other if no more of one is beside the others than so many units of its last place.
+const DEPENDENT: f64 = 4096.0;
+
+/// How a motion goes on at each of some surfaces.
+#[derive(Clone, Copy)]
+enum Aside {
+    /// It stays on it.
+    On,
+    /// Nothing leads back to it: it goes on where it is.
+    Passed,
+    /// To this side, below or above, at this rate.
+    Left(f64, f64),
+}
+
+impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
+    /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
+    /// beside the others, on the side to which it goes. None where it leaves all. Counts evaluations of the model.
+    pub(in super::super) fn settled<const M: usize, const P: usize>(
+        (system, input): (&'a S, &'a I),
+        (since, inside, whole): (T, (T, T), f64),
+        (t, x): (T, &mut SVector<T, N>),
+        surfaces: Surfaces<T>,
+        (memory, evaluations): (&mut S::Memory, &mut u64),
+    ) -> Option<Self>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let zero = T::from_f64(0.0);
+        let none = [SVector::from_element(zero); MOST];
+        let mut sliding = Self {
+            system,
+            input,
+            since,
+            inside,
+            ahead: Cell::new(whole * SHORT),
+            surfaces,
+            free: 0,
+            shares: [zero; MOST],
+            twins: (Surfaces::NONE, [zero; MOST]),
+            across: none,
+            gradients: Cell::new(none),
+            evaluations: Cell::new(0),
+        };
+        let at = sliding.on_piece(t);
+        sliding.arrange(surfaces, (&at, x), memory);
+        sliding.take_in(&at, x, memory);
+        // What is left is put aside, and laws there are asked again: they need not be sums of what each makes different.
+        while sliding.surfaces.count() > 0 {
+            let sides = sliding.sides(&at, (x, 1.0), memory);
+            let wide = sliding.sides(&at, (x, WIDE), memory);
+            *evaluations += sliding.evaluations.take();
+            let (choices, asides) = sliding.choices((&sides, &wide), (&at, x), memory)?;
+            let count = sliding.surfaces.count();
+            let stays = |place: &usize| matches!(asides[*place], Aside::On);
+            if (0..count).all(|place| stays(&place)) {
+                // As a motion comes there: what it would be late by changes its slopes along this way.
+                let above = |place: usize| sides.above(place, choices[place]);
+                sliding.free_first(&core::array::from_fn(above), (&at, x), memory);
+                let sides = sliding.sides(&at, (x, 1.0), memory);
+                *evaluations += sliding.evaluations.take();
+                sliding.across = sides.across(sliding.free);
+                *x = sliding.onto(&at, x, memory);
+                return Some(sliding);
+            }
+            let on = sliding.only(stays);
+            *x = sliding.put_aside((&at, x), &asides, memory);
+            sliding.arrange(on, (&at, x), memory);
+        }
+        None
+    }
+
+    /// Takes in other thresholds that are as near: laws jump there, too, where these are asked.
+    fn take_in<const M: usize, const P: usize>(
+        &mut self,
+        at: &Moment<T, M>,
+        x: &SVector<T, N>,
+        memory: &S::Memory,
+    ) where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        while self.free > 0 {
+            let all = self.all();
+            let line = self.line(at, (x, BESIDE), memory);
+            let rest = SVector::from_element(T::from_f64(0.0));
+            let ends = [&line.states[0], &line.states[self.surfaces.count()]];
+            let [from, to] = ends.map(|x| (at.time, [x, &rest], [&at.input, &at.rate]));
+            let (mut number, mut met) = (0, all);
+            self.system.courses(from, to, &mut { *memory }, |course| {
+                for threshold in course.thresholds {
+                    let level = course.level(*threshold);
+                    if course.is_choice && is_between(&course, level) {
+                        met.add(Surface {
+                            course: number,
+                            level,
+                        });
+                    }
+                }
+                number += 1;
+            });
+            if met.count() == all.count() {
+                return;
+            }
+            self.arrange(met, (at, x), memory);
+        }
+    }
+
+    /// Puts surfaces in the order in which they are minded: those that are free first, the first of them first.
+    fn arrange<const M: usize, const P: usize>(
+        &mut self,
+        surfaces: Surfaces<T>,
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        memory: &S::Memory,
+    ) where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        self.surfaces = surfaces;
+        self.look(at, x, memory);
+        let gradients = self.gradients.get();
+        let aside = self.aside(x);
+        let (mut span, mut units) = (Span::of_nothing(), [SVector::zeros(); MOST]);
+        let (mut free, mut bound, mut twins) = (Surfaces::NONE, Surfaces::NONE, Surfaces::NONE);
+        let mut apart = [T::from_f64(0.0); MOST];
+        for (place, surface) in surfaces.iter().enumerate() {
+            let Some(unit) = unit(&gradients[place]) else {
+                // No state leads there.
+                continue;
+            };
+            let is_twin = |other: &SVector<f64, N>| {
+                (other - unit).norm().min((other + unit).norm()) < DEPENDENT * T::EPSILON
+            };
+            if units[..place].iter().any(is_twin) {
+                apart[twins.count()] = T::from_f64(BESIDE) * aside[place];
+                twins.add(*surface);
+            } else if span.add::<T>(&unit) {
+                free.add(*surface);
+            } else {
+                bound.add(*surface);
+            }
+            units[place] = unit;
+        }
+        self.free = free.count();
+        self.twins = (twins, apart);
+        self.surfaces = free.with(&bound);
+        self.look(at, x, memory);
+        self.across = shortest(&self.gradients.get(), self.free);
+    }
+
+    /// How the motion is at each surface, and how it goes on there.
+    fn choices<const M: usize, const P: usize>(
+        &self,
+        (sides, wide): (&Sides<T, N>, &Sides<T, N>),
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        memory: &S::Memory,
+    ) -> Option<(Each<Choice>, Each<Aside>)>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let count = self.surfaces.count();
+        let distances = self.distances(at, x, memory).0;
+        // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it. At rest all
+        // that it makes different is as small as how far beside it is.
+        let mut known = [None; MOST];
+        for place in 0..count {
+            let jumps = sides.leads_back[place] && !wide.bends(sides, place, WIDE);
+            known[place] = (!jumps).then(|| sides.to_side(place, seen(distances[place])));
+        }
+        let choices = sides.chosen(&known[..count])?;
+        let units = self.gradients.get().map(|gradient| unit(&gradient));
+        let mut span = Span::of_nothing();
+        for (unit, choice) in units.iter().zip(&choices).take(count) {
+            if let (Some(unit), Choice::Stays(_)) = (unit, choice) {
+                span.add::<T>(unit);
+            }
+        }
+        let asides = core::array::from_fn(|place| {
+            let stays = matches!(choices[place], Choice::Stays(_))
+                || units[place].is_some_and(|unit| span.has::<T>(&unit));
+            match known.get(place) {
+                Some(Some(_)) => Aside::Passed,
+                _ if stays => Aside::On,
+                _ => {
+                    let side = sides.side(place, choices[place]);
+                    Aside::Left(side, sides.rate(place, &choices[..count]))
+                }
+            }
+        });
+        Some((choices, asides))
+    }
+
+    /// With those alone at which the motion stays.
+    fn only(&self, stays: impl Fn(&usize) -> bool) -> Surfaces<T> {
+        let mut only = self.twins.0;
+        let staying = self.surfaces.iter().enumerate();
+        for (_, surface) in staying.filter(|(place, _)| stays(place)) {
+            only.add(*surface);
+        }
+        only
+    }
+
+    /// The same order but that those are free whose parts are farthest from having been used up.
+    fn free_first<const M: usize, const P: usize>(
+        &mut self,
+        above: &Each<f64>,
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        memory: &S::Memory,
+    ) where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let before = self.surfaces;
+        let count = before.count();
+        if count == self.free {
+            return;
+        }
+        let mut order: [usize; MOST] = core::array::from_fn(|place| place);
+        let left = |place: usize| above[place].min(1.0 - above[place]);
+        order[..count].sort_unstable_by(|a, b| left(*b).total_cmp(&left(*a)));
+        let mut sorted = Surfaces::NONE;
+        for place in &order[..count] {
+            if let Some(surface) = before.iter().nth(*place) {
+                sorted.add(*surface);
+            }
+        }
+        self.arrange(sorted.with(&self.twins.0), (at, x), memory);
+        for (share, surface) in self.shares.iter_mut().zip(self.surfaces.iter()) {
+            if let Some((place, _)) = before.of(surface.course) {
+                *share = T::from_f64(above[place]);
+            }
+        }
+    }
+
+    /// The state surely beside what the motion does not stay at, if it is not farther away: that it has yet to come to. What is
+    /// passed is in the way where the motion stays at another one, as laws are asked a little off it.
+    fn put_aside<const M: usize, const P: usize>(
+        &mut self,
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        asides: &Each<Aside>,
+        memory: &S::Memory,
+    ) -> SVector<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        // Those at which it stays are to be free of the others.
+        let before = self.surfaces;
+        let is_on = |place: &usize| matches!(asides[*place], Aside::On);
+        let others = |place: &usize| !is_on(place);
+        self.arrange(self.only(is_on).with(&self.only(others)), (at, x), memory);
+        let mut sorted = [Aside::On; MOST];
+        for (aside, surface) in sorted.iter_mut().zip(self.surfaces.iter()) {
+            if let Some((place, _)) = before.of(surface.course) {
+                *aside = asides[place];
+            }
+        }
+        let (distances, _) = self.distances(at, x, memory);
+        let least = self.aside(x).map(|aside| T::from_f64(BESIDE) * aside);
+        let stays = sorted.iter().take(self.free).any(|aside| matches!(aside, Aside::On));
+        let side = |place: usize| match sorted[place] {
+            Aside::Left(side, _) => side,
+            Aside::Passed if stays && seen(distances[place]) != 0.0 => seen(distances[place]).signum(),
+            _ => 0.0,
+        };
+        let ways = core::array::from_fn(|place| {
+            let side = T::from_f64(side(place));
+            let beyond = side * distances[place];
+            match seen(beyond).abs() < seen(least[place]) {
+                true => side * (least[place] - beyond),
+                false => T::from_f64(0.0),
+            }
+        });
+        let mut moved = self.moved(x, ways);
+        if self.free < self.surfaces.count() {
+            let rest = SVector::from_element(T::from_f64(0.0));
+            let [[there, _], _] = self.told(at, [(&moved, &rest); 2], memory);
+            let is_there = |place: usize| match sorted[place] {
+                Aside::Left(side, _) => 2.0 * side * seen(there[place]) > seen(least[place]),
+                _ => true,
+            };
+            if !(self.free..self.surfaces.count()).all(is_there) {
+                // As far as the motion itself leads.
+                let times = (0..self.surfaces.count()).map(|place| match sorted[place] {
+                    Aside::Left(_, rate) if rate != 0.0 => seen(least[place]) / rate.abs(),
+                    _ => 0.0,
+                });
+                let time = times.fold(0.0, f64::max);
+                let ways = core::array::from_fn(|place| match sorted[place] {
+                    Aside::Left(_, rate) => T::from_f64(time * rate) - distances[place],
+                    _ => ways[place],
+                });
+                moved = self.moved(x, ways);
+            }
+        }
+        match moved.iter().all(|it| it.magnitude().is_finite()) {
+            true => moved,
+            false => *x,
+        }
+    }
+}
+
+/// What gradients make together.
+struct Span<const N: usize> {
+    basis: [SVector<f64, N>; MOST],
+    count: usize,
+}
+
+impl<const N: usize> Span<N> {
+    fn of_nothing() -> Self {
+        Self {
+            basis: [SVector::zeros(); MOST],
+            count: 0,
+        }
+    }
+
+    /// What is beside it of a unit.
+    fn beside(&self, unit: &SVector<f64, N>) -> SVector<f64, N> {
+        let known = self.basis.iter().take(self.count);
+        known.fold(*unit, |rest, known| rest - known * known.dot(&rest))
+    }
+
+    fn has<T: Real>(&self, unit: &SVector<f64, N>) -> bool {
+        self.beside(unit).norm() < DEPENDENT * T::EPSILON
+    }
+
+    /// Adds a unit; whether it was beside it.
+    fn add<T: Real>(&mut self, unit: &SVector<f64, N>) -> bool {
+        if self.has::<T>(unit) {
+            return false;
+        }
+        let rest = self.beside(unit);
+        if let Some(next) = self.basis.get_mut(self.count) {
+            *next = rest / rest.norm();
+            self.count += 1;
+        }
+        true
+    }
+}
+
+/// The direction of a gradient, if it has one.
+fn unit<T: Real, const N: usize>(gradient: &SVector<T, N>) -> Option<SVector<f64, N>> {
+    let gradient = gradient.map(seen);
+    let size = gradient.norm();
+    (size > 0.0 && size.is_finite()).then(|| gradient / size)
+}

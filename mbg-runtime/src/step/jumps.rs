@@ -173,7 +173,7 @@ impl<T: Real, const N: usize> Way<T, N> {
         let target = match &self.near {
             Some(jump) => {
                 // At the jump itself laws may be those behind it.
-                let left = jump.left().max(problem.apart(t, 0.0));
+                let left = jump.left().max(problem.apart(t, jump.length));
                 end.min(t + T::from_f64(jump.ahead - left))
             }
             None => end,

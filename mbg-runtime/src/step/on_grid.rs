@@ -209,11 +209,13 @@ impl<T, const N: usize> Near<T, N> {
 /// How much of its way an argument may have missed by how its rate changes within a step.
 const ASTRAY: f64 = 0.01;
 
-/// The line from the start of a step, or of a part of one, to a threshold of the laws, if it comes to one within a length.
+/// The line from the start of a step, or of a part of one, to a threshold of the laws, if it comes to one within a length; of arguments
+/// that are open.
 fn line_to_threshold<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &Problem<'_, T, S, I, N, M, P>,
     (from, whole): (&Start<T, N>, f64),
     way: f64,
+    is_open: impl Fn(usize) -> bool,
 ) -> Option<Jump<T, N>>
 where
     T: Real,
@@ -228,10 +230,13 @@ where
         state,
         slope: from.slope,
     });
+    let mut number = 0;
     let ahead = problem.soonest(&first, &last, |course, lasting| {
+        let is_open = is_open(number);
+        number += 1;
         // What begins at one leaves it behind.
         let ahead = course.reached(lasting).map(seen);
-        ahead.filter(|ahead| *ahead > 0.0)
+        ahead.filter(|ahead| is_open && *ahead > 0.0)
     })?;
     Some(Jump {
         start,
@@ -266,8 +271,8 @@ where
     is_clear
 }
 
-/// The line from the start of a step over a threshold, or almost, that the step itself has not passed, as where it meets a jump that
-/// leads back at its stages; and not before a time. The stages of methods that take a Jacobian are bound to its end.
+/// The line from the start of a step over a threshold, or almost, of an argument that the step itself has taken over none, as where it
+/// meets a jump that leads back at its stages; and not before a time. The stages of methods that take a Jacobian are bound to its end.
 fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     (from, change, whole): (&Start<T, N>, &SVector<T, N>, f64),
@@ -279,10 +284,11 @@ where
     I: Input<T, M> + ?Sized,
 {
     let length = seen(from.span.length);
-    let mut line = line_to_threshold(problem, (from, whole), FARTHER * length)?;
     let end = (from.span.end, from.x + change);
-    let is_late = seen(line.start.0) + line.ahead >= watched;
-    if !is_late || problem.reached(&line.start, &end).is_some() {
+    let passed = passed(problem, from, end);
+    let is_open = |number| !passed.contains(number);
+    let mut line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open)?;
+    if seen(line.start.0) + line.ahead < watched {
         return None;
     }
     if line.ahead > length {
@@ -293,6 +299,49 @@ where
         line.ahead = 0.5 * length;
     }
     Some(line)
+}
+
+/// Numbers of arguments, but for very large ones.
+struct Numbers(u128);
+
+impl Numbers {
+    fn add(&mut self, number: usize) {
+        self.0 |= Self::bit(number);
+    }
+
+    const fn contains(&self, number: usize) -> bool {
+        self.0 & Self::bit(number) != 0
+    }
+
+    const fn bit(number: usize) -> u128 {
+        if number < 128 { 1 << number } else { 0 }
+    }
+}
+
+/// The arguments that a step has taken over a threshold.
+fn passed<T, S, I, const N: usize, const M: usize, const P: usize>(
+    problem: &Problem<'_, T, S, I, N, M, P>,
+    from: &Start<T, N>,
+    end: Place<T, N>,
+) -> Numbers
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    let [first, last] = [(from.span.start, from.x), end].map(|(time, state)| Point {
+        time,
+        state,
+        slope: from.slope,
+    });
+    let (mut passed, mut number) = (Numbers(0), 0);
+    problem.courses(&first, &last, |course, lasting| {
+        if course.reached(lasting).is_some() {
+            passed.add(number);
+        }
+        number += 1;
+    });
+    passed
 }
 
 /// Whether an argument has not gone the way that it should have by its rates at both ends of a step.
@@ -334,7 +383,7 @@ where
     I: Input<T, M> + ?Sized,
 {
     let length = seen(from.span.length);
-    let line = line_to_threshold(problem, (from, whole), 2.0 * length);
+    let line = line_to_threshold(problem, (from, whole), 2.0 * length, |_| true);
     let Some(line) = line else {
         return Near::Nothing;
     };

@@ -127,7 +127,7 @@ where
         &self,
         from: &Point<T, N>,
         to: &Point<T, N>,
-        time: impl Fn(&Course<'_, T>, T) -> Option<f64>,
+        mut time: impl FnMut(&Course<'_, T>, T) -> Option<f64>,
     ) -> Option<f64> {
         let mut soonest: Option<f64> = None;
         self.courses(from, to, |course, lasting| {

@@ -22,6 +22,8 @@ pub(super) struct Line<T, const N: usize> {
     pub(super) order: [usize; MOST],
     /// In which direction each is crossed.
     pub(super) forward: Each<f64>,
+    /// How far it goes, in units of what is surely beside a surface.
+    pub(super) reach: f64,
 }
 
 impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
@@ -139,7 +141,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         }
         let mut order: [usize; MOST] = core::array::from_fn(|place| place);
         order[..count].sort_unstable_by(|a, b| crossings[*a].total_cmp(&crossings[*b]));
-        let mut states = [*x; 1 + MOST];
+        let (mut states, mut reach) = ([*x; 1 + MOST], 0.0_f64);
         for (place, there) in states.iter_mut().take(1 + count).enumerate() {
             let before = place.checked_sub(1).map(|before| crossings[order[before]]);
             let behind = (place < count).then(|| crossings[order[place]]);
@@ -150,11 +152,15 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
                 (None, None) => 0.0,
             };
             *there = state(&paces, along);
+            for (place, pace) in paces.iter().enumerate().take(free) {
+                reach = reach.max(pace * (along - place as f64).abs());
+            }
         }
         Line {
             states,
             order,
             forward,
+            reach,
         }
     }
 }

@@ -81,7 +81,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 return Some(sliding);
             }
             let on = sliding.only(stays);
-            *x = sliding.put_aside((&at, x), &asides, memory);
+            *x = sliding.put_aside((&at, x), (&asides, sides.reach()), memory);
             sliding.arrange(on, (&at, x), memory);
         }
         None
@@ -197,8 +197,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             let stays = matches!(choices[place], Choice::Stays(_))
                 || units[place].is_some_and(|unit| span.has::<T>(&unit));
             match known.get(place) {
-                Some(Some(_)) => Aside::Passed,
                 _ if stays => Aside::On,
+                Some(Some(_)) => Aside::Passed,
                 _ => {
                     let side = sides.side(place, choices[place]);
                     Aside::Left(side, sides.rate(place, &choices[..count]))
@@ -255,7 +255,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     fn put_aside<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
-        asides: &Each<Aside>,
+        (asides, reach): (&Each<Aside>, f64),
         memory: &S::Memory,
     ) -> SVector<T, N>
     where
@@ -274,7 +274,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             }
         }
         let (distances, _) = self.distances(at, x, memory);
-        let least = self.aside(x).map(|aside| T::from_f64(BESIDE) * aside);
+        let least = self.aside(x).map(|aside| T::from_f64(BESIDE * reach) * aside);
         let stays = sorted.iter().take(self.free).any(|aside| matches!(aside, Aside::On));
         let side = |place: usize| match sorted[place] {
             Aside::Left(side, _) => side,

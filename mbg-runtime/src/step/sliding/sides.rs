@@ -91,6 +91,11 @@ impl<T: Real, const N: usize> Sides<T, N> {
         chosen((&first, &faster), known)
     }
 
+    /// How far beside surfaces others are to be, in units of what is surely beside one.
+    pub(super) fn reach(&self) -> f64 {
+        self.line.reach
+    }
+
     /// The part of the mean that is above a surface.
     pub(super) fn above(&self, place: usize, choice: Choice) -> f64 {
         let part = choice.part();

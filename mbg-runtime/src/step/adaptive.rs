@@ -229,7 +229,8 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
             let wide = steps.tolerance::<S, M, P>();
             let used = wide.as_ref().unwrap_or(&tolerance);
             let trial = steps.attempt(problem, &from, used);
-            let come = match steps.taken(problem, &from, &trial, used) {
+            let taken = steps.taken(problem, &from, &trial, used);
+            let come = match pace.met(problem, &from, taken, ends.are_all()) {
                 Taken::Whole(known, ahead) => {
                     let next = problem.arrive(span.end, known, &ahead)?;
                     let memory = problem.memory;
@@ -329,6 +330,28 @@ impl Pace {
         }
         (self.refused, self.again) = (0, false);
         come
+    }
+
+    /// What is taken of a step: nothing of one that has met a threshold, where all count, as far as one can be come nearer to.
+    fn met<T: Real, S, I, const N: usize, const M: usize, const P: usize>(
+        &self,
+        problem: &Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        taken: Taken<T, N>,
+        counts: bool,
+    ) -> Taken<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        match taken {
+            Taken::Whole(end, _)
+                if S::HAS_COURSES && counts && self.approach.meets(problem, start, &end) =>
+            {
+                Taken::Nothing
+            }
+            taken => taken,
+        }
     }
 
     /// Behind one of which something is not taken.

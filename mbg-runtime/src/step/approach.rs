@@ -62,6 +62,27 @@ impl Approach {
         self.ahead.map_or(length, |ahead| length.min(part * ahead))
     }
 
+    /// Whether a step has met a threshold that can be come nearer to.
+    #[cold]
+    pub(super) fn meets<T, S, I, const N: usize, const M: usize, const P: usize>(
+        &self,
+        problem: &Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        end: &SVector<T, N>,
+    ) -> bool
+    where
+        T: Real,
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let [from, to] = ends(start, end, &start.slope);
+        let ahead = problem.soonest(&from, &to, |course, lasting| course.within(lasting));
+        let is_late = |ahead: f64| {
+            seen(from.time) + ahead >= self.watched && ahead > problem.apart(from.time, 0.0)
+        };
+        self.tries < MOST && ahead.is_some_and(is_late)
+    }
+
     /// Where the run stands behind a step that was refused: maybe since it went over a threshold.
     #[cold]
     pub(super) fn refuse<T, S, I, const N: usize, const M: usize, const P: usize>(

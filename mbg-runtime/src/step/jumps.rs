@@ -93,7 +93,7 @@ where
     let mut way = Way::new(here);
     loop {
         way.watched = way.watched.max(runs.watched(way.here.0));
-        match way.follow(runs, problem, end, observer)? {
+        match way.follow(runs, problem, (end, ends), observer)? {
             Followed::Over => continue,
             Followed::There => {}
             Followed::Left => return Ok(Walked::Left),
@@ -161,7 +161,7 @@ impl<T: Real, const N: usize> Way<T, N> {
         &mut self,
         runs: &mut R,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
-        end: T,
+        (end, ends): (T, impl Ends<T, S, I, N, M, P>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Followed, Stopped>
     where
@@ -186,7 +186,7 @@ impl<T: Real, const N: usize> Way<T, N> {
         let mut beside = problem.beside();
         let done = runs.to(problem, (self.here, target), self.watched, &mut |step| {
             beside.memory = memory;
-            found = beside.jump_within(step, self.watched);
+            found = beside.jump_within(step, self.watched, ends.are_all());
             if found.is_some() {
                 return ControlFlow::Break(());
             }
@@ -256,11 +256,12 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    /// The first jump of a law at a state that a step has gone over, but for those before a time.
+    /// The first jump of a law at a state that a step has gone over, but for those before a time; or the first threshold of all.
     pub(super) fn jump_within(
         &mut self,
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
+        counts_all: bool,
     ) -> Option<Jump<T, N>> {
         if step.is_clear || step.surfaces.is_some() {
             // Where it stays at thresholds the derivative is that along them.
@@ -273,7 +274,7 @@ where
         for _ in 0..MOST {
             self.reached(&from, &end)?;
             let [before, behind] = self.narrowed(step, from, end);
-            if seen(before.0) >= watched && self.jumps(&before, &behind) {
+            if seen(before.0) >= watched && (counts_all || self.jumps(&before, &behind)) {
                 return Some(Jump {
                     start,
                     ahead: seen(before.0 - start.0),

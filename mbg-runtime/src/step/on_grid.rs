@@ -392,7 +392,7 @@ where
     let end = from.x + across.over(problem, from).change;
     let mut dense = || across.polynomial(problem, from, &end);
     let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
-    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY);
+    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, false);
     problem.memory = tried;
     jump.map_or(Near::Threshold(line), Near::Jump)
 }

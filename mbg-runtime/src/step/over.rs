@@ -145,7 +145,10 @@ where
             change = along(&change, left - T::from_f64(seen(left)), &ahead);
             ahead = self.slope(end, &(x + change));
         }
-        let next = self.arrive(until, x + change, &ahead)?;
+        // So short a way opens no loop. What a motion stays at may be elsewhere behind the threshold: it is not brought there.
+        let next = x + change;
+        self.statistics.steps += 1;
+        self.check(until, &next, &ahead)?;
         // Of the change itself: beside the state it may be little more than rounding.
         let mut line = || Polynomial::straight(&x, change);
         let span = Span {

@@ -104,7 +104,7 @@ where
     }
 
     /// The nearest time on the present piece.
-    fn on_piece(&self, t: T) -> T {
+    pub(super) fn on_piece(&self, t: T) -> T {
         if S::AUTONOMOUS {
             return t;
         }
@@ -354,7 +354,7 @@ where
     pub(super) fn close(&self, t: T, x: SVector<T, N>) -> Result<SVector<T, N>, Stopped> {
         let u = self.input.value(t, self.since);
         self.system
-            .close(t, x, &u, &[])
+            .close(self.on_piece(t), x, &u, &[])
             .map_err(|trouble| Stopped::new(t, Cause::Trouble(trouble)))
     }
 }

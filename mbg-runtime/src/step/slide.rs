@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::sliding::Sliding;
 use super::surfaces::{Surfaces, is_later};
 use super::thresholds::Point;
-use super::{Stopped, less, seen};
+use super::{Cause, Stopped, less, seen};
 use crate::{Input, Real, System};
 
 /// How far a run has come.
@@ -32,6 +32,11 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M>,
 {
+    /// Whether those count at which no law jumps.
+    fn are_all(self) -> bool {
+        false
+    }
+
     /// Of those between two points next to each other.
     fn between(
         self,
@@ -114,6 +119,11 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
+    // What a motion stays at may jump there.
+    fn are_all(self) -> bool {
+        true
+    }
+
     fn between(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
@@ -178,6 +188,30 @@ where
     }
 }
 
+/// So often a motion is settled anew at one time: more is without end.
+const SETTLED: u32 = 256;
+
+/// How often a run has been settled since time has gone on.
+struct Settled<T> {
+    time: T,
+    count: u32,
+}
+
+impl<T: Real> Settled<T> {
+    /// Once more, unless that is without end.
+    fn again(&mut self, time: T) -> Result<(), Stopped> {
+        self.count = match is_later(self.time, time) {
+            true => 0,
+            false => self.count + 1,
+        };
+        self.time = time;
+        match self.count > SETTLED {
+            true => Err(Stopped::new(time, Cause::StepTooSmall)),
+            false => Ok(()),
+        }
+    }
+}
+
 /// What takes steps over a piece of the input.
 pub(super) trait Walk<T: Real, const N: usize> {
     /// Whether a threshold may be left and met again within a step.
@@ -210,11 +244,13 @@ pub(super) trait Walk<T: Real, const N: usize> {
             true => problem.at_start(here),
             false => None,
         };
+        let (time, count) = (here.0, 0);
+        let mut settled = Settled { time, count };
         loop {
             if S::HAS_COURSES
                 && let Some(surfaces) = surfaces
             {
-                match self.slide(problem, (here, end), surfaces, observer)? {
+                match self.slide(problem, (here, end), (surfaces, &mut settled), observer)? {
                     ControlFlow::Continue(place) => here = place,
                     ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
                 }
@@ -237,7 +273,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (mut here, end): (Place<T, N>, T),
-        mut surfaces: Surfaces<T>,
+        (mut surfaces, settled): (Surfaces<T>, &mut Settled<T>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Place<T, N>>, Stopped>
     where
@@ -246,6 +282,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
     {
         let mut refused = Surfaces::NONE;
         while less(here.0, end) {
+            settled.again(here.0)?;
             let model = (problem.system, problem.input);
             let times = (problem.since, problem.inside, problem.whole);
             let mut memory = problem.memory;
@@ -267,8 +304,11 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     (left, undone) = (Some(start), 1);
                     return ControlFlow::Break(());
                 }
-                let looks = Self::LOOKS_WITHIN || !holds((step.end(), *step.state()));
-                if looks
+                let end = (step.end(), *step.state());
+                // Behind a threshold that is met the motion may be elsewhere.
+                let is_there = sliding.is_near(end, &memory);
+                if is_there
+                    && (Self::LOOKS_WITHIN || !holds(end))
                     && let Some(time) = step.crossing(Direction::Falling, |t, x| hold(t, x, memory))
                 {
                     let there = sliding.landed(time, &step.at(time), &memory);

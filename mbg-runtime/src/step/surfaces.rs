@@ -30,12 +30,6 @@ pub(super) struct Surfaces<T> {
 impl<T: Real> Surfaces<T> {
     pub(super) const NONE: Self = Self { list: [None; MOST] };
 
-    pub(super) fn one(surface: Surface<T>) -> Self {
-        let mut one = Self::NONE;
-        one.add(surface);
-        one
-    }
-
     pub(super) fn count(&self) -> usize {
         self.iter().count()
     }
@@ -71,22 +65,6 @@ impl<T: Real> Surfaces<T> {
         let left = self.iter().filter(|it| others.of(it.course).is_none());
         left.for_each(|it| without.add(*it));
         without
-    }
-
-    /// The same with the first ones last.
-    pub(super) fn turned(&self, by: usize) -> Self {
-        let mut turned = Self::NONE;
-        let from_there = self.iter().skip(by).chain(self.iter().take(by));
-        from_there.for_each(|it| turned.add(*it));
-        turned
-    }
-
-    /// Leaves one out.
-    pub(super) fn leave(&mut self, place: usize) -> Option<Surface<T>> {
-        let rest = self.list.get_mut(place..)?;
-        let left = rest.first_mut()?.take();
-        rest.rotate_left(1);
-        left
     }
 }
 
@@ -176,24 +154,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn surfaces_keep_their_order_when_one_is_left() {
+    fn surfaces_keep_their_order() {
         let surface = |course| Surface {
             course,
             level: course as f64,
         };
-        let mut surfaces = Surfaces::NONE;
-        for course in [4, 2, 4, 7] {
-            surfaces.add(surface(course));
-        }
+        let of = |courses: &[usize]| {
+            let mut surfaces = Surfaces::NONE;
+            courses
+                .iter()
+                .for_each(|course| surfaces.add(surface(*course)));
+            surfaces
+        };
+        let surfaces = of(&[4, 2, 4, 7]);
         assert_eq!(surfaces.count(), 3);
         assert_eq!(surfaces.of(7), Some((2, 7.0)));
-        surfaces.leave(1);
-        assert!(surfaces.iter().eq(&[surface(4), surface(7)]));
-        surfaces.leave(2);
-        assert_eq!(surfaces.count(), 2);
-        for course in 10..30 {
-            surfaces.add(surface(course));
-        }
-        assert_eq!(surfaces.count(), MOST);
+        assert_eq!(surfaces.without(&of(&[2, 5])), of(&[4, 7]));
+        let many: [usize; 20] = core::array::from_fn(|number| 10 + number);
+        let all = surfaces.with(&of(&many));
+        assert_eq!(all.count(), MOST);
+        assert_eq!(all.of(10), Some((3, 10.0)));
     }
 }

@@ -101,13 +101,10 @@ where
     ) {
         let mut memory = self.memory;
         let lasting = to.time - from.time;
+        let [start, end] = [from, to].map(|it| self.on_piece(it.time));
         self.system.courses(
-            (
-                from.time,
-                [&from.state, &from.slope],
-                [&inputs[0], &rates[0]],
-            ),
-            (to.time, [&to.state, &to.slope], [&inputs[1], &rates[1]]),
+            (start, [&from.state, &from.slope], [&inputs[0], &rates[0]]),
+            (end, [&to.state, &to.slope], [&inputs[1], &rates[1]]),
             &mut memory,
             |course| each(&course, lasting),
         );

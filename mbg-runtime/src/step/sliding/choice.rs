@@ -58,12 +58,11 @@ pub(super) fn chosen(
     let is_open = |place: usize| known.get(place).is_some_and(Option::is_none);
     for _ in 0..TURNS {
         let stays = |place: usize| is_open(place) && matches!(choices[place], Choice::Stays(_));
-        let matrix = SMatrix::<f64, MOST, MOST>::from_fn(|row, column| {
-            match stays(row) && stays(column) {
+        let matrix =
+            SMatrix::<f64, MOST, MOST>::from_fn(|row, column| match stays(row) && stays(column) {
                 true => slower(row, column),
                 false => f64::from(u8::from(row == column)),
-            }
-        });
+            });
         // How fast each still goes ahead with the parts of those that do not stay, beside what slows it.
         let open = |row: usize| {
             let others = (0..known.len()).filter(|other| !stays(*other));
@@ -85,16 +84,18 @@ pub(super) fn chosen(
             let by_those: f64 = staying.map(|other| slower(row, other) * parts[other]).sum();
             open(row) - by_those
         };
-        let change = (0..known.len()).filter(|place| is_open(*place)).find_map(|place| {
-            let there = match choices[place] {
-                Choice::Stays(_) if parts[place] < -ROUNDING => Choice::Before,
-                Choice::Stays(_) if parts[place] > 1.0 + ROUNDING => Choice::Ahead,
-                Choice::Before if rate(place) > ROUNDING => Choice::Stays(0.5),
-                Choice::Ahead if rate(place) < -ROUNDING => Choice::Stays(0.5),
-                _ => return None,
-            };
-            Some((place, there))
-        });
+        let change = (0..known.len())
+            .filter(|place| is_open(*place))
+            .find_map(|place| {
+                let there = match choices[place] {
+                    Choice::Stays(_) if parts[place] < -ROUNDING => Choice::Before,
+                    Choice::Stays(_) if parts[place] > 1.0 + ROUNDING => Choice::Ahead,
+                    Choice::Before if rate(place) > ROUNDING => Choice::Stays(0.5),
+                    Choice::Ahead if rate(place) < -ROUNDING => Choice::Stays(0.5),
+                    _ => return None,
+                };
+                Some((place, there))
+            });
         match change {
             Some((place, there)) => choices[place] = there,
             None => {
@@ -123,10 +124,16 @@ mod tests {
         let along = |pair: &(usize, Option<usize>, f64), mass: usize| -> f64 {
             f64::from(u8::from(pair.0 == mass)) - f64::from(u8::from(pair.1 == Some(mass)))
         };
-        let product = |a, b| (0..forces.len()).map(|mass| along(a, mass) * along(b, mass)).sum::<f64>();
+        let product = |a, b| {
+            (0..forces.len())
+                .map(|mass| along(a, mass) * along(b, mass))
+                .sum::<f64>()
+        };
         let (mut first, mut faster) = ([0.0; MOST], SMatrix::zeros());
         for (row, pair) in pairs.iter().enumerate() {
-            first[row] = (0..forces.len()).map(|mass| along(pair, mass) * forces[mass]).sum();
+            first[row] = (0..forces.len())
+                .map(|mass| along(pair, mass) * forces[mass])
+                .sum();
             for (column, other) in pairs.iter().enumerate() {
                 faster[(row, column)] = -2.0 * other.2 * product(pair, other);
                 first[row] += other.2 * product(pair, other);
@@ -154,7 +161,10 @@ mod tests {
         let pairs = [(0, None, 1.0), (1, None, 1.2), (0, Some(1), 1.0)];
         let [first, second, between, ..] = of(&[2.5, 0.0], &pairs);
         assert_eq!((first, between), (Choice::Ahead, Choice::Ahead));
-        assert!(matches!(second, Choice::Stays(part) if (part - 11.0 / 12.0).abs() < 1e-9), "{second:?}");
+        assert!(
+            matches!(second, Choice::Stays(part) if (part - 11.0 / 12.0).abs() < 1e-9),
+            "{second:?}"
+        );
     }
 
     /// Three clutches in a ring: of the parts that hold the ring those next to each other are taken.
@@ -164,7 +174,10 @@ mod tests {
         let choices = of(&[0.9, 0.0, 0.0], &pairs);
         let expected = [0.5 + 0.15, 0.5, 0.5 - 0.15];
         for (choice, part) in choices.iter().zip(expected) {
-            assert!(matches!(choice, Choice::Stays(it) if (it - part).abs() < 1e-6), "{choices:?}");
+            assert!(
+                matches!(choice, Choice::Stays(it) if (it - part).abs() < 1e-6),
+                "{choices:?}"
+            );
         }
     }
 

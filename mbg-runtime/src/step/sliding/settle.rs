@@ -13,6 +13,8 @@ use crate::{Input, Real, System};
 
 /// What does not stay is put so many times as far beside a surface as those that do are asked.
 const BESIDE: f64 = 4.0;
+/// A state is next to a surface where digits beyond half of those that numbers have are surely beside it, but for this part.
+const NEAR: f64 = 1e-3;
 /// So many times as far beside a surface a law is asked whether it jumps there.
 const WIDE: f64 = 1024.0;
 /// Gradients depend on each other if no more of one is beside the others than so many units of its last place.
@@ -60,7 +62,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             evaluations: Cell::new(0),
         };
         let at = sliding.on_piece(t);
-        sliding.arrange(surfaces, (&at, x), memory);
+        let near = sliding.near(&at, x, memory);
+        sliding.arrange(near, (&at, x), memory);
         sliding.take_in(&at, x, memory);
         // What is left is put aside, and laws there are asked again: they need not be sums of what each makes different.
         while sliding.surfaces.count() > 0 {
@@ -85,6 +88,56 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             sliding.arrange(on, (&at, x), memory);
         }
         None
+    }
+
+    /// Those next to which the state is: what an argument jumps over it is not at, and a threshold may have jumped away.
+    fn near<const M: usize, const P: usize>(
+        &self,
+        at: &Moment<T, M>,
+        x: &SVector<T, N>,
+        memory: &S::Memory,
+    ) -> Surfaces<T>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        self.look(at, x, memory);
+        let places = self.near_ones(at, x, memory);
+        self.only(|place| places[*place])
+    }
+
+    /// Whether a state is next to all surfaces that are told apart.
+    pub(in super::super) fn is_near<const M: usize, const P: usize>(
+        &self,
+        (t, x): (T, SVector<T, N>),
+        memory: &S::Memory,
+    ) -> bool
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let places = self.near_ones(&self.on_piece(t), &x, memory);
+        places.iter().take(self.surfaces.count()).all(|it| *it)
+    }
+
+    /// Next to which surfaces a state is.
+    fn near_ones<const M: usize, const P: usize>(
+        &self,
+        at: &Moment<T, M>,
+        x: &SVector<T, N>,
+        memory: &S::Memory,
+    ) -> Each<bool>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let aside = self.aside(x);
+        let rest = SVector::from_element(T::from_f64(0.0));
+        let [[distances, _], _] = self.told(at, [(x, &rest); 2], memory);
+        core::array::from_fn(|place| {
+            let least = seen(aside[place]) * NEAR / T::SINGULAR;
+            seen(distances[place]).abs() < least
+        })
     }
 
     /// Takes in other thresholds that are as near: laws jump there, too, where these are asked.
@@ -262,11 +315,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        // Those at which it stays are to be free of the others.
+        // Those at which it stays are to be free of the others, and those that it leaves of what it passes.
         let before = self.surfaces;
-        let is_on = |place: &usize| matches!(asides[*place], Aside::On);
-        let others = |place: &usize| !is_on(place);
-        self.arrange(self.only(is_on).with(&self.only(others)), (at, x), memory);
+        let on = self.only(|place| matches!(asides[*place], Aside::On));
+        let left = self.only(|place| matches!(asides[*place], Aside::Left(..)));
+        self.arrange(on.with(&left).with(&before), (at, x), memory);
         let mut sorted = [Aside::On; MOST];
         for (aside, surface) in sorted.iter_mut().zip(self.surfaces.iter()) {
             if let Some((place, _)) = before.of(surface.course) {
@@ -274,11 +327,18 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             }
         }
         let (distances, _) = self.distances(at, x, memory);
-        let least = self.aside(x).map(|aside| T::from_f64(BESIDE * reach) * aside);
-        let stays = sorted.iter().take(self.free).any(|aside| matches!(aside, Aside::On));
+        let least = self
+            .aside(x)
+            .map(|aside| T::from_f64(BESIDE * reach) * aside);
+        let stays = sorted
+            .iter()
+            .take(self.free)
+            .any(|aside| matches!(aside, Aside::On));
         let side = |place: usize| match sorted[place] {
             Aside::Left(side, _) => side,
-            Aside::Passed if stays && seen(distances[place]) != 0.0 => seen(distances[place]).signum(),
+            Aside::Passed if stays && seen(distances[place]) != 0.0 => {
+                seen(distances[place]).signum()
+            }
             _ => 0.0,
         };
         let ways = core::array::from_fn(|place| {

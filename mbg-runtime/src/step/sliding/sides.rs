@@ -87,7 +87,8 @@ impl<T: Real, const N: usize> Sides<T, N> {
     pub(super) fn chosen(&self, known: &[Option<Choice>]) -> Option<Each<Choice>> {
         let forward = &self.line.forward;
         let first = core::array::from_fn(|row| forward[row] * seen(self.first[row]));
-        let faster = SMatrix::from_fn(|row, column| forward[row] * seen(self.faster[(row, column)]));
+        let faster =
+            SMatrix::from_fn(|row, column| forward[row] * seen(self.faster[(row, column)]));
         chosen((&first, &faster), known)
     }
 

@@ -64,7 +64,12 @@ where
             self.system.jacobian_state(t, x, u, memory)
         });
         // The model is asked on the surfaces, wherever beside them the state is.
-        for (across, gradient) in self.across.iter().zip(&self.gradients.get()).take(self.free) {
+        for (across, gradient) in self
+            .across
+            .iter()
+            .zip(&self.gradients.get())
+            .take(self.free)
+        {
             let zero = SVector::from_element(T::from_f64(0.0));
             let columns = jacobian.column_iter().zip(across);
             let change = columns.fold(zero, |sum: SVector<T, N>, (column, way)| {

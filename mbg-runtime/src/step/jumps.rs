@@ -17,8 +17,10 @@ const LEFT: [f64; 2] = [1e-6, 0.1];
 /// A law jumps if it differs by more than this part of itself, or so many units of the last place.
 const JUMP: f64 = 1e-7;
 const JUMP_PLACES: f64 = 64.0;
-/// So many thresholds of one step are looked at, and so often a jump is come nearer to.
+/// So many thresholds of one step are looked at.
 const MOST: usize = 16;
+/// So often a jump is come nearer to: an argument that itself jumps there is at a threshold on a line beyond that before it is there.
+const TRIES: usize = 48;
 /// So often the place of a threshold is narrowed.
 const NARROWINGS: u32 = 100;
 
@@ -234,14 +236,14 @@ impl<T: Real, const N: usize> Way<T, N> {
     {
         self.tries += 1;
         let next = problem.next_threshold(&self.here, slope, jump.length);
-        if next.is_none() && self.tries <= MOST {
+        if next.is_none() && self.tries <= TRIES {
             let rest = problem.straight_to_threshold(&self.here, slope, jump.length);
             if let Some(ahead) = rest.map(seen).filter(|ahead| *ahead > 0.0) {
                 self.near = Some(Jump { ahead, ..jump });
                 return None;
             }
         }
-        if next.is_none() && (!jump.is_guess || self.tries > MOST) {
+        if next.is_none() && (!jump.is_guess || self.tries > TRIES) {
             let apart = problem.apart(self.here.0, jump.length);
             self.watched = seen(self.here.0) + jump.ahead + SOON * apart;
         }

@@ -169,10 +169,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 }
                 number += 1;
             });
-            if met.count() == all.count() {
+            self.surfaces = met;
+            let met = self.near(at, x, memory);
+            self.arrange(met, (at, x), memory);
+            if met.count() <= all.count() {
                 return;
             }
-            self.arrange(met, (at, x), memory);
         }
     }
 

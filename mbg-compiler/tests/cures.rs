@@ -161,6 +161,7 @@ fn a_number_for_a_way_is_told_along_an_axis() {
         first_help(&arm("by: 1.5")),
         "write each component: `[1.5, 0.0, 0.0]` is a way along x"
     );
+    assert_eq!(first_help(&arm("by: {1.5}")), first_help(&arm("by: 1.5")));
     assert_eq!(told(&arm("by: [1.5, 0.0, 0.0]")), "");
 }
 

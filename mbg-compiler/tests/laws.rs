@@ -15,7 +15,7 @@ use told::told;
 #[test]
 fn a_start_that_is_no_number_is_told_at_its_value() {
     let told = |statements: &str| mistake(&format!("input u; 1 v {{ {statements} }}"));
-    let varies = "expected an initial value of numbers and parameters alone [MBG0213]";
+    let varies = "expected numbers and parameters alone, from which a state starts [MBG0213]";
     let coil = "C s { stiffness: 1.0, initial: 2.0 * u }";
     assert_eq!(told(coil), format!("2:47 {varies}"));
     let started = "I b { inertia: 1.0, initial_flow: u }";

@@ -36,7 +36,8 @@ impl Attributes {
             }
             if cursor.group(1, Delimiter::Bracket).is_none() {
                 cursor.advance(1);
-                return Err(cursor.expected("`[` after `#`"));
+                let error = *cursor.expected("`[` after `#`");
+                return Err(Box::new(error.help("a comment begins with `//`")));
             }
             cursor.advance(2);
             attributes.add(cursor.since(cursor.position() - 2), sink);

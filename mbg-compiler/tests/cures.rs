@@ -592,3 +592,41 @@ fn a_line_from_a_frame_to_itself_is_one_mistake() {
         }
     }
 }
+
+/// Two links on hinges, with what the second carries.
+fn links(second: &str, more: &str) -> String {
+    format!(
+        "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 arm[6]; 1 rod[6]; 1 tip[6];
+         Sf fixed[6] {{ flow: 0.0 }} -> ground; a: Revolute {{ axis: 2 }} (ground, arm); upper: Body {{ mass: 1.0, inertia: 1.0 }} (arm);
+         {second} o: Offset {{ by: [0.0, 0.0, -0.4] }} (rod, tip);
+{more} output y = a.angle; }}"
+    )
+}
+
+#[test]
+fn what_a_ring_holds_twice_is_told_at_the_joint_that_closes_it() {
+    let hinge = "b: Revolute { axis: 2, offset: [0.5, 0.0, 0.0] } (arm, rod); bob: Body { mass: 0.3, inertia: 1.0 } (tip);";
+    insta::assert_snapshot!(told(&links(hinge, "c: Revolute { axis: 0 } (ground, rod);")), @"
+    3:10 source `fixed` imposes flow that is imposed already [MBG0302]
+      `c` and `b` lead to `rod` from two sides, and hold a motion that the ring holds already
+      help: put a `Cut` in the place of a joint of the ring that `c` and `b` close
+      help: or close it by `close a -> b by multipliers;`
+    ");
+    let closed =
+        links(hinge, "c: Cut (ground, rod);").replace("offset: [0.5, 0.0, 0.0]", "initial: 0.0");
+    assert_eq!(told(&closed), "");
+}
+
+#[test]
+fn a_joint_that_can_move_without_inertia_is_told() {
+    let ball = "b: Spherical { offset: [0.5, 0.0, 0.0] } (arm, rod);";
+    insta::assert_snapshot!(told(&links(ball, "bob: PointMass { mass: 0.3 } (tip);")), @"
+    3:10 the efforts between dependent storages are undetermined: at `upper.spin`, `upper.body`, `bob.body` [MBG0401]
+      what `b` leads to can move without moving any inertia
+      help: give the frame behind `b` a body with an inertia: a `PointMass` has none about the lines through it
+    ");
+    assert_eq!(
+        told(&links(ball, "bob: Body { mass: 0.3, inertia: 0.1 } (tip);")),
+        ""
+    );
+}

@@ -630,3 +630,56 @@ fn a_joint_that_can_move_without_inertia_is_told() {
         ""
     );
 }
+
+/// The help that holds a text, of the first mistake.
+fn help_with(text: &str, part: &str) -> String {
+    let diagnostics = diagnose(text);
+    let helps = diagnostics.list().first().unwrap().helps.clone();
+    let mut helps = helps.into_iter().filter(|help| help.contains(part));
+    helps.next().unwrap_or_default()
+}
+
+#[test]
+fn an_inertia_that_follows_from_another_is_put_behind_a_compliance() {
+    let text = "model M { 1 left { I j { inertia: 1.0 } } 1 right { I k { inertia: 1.0 } } left -> TF g { flow: 2.0 } -> right; }";
+    let help = help_with(text, "compliance");
+    let written = help.split('`').skip(1).step_by(2).last().unwrap();
+    let written = written.replacen('…', "inertia: 1.0", 1).replace('…', "1.0");
+    assert_eq!(
+        written,
+        "1 k_own { I k { inertia: 1.0 } } 0 between { C spring { stiffness: 1.0 } } right -> between; between -> k_own;"
+    );
+    let moved = text.replace(
+        "{ I k { inertia: 1.0 } } left",
+        &format!("; {written} left"),
+    );
+    assert_eq!(told(&moved), "");
+}
+
+/// Three capacitors in a triangle have two states.
+#[test]
+fn what_follows_from_several_storages_is_not_merged() {
+    let circuit = |third: &str| {
+        format!(
+            "model M {{ 0 x; 0 y; 0 g; Se e {{ effort: 0.0 }} -> g; r: Resistor {{ resistance: 10.0 }} (x, y);
+             c1: Capacitor {{ capacitance: 1e-9 }} (x, g); c2: Capacitor {{ capacitance: 1e-9 }} (y, g); {third} }}"
+        )
+    };
+    let capacitor = |end: &str| format!("c3: Capacitor {{ capacitance: 1e-9 }} (x, {end});");
+    let text = circuit(&capacitor("y"));
+    assert_eq!(help_with(&text, "merge"), "");
+    assert_eq!(
+        help_with(&text, "series"),
+        "or put a resistor in series with one of `c3`, `c1`, `c2`"
+    );
+    let series = format!(
+        "0 z; s: Resistor {{ resistance: 1.0 }} (z, y); {}",
+        capacitor("z")
+    );
+    assert_eq!(told(&circuit(&series)), "");
+    let parallel = circuit(&capacitor("g"));
+    assert_eq!(
+        help_with(&parallel, "merge"),
+        "or merge the storages into one: `c3: …`"
+    );
+}

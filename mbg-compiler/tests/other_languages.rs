@@ -628,7 +628,7 @@ fn attributes_of_rust_are_told_with_where_they_stand() {
     1:3 expected `derivative` or a documentation comment, found `derive` [MBG0101]
       help: the types of a model are `Clone`, `Copy`, `Debug` and `PartialEq`; other traits are written behind the call: `impl Trait for Model { … }`
     1:22 expected `derivative` or a documentation comment, found `cfg` [MBG0101]
-      help: what is there only then has a call of its own: `#[cfg(unix)] mbg! { … }`
+      help: a whole call alone can be left out so, and not a part of a model: `#[cfg(unix)] mbg! { … }`
     1:35 expected `derivative` or a documentation comment, found `serde` [MBG0101]
       help: attributes of Rust are not handed on; what a type is to have besides is written behind the call: `impl Trait for Model { … }`
     2:21 expected `derivative` or a documentation comment, found `allow` [MBG0101]

@@ -96,6 +96,12 @@ impl core::fmt::Display for Untrimmed {
                 is_fixed,
             } => {
                 let of = if is_output { "" } else { "the rate of " };
+                if !wanted.is_finite() {
+                    return write!(
+                        formatter,
+                        "{of}`{name}` is to be {wanted:e}, which nothing is"
+                    );
+                }
                 write!(
                     formatter,
                     "{of}`{name}` is {reached:e} instead of {wanted:e}, and "

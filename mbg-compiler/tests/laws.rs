@@ -481,7 +481,10 @@ fn mistakes_in_powers_and_functions_are_told() {
       help: for `clamp(x, a, b)` write `min(max(x, a), b)`
     ");
     insta::assert_snapshot!(mistake("1 v { R r { effort: sin(f, f) } }"), @"2:21 `sin` takes 1 argument, found 2 [MBG0213]");
-    insta::assert_snapshot!(mistake("1 v { R r { effort: n * (f > 0.0) } }"), @"2:28 expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{` [MBG0213]");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: n * (f > 0.0) } }"), @"
+    2:28 expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{` [MBG0213]
+      help: write `if f > 0.0 { n } else { 0.0 }`
+    ");
 }
 
 #[test]

@@ -39,8 +39,8 @@ pub struct Elaborated {
     pub rings: Vec<Ring>,
     /// What is told of geometry that inputs move, by input.
     pub moving_inputs: BTreeMap<usize, Diagnostic>,
-    /// Parameters of components in use that are given something that changes with time, with what is said of them, by the path of the
-    /// component.
+    /// Parameters of components in use that are given something that changes with time, with what is said of them, by the path
+    /// of the component.
     pub in_time: BTreeMap<String, Vec<[String; 2]>>,
 }
 

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
+use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::{Elaborated, StateRate};
 use crate::equations::Scalars;
 use crate::graph::{ElementKind, Law};
@@ -135,7 +135,16 @@ fn report(model: &Elaborated, number: usize, component: usize, diagnostics: &mut
         "the displacement of `{}` does not change as the flows of its ends do",
         closure.name
     );
-    let report = error(codes::DISPLACEMENT, graph.origins.span(closure.origin), message)
+    let report = error(
+        codes::DISPLACEMENT,
+        graph.origins.span(closure.origin),
+        message,
+    );
+    if let Some((notes, help)) = model.given_in_time(&closure.name) {
+        let report = notes.into_iter().fold(report, Diagnostic::note);
+        return diagnostics.report(report.help(help));
+    }
+    let report = report
         .note(format!("its component {component} has another rate than the flow of `from` less that of `to`"))
         .help("write `close a -> b by multipliers, displacement: position_of_a - position_of_b;` in the axes of the flows");
     diagnostics.report(report);

@@ -161,10 +161,7 @@ pub fn compile(
     let Some((verdict, solved)) = solved else {
         let mut helps = loose::holdings(&elaborated.graph);
         if uniform && let Some(ring) = elaborated.rings.first() {
-            let (cut, [first, second]) = (ring.cut(), &ring.components);
-            helps.push(format!(
-                "put a `{cut}` in the place of a joint of the ring that `{first}` and `{second}` close"
-            ));
+            helps.push(ring.opened());
             helps.push(format!("or {COMPONENTWISE}"));
         }
         diagnostics.offer_first(before, &helps);

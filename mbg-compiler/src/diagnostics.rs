@@ -6,7 +6,7 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{ToTokens, quote, quote_spanned};
 
-use crate::syntax::words::nearest;
+use crate::syntax::words::{nearest, shortened};
 
 /// A code such as `MBG0301`; the first two digits name the stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -61,7 +61,7 @@ impl Diagnostic {
     /// Adds the name that was probably meant, if one is near.
     #[must_use]
     pub fn did_you_mean(self, found: &str, names: &[&str]) -> Self {
-        match nearest(found, names) {
+        match nearest(found, names).or_else(|| shortened(found, names)) {
             Some(near) => self.help(format!("did you mean `{near}`?")),
             None => self,
         }

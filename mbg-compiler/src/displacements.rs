@@ -12,7 +12,7 @@ use proc_macro2::Span;
 use crate::answers::storage_rate;
 use crate::closures::changes_by;
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
+use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::Elaborated;
 use crate::equations::Scalars;
 use crate::graph::{Element, ElementId, End, Law, Storage, component_name, instance_of};
@@ -170,6 +170,11 @@ pub fn check(
             };
             let message = format!("the displacement of `{name}` does not change as `{name}` flows");
             let report = error(codes::DISPLACEMENT, place(model, element), message);
+            if let Some((notes, help)) = model.given_in_time(name) {
+                let report = notes.into_iter().fold(report, Diagnostic::note);
+                diagnostics.report(report.help(help));
+                continue;
+            }
             let report = report.note(format!(
                 "{whose} has another rate than the flow into `{name}`"
             ));

@@ -161,6 +161,7 @@ fn a_number_for_a_way_is_told_along_an_axis() {
         first_help(&arm("by: 1.5")),
         "write each component: `[1.5, 0.0, 0.0]` is a way along x"
     );
+    assert_eq!(first_help(&arm("by: {1.5}")), first_help(&arm("by: 1.5")));
     assert_eq!(told(&arm("by: [1.5, 0.0, 0.0]")), "");
 }
 
@@ -590,4 +591,95 @@ fn a_line_from_a_frame_to_itself_is_one_mistake() {
             assert_eq!(told(&scene("ground, tip")), "");
         }
     }
+}
+
+/// Two links on hinges, with what the second carries.
+fn links(second: &str, more: &str) -> String {
+    format!(
+        "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 arm[6]; 1 rod[6]; 1 tip[6];
+         Sf fixed[6] {{ flow: 0.0 }} -> ground; a: Revolute {{ axis: 2 }} (ground, arm); upper: Body {{ mass: 1.0, inertia: 1.0 }} (arm);
+         {second} o: Offset {{ by: [0.0, 0.0, -0.4] }} (rod, tip);
+{more} output y = a.angle; }}"
+    )
+}
+
+#[test]
+fn what_a_ring_holds_twice_is_told_at_the_joint_that_closes_it() {
+    let hinge = "b: Revolute { axis: 2, offset: [0.5, 0.0, 0.0] } (arm, rod); bob: Body { mass: 0.3, inertia: 1.0 } (tip);";
+    insta::assert_snapshot!(told(&links(hinge, "c: Revolute { axis: 0 } (ground, rod);")), @"
+    3:10 source `fixed` imposes flow that is imposed already [MBG0302]
+      `c` and `b` lead to `rod` from two sides, and hold a motion that the ring holds already
+      help: put a `Cut` in the place of a joint of the ring that `c` and `b` close
+      help: or close it by `close a -> b by multipliers;`
+    ");
+    let closed =
+        links(hinge, "c: Cut (ground, rod);").replace("offset: [0.5, 0.0, 0.0]", "initial: 0.0");
+    assert_eq!(told(&closed), "");
+}
+
+#[test]
+fn a_joint_that_can_move_without_inertia_is_told() {
+    let ball = "b: Spherical { offset: [0.5, 0.0, 0.0] } (arm, rod);";
+    insta::assert_snapshot!(told(&links(ball, "bob: PointMass { mass: 0.3 } (tip);")), @"
+    3:10 the efforts between dependent storages are undetermined: at `upper.spin`, `upper.body`, `bob.body` [MBG0401]
+      what `b` leads to can move without moving any inertia
+      help: give the frame behind `b` a body with an inertia: a `PointMass` has none about the lines through it
+    ");
+    assert_eq!(
+        told(&links(ball, "bob: Body { mass: 0.3, inertia: 0.1 } (tip);")),
+        ""
+    );
+}
+
+/// The help that holds a text, of the first mistake.
+fn help_with(text: &str, part: &str) -> String {
+    let diagnostics = diagnose(text);
+    let helps = diagnostics.list().first().unwrap().helps.clone();
+    let mut helps = helps.into_iter().filter(|help| help.contains(part));
+    helps.next().unwrap_or_default()
+}
+
+#[test]
+fn an_inertia_that_follows_from_another_is_put_behind_a_compliance() {
+    let text = "model M { 1 left { I j { inertia: 1.0 } } 1 right { I k { inertia: 1.0 } } left -> TF g { flow: 2.0 } -> right; }";
+    let help = help_with(text, "compliance");
+    let written = help.split('`').skip(1).step_by(2).last().unwrap();
+    let written = written.replacen('…', "inertia: 1.0", 1).replace('…', "1.0");
+    assert_eq!(
+        written,
+        "1 k_own { I k { inertia: 1.0 } } 0 between { C spring { stiffness: 1.0 } } right -> between; between -> k_own;"
+    );
+    let moved = text.replace(
+        "{ I k { inertia: 1.0 } } left",
+        &format!("; {written} left"),
+    );
+    assert_eq!(told(&moved), "");
+}
+
+/// Three capacitors in a triangle have two states.
+#[test]
+fn what_follows_from_several_storages_is_not_merged() {
+    let circuit = |third: &str| {
+        format!(
+            "model M {{ 0 x; 0 y; 0 g; Se e {{ effort: 0.0 }} -> g; r: Resistor {{ resistance: 10.0 }} (x, y);
+             c1: Capacitor {{ capacitance: 1e-9 }} (x, g); c2: Capacitor {{ capacitance: 1e-9 }} (y, g); {third} }}"
+        )
+    };
+    let capacitor = |end: &str| format!("c3: Capacitor {{ capacitance: 1e-9 }} (x, {end});");
+    let text = circuit(&capacitor("y"));
+    assert_eq!(help_with(&text, "merge"), "");
+    assert_eq!(
+        help_with(&text, "series"),
+        "or put a resistor in series with one of `c3`, `c1`, `c2`"
+    );
+    let series = format!(
+        "0 z; s: Resistor {{ resistance: 1.0 }} (z, y); {}",
+        capacitor("z")
+    );
+    assert_eq!(told(&circuit(&series)), "");
+    let parallel = circuit(&capacitor("g"));
+    assert_eq!(
+        help_with(&parallel, "merge"),
+        "or merge the storages into one: `c3: …`"
+    );
 }

@@ -15,7 +15,7 @@ use told::told;
 #[test]
 fn a_start_that_is_no_number_is_told_at_its_value() {
     let told = |statements: &str| mistake(&format!("input u; 1 v {{ {statements} }}"));
-    let varies = "expected an initial value of numbers and parameters alone [MBG0213]";
+    let varies = "expected numbers and parameters alone, from which a state starts [MBG0213]";
     let coil = "C s { stiffness: 1.0, initial: 2.0 * u }";
     assert_eq!(told(coil), format!("2:47 {varies}"));
     let started = "I b { inertia: 1.0, initial_flow: u }";
@@ -481,7 +481,10 @@ fn mistakes_in_powers_and_functions_are_told() {
       help: for `clamp(x, a, b)` write `min(max(x, a), b)`
     ");
     insta::assert_snapshot!(mistake("1 v { R r { effort: sin(f, f) } }"), @"2:21 `sin` takes 1 argument, found 2 [MBG0213]");
-    insta::assert_snapshot!(mistake("1 v { R r { effort: n * (f > 0.0) } }"), @"2:28 expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{` [MBG0213]");
+    insta::assert_snapshot!(mistake("1 v { R r { effort: n * (f > 0.0) } }"), @"
+    2:28 expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{` [MBG0213]
+      help: write `if f > 0.0 { n } else { 0.0 }`
+    ");
 }
 
 #[test]

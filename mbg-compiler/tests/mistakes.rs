@@ -660,7 +660,7 @@ fn a_mistake_inside_a_component_is_told_at_the_argument_behind_it() {
       help: for roll, pitch and yaw write `tilt: rot_y(1.0)`
     ");
     insta::assert_snapshot!(hinge("axis: 1, initial: hinge.angle"), @"
-    2:37 `initial` does not fit in `Revolute`: expected an initial value of numbers and parameters alone [MBG0213]
+    2:37 `initial` does not fit in `Revolute`: expected numbers and parameters alone, from which a state starts [MBG0213]
       `initial`: Angle at the start
     ");
     insta::assert_snapshot!(body("mass: [1.0, 2.0], inertia: 1.0"), @"3:20 `mass` does not fit in `Body`: expected a number or a 3×3 matrix, found a vector of 2 [MBG0204]");

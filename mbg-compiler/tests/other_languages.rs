@@ -43,6 +43,8 @@ fn choices_are_told_with_braces() {
         ("2.0 if t > 1 else 0.0", chosen),
         ("3.0 * (2.0 if t > 1 else 0.0)", chosen),
         ("3.0 * (if t > 1 then 2.0 else 0.0)", chosen),
+        ("(t > 1) * 2.0", chosen),
+        ("2.0 * (t > 1)", chosen),
         ("if t > 1 then 2.0 elseif t > 0.5 then 1.0 else 0.0", second),
         (
             "if t > 1 then 2.0 else if t > 0.5 then 1.0 else 0.0",
@@ -165,6 +167,9 @@ fn connections_and_rates_are_told_as_statements() {
         ("connect(v, k);", "v -> k;"),
         ("connect(v, w[0]);", "v -> w[0];"),
         ("der(x) = 2.0 * v.f;", "integral x = 2.0 * v.f;"),
+        ("der x = 2.0 * v.f;", "integral x = 2.0 * v.f;"),
+        ("signal x = 2.0 * v.f;", "let x = 2.0 * v.f;"),
+        ("pseudo 0 x;", "0 x pseudo;"),
         ("parameter Real mass = 1.0;", "param mass = 1.0;"),
         ("parameter Real mass(min = 0.0) = 1.0;", "param mass = 1.0;"),
         ("parameter SI.Mass mass = 1.0;", "param mass = 1.0;"),
@@ -593,6 +598,17 @@ fn conditions_are_joined_by_marks() {
         assert_eq!(typed(&resistor(slip)), [mark]);
         assert_eq!(told(&resistor(here)), "");
     }
+    for (slip, here) in [
+        ("0.0 < f < 1.0", "0.0 < f && f < 1.0"),
+        ("t > 1.0 || (0.0 <= f <= 1.0)", "0.0 <= f && f <= 1.0"),
+    ] {
+        assert_eq!(typed(&resistor(slip)), [here]);
+        assert_eq!(told(&resistor(here)), "");
+    }
+    insta::assert_snapshot!(told(&resistor("0.0 < f < 1.0")), @"
+    2:26 comparison operators cannot be chained [MBG0101]
+      help: write `0.0 < f && f < 1.0`
+    ");
     insta::assert_snapshot!(told(&resistor("f > 0.0 and t > 1.0")), @"
     2:26 `and` is no operator [MBG0101]
       help: write `&&`
@@ -612,11 +628,47 @@ fn attributes_of_rust_are_told_with_where_they_stand() {
     1:3 expected `derivative` or a documentation comment, found `derive` [MBG0101]
       help: the types of a model are `Clone`, `Copy`, `Debug` and `PartialEq`; other traits are written behind the call: `impl Trait for Model { … }`
     1:22 expected `derivative` or a documentation comment, found `cfg` [MBG0101]
-      help: what is there only then has a call of its own: `#[cfg(unix)] mbg! { … }`
+      help: a whole call alone can be left out so, and not a part of a model: `#[cfg(unix)] mbg! { … }`
     1:35 expected `derivative` or a documentation comment, found `serde` [MBG0101]
       help: attributes of Rust are not handed on; what a type is to have besides is written behind the call: `impl Trait for Model { … }`
     2:21 expected `derivative` or a documentation comment, found `allow` [MBG0101]
       help: it stands on a module around the call: `#[allow(dead_code)] mod models { … mbg! { … } }`
+    ");
+}
+
+/// A vector stands in brackets, `else if` is two words, and a comment begins with two strokes.
+#[test]
+fn marks_of_other_languages_are_told_as_those_that_are_here() {
+    for (slip, here) in [
+        ("let x = {1.0, 2.0};", "[1.0, 2.0]"),
+        (
+            "let x = 2.0 * {{1.0, 2.0}, {3.0, m.p}};",
+            "[[1.0, 2.0], [3.0, m.p]]",
+        ),
+        (
+            "Se s { effort: interpolate(t, {0.0, 1.0}, [2.0, 3.0]) } -> v;",
+            "[0.0, 1.0]",
+        ),
+        (
+            "Se s { effort: if t > 1.0 { 1.0 } elif t > 0.5 { 2.0 } else { 0.0 } } -> v;",
+            "else if",
+        ),
+        (
+            "if 1 > 2 { 1 x; x -> v; } elsif 2 > 1 { 1 y; y -> v; }",
+            "else if",
+        ),
+        ("# what follows", "//"),
+        ("causality component;", "componentwise"),
+    ] {
+        assert_eq!(typed(&masses(slip)), [here]);
+    }
+    insta::assert_snapshot!(told(&masses("let x = {1.0, 2.0};")), @"
+    2:9 expected an expression, found `{` [MBG0101]
+      help: vectors stand in brackets: write `[1.0, 2.0]`
+    ");
+    insta::assert_snapshot!(told(&driven("if t > 1.0 { 1.0 } elif t > 0.5 { 2.0 } else { 0.0 }")), @"
+    2:35 `elif` is no word here: another choice begins with two [MBG0101]
+      help: write `else if`
     ");
 }
 
@@ -677,6 +729,7 @@ fn remainders_and_whole_parts_have_their_functions() {
         ("fmod(r, 2.0)", "mod(r, 2.0)"),
         ("r.rem_euclid(2.0 * n)", "mod(r, 2.0 * n)"),
         ("modulo(r, 2.0)", "mod(r, 2.0)"),
+        ("max(r, n, 2.0 * t)", "max(r, max(n, 2.0 * t))"),
     ] {
         assert_eq!(typed(&text(elsewhere)), [here]);
         assert_eq!(told(&text(here)), "");

@@ -151,7 +151,7 @@ fn elements_of_other_tools_are_told_as_they_are_written_here() {
         )))
     };
     let behind = |element: &str| told(&masses(&format!("v -> {element} x_d {{ effort: 1.0 }};")));
-    insta::assert_snapshot!(["MR", "De", "Df", "SS", "RS", "IC", "R[2]"].map(within).join("\n"), @"
+    insta::assert_snapshot!(["MR", "De", "Df", "SS", "RS", "IC", "L", "Sw", "R[2]"].map(within).join("\n"), @"
     2:7 expected an element, found `MR` [MBG0101]
       help: write `R`: any law may be modulated by what it reads
     2:7 expected an element, found `De` [MBG0101]
@@ -164,6 +164,10 @@ fn elements_of_other_tools_are_told_as_they_are_written_here() {
       help: write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: `Sf entropy { flow: name.e * name.f / node.e }`
     2:7 expected an element, found `IC` [MBG0101]
       help: write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`
+    2:7 expected an element, found `L` [MBG0101]
+      help: write `I`: a coil is an inertia, `I name { inertia: … }` with its inductance
+    2:7 expected an element, found `Sw` [MBG0101]
+      help: a switch is `R name { conductance: if … { … } else { … } }`, or on the average an `MTF`
     2:8 expected the name of the element after `R`, found `[` [MBG0101]
       help: an element has the size of its junction: write `R x_d`
     ");

@@ -19,6 +19,7 @@ fn an_instance_in_another_order_is_told_as_it_is_written() {
         "hinge: Revolute (ground, arm) { axis: 0 };",
         "Revolute hinge { axis: 0 } (ground, arm);",
         "hinge = Revolute { axis: 0 } (ground, arm);",
+        "ground -> Revolute hinge { axis: 0 } -> arm;",
     ];
     for slip in slips {
         let written = "hinge: Revolute { axis: 0 } (ground, arm);";
@@ -143,8 +144,15 @@ fn quotients_that_are_not_whole_are_told_with_their_whole_part() {
     2:13 expected a whole number, found `(n + 1) / 2`, which is 3.5 [MBG0217]
       help: its whole part is `((n + 1) - (n + 1) % 2) / 2`
     ");
-    let help = typed(&text("(n + 1) / 2")).remove(0);
-    assert_eq!(told(&text(&help)), "");
+    for (bound, mended) in [
+        ("(n + 1) / 2", "((n + 1) - (n + 1) % 2) / 2"),
+        ("n + 1 - (n + 1) / 2", "((n + 1) - (n + 1) % 2) / 2"),
+        ("mod(n + 1, 4)", "(n + 1) % 4"),
+        ("floor(n / 4)", "(n - n % 4) / 4"),
+    ] {
+        let help = typed(&text(bound)).remove(0);
+        assert_eq!((help.as_str(), told(&text(&help))), (mended, String::new()));
+    }
     insta::assert_snapshot!(told("model M {\n1 a[7/2] { I i { inertia: 1.0 } } }"), @"
     2:6 expected `]` after the dimension, found `/` [MBG0103]
       help: a dimension is a number as it stands, such as `[3]`; `for k in 0..n { … }` repeats a computed number of times
@@ -241,6 +249,11 @@ fn functions_that_laws_lack_are_told_with_what_stands_for_them() {
     }
     for (law, choice) in [
         ("step(t - 1.0)", "(if t < 1.0 { 0.0 } else { 1.0 })"),
+        ("step(t, 1.0)", "(if t < 1.0 { 0.0 } else { 1.0 })"),
+        (
+            "pwm(t, 0.5 * r, 1e-3)",
+            "(if mod(t, 1e-3) < (0.5 * r) * 1e-3 { 1.0 } else { 0.0 })",
+        ),
         (
             "2.0 * heaviside(2.0 * t + r)",
             "(if (2.0 * t + r) < 0.0 { 0.0 } else { 1.0 })",

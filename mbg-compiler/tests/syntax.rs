@@ -186,6 +186,14 @@ fn broken_elements_leave_their_junction_and_their_neighbours() {
 #[test]
 fn no_model_is_called_as_a_scalar_of_the_code() {
     insta::assert_snapshot!(errors("model T { 1 v { I b { inertia: 1.0 } } }").join(""), @"1:7: a model cannot be called `T`: the code made of it calls another type so");
+    // The code around finds what stands in for it all the same.
+    for (name, aliases) in [("T", 2), ("E", 2), ("f64", 0)] {
+        let text = format!("model {name} {{ 1 v {{ I b {{ inertia: 1.0 }} }} }}");
+        let types = mbg_compiler::items(text.parse().unwrap(), &mut Diagnostics::new()).types;
+        let declared = [name.to_owned(), format!("{name}Parameters")];
+        let declared = declared.map(|name| types.to_string().contains(&format!("type {name} <")));
+        assert_eq!(declared.iter().filter(|it| **it).count(), aliases);
+    }
 }
 
 #[test]

@@ -610,6 +610,18 @@ fn a_unit_that_makes_roots_is_told_at_its_law() {
     ");
     assert_eq!(reports::told(&text("")), "");
     assert_eq!(reports::told(&text(": N*s/m")), "");
+    let windings = |modulus: &str| {
+        format!(
+            "model M {{ 1 dq[2] {{ I w {{ inertia: 2.0 }} R c {{ resistance: 1.0 }} }} 1 s {{ I j {{ inertia: 1.0 }} }}
+dq -> GY m {{ effort: [[{modulus} * dq.f[0], {modulus} * dq.f[1]]] }} -> s; output w: rad/s = s.f; }}"
+        )
+    };
+    insta::assert_snapshot!(reports::told(&windings("1")), @"
+    2:22 the effort of `dq` could only be in `kg^(1/2)*m/s^2`, if effort times flow is power [MBG0501]
+      help: a number with a decimal point carries any unit as a factor: `1.0 * …`; a whole number counts
+      help: or write `1 dq[2] pseudo` where effort times flow is no power, as temperature times heat flow
+    ");
+    assert_eq!(reports::told(&windings("1.0")), "");
 }
 
 /// A voltage times a current per area is no power.

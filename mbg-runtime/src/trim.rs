@@ -8,7 +8,7 @@ use crate::beside::{BESIDE, ROUNDING, aside};
 use crate::search::{Asked, Search};
 use crate::selection::{Selection, is_named};
 use crate::solve::{Row, Rows, Sizes};
-use crate::{Convertible, Linearised, Untrimmed};
+use crate::{Convertible, Linearised, Trouble, Untrimmed};
 
 /// Points at which the model is linearised at most.
 const ITERATIONS: usize = 60;
@@ -198,7 +198,11 @@ where
     /// change alike, a point where constraints depend on each other, and what [`System::close`](crate::System::close) and
     /// [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
-        self.search()
+        // From there no way leads back.
+        match Trouble::of_input(S::META, &self.start.input) {
+            Some(trouble) => Err(Untrimmed::Trouble(trouble)),
+            None => self.search(),
+        }
     }
 
     /// An input that is as arbitrary as forces are where constraints depend on each other: closing leaves states open by more than
@@ -557,6 +561,9 @@ fn beyond<const N: usize, const P: usize>(
 
 #[cfg(all(test, feature = "macros"))]
 mod tests {
+    use std::format;
+    use std::string::ToString;
+
     use super::*;
 
     crate::mbg! {
@@ -641,7 +648,13 @@ mod tests {
         let model = Pushed::<f64>::new(PushedParameters::default()).unwrap();
         for force in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
             let trimmed = Trim::new(&model).input(&[force]).fix("force").solve();
-            assert!(trimmed.is_err(), "{trimmed:?}");
+            assert_eq!(
+                trimmed.unwrap_err().to_string(),
+                "input `force` is not finite"
+            );
+            let wanted = Trim::new(&model).output("way", force).solve();
+            let told = wanted.unwrap_err().to_string();
+            assert_eq!(told, format!("`way` is to be {force:e}, which nothing is"));
         }
     }
 }

@@ -95,11 +95,10 @@ impl core::fmt::Display for Untrimmed {
                 reached,
                 is_fixed,
             } => {
-                let of = if is_output { "" } else { "the rate of " };
-                write!(
-                    formatter,
-                    "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
-                )?;
+                write_missed(formatter, (name, is_output), [wanted, reached])?;
+                if !wanted.is_finite() {
+                    return Ok(());
+                }
                 write_choices(formatter, name, (is_output, is_fixed))
             }
             Self::Apart {
@@ -176,6 +175,25 @@ fn write_unknown(
         "state" | "state or input" => ": a position or an angle that nothing reads is none",
         _ => "",
     })
+}
+
+/// A condition that is not met, or that nothing can meet.
+fn write_missed(
+    formatter: &mut core::fmt::Formatter<'_>,
+    (name, is_output): (&str, bool),
+    [wanted, reached]: [f64; 2],
+) -> core::fmt::Result {
+    let of = if is_output { "" } else { "the rate of " };
+    match wanted.is_finite() {
+        true => write!(
+            formatter,
+            "{of}`{name}` is {reached:e} instead of {wanted:e}, and "
+        ),
+        false => write!(
+            formatter,
+            "{of}`{name}` is to be {wanted:e}, which nothing is"
+        ),
+    }
 }
 
 /// What may be chosen where a condition is not met.

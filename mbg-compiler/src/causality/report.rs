@@ -10,7 +10,7 @@ use super::explain::{self, Chain};
 use super::outlook::Outlook;
 pub use super::report_conflict::conflict_diagnostics;
 use super::uniform::Verdict;
-use super::ways::{Between, through, turned};
+use super::ways::{Between, apart, through, turned};
 use super::words::{self, ChainStep};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
@@ -23,9 +23,6 @@ pub const JACOBIAN: &str = "replace the joints between two bodies `a` and `b` by
     `1 gimbals[3] { C spring { … } R damper { … } } 0 joint[3]; a -> joint; \
     gimbals -> MTF jacobian { flow: jacobian_xyz(spring.q) } -> joint; \
     joint -> MTF turn { flow: transpose(rot_x(spring.q.x) * rot_y(spring.q.y) * rot_z(spring.q.z)) } -> b;`";
-/// What to do about inertias that depend on each other by the physics.
-pub const APART: &str = "give each inertia a junction of its own and put a compliance between them: \
-    `a -> between; between -> b; 0 between { C spring { stiffness: … } }`";
 
 /// Longer chains are shortened.
 const LONGEST_CHAIN: usize = 40;
@@ -155,12 +152,22 @@ fn ways_out(
     helps.extend(outlook.acceptance(storages.map(|id| &graph.elements[id.0])));
     if !outlook.is_soluble() {
         if !chain.integral.is_empty() {
-            let written = element.name.rsplit('.').next().unwrap_or_default();
-            let written = format!("{} {written}", words::symbol(element.kind));
-            helps.push(format!("merge the storages into one: `{written} {{ … }}`"));
-            if element.rule == Rule::PreferFlowOut {
-                helps.push(APART.to_owned());
+            // What follows from several states is no second one of any of them.
+            if chain.integral.len() == 1 {
+                helps.push(format!(
+                    "merge the storages into one: `{}`",
+                    written(element)
+                ));
             }
+            helps.push(match element.rule {
+                Rule::PreferFlowOut => apart(graph, chain.storage),
+                _ => {
+                    let storages = [&chain.storage].into_iter().chain(&chain.integral);
+                    let storages = storages.map(|id| &graph.elements[id.0]);
+                    let owners = storages.map(|it| it.instance().unwrap_or(&it.name).to_owned());
+                    format!("put a resistor in series with one of {}", listing(owners))
+                }
+            });
         } else {
             let mut fixed = chain.fixed.iter();
             let source = fixed.find_map(|id| Some((id, through(graph, *id, Between::Resistor)?)));
@@ -192,6 +199,14 @@ fn ways_out(
     let more = outlook.helps().into_iter();
     helps.extend(more.filter(|help| !known.contains(help)));
     helps
+}
+
+/// A storage as its statement begins.
+fn written(element: &Element) -> String {
+    match element.instance() {
+        Some(instance) => format!("{instance}: …"),
+        None => format!("{} {} {{ … }}", words::symbol(element.kind), element.name),
+    }
 }
 
 fn chain_notes(graph: &BondGraph, verdict: &Verdict, chain: &Chain) -> Vec<String> {

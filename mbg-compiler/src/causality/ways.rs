@@ -92,6 +92,31 @@ pub fn beside(graph: &BondGraph, id: ElementId) -> Option<(&End, usize)> {
     })
 }
 
+/// What to do about inertias that depend on each other by the physics: this one moves by itself, behind a compliance.
+#[must_use]
+pub fn apart(graph: &BondGraph, id: ElementId) -> String {
+    let element = &graph.elements[id.0];
+    let place = beside(graph, id).filter(|_| element.instance().is_none());
+    let Some((far, dimension)) = place else {
+        return "give each inertia a junction of its own and put a compliance between them: \
+            `a -> between; between -> b; 0 between { C spring { stiffness: … } }`"
+            .to_owned();
+    };
+    let [own, between] =
+        [format!("{}_own", element.name), "between".to_owned()].map(|name| free_name(graph, &name));
+    let [junction, node] = [(JunctionKind::One, &own), (JunctionKind::Zero, &between)]
+        .map(|(kind, name)| declaration(kind, name, dimension));
+    let (symbol, name, place) = (
+        words::symbol(element.kind),
+        &element.name,
+        graph.end_name(far),
+    );
+    format!(
+        "give `{name}` a junction of its own and put a compliance between: in the place of `{symbol} {name}` write \
+         `{junction} {{ {symbol} {name} {{ … }} }} {node} {{ C spring {{ stiffness: … }} }} {place} -> {between}; {between} -> {own};`"
+    )
+}
+
 /// How a transformer without an inverse is written whose matrix was meant for the efforts.
 #[must_use]
 pub fn turned(graph: &BondGraph, id: ElementId) -> Option<String> {

@@ -12,6 +12,7 @@ use syn::{Attribute, Expr, ExprLit, Lit, Meta, MetaNameValue, UnOp};
 use super::Builder;
 use super::constants::without_point;
 use super::definitions::{Definition, Progress};
+use super::driven;
 use super::elsewhere;
 use super::expressions::Value;
 use super::indices::component_index;
@@ -20,7 +21,7 @@ use super::scope::Entity;
 use crate::codes;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::symbolic::Rate;
-use crate::syntax::dump;
+use crate::syntax::{ast, dump};
 
 /// Mistakes that a value of the wrong kind makes.
 const OF_VALUES: [Code; 5] = [
@@ -173,9 +174,13 @@ impl Builder<'_> {
             let help = direction(definition.value)
                 .and_then(|direction| along(&name.to_string(), &value, direction, tilts));
             report.helps.splice(0..0, help);
-            if let Some(help) = without_point(definition.value) {
+            let value = definition.value;
+            if let Some(help) = without_point(value).or_else(|| elsewhere::whole_call(value)) {
                 report.helps = vec![help];
             }
+        }
+        if report.code == codes::EXPRESSION {
+            report.helps.extend(self.driven(culprit, component));
         }
         let is_zero = elsewhere::number(definition.value) == Some(0.0);
         if report.code == codes::NOT_FINITE && is_zero {
@@ -189,15 +194,34 @@ impl Builder<'_> {
         report
     }
 
-    /// What to type for a body of whose mass and inertia one is zero.
-    fn without_inertia(&self, zero: &Expr) -> Option<String> {
-        let called = self.called.values().map(|(_, instance)| *instance);
-        let (instance, argument) = called.into_iter().find_map(|instance| {
+    /// The instance that is given this value, with its argument.
+    fn given_to(&self, value: &Expr) -> Option<(&ast::Instance, &ast::Field)> {
+        let mut called = self.called.values().map(|(_, instance)| *instance);
+        called.find_map(|instance| {
             let mut arguments = instance.arguments.iter();
             let argument =
-                arguments.find(|it| it.value.as_ref().is_some_and(|it| ptr::eq(it, zero)));
+                arguments.find(|it| it.value.as_ref().is_some_and(|it| ptr::eq(it, value)));
             argument.map(|argument| (instance, argument))
-        })?;
+        })
+    }
+
+    /// What to type for a value of the start that moves, or for a rest that does.
+    fn driven(&self, culprit: usize, component: &str) -> Option<String> {
+        let Definition { scope, value, .. } = self.definitions[culprit];
+        if !self.moves_by_itself(scope, Some(value)) {
+            return None;
+        }
+        let (instance, argument) = self.given_to(value)?;
+        let component = self.components.get(component)?;
+        match argument.name == "rest" {
+            true => driven::by_motor(instance, component, argument),
+            false => driven::by_rate(instance, component),
+        }
+    }
+
+    /// What to type for a body of whose mass and inertia one is zero.
+    fn without_inertia(&self, zero: &Expr) -> Option<String> {
+        let (instance, argument) = self.given_to(zero)?;
         let (name, at) = (&instance.name, dump::reference(&instance.connections[0]));
         let (component, zero) = (instance.component.to_string(), argument.name.to_string());
         let given = |word: &str| {
@@ -293,7 +317,7 @@ fn turned([x, y, z]: [f64; 3]) -> String {
 }
 
 /// What documentation comments say.
-fn text(documentation: &[Attribute]) -> String {
+pub(super) fn text(documentation: &[Attribute]) -> String {
     let lines = documentation.iter().filter_map(|line| match &line.meta {
         Meta::NameValue(MetaNameValue {
             value:

@@ -177,6 +177,10 @@ impl Constants {
 
     /// What is wrong with a number that is known and no whole number, or a larger one than can be held.
     fn broken(&self, expression: &Expr) -> Option<Box<Diagnostic>> {
+        // Beside what is wrong with it a part may be right.
+        if self.number(expression).is_some() {
+            return None;
+        }
         let refused = |which: String| {
             let text = dump::expression(expression);
             let message = format!("expected a whole number, found `{text}`, which {which}");
@@ -189,7 +193,7 @@ impl Constants {
             Expr::Unary(unary) => return self.broken(&unary.expr),
             Expr::Lit(literal) => {
                 let is_whole = matches!(&literal.lit, Lit::Int(it) if it.suffix().is_empty());
-                return (is_whole && self.number(expression).is_none()).then(large);
+                return is_whole.then(large);
             }
             Expr::Binary(binary) => binary,
             _ => return None,
@@ -222,7 +226,8 @@ impl Constants {
             dump::expression(expression)
         );
         let report = error(codes::WHOLE_NUMBER, expression.span(), message);
-        if let Some(help) = without_point(expression) {
+        if let Some(help) = without_point(expression).or_else(|| elsewhere::whole_call(expression))
+        {
             return Box::new(report.help(help));
         }
         let mut named = mentioned(expression).into_iter();

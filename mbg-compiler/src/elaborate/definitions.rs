@@ -265,7 +265,7 @@ pub(super) fn by_component(
     if let Some(help) = longer_range(number, dimension) {
         return Box::new(report.help(help));
     }
-    match dump::column(number, dimension) {
+    match dump::column(elsewhere::bare(number), dimension) {
         Some(all) => Box::new(report.help(format!("write each component, such as `{all}`"))),
         None => report,
     }

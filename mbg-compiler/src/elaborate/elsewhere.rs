@@ -1,8 +1,9 @@
 //! Words of other languages and tools, and what is written here instead.
 
-use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::ToTokens;
-use syn::{BinOp, Expr, ExprBinary, Lit, Member, UnOp};
+use syn::spanned::Spanned;
+use syn::{BinOp, Expr, ExprBinary, Lit, Member, Stmt, UnOp};
 
 use super::constants::plain_name;
 use super::indices::component_index;
@@ -111,6 +112,11 @@ const WORDS: &[(&str, &[&str], &str)] = &[
         "interp1",
         &["places", "values", "x"],
         "interpolate(x, places, values)",
+    ),
+    (
+        "pwm",
+        &["time", "duty", "period"],
+        "(if mod(time, period) < duty * period { 1.0 } else { 0.0 })",
     ),
     ("cross", &["a", "b"], "skew(a) * b"),
     ("dot", &["a", "b"], "(transpose(a) * b)"),
@@ -378,6 +384,7 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         ("der" | "ddt" | "derivative", [of]) => return Some(rate(of)),
         ("integral" | "integrate" | "int", [of]) => return Some(integral(of)),
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
+        ("step" | "heaviside" | "Heaviside", [time, at]) => return Some(step_at(time, at)),
         ("delay", [value, by]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
         _ if OUTSIDE.contains(&word) => {
@@ -490,9 +497,18 @@ fn step(since: &Expr) -> String {
         }
         since => ("(if a < 0.0 { 0.0 } else { 1.0 })", vec![("a", since)]),
     };
+    or_from_outside(&filled(text, &places))
+}
+
+/// The same of a time and that of the jump.
+fn step_at(time: &Expr, jump: &Expr) -> String {
+    let places = [("a", time), ("b", jump)];
+    or_from_outside(&filled("(if a < b { 0.0 } else { 1.0 })", &places))
+}
+
+fn or_from_outside(choice: &str) -> String {
     format!(
-        "write `{}`, or give it from outside, by an `input` that tells when it jumps, as a `Pulse` does",
-        filled(text, &places)
+        "write `{choice}`, or give it from outside, by an `input` that tells when it jumps, as a `Pulse` does"
     )
 }
 
@@ -578,10 +594,69 @@ pub(super) fn remainder(remainder: &ExprBinary) -> String {
     format!("write `{}`", filled("mod(a, b)", &places))
 }
 
+/// What to type for a condition that is read as a number, or times one, and where it stands.
+pub(super) fn as_choice(binary: &ExprBinary) -> Option<(Span, String)> {
+    let (condition, value) = match (is_condition(binary), &binary.op) {
+        (true, _) => (binary, "1.0".to_owned()),
+        (false, BinOp::Mul(_)) => {
+            let sides = [(&binary.left, &binary.right), (&binary.right, &binary.left)];
+            sides
+                .into_iter()
+                .find_map(|(condition, other)| match bare(condition) {
+                    Expr::Binary(inner) if is_condition(inner) => {
+                        Some((inner, dump::expression(bare(other))))
+                    }
+                    _ => None,
+                })?
+        }
+        _ => return None,
+    };
+    let text = dump::expression(&Expr::Binary(condition.clone()));
+    let choice = format!("if {text} {{ {value} }} else {{ 0.0 }}");
+    Some((condition.op.span(), choice))
+}
+
+/// Whether this is a comparison or joins some.
+fn is_condition(binary: &ExprBinary) -> bool {
+    matches!(
+        binary.op,
+        BinOp::Lt(_)
+            | BinOp::Le(_)
+            | BinOp::Gt(_)
+            | BinOp::Ge(_)
+            | BinOp::Eq(_)
+            | BinOp::Ne(_)
+            | BinOp::And(_)
+            | BinOp::Or(_)
+    )
+}
+
+/// A product of two values.
+pub(super) fn product(left: &Expr, right: &Expr) -> String {
+    filled("a * b", &[("a", left), ("b", right)])
+}
+
 /// The whole part of a quotient of whole numbers.
 pub(super) fn whole_part(quotient: &ExprBinary) -> String {
     let places = [("a", &*quotient.left), ("b", &*quotient.right)];
     filled("(a - a % b) / b", &places)
+}
+
+/// What to type where whole numbers are wanted for a function that laws have.
+pub(super) fn whole_call(expression: &Expr) -> Option<String> {
+    let Expr::Call(call) = bare(expression) else {
+        return None;
+    };
+    let arguments: Vec<&Expr> = call.args.iter().collect();
+    let name = plain_name(&call.func)?;
+    let written = match (name.trim_start_matches("r#"), &arguments[..]) {
+        ("mod", [a, b]) => filled("a % b", &[("a", a), ("b", b)]),
+        ("floor", [Expr::Binary(quotient)]) if matches!(quotient.op, BinOp::Div(_)) => {
+            whole_part(quotient)
+        }
+        _ => return None,
+    };
+    Some(format!("of whole numbers write `{written}`"))
 }
 
 /// The operand at the end of an expression.
@@ -601,11 +676,15 @@ fn first(expression: &Expr) -> &Expr {
     }
 }
 
-/// An expression without parentheses around it.
-fn bare(expression: &Expr) -> &Expr {
+/// An expression without parentheses or braces around it.
+pub(super) fn bare(expression: &Expr) -> &Expr {
     match expression {
         Expr::Paren(inner) => bare(&inner.expr),
         Expr::Group(inner) => bare(&inner.expr),
+        Expr::Block(inner) => match &inner.block.stmts[..] {
+            [Stmt::Expr(value, None)] => bare(value),
+            _ => expression,
+        },
         other => other,
     }
 }

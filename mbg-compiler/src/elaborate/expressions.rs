@@ -389,14 +389,17 @@ impl<N: Names> Evaluator<'_, N> {
         if matches!(binary.op, BinOp::Rem(_)) {
             return self.whole_remainder(binary);
         }
+        let no_condition =
+            "expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{`";
+        if let Some((place, choice)) = elsewhere::as_choice(binary) {
+            let report = error(codes::EXPRESSION, place, no_condition);
+            return Err(Box::new(report.help(format!("write `{choice}`"))));
+        }
         if !matches!(
             binary.op,
             BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_)
         ) {
-            return fail(
-                span,
-                "expected +, -, * or /; comparisons, `&&` and `||` stand between `if` and `{`",
-            );
+            return fail(span, no_condition);
         }
         let left = self.evaluate(&binary.left)?;
         let right = self.evaluate(&binary.right)?;

@@ -365,7 +365,7 @@ impl<'a> Builder<'a> {
         self.claim(scope, flow, &initial, value.span());
         let varies = |initial: &Expression| self.pool.rate(*initial) == Rate::Varying;
         if self.claims.is_none() && initial.iter().any(varies) {
-            let message = "expected an initial value of numbers and parameters alone";
+            let message = "expected numbers and parameters alone, from which a state starts";
             return Err(Box::new(error(codes::EXPRESSION, value.span(), message)));
         }
         Ok(initial)
@@ -378,7 +378,7 @@ impl<'a> Builder<'a> {
         place: Span,
     ) -> Result<()> {
         if self.claims.is_none() && self.pool.rate(initial) == Rate::Varying {
-            let message = "expected an initial value of numbers and parameters alone";
+            let message = "expected numbers and parameters alone, from which a state starts";
             return Err(Box::new(error(codes::EXPRESSION, place, message)));
         }
         self.states[state].initial = initial;
@@ -484,6 +484,7 @@ impl<'a> Builder<'a> {
     /// Hands over.
     pub(super) fn finish(mut self, model: &ast::Model) -> Elaborated {
         let rings = self.rings();
+        let in_time = self.in_time();
         Elaborated {
             documentation: model.documentation.clone(),
             visibility: model.visibility.clone(),
@@ -498,6 +499,7 @@ impl<'a> Builder<'a> {
             assumptions: self.assumptions,
             rings,
             moving_inputs: self.moving_inputs,
+            in_time,
         }
     }
 }

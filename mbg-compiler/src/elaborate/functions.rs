@@ -58,7 +58,7 @@ impl<N: Names> Evaluator<'_, N> {
 
     pub(super) fn function(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
         let text = name.unraw().to_string();
-        let count = |expected: usize| check_count(name, expected, arguments.len());
+        let count = |expected: usize| check_count(name, expected, arguments);
         match text.as_str() {
             "sin" | "cos" => {
                 count(1)?;
@@ -156,7 +156,7 @@ impl<N: Names> Evaluator<'_, N> {
                 }
             }));
         };
-        check_count(name, function.arity(), arguments.len())?;
+        check_count(name, function.arity(), arguments)?;
         let values: Result<Vec<_>> = arguments
             .iter()
             .map(|argument| self.scalar(argument))
@@ -230,7 +230,8 @@ fn no_curve(name: &Ident, arguments: &[Expr]) -> Diagnostic {
 }
 
 /// A function takes so many arguments.
-fn check_count(name: &Ident, expected: usize, found: usize) -> Result<()> {
+fn check_count(name: &Ident, expected: usize, arguments: &[Expr]) -> Result<()> {
+    let found = arguments.len();
     if expected == found {
         return Ok(());
     }
@@ -240,5 +241,21 @@ fn check_count(name: &Ident, expected: usize, found: usize) -> Result<()> {
         "arguments"
     };
     let message = format!("`{name}` takes {expected} {noun}, found {found}");
-    fail(name.span(), message)
+    let report = error(codes::EXPRESSION, name.span(), message);
+    Err(Box::new(match of_several(name, arguments) {
+        Some(written) => report.help(format!("write `{written}`")),
+        None => report,
+    }))
+}
+
+/// The least or the greatest of more than two values.
+fn of_several(name: &Ident, arguments: &[Expr]) -> Option<String> {
+    let (last, others) = arguments.split_last()?;
+    let nested = others
+        .iter()
+        .rev()
+        .fold(dump::expression(last), |inner, outer| {
+            format!("{name}({}, {inner})", dump::expression(outer))
+        });
+    (["min", "max"].iter().any(|it| name == it) && others.len() > 1).then_some(nested)
 }

@@ -5,6 +5,7 @@ use proc_macro2::Ident;
 use super::Builder;
 use super::calls::by_ports;
 use super::conditions::no_word;
+use super::driven;
 use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
@@ -187,8 +188,14 @@ impl<'a> Builder<'a> {
                     continue;
                 }
                 if let Some(here) = tools::parameter(&argument.name, &names) {
-                    let value = elsewhere::value_text(argument.value.as_ref());
-                    self.tell(scope, report.help(format!("write `{here}: {value}`")));
+                    let value = argument.value.as_ref();
+                    let is_start = here.starts_with("initial");
+                    let by_rate = driven::by_rate(instance, component)
+                        .filter(|_| is_start && self.moves_by_itself(scope, value));
+                    let help = by_rate.unwrap_or_else(|| {
+                        format!("write `{here}: {}`", elsewhere::value_text(value))
+                    });
+                    self.tell(scope, report.help(help));
                     continue;
                 }
                 let way = tools::by_ratio(instance, argument)

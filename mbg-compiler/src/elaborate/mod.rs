@@ -18,6 +18,7 @@ mod constants;
 mod curves;
 mod declare;
 mod definitions;
+mod driven;
 mod elsewhere;
 mod energies;
 pub mod expressions;

@@ -9,6 +9,7 @@ use proc_macro2::Ident;
 use syn::Expr;
 
 use super::Builder;
+use super::blame::text;
 use super::definitions::Progress;
 use super::expressions::Value;
 use super::frames::{Frame, IN_SPACE};
@@ -121,35 +122,78 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Components of the library that the user calls, by their scopes.
+    fn called_by_user(&self) -> Vec<(usize, &'a Instance)> {
+        let called = self.called.iter();
+        let by_user = called.filter(|(inner, (scope, _))| {
+            self.scopes[**inner].library.is_some() && self.scopes[*scope].library.is_none()
+        });
+        by_user
+            .map(|(inner, (_, instance))| (*inner, *instance))
+            .collect()
+    }
+
     /// What a component of the library hands on is told where it got it.
     fn geometry(&mut self) -> Vec<Geometry<'a>> {
         let mut found = Vec::new();
-        for (inner, (scope, instance)) in &self.called {
-            if self.scopes[*inner].library.is_none() || self.scopes[*scope].library.is_some() {
-                continue;
-            }
+        for (inner, instance) in self.called_by_user() {
             for argument in &instance.arguments {
                 let name = argument.name.to_string();
-                let entity = self.scopes[*inner].names.get(&name);
-                if GEOMETRY.contains(&name.as_str())
-                    && let Some(Entity::Definition(id)) = entity
-                    && let Progress::Known(value) = &self.definitions[*id].progress
-                {
-                    let entries = match value {
-                        Value::Scalar(value) => vec![*value],
-                        Value::Matrix(product) => product.to_matrix(self.pool).entries,
-                    };
+                if GEOMETRY.contains(&name.as_str()) {
                     found.push(Geometry {
-                        inner: *inner,
+                        inner,
                         instance,
                         name: &argument.name,
                         value: argument.value.as_ref(),
-                        entries,
+                        entries: self.given_entries(inner, &name),
                     });
                 }
             }
         }
         found
+    }
+
+    /// What components of the library are given that changes with time, but for displacements, which do, and for what is given
+    /// with its rate.
+    pub(super) fn in_time(&mut self) -> BTreeMap<String, Vec<[String; 2]>> {
+        let mut found: BTreeMap<String, Vec<[String; 2]>> = BTreeMap::new();
+        for (inner, instance) in self.called_by_user() {
+            let names = instance.arguments.iter().map(|argument| &argument.name);
+            for name in names.filter(|name| *name != "displacement") {
+                let name = name.to_string();
+                let given = self.given_entries(inner, &name);
+                let rate = format!("{name}_rate");
+                let has_rate = self.scopes[inner].names.contains_key(&rate);
+                if !has_rate && symbols(self.pool, &given).contains(&Symbol::Time) {
+                    let path = self.scopes[inner].prefix.trim_end_matches('.');
+                    let told = self.documentation(inner, &name);
+                    found.entry(path.to_owned()).or_default().push([name, told]);
+                }
+            }
+        }
+        found
+    }
+
+    /// What is said of a parameter of a component in use.
+    fn documentation(&self, inner: usize, name: &str) -> String {
+        let parameter = match self.scopes[inner].names.get(name) {
+            Some(Entity::Definition(id)) => self.definitions[*id].parameter,
+            _ => None,
+        };
+        parameter.map_or_else(String::new, |it| text(&it.documentation))
+    }
+
+    /// The values that a parameter of a component in use has, as far as they are known.
+    fn given_entries(&mut self, inner: usize, name: &str) -> Vec<Expression> {
+        let entity = self.scopes[inner].names.get(name);
+        let Some(Entity::Definition(id)) = entity else {
+            return Vec::new();
+        };
+        match &self.definitions[*id].progress {
+            Progress::Known(Value::Scalar(value)) => vec![*value],
+            Progress::Known(Value::Matrix(product)) => product.to_matrix(self.pool).entries,
+            _ => Vec::new(),
+        }
     }
 
     /// Integrals that no flow moves, by what they read.

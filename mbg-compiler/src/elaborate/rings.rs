@@ -44,6 +44,14 @@ impl Ring {
             _ => "PlanarCut",
         }
     }
+
+    /// What opens it.
+    pub(crate) fn opened(&self) -> String {
+        let (cut, [first, second]) = (self.cut(), &self.components);
+        format!(
+            "put a `{cut}` in the place of a joint of the ring that `{first}` and `{second}` close"
+        )
+    }
 }
 
 /// Two scopes and what they tell of one frame.

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use proc_macro2::Ident;
 use syn::Expr;
 
+use super::elsewhere::bare;
 use super::frames::{IN_PLANE, IN_SPACE};
 use crate::graph::{ElementKind, JunctionKind};
 use crate::syntax::words::{ELEMENTS as KINDS, is_two_port, near, nearest};
@@ -571,7 +572,7 @@ pub(super) fn is_way(name: &Ident) -> bool {
 
 /// What to type where a number stands for such a way, which has a direction.
 pub(super) fn along_an_axis(number: &Expr) -> String {
-    let number = dump::expression(number);
+    let number = dump::expression(bare(number));
     format!("write each component: `[{number}, 0.0, 0.0]` is a way along x")
 }
 

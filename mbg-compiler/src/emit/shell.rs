@@ -22,6 +22,7 @@ pub(super) fn items(model: &ast::Model, size: &Ident) -> Items {
     let (visibility, name) = (&model.visibility, &model.name);
     let names = format_ident!("{}Parameters", name);
     let mut items = parameters(model, &names, size);
+    items.types.extend(aliases(model));
     let behaviour = behaviour(name, size);
     let scalar = quote!(scalar: ::core::marker::PhantomData<T>);
     let declared = structure(visibility, name, scalar);
@@ -47,6 +48,24 @@ pub(super) fn items(model: &ast::Model, size: &Ident) -> Items {
         }
     });
     items
+}
+
+/// The names that the code around uses of a model which is called as a parameter of the types here: those of Rust's own types
+/// mean these there, too.
+fn aliases(model: &ast::Model) -> TokenStream {
+    let written = model.written.as_ref();
+    let Some(written) = written.filter(|it| it.to_string().starts_with(char::is_uppercase)) else {
+        return TokenStream::new();
+    };
+    let visibility = &model.visibility;
+    let aliases = ["", "Parameters"].map(|end| {
+        let [alias, name] = [written, &model.name].map(|name| format_ident!("{name}{end}"));
+        quote! {
+            #[doc(hidden)]
+            #visibility type #alias<Scalar = ::core::primitive::f64> = #name<Scalar>;
+        }
+    });
+    aliases.into_iter().collect()
 }
 
 /// The type of the parameters. An array of no known size is no iterator, and what it would iterate over is to Rust whatever

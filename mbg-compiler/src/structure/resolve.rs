@@ -12,7 +12,7 @@ use crate::compile::text;
 use crate::diagnostics::{Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Equation, Owner, Scalars};
-use crate::graph::ElementId;
+use crate::graph::{ElementId, outermost_instance};
 use crate::symbolic::{Expression, Pool};
 
 /// Equations with their solution.
@@ -76,23 +76,33 @@ pub fn resolve(
     }
 }
 
-/// Storages between which something moves without inertia, or is held twice.
+/// Storages between which something moves without inertia, or is held twice: the joint that moves so, where there is one.
 fn report_unheld(model: &Elaborated, selection: &Selection, diagnostics: &mut Diagnostics) {
     let graph = &model.graph;
     let lost: BTreeSet<ElementId> = selection.lost.iter().map(|lost| lost.element).collect();
     let names = listing(lost.iter().map(|id| graph.elements[id.0].name.clone()));
-    let span = match lost.first() {
-        Some(id) => graph.origins.span(graph.elements[id.0].origin),
+    let dependent = lost.first().map(|id| graph.elements[id.0].origin);
+    let idle = selection.idle.first().map(|id| &graph.junctions[id.0]);
+    let span = match idle.map(|it| it.origin).or(dependent) {
+        Some(origin) => graph.origins.span(origin),
         None => model.name.span(),
     };
     let message = format!("the efforts between dependent storages are undetermined: at {names}");
-    let report = error(codes::SINGULAR_JUNCTIONS, span, message)
-        .note("something there moves without inertia, or is held twice");
-    diagnostics.report(
-        report
+    let report = error(codes::SINGULAR_JUNCTIONS, span, message);
+    diagnostics.report(match idle {
+        Some(idle) => {
+            let joint = outermost_instance(&idle.name, None).unwrap_or(&idle.name);
+            report
+                .note(format!("what `{joint}` leads to can move without moving any inertia"))
+                .help(format!(
+                    "give the frame behind `{joint}` a body with an inertia: a `PointMass` has none about the lines through it"
+                ))
+        }
+        None => report
+            .note("something there moves without inertia, or is held twice")
             .help("give every frame that can turn or move by itself a body with an inertia")
             .help("or put a `Cut` in the place of one of two joints that hold one motion"),
-    );
+    });
 }
 
 /// A nonlinear loop whose Jacobian is identically singular: its equations, and the slopes that show it.

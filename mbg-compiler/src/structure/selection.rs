@@ -11,8 +11,8 @@ use std::rc::Rc;
 
 use super::mesh;
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error, listing};
-use crate::elaborate::Elaborated;
+use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
+use crate::elaborate::{Elaborated, Ring};
 use crate::entries::merged;
 use crate::equations::{Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, JunctionId, Law};
@@ -24,6 +24,8 @@ pub struct Selection {
     pub lost: Vec<Lost>,
     /// Coordinates that are states in their place: junction, component, flow.
     pub coordinates: Vec<(JunctionId, usize, usize)>,
+    /// Junctions of coordinates that can move without any storage.
+    pub idle: BTreeSet<JunctionId>,
 }
 
 /// A component of a storage that is no state.
@@ -99,12 +101,14 @@ fn again(
         })
         .collect();
     let is_involved = |owner| storage(model, owner).is_some_and(|id| involved.contains(&id));
-    let coordinates: Vec<Equation> = scalars
-        .coordinates
-        .iter()
-        .map(|coordinate| coordinate_row(*coordinate))
-        .filter(|row| first.follows(row))
-        .collect();
+    let coordinates = scalars.coordinates.iter();
+    let coordinates = coordinates.map(|coordinate| coordinate_row(*coordinate));
+    let (coordinates, idle): (Vec<Equation>, Vec<Equation>) =
+        coordinates.partition(|row| first.follows(row));
+    let idle = idle.iter().filter_map(|row| match row.owner {
+        Owner::Coordinate(junction, _) => Some(junction),
+        _ => None,
+    });
     let (involved, free): (Vec<usize>, Vec<usize>) = storages
         .iter()
         .partition(|row| is_involved(scalars.equations[**row].owner));
@@ -136,6 +140,7 @@ fn again(
             .filter(|(junction, component, _)| chosen.contains(&(*junction, *component)))
             .copied()
             .collect(),
+        idle: idle.collect(),
     }
 }
 
@@ -321,6 +326,10 @@ impl<'a> Selector<'a> {
         let span = graph.origins.span(element.origin);
         let report = error(codes::SOURCES_CONFLICT, span, message);
         let names = self.names(id, causes);
+        let ring = self.model.rings.first();
+        if let (ElementKind::Sf, true, Some(ring)) = (element.kind, names.is_empty(), ring) {
+            return diagnostics.report(held_twice(report, ring));
+        }
         let report = match names.is_empty() {
             true => report.note("the junction structure alone fixes it"),
             false => report.note(format!("it is fixed by {names}")),
@@ -375,6 +384,22 @@ impl<'a> Selector<'a> {
         });
         diagnostics.report(report);
     }
+}
+
+/// A source that holds a ring of joints: what they hold twice is told at the joint that closes it.
+fn held_twice(report: Diagnostic, ring: &Ring) -> Diagnostic {
+    let [first, second] = &ring.components;
+    let frame = &ring.frame;
+    let report = Diagnostic {
+        span: ring.span,
+        ..report
+    };
+    report
+        .note(format!(
+            "`{first}` and `{second}` lead to `{frame}` from two sides, and hold a motion that the ring holds already"
+        ))
+        .help(ring.opened())
+        .help("or close it by `close a -> b by multipliers;`")
 }
 
 /// What the element states about its bond.

@@ -32,6 +32,8 @@ pub struct Model {
     pub visibility: Visibility,
     /// Name of the type.
     pub name: Ident,
+    /// The name that was written, where no type of the code can have it.
+    pub written: Option<Ident>,
     /// What the braces hold.
     pub statements: Vec<Statement>,
 }

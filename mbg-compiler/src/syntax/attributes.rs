@@ -36,7 +36,8 @@ impl Attributes {
             }
             if cursor.group(1, Delimiter::Bracket).is_none() {
                 cursor.advance(1);
-                return Err(cursor.expected("`[` after `#`"));
+                let error = *cursor.expected("`[` after `#`");
+                return Err(Box::new(error.help("a comment begins with `//`")));
             }
             cursor.advance(2);
             attributes.add(cursor.since(cursor.position() - 2), sink);
@@ -101,7 +102,7 @@ impl Attributes {
 fn of_rust(word: &str, group: &Group) -> String {
     let attribute = format!("#[{}]", dump::tokens(group.stream()));
     match word {
-        "cfg" => format!("what is there only then has a call of its own: `{attribute} mbg! {{ … }}`"),
+        "cfg" => format!("a whole call alone can be left out so, and not a part of a model: `{attribute} mbg! {{ … }}`"),
         "allow" | "expect" | "warn" | "deny" | "forbid" | "cfg_attr" | "deprecated" => {
             format!("it stands on a module around the call: `{attribute} mod models {{ … mbg! {{ … }} }}`")
         }

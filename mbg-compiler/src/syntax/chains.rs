@@ -10,7 +10,7 @@ use super::cursor::{Cursor, Parsed};
 use super::elements::{element, fields, kind, no_element};
 use super::expressions::{bounds, expression};
 use super::recovery::{Sink, finish};
-use super::{dump, elsewhere, slips, words};
+use super::{dump, elsewhere, library, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
@@ -29,6 +29,10 @@ pub(super) fn chain(
     while let Some(arrow) = cursor.take_arrow() {
         arrows.push(arrow);
         let derivative = Attributes::read(cursor, sink)?.derivative;
+        if let Some(help) = component_between(cursor, nodes.last()) {
+            let wanted = format!("{NODE} after `->`");
+            return Err(Box::new((*cursor.expected(&wanted)).help(help)));
+        }
         nodes.push(node(
             cursor,
             derivative,
@@ -85,6 +89,32 @@ fn node(
         return Err(Box::new(no_element(cursor, what)));
     }
     reference(cursor, what).map(ChainNode::Reference)
+}
+
+/// What to type for `a -> Component name { … } -> b;`, with a component of the library between bonds.
+fn component_between(cursor: &Cursor, before: Option<&ChainNode>) -> Option<String> {
+    let (component, name) = (cursor.ident(0)?, cursor.ident(1)?);
+    if !library::names().any(|known| component == known) {
+        return None;
+    }
+    let braces = cursor.group(2, Delimiter::Brace);
+    let behind = 2 + usize::from(braces.is_some());
+    let is_end = |it: &Cursor, at: usize| at > behind && it.arrow(at) || it.punct(at, ';');
+    let length = cursor.length_until(is_end);
+    let next = cursor.ahead(length).get(behind + 2..).unwrap_or_default();
+    let next = cursor
+        .arrow(behind)
+        .then(|| dump::tokens(next.iter().cloned().collect()));
+    let before = match before? {
+        ChainNode::Reference(reference) => Some(dump::reference(reference)),
+        ChainNode::Element(_) => None,
+    };
+    let ports: Vec<String> = [before, next].into_iter().flatten().collect();
+    let (name, component) = (name.to_string(), component.to_string());
+    let written = slips::statement(&name, &component, braces, &ports.join(", "));
+    Some(format!(
+        "a component takes its junctions in parentheses, in a statement of its own: `{written}`"
+    ))
 }
 
 /// Nothing follows the first node of a chain, which begins at a place, but something that is no arrow.

@@ -8,6 +8,7 @@ use super::cursor::{Cursor, Parsed};
 use super::expressions::condition;
 use super::recovery::{DEEPEST_BLOCK, Sink, finish};
 use super::statements::body;
+use super::ternaries::other_choice;
 use super::words;
 use crate::codes;
 use crate::diagnostics::error;
@@ -78,6 +79,9 @@ pub(super) fn conditional(
         if !conditional {
             break;
         }
+    }
+    if let Some(report) = cursor.peek(0).and_then(other_choice) {
+        return Err(report);
     }
     Ok(Conditional { word, branches })
 }

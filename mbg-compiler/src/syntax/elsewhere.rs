@@ -13,6 +13,7 @@ const DECLARING: &[(&str, &str)] = &[
     ("constant", "let"),
     ("const", "let"),
     ("var", "let"),
+    ("signal", "let"),
     ("Real", "let"),
 ];
 
@@ -50,6 +51,10 @@ pub(super) fn element(word: &str) -> Option<String> {
             "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`"
                 .to_owned()
         }
+        "L" => "write `I`: a coil is an inertia, `I name { inertia: … }` with its inductance".to_owned(),
+        "Sw" | "SW" => {
+            "a switch is `R name { conductance: if … { … } else { … } }`, or on the average an `MTF`".to_owned()
+        }
         _ => return None,
     })
 }
@@ -79,6 +84,10 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             "a bond is written without a word before it: `{};`",
             dump::tokens(until_end(cursor, 1))
         )),
+        "der" if cursor.ident(1).is_some() && cursor.punct(2, '=') => Some(format!(
+            "what has a rate is declared with it: `integral {};`",
+            dump::tokens(until_end(cursor, 1))
+        )),
         "der" if cursor.punct(2, '=') => {
             let of = dump::tokens(arguments()?.stream());
             let name = match syn::parse_str::<Ident>(&of) {
@@ -88,6 +97,19 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             let rate = dump::tokens(until_end(cursor, 3));
             Some(format!(
                 "what has a rate is declared with it: `integral {name} = {rate};`"
+            ))
+        }
+        "pseudo" | "coordinate" if cursor.junction_digit(1) => {
+            let (digit, name) = (cursor.peek(1)?, cursor.ident(2)?);
+            let size = cursor.group(3, Delimiter::Bracket);
+            let behind = 3 + usize::from(size.is_some());
+            let size = size.map_or_else(String::new, ToString::to_string);
+            let end = match cursor.group(behind, Delimiter::Brace) {
+                Some(_) => " { … }",
+                None => ";",
+            };
+            Some(format!(
+                "it stands behind the name of the junction: `{digit} {name}{size} {word}{end}`"
             ))
         }
         "state" if cursor.ident(1).is_some() => state(cursor),

@@ -5,6 +5,7 @@ use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 use syn::{Expr, ExprRange, RangeLimits};
 
+use super::comparisons::chained;
 use super::cursor::{Cursor, Parsed};
 use super::depth::too_deep;
 use super::recovery::opens;
@@ -127,6 +128,9 @@ fn read(cursor: &mut Cursor, length: usize, what: &str) -> Parsed<Expr> {
         }
         let slip = without_braces(&law).or_else(|| slips::side_by_side(&law));
         let slip = slip.or_else(|| keyword(&law)).or_else(|| slips::bars(&law));
+        let slip = slip
+            .or_else(|| chained(&law))
+            .or_else(|| slips::in_braces(&law));
         slip.unwrap_or_else(|| translated(cursor, &failure, unread == 0))
     })
 }

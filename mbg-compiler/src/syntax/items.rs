@@ -143,13 +143,15 @@ fn model(
     mut name: Ident,
     sink: &mut Sink<'_>,
 ) -> Model {
+    let mut written = None;
     if TAKEN.iter().any(|taken| name == taken) {
         let message =
             format!("a model cannot be called `{name}`: the code made of it calls another type so");
         let report = error(codes::DUPLICATE_NAME, name.span(), message);
         sink.report(Box::new(report.help("give it another name")));
         // What stands in for it must not have that name either.
-        name = Ident::new(&format!("Model{name}"), name.span());
+        let other = Ident::new(&format!("Model{name}"), name.span());
+        written = Some(std::mem::replace(&mut name, other));
     }
     let statements = braces(cursor, &format!("`{{` after `model {name}`"), sink);
     let Attributes {
@@ -161,6 +163,7 @@ fn model(
         derivative,
         visibility,
         name,
+        written,
         statements,
     }
 }

@@ -13,6 +13,7 @@ pub mod ast;
 mod attributes;
 mod chains;
 mod choices;
+mod comparisons;
 pub(crate) mod cursor;
 mod depth;
 pub mod dump;

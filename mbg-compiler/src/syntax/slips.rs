@@ -1,6 +1,6 @@
 //! Instances and entries of matrices in the order and spelling of other languages, and what to type instead.
 
-use proc_macro2::{Delimiter, Group, Ident, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use syn::ExprArray;
 
 use super::ast::{Reference, Segment};
@@ -173,7 +173,13 @@ pub(super) fn written(
     )
 }
 
-fn statement(name: &str, component: &str, braces: Option<&Group>, ports: &str) -> String {
+/// The statement of an instance.
+pub(super) fn statement(
+    name: &str,
+    component: &str,
+    braces: Option<&Group>,
+    ports: &str,
+) -> String {
     let parameters = match braces.map(|group| dump::tokens(group.stream())) {
         Some(words) if !words.is_empty() => format!(" {{ {words} }}"),
         _ => String::new(),
@@ -438,6 +444,46 @@ fn rows(inside: &[TokenTree]) -> Option<Box<Diagnostic>> {
     let report = error(codes::SYNTAX, mark.span(), "expected `,` or `]`, found `;`");
     let help = format!("commas stand between entries and between rows: write `{written}`");
     Some(Box::new(report.help(help)))
+}
+
+/// `{a, b}`, a vector or a matrix in the braces of other languages, among these tokens or in a group of theirs.
+pub(super) fn in_braces(tokens: &[TokenTree]) -> Option<Box<Diagnostic>> {
+    tokens.iter().enumerate().find_map(|(at, token)| {
+        let TokenTree::Group(group) = token else {
+            return None;
+        };
+        let inside: Vec<TokenTree> = group.stream().into_iter().collect();
+        let before = at.checked_sub(1).map(|before| &tokens[before]);
+        // Behind the condition of a choice, or its `else`, stands no mark.
+        let is_value = before.is_none_or(|before| matches!(before, TokenTree::Punct(_)));
+        if !is_value || !is_list(group) {
+            return in_braces(&inside);
+        }
+        let report = error(
+            codes::SYNTAX,
+            group.span_open(),
+            "expected an expression, found `{`",
+        );
+        let help = format!("vectors stand in brackets: write `{}`", in_brackets(group));
+        Some(Box::new(report.help(help)))
+    })
+}
+
+/// Whether commas stand between what is in these braces.
+fn is_list(group: &Group) -> bool {
+    let inside = group.stream();
+    group.delimiter() == Delimiter::Brace && inside.into_iter().any(|token| is_mark(&token, ','))
+}
+
+/// A list with those inside it, each in brackets.
+fn in_brackets(group: &Group) -> String {
+    let tokens = group.stream().into_iter().map(|token| match token {
+        TokenTree::Group(inner) if is_list(&inner) => {
+            in_brackets(&inner).parse().unwrap_or_default()
+        }
+        token => TokenStream::from(token),
+    });
+    format!("[{}]", dump::tokens(tokens.collect()))
 }
 
 pub(super) fn is_mark(token: &TokenTree, mark: char) -> bool {

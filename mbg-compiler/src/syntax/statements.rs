@@ -562,11 +562,8 @@ fn causality(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Statement> {
         "uniform" => Causality::Uniform,
         "componentwise" => Causality::Componentwise,
         _ => {
-            let mut error = *cursor.expected("`uniform` or `componentwise` after `causality`");
-            if let Some(near) = words::nearest(&word, WORDS) {
-                error = error.help(format!("did you mean `{near}`?"));
-            }
-            return Err(Box::new(error));
+            let error = *cursor.expected("`uniform` or `componentwise` after `causality`");
+            return Err(Box::new(error.did_you_mean(&word, WORDS)));
         }
     };
     let span = cursor.span();

@@ -36,6 +36,9 @@ pub(super) fn ternary<'t>(
             return Some(told(&tokens[begin], message, &choice));
         }
     }
+    if let Some(report) = tokens.iter().find_map(other_choice) {
+        return Some(report);
+    }
     tokens.iter().find_map(|token| match token {
         TokenTree::Group(group) => {
             let inside: Vec<TokenTree> = group.stream().into_iter().collect();
@@ -43,6 +46,13 @@ pub(super) fn ternary<'t>(
         }
         _ => None,
     })
+}
+
+/// What to write for `elif`, which no name can be beside values.
+pub(super) fn other_choice(token: &TokenTree) -> Option<Box<Diagnostic>> {
+    let word = ELSE_IF.iter().find(|word| is_word(token, word))?;
+    let message = format!("`{word}` is no word here: another choice begins with two");
+    Some(told(token, &message, "else if"))
 }
 
 /// What to write for `if a b else c`, whose values lack their braces, among these tokens or in a group of theirs.

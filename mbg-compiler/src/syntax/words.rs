@@ -183,6 +183,14 @@ pub(crate) fn nearest<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
         .map(|(_, word)| word)
 }
 
+/// The only word that begins with what was typed, as far as that is more than half of it.
+pub(crate) fn shortened<'a>(found: &str, words: &[&'a str]) -> Option<&'a str> {
+    let begins = |word: &&&str| word.starts_with(found) && 2 * found.len() > word.len();
+    let mut words = words.iter().filter(begins);
+    let word = words.next().filter(|word| **word != found)?;
+    words.next().is_none().then_some(*word)
+}
+
 /// Words that share most of their letters with what was typed, in order, those first that are spelled most like it.
 pub(crate) fn near<'a>(found: &str, words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     // What makes a word longer than ours makes it no nearer to any of them.

@@ -15,6 +15,7 @@ use crate::graph::{ElementId, ElementKind, JunctionId, OriginId, component_name}
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Expression, Function, Operation, Pool, Symbol};
 use crate::syntax::ast::Unit;
+use crate::syntax::words::is_two_port;
 
 /// How a pure number gets a unit.
 const FACTOR: &str =
@@ -367,7 +368,8 @@ impl<'a> Reporter<'a> {
             junction.name,
             unit_text(unit)
         );
-        let (place, declared) = self.only_law(id).unwrap_or((place, None));
+        let law = self.only_law(id).or_else(|| self.bare_modulus(id));
+        let (place, declared) = law.unwrap_or((place, None));
         let mut report = error(codes::UNIT_MISMATCH, place.span, message);
         let advice = pseudo::advice(graph, &[id]);
         let helps = declared.into_iter().chain(advice);
@@ -399,6 +401,24 @@ impl<'a> Reporter<'a> {
             in_another_unit(&name, unit)
         });
         Some((claim.place.clone(), help))
+    }
+
+    /// The only modulus at a junction that is made of efforts and flows alone, so that its unit is theirs.
+    fn bare_modulus(&self, id: JunctionId) -> Option<(Site, Option<String>)> {
+        let graph = &self.model.graph;
+        let is_bare = |claim: &&Claim| {
+            let Subject::Word(element, _) = &claim.subject else {
+                return false;
+            };
+            let read = symbols(self.pool, &claim.entries);
+            is_two_port(graph.elements[element.0].kind)
+                && pseudo::around(graph, *element).contains(&id)
+                && !read.is_empty()
+                && read.iter().all(|it| matches!(it, Symbol::Signal(_)))
+        };
+        let mut claims = self.claims.list.iter().filter(is_bare);
+        let claim = claims.next().filter(|_| claims.next().is_none())?;
+        Some((claim.place.clone(), Some(FACTOR.to_owned())))
     }
 
     /// A bond between a junction of pseudo bonds and one of true bonds.

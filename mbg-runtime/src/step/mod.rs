@@ -124,12 +124,16 @@ impl fmt::Display for Cause {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Trouble(trouble) => trouble.fmt(formatter),
-            Self::StepTooSmall => formatter.write_str("the step is too small for time to advance"),
+            Self::StepTooSmall => formatter.write_str(
+                "the step is too small for time to advance: the model is stiff or has a singularity there, or times so far from \
+                 zero are not told from each other: take f64, or begin at zero",
+            ),
             Self::TooManySteps { next } => write!(
                 formatter,
                 "more steps than `most` allows; the next is {next:.1e} s long, which a stiff model asks of an explicit method, \
                  a tight tolerance of a method of low order, and a law that jumps ever sooner of any: let it rise within a \
-                 width there, as `tanh(v / width)` does"
+                 width there, as `tanh(v / width)` does. A run over many samples that are held, or other jumps, needs a larger \
+                 `most`"
             ),
             Self::Diverged => formatter
                 .write_str("the stages of the step were not found, which a shorter one may help"),
@@ -202,7 +206,13 @@ fn is_met<T: Real>(jump: T, (from, end): (T, T)) -> bool {
     left <= 4.0 * T::EPSILON * end.magnitude() && 64.0 * left <= (jump - from).magnitude()
 }
 
-/// Refuses times that are not finite, infinitely far apart or go backwards.
+/// Whether a time is not the same in all lanes.
+fn is_split<T: Real>(time: T) -> bool {
+    let first = T::from_f64(seen(time));
+    (time - first).find(|apart| apart != 0.0).is_some()
+}
+
+/// Refuses times that are not finite, infinitely far apart, go backwards or differ between lanes.
 fn check_times<T: Real>(start: T, end: T) -> Result<(), Stopped> {
     if !seen(end - start).is_finite() {
         return Err(Stopped::new(
@@ -212,13 +222,14 @@ fn check_times<T: Real>(start: T, end: T) -> Result<(), Stopped> {
             ),
         ));
     }
-    if less(end, start) {
-        return Err(Stopped::new(
-            start,
-            Cause::Argument("the end must not be earlier than the start"),
-        ));
-    }
-    Ok(())
+    let what = if [start, end].into_iter().any(|time| is_split(time)) {
+        "lanes share their times: start and end must be the same in all of them"
+    } else if less(end, start) {
+        "the end must not be earlier than the start"
+    } else {
+        return Ok(());
+    };
+    Err(Stopped::new(start, Cause::Argument(what)))
 }
 
 /// Refuses a vector that is not finite; where an algebraic loop was not solved on the way to it, that is the cause.
@@ -248,6 +259,22 @@ mod tests {
 
     use super::Cause;
 
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn lanes_share_their_times() {
+        use super::check_times;
+        use crate::Real;
+        use crate::lanes::{Lanes, f64x4};
+
+        let [start, end] = [0.0, 1.0].map(f64x4::from_f64);
+        let apart = f64x4::from_lanes(|lane| 1.0 + lane as f64);
+        assert!(check_times(start, end).is_ok());
+        for (start, end) in [(start, apart), (apart - end, apart)] {
+            let told = check_times(start, end).unwrap_err().to_string();
+            assert!(told.contains("lanes share their times"), "{told}");
+        }
+    }
+
     #[test]
     fn too_many_steps_are_told_with_what_to_write_for_a_jump() {
         let told = Cause::TooManySteps { next: 1e-9 }.to_string();
@@ -255,5 +282,7 @@ mod tests {
             told.contains("1.0e-9 s") && told.contains("`tanh(v / width)`"),
             "{told}"
         );
+        assert!(told.contains("many samples"), "{told}");
+        assert!(Cause::StepTooSmall.to_string().contains("take f64"));
     }
 }

@@ -216,6 +216,7 @@ impl Solver<'_> {
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &passed, column)
                 && self.moves(number, equations[row])
+                && self.is_inertia(&tree, &system, row, number)
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {
@@ -254,7 +255,8 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// Eliminates what is fixed to other rates, from the leaves on, in the balance on an independent rate among the rows given.
+    /// Eliminates what is fixed to other rates, from the leaves on, in the balance on an independent rate among the rows given,
+    /// or else the efforts for which there is none.
     fn gather(
         &mut self,
         system: &mut System,
@@ -271,7 +273,8 @@ impl Solver<'_> {
             open = system.open().len();
             self.carry(system, tree, &all, fixed)?;
         }
-        Ok(())
+        let hindering = tree.hindering(system, rows, rate);
+        self.carry(system, tree, rows, hindering)
     }
 
     /// Eliminates columns by constant pivots in the rows given.
@@ -411,6 +414,12 @@ impl Solver<'_> {
             .into_iter()
             .map(|unknown| self.solution.values[unknown]);
         values.any(|value| slope.derivative(self.pool, value) != Expression::ZERO)
+    }
+
+    /// Whether an independent rate has an inertia in a row: not beside that of a level further out which is still there. Rows are
+    /// turned with what hangs on them by then, and rates not, so that it would be the product of two different ones.
+    fn is_inertia(&self, tree: &Tree, system: &System, row: usize, level: usize) -> bool {
+        self.formulation == Formulation::Composite || !tree.holds_level_before(system, row, level)
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.

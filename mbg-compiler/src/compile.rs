@@ -49,6 +49,8 @@ pub struct Compiled {
     pub closed: [Vec<usize>; 2],
     /// The same of flows beside those that are given for the start; nothing where none is given.
     pub started: Vec<usize>,
+    /// Whether rates of loops follow a source from the start on.
+    pub driven: bool,
     /// Whose ranks `new` finds.
     pub ranks: closures::Ranks,
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
@@ -191,6 +193,7 @@ fn finish(
     let mut positions = closures::positions(&answers.displacements, &by_state, &mut pool);
     closures::tangential(&mut positions, &attitudes, &by_state, &mut pool);
     let [flows, started] = closures::rates(&model, solved, &by_state, &mut pool);
+    let driven = closures::are_driven(&model, &flows, &mut pool);
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
     let conditioning = scaling::scaled(&model, solution, &mut pool);
     let named = divisors::names(&model, scalars, solution, &pool);
@@ -253,6 +256,7 @@ fn finish(
         ranks: closures::ranks(scalars, &answers.displacements, &pool),
         closed: [positions.closures, flows.closures],
         started: started.closures,
+        driven,
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,

@@ -109,6 +109,23 @@ fn projection_of_start(compiled: &Compiled) -> TokenStream {
     projection(&compiled.started, &quote!(Flows), &rank, &evaluated)
 }
 
+/// The attitudes alone, for methods that linearise at the start of a step.
+pub(super) fn upright(compiled: &Compiled) -> Option<TokenStream> {
+    if compiled.attitudes.is_empty() {
+        return None;
+    }
+    let n = Literal::usize_suffixed(compiled.states.len());
+    let attitudes = compiled.attitudes.iter().map(|it| attitude(it));
+    Some(quote! {
+        const HAS_ATTITUDES: ::core::primitive::bool = true;
+        fn upright(x: mbg_runtime::__private::SVector<T, #n>) -> mbg_runtime::__private::SVector<T, #n> {
+            let fixed: &[::core::primitive::usize] = &[];
+            #(#attitudes)*
+            x
+        }
+    })
+}
+
 /// Makes the states of an attitude a rotation.
 fn attitude(rows: &[Vec<usize>]) -> TokenStream {
     let rows = rows.iter().map(|row| {

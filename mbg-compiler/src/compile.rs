@@ -193,7 +193,6 @@ fn finish(
     let mut positions = closures::positions(&answers.displacements, &by_state, &mut pool);
     closures::tangential(&mut positions, &attitudes, &by_state, &mut pool);
     let [flows, started] = closures::rates(&model, solved, &by_state, &mut pool);
-    let driven = closures::are_driven(&model, &flows, &mut pool);
     let (checks, checked) = checks::of(&model, scalars, solution, &pool);
     let conditioning = scaling::scaled(&model, solution, &mut pool);
     let named = divisors::names(&model, scalars, solution, &pool);
@@ -254,9 +253,9 @@ fn finish(
         eliminated: eliminated.collect(),
         attitudes,
         ranks: closures::ranks(scalars, &answers.displacements, &pool),
+        driven: closures::are_driven(&model, &flows, &mut pool),
         closed: [positions.closures, flows.closures],
         started: started.closures,
-        driven,
         checks,
         dependent: verdict.dependent,
         strokes: verdict.strokes,

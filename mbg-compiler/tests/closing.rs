@@ -225,8 +225,8 @@ fn constraints_that_nothing_breaks_are_not_solved_for() {
     assert_eq!(solves.collect::<Vec<_>>(), [3]);
 }
 
-/// A four-bar of hinges in space on a base that is turned by numbers, in which what is across its plane does not cancel: it divides by
-/// what is positive wherever it is, as on a base that is not turned.
+/// A four-bar of hinges in space on a base that is turned by numbers, in which what is across its plane does not cancel: it divides
+/// by what is positive wherever it is, as on a base that is not turned.
 #[test]
 fn a_linkage_on_a_base_turned_by_numbers_is_nowhere_singular() {
     let turns = [

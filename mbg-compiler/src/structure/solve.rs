@@ -215,8 +215,7 @@ impl Solver<'_> {
             }
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &passed, column)
-                && self.moves(number, equations[row])
-                && self.is_inertia(&tree, &system, row, number)
+                && self.is_inertia((&tree, &system), row, (number, equations[row]))
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {
@@ -416,10 +415,17 @@ impl Solver<'_> {
         values.any(|value| slope.derivative(self.pool, value) != Expression::ZERO)
     }
 
-    /// Whether an independent rate has an inertia in a row: not beside that of a level further out which is still there. Rows are
-    /// turned with what hangs on them by then, and rates not, so that it would be the product of two different ones.
-    fn is_inertia(&self, tree: &Tree, system: &System, row: usize, level: usize) -> bool {
-        self.formulation == Formulation::Composite || !tree.holds_level_before(system, row, level)
+    /// Whether a level's own rate has an inertia in a row, which is an equation: not beside the rate of a level further out that
+    /// is still there. The row is the balance of both together by then, and its columns are each for itself.
+    fn is_inertia(
+        &mut self,
+        (tree, system): (&Tree, &System),
+        row: usize,
+        (level, equation): (usize, usize),
+    ) -> bool {
+        let is_alone = self.formulation == Formulation::Composite
+            || !tree.holds_level_before(system, row, level);
+        is_alone && self.moves(level, equation)
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.

@@ -186,7 +186,7 @@ fn finish(
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
     structure::starting_momenta(&mut model, solved, &answers.states, &mut pool);
-    let (scalars, solution) = (&solved.scalars, &solved.solution);
+    let (scalars, solution, rates) = (&solved.scalars, &solved.solution, &answers.rates);
     let by_state: Vec<Symbol> = answers.states.iter().copied().map(Symbol::State).collect();
     let by_input: Vec<Symbol> = (0..model.inputs.len()).map(Symbol::Input).collect();
     let attitudes = attitudes(&model, &answers.states);
@@ -198,13 +198,12 @@ fn finish(
     let named = divisors::names(&model, scalars, solution, &pool);
     let divisors: Vec<_> = conditioning.iter().copied().zip(&named).collect();
     start::check(&model, &divisors, &pool, diagnostics);
-    start::check_laws(&model, &answers.rates, &pool, diagnostics);
+    start::check_laws(&model, rates, &pool, diagnostics);
     if diagnostics.any() {
         return None;
     }
     let initial = |state: &usize| model.states[*state].initial;
     let initial: Vec<Expression> = answers.states.iter().map(initial).collect();
-    let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];

@@ -7,6 +7,8 @@ mod errors;
 #[path = "../examples/methods/problems.rs"]
 mod problems;
 
+#[path = "methods/attitudes.rs"]
+mod attitudes;
 #[path = "methods/changes.rs"]
 mod changes;
 #[path = "methods/events.rs"]

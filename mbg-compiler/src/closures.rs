@@ -326,6 +326,22 @@ fn started(
     moved(model, values, closures, by, pool)
 }
 
+/// Whether something drives the loops at the start, without inputs: flows of them that are not zero where nothing moves, by a
+/// source that is a number, a parameter or a law of time. Rates must follow it then, whether one is given or not. What linear
+/// equations give is zero at rest.
+#[must_use]
+pub fn are_driven(model: &Elaborated, flows: &Residuals, pool: &mut Pool) -> bool {
+    let mut at_rest = Substitution::new();
+    for symbol in symbols(pool, &flows.values) {
+        let stays = matches!(symbol, Symbol::State(_) | Symbol::Parameter(_));
+        if !stays || moves(model, symbol) {
+            at_rest.set(symbol, Expression::ZERO);
+        }
+    }
+    let mut values = flows.values.iter();
+    values.any(|value| at_rest.apply(pool, *value) != Some(Expression::ZERO))
+}
+
 /// Flows of coordinates, and momenta that are given themselves, with what they are said to be at the start.
 fn starts(
     model: &Elaborated,

@@ -49,6 +49,8 @@ pub struct Compiled {
     pub closed: [Vec<usize>; 2],
     /// The same of flows beside those that are given for the start; nothing where none is given.
     pub started: Vec<usize>,
+    /// Whether rates of loops follow a source from the start on.
+    pub driven: bool,
     /// Whose ranks `new` finds.
     pub ranks: closures::Ranks,
     /// Checks of parameters: place in the folded values or parameter, name, condition, reason.
@@ -181,7 +183,7 @@ fn finish(
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
     structure::starting_momenta(&mut model, solved, &answers.states, &mut pool);
-    let (scalars, solution) = (&solved.scalars, &solved.solution);
+    let (scalars, solution, rates) = (&solved.scalars, &solved.solution, &answers.rates);
     let by_state: Vec<Symbol> = answers.states.iter().copied().map(Symbol::State).collect();
     let by_input: Vec<Symbol> = (0..model.inputs.len()).map(Symbol::Input).collect();
     let attitudes = attitudes(&model, &answers.states);
@@ -193,13 +195,12 @@ fn finish(
     let named = divisors::names(&model, scalars, solution, &pool);
     let divisors: Vec<_> = conditioning.iter().copied().zip(&named).collect();
     start::check(&model, &divisors, &pool, diagnostics);
-    start::check_laws(&model, &answers.rates, &pool, diagnostics);
+    start::check_laws(&model, rates, &pool, diagnostics);
     if diagnostics.any() {
         return None;
     }
     let initial = |state: &usize| model.states[*state].initial;
     let initial: Vec<Expression> = answers.states.iter().map(initial).collect();
-    let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
@@ -248,6 +249,7 @@ fn finish(
         eliminated: eliminated.collect(),
         attitudes,
         ranks: closures::ranks(scalars, &answers.displacements, &pool),
+        driven: closures::are_driven(&model, &flows, &mut pool),
         closed: [positions.closures, flows.closures],
         started: started.closures,
         checks,

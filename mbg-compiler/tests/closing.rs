@@ -225,6 +225,45 @@ fn constraints_that_nothing_breaks_are_not_solved_for() {
     assert_eq!(solves.collect::<Vec<_>>(), [3]);
 }
 
+/// A four-bar of hinges in space on a base that is turned by numbers, in which what is across its plane does not cancel: it divides
+/// by what is positive wherever it is, as on a base that is not turned.
+#[test]
+fn a_linkage_on_a_base_turned_by_numbers_is_nowhere_singular() {
+    let turns = [
+        "rot_x(0.3) * rot_y(0.2)",
+        "rot_x(1.21) * rot_z(-0.37)",
+        "rot_z(0.7) * rot_x(-0.9)",
+        "rot_y(0.4) * rot_x(1.3)",
+        "rot_y(-0.25) * rot_z(1.1)",
+        "rot_z(-0.6) * rot_y(0.8) * rot_x(0.15)",
+        "rot_x(0.5)",
+    ];
+    for turn in turns {
+        let model = compiled(&format!(
+            "#[derivative] model M {{
+                causality componentwise;
+                1 world[6]; 1 ground[6]; 1 crank[6]; 1 coupler[6]; 1 rocker[6]; 1 end[6]; 1 tip[6];
+                Sf fixed[6] {{ flow: 0.0 }} -> world;
+                base: Turn {{ by: {turn} }} (world, ground);
+                first: Revolute {{ axis: 2 }} (ground, crank);
+                a: Body {{ mass: 0.5, inertia: 0.002, centre: [0.1, 0.0, 0.0] }} (crank);
+                second: Revolute {{ axis: 2, offset: [0.2, 0.0, 0.0] }} (crank, coupler);
+                b: Body {{ mass: 0.9, inertia: 0.02, centre: [0.25, 0.0, 0.0] }} (coupler);
+                third: Revolute {{ axis: 2, offset: [0.4, 0.0, 0.0] }} (ground, rocker);
+                c: Body {{ mass: 0.7, inertia: 0.01, centre: [0.15, 0.0, 0.0] }} (rocker);
+                along_coupler: Offset {{ by: [0.5, 0.0, 0.0] }} (coupler, end);
+                along_rocker: Offset {{ by: [0.35, 0.0, 0.0] }} (rocker, tip);
+                cut: Cut {{ joint: revolute }} (end, tip);
+            }}"
+        ));
+        assert!(
+            model.conditioning.is_empty(),
+            "{turn}: {:?}",
+            model.conditioning
+        );
+    }
+}
+
 /// A slider-crank with rates at the start; its states are the momentum of the rod, and the rates of crank and slide.
 fn slider_crank(rates: [f64; 3]) -> String {
     let [crank, rod, slide] = rates.map(|rate| format!("initial_rate: {rate:?}"));
@@ -273,6 +312,15 @@ fn rates_that_are_given_are_kept_at_the_start() {
     });
     let keeps = tokens.each_ref().map(|it| it.contains("close (start)"));
     assert_eq!(keeps, [false, true]);
+    // Without any that are given, where a source drives it from the start on.
+    let driven = |flow: &str| {
+        let drive = format!("Sf drive {{ flow: {flow} }} -> first.rate; slide:");
+        let source = slider_crank([0.0; 3]).replace("slide:", &drive);
+        let tokens = expand(source.parse().unwrap(), &quote!(::mbg_runtime), &no_file);
+        tokens.to_string().contains("close (start)")
+    };
+    let flows = ["12.0", "3.0 * cos(5.0 * t)", "3.0 * sin(5.0 * t)"];
+    assert_eq!(flows.map(driven), [true, true, false]);
     // Momenta too, and nothing without a loop.
     let pair = |closure: &str| {
         let wheel = "I m { inertia: 2.0, initial: 6.0 }";

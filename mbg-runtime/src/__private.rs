@@ -218,6 +218,38 @@ fn size<T: Real, const M: usize, const N: usize>(
     sums.into_iter().fold(0.0, f64::max)
 }
 
+/// At how many parts of the flows their rounding is looked at.
+const PARTS: usize = 12;
+
+/// What rounding leaves of residuals that are linear in the flows: the largest distance from a line between no flows and these.
+/// Near a dead centre flows of metres per second cancel in a residual on which neither the crank nor the slide, which is almost
+/// at rest, has an influence that would tell of it.
+#[cold]
+fn rounding_of_flows<T: Real, const M: usize, const N: usize>(
+    x: &SVector<T, N>,
+    jacobian: &SMatrix<T, M, N>,
+    residuals: &impl Fn(&SVector<T, N>) -> SVector<T, M>,
+) -> f64 {
+    let with = |part: T| {
+        let of_state = |state: usize| {
+            let is_flow = jacobian.column(state).iter().any(|it| it.magnitude() > 0.0);
+            let part = if is_flow { part } else { T::from_f64(1.0) };
+            part * x[state]
+        };
+        residuals(&SVector::from_fn(|state, _| of_state(state)))
+    };
+    let [none, all] = [0.0, 1.0].map(|part| with(T::from_f64(part)));
+    let distance = |number: usize| {
+        // Not of few digits, or nothing would be rounded.
+        let part = T::from_f64(0.618 * number as f64).fraction() + T::from_f64(0.5);
+        let here = with(part);
+        let rows = 0..M;
+        let aside = rows.map(|row| here[row] - (none[row] + part * (all[row] - none[row])));
+        aside.map(T::magnitude).fold(0.0, f64::max)
+    };
+    (1..=PARTS).map(distance).fold(0.0, f64::max)
+}
+
 /// Ranks of the Jacobian of residuals where they are zero, near `start`: of groups of them.
 pub fn ranks<T: Real, const M: usize, const N: usize, const B: usize>(
     start: SVector<T, N>,
@@ -290,7 +322,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
         };
     let tolerance = (CLOSED * rounding).max(least::<T>());
     let held = |x: &SVector<T, N>| hold(evaluate(x));
-    let found = project_from(x, hold(start), (tolerance, rank), (held, residuals));
+    let found = project_from(x, hold(start), (tolerance, rank), (held, &residuals));
     let nearly = T::from_f64(NEARLY * tolerance);
     let missing = T::from_f64(M as f64) - rank;
     let zero = T::from_f64(0.0);
@@ -302,6 +334,10 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     let residual = found.residual.magnitude();
     let positions = level == Level::Positions;
     let jacobians = [x, found.point].map(|x| evaluate(&x).1);
+    if !positions && residual <= CLOSED * rounding_of_flows(&found.point, &jacobians[1], &residuals)
+    {
+        return Ok(found.point);
+    }
     let (constraints, coordinates) = together(&jacobians, found.worst);
     Err(Trouble::Open {
         name: meta.closures.get(closure).copied().unwrap_or(""),

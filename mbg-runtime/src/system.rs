@@ -286,7 +286,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `fixed` stay as they are, so that consistent
     /// initial values are found from a part of them, and so does an attitude of which one is fixed. Steppers ask at the
     /// start and after each step, with nothing fixed. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
-    /// for which that is largest; a displacement counts as one at least, an angle being zero somewhere.
+    /// for which that is largest; a displacement counts as one at least, an angle being zero somewhere. Flows that cancel may leave
+    /// more, as near a dead centre: 16 times what rounding is seen to leave of them.
     ///
     /// # Errors
     ///
@@ -299,6 +300,17 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         _fixed: &[usize],
     ) -> Result<SVector<T, N>, Trouble> {
         Ok(x)
+    }
+
+    /// Whether states are rotations, which [`upright`](Self::upright) makes of those beside them.
+    #[doc(hidden)]
+    const HAS_ATTITUDES: bool = false;
+
+    /// The state at which every attitude is a rotation, all else as it is.
+    #[doc(hidden)]
+    #[inline]
+    fn upright(x: SVector<T, N>) -> SVector<T, N> {
+        x
     }
 
     /// Whether the plan of elimination is written out below.
@@ -325,6 +337,29 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         let through = found.map_or(&[][..], |found| found.through);
         Some(Trouble::Unsolved { through, residual })
     }
+}
+
+/// Why a loop is not closed that has no coordinate left.
+fn write_locked(
+    formatter: &mut core::fmt::Formatter<'_>,
+    constraints: usize,
+    coordinates: usize,
+) -> core::fmt::Result {
+    if coordinates == 0 {
+        return formatter.write_str(
+            ": no coordinate moves its ends against each other; see whether both are fixed, or parts of one body",
+        );
+    }
+    let held = match constraints {
+        1 => "constraint holds",
+        _ => "constraints hold",
+    };
+    let plural = if coordinates == 1 { "" } else { "s" };
+    write!(
+        formatter,
+        ": {constraints} {held} {coordinates} coordinate{plural}, so that nothing moves unless some are redundant; see whether a \
+         cut holds more than it should"
+    )
 }
 
 /// Power across a model's border.
@@ -516,11 +551,7 @@ impl core::fmt::Display for Trouble {
                     )?;
                 }
                 if let Some((constraints, coordinates)) = locked {
-                    write!(
-                        formatter,
-                        ": {constraints} constraints hold {coordinates} coordinates, so that nothing moves unless some are \
-                         redundant; see whether a cut holds more than it should"
-                    )?;
+                    write_locked(formatter, *constraints, *coordinates)?;
                 }
                 Ok(())
             }

@@ -1,7 +1,7 @@
 //! Mechanisms whose loops are closed by multipliers.
 
 use mbg_runtime::{
-    Adaptive, Constant, Dop853, Fixed, Gauss6, Integrator, Method, Real, Rk4, System, mbg,
+    Adaptive, Constant, Dop853, Fixed, Gauss6, Integrator, Method, Real, Rk4, System, Trouble, mbg,
 };
 use nalgebra::SVector;
 
@@ -212,6 +212,21 @@ mbg! {
         guide: PlanarCut { joint: prismatic } (ground, slide);
     }
 
+    /// A slider-crank with a rod without mass, in space on a base that is turned, so that velocities along the rod are sums.
+    #[derivative]
+    pub(crate) model DeadCentre {
+        causality componentwise;
+        1 world[6]; 1 ground[6]; 1 crank[6]; 1 pin[6]; 1 piston[6];
+        Sf fixed[6] { flow: 0.0 } -> world;
+        base: Turn { by: rot_x(0.3) * rot_y(0.2) } (world, ground);
+        main: Revolute { axis: 2 } (ground, crank);
+        wheel: Body { mass: 1.0, inertia: 0.1 } (crank);
+        throw: Offset { by: [0.05, 0.0, 0.0] } (crank, pin);
+        slide: Prismatic { axis: 0, initial: 0.25 } (ground, piston);
+        load: Body { mass: 0.1, inertia: 0.001 } (piston);
+        rod: Rod { length: 0.2 } (pin, piston);
+    }
+
     /// A slider-crank on a spring, whose rod has its momentum for a state beside the rates of crank and slide.
     #[derivative]
     pub(crate) model Pressed {
@@ -381,6 +396,82 @@ fn a_loop_that_a_source_of_flow_drives_closes_from_rest() {
                 "{speed} {start}: {behind}"
             );
         }
+    }
+}
+
+/// Where a source drives it that is no input, the rates that are not given follow at the start already.
+#[test]
+fn rates_of_a_loop_follow_the_source_that_drives_it() {
+    for (speed, start) in [(10.0, 0.3), (-3.7, 1.0), (250.0, 2.0), (0.0, 1.0)] {
+        let model = Driven::<f64>::new(DrivenParameters { speed, start }).unwrap();
+        let (x, u) = (model.initial_state(), SVector::zeros());
+        let closed = model.close(0.0, x, &u, &[]).unwrap();
+        assert!((closed - x).norm() < 1e-12 * (1.0 + x.norm()), "{speed}");
+        let before = |by: f64| rocker(model.output(0.0, &x, &u, &mut ())[0] + by);
+        let expected = speed * (before(1e-5) - before(-1e-5)) / 2e-5;
+        let found = model.derivative(0.0, &x, &u, &mut ());
+        let place = Driven::<f64>::META.state("third.angle").unwrap();
+        assert!(
+            (found[place] - expected).abs() < 1e-8 * (1.0 + speed.abs()),
+            "{speed}"
+        );
+    }
+}
+
+/// Near a dead centre all rates that are states are small or have no influence on the rod, along which velocities of 5 m/s cancel:
+/// what these leave by rounding is no open loop, and what is given against each other is one.
+#[test]
+fn a_loop_closes_as_far_as_rounding_lets_it_at_a_dead_centre() {
+    let model = DeadCentre::<f64>::new(DeadCentreParameters::default()).unwrap();
+    let u = SVector::from([]);
+    let near = SVector::from([
+        6.283_395_307_179_586,
+        0.249_999_998_621_875_02,
+        100.0,
+        -0.001_312_498_984_925_433_6,
+    ]);
+    let closed = model.close(0.0, near, &u, &[]).unwrap();
+    assert!((closed - near).norm() < 1e-9, "{closed}");
+    for place in 0..4000 {
+        let mut start = near;
+        start[0] = std::f64::consts::TAU + 1e-5 * (f64::from(place) - 2000.0);
+        let mut start = model.close(0.0, start, &u, &[0, 2]).unwrap();
+        start[3] += 1e-9;
+        let closed = model.close(0.0, start, &u, &[]);
+        assert!(closed.is_ok(), "{place}: {closed:?}");
+    }
+    for slower in [1e-9, 1e-6, 1.0] {
+        let mut apart = near;
+        apart[3] += slower;
+        let closed = model.close(0.0, apart, &u, &[2, 3]);
+        assert!(matches!(closed, Err(Trouble::Open { .. })), "{slower:e}");
+    }
+}
+
+#[test]
+fn what_locks_a_loop_is_told_in_words() {
+    let locked = |constraints, coordinates| {
+        let trouble = Trouble::Open {
+            name: "a -> b",
+            residual: 1.0,
+            singular: false,
+            locked: Some((constraints, coordinates)),
+        };
+        trouble.to_string()
+    };
+    let cases = [
+        (
+            1,
+            0,
+            ": no coordinate moves its ends against each other; see whether both are fixed",
+        ),
+        (1, 1, ": 1 constraint holds 1 coordinate, so that"),
+        (2, 1, ": 2 constraints hold 1 coordinate, so that"),
+        (6, 6, ": 6 constraints hold 6 coordinates, so that"),
+    ];
+    for (constraints, coordinates, expected) in cases {
+        let told = locked(constraints, coordinates);
+        assert!(told.contains(expected), "{told}");
     }
 }
 

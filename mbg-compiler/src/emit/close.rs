@@ -62,10 +62,33 @@ fn rank_of_flows(compiled: &Compiled) -> TokenStream {
 /// The state at the start, of which `initial` is what was given: where loops are closed, so that rates that were given stay and
 /// the others follow. Where these cannot, nothing is changed.
 pub(super) fn started(compiled: &Compiled, initial: &TokenStream) -> TokenStream {
-    let given = match compiled.started.len() {
-        0 => return initial.clone(),
-        all => all - compiled.closed[1].len(),
+    if compiled.started.is_empty() && !compiled.driven {
+        return initial.clone();
+    }
+    let m = Literal::usize_suffixed(compiled.model.inputs.len());
+    let given = (!compiled.started.is_empty()).then(|| projection_of_start(compiled));
+    let close = match given {
+        Some(given) => quote! {
+            let close = |x| {
+                let x = mbg_runtime::System::close(self, t, x, u, fixed)?;
+                #given
+                ::core::result::Result::<_, mbg_runtime::Trouble>::Ok(x)
+            };
+        },
+        None => quote!(let close = |x| mbg_runtime::System::close(self, t, x, u, fixed);),
     };
+    quote! {
+        let start = { #initial };
+        let t = T::from_f64(0.0);
+        let u = &mbg_runtime::__private::SVector::<T, #m>::from_element(t);
+        let fixed: &[::core::primitive::usize] = &[];
+        #close
+        close(start).unwrap_or(start)
+    }
+}
+
+/// Onto the flows together with what is given.
+fn projection_of_start(compiled: &Compiled) -> TokenStream {
     let [n, m, p] = [
         compiled.states.len(),
         compiled.model.inputs.len(),
@@ -76,25 +99,31 @@ pub(super) fn started(compiled: &Compiled, initial: &TokenStream) -> TokenStream
     let memory = quote!(<Self as mbg_runtime::System<T, #n, #m, #p>>::Memory);
     let [both, alone] = [Routines::STARTED_FLOWS, Routines::RESIDUALS_OF_START]
         .map(|routine| residuals(compiled, &attitudes, routine, &memory));
+    let given = compiled.started.len() - compiled.closed[1].len();
     let (flows, given) = (rank_of_flows(compiled), full(given));
     let rank = quote!(#flows + #given);
     let evaluated = quote! {
         |x: &mbg_runtime::__private::SVector<T, #n>| { #both },
         |x: &mbg_runtime::__private::SVector<T, #n>| { #alone }
     };
-    let projection = projection(&compiled.started, &quote!(Flows), &rank, &evaluated);
-    quote! {
-        let start = { #initial };
-        let t = T::from_f64(0.0);
-        let u = &mbg_runtime::__private::SVector::<T, #m>::from_element(t);
-        let fixed: &[::core::primitive::usize] = &[];
-        let close = |x| {
-            let x = mbg_runtime::System::close(self, t, x, u, fixed)?;
-            #projection
-            ::core::result::Result::<_, mbg_runtime::Trouble>::Ok(x)
-        };
-        close(start).unwrap_or(start)
+    projection(&compiled.started, &quote!(Flows), &rank, &evaluated)
+}
+
+/// The attitudes alone, for methods that linearise at the start of a step.
+pub(super) fn upright(compiled: &Compiled) -> Option<TokenStream> {
+    if compiled.attitudes.is_empty() {
+        return None;
     }
+    let n = Literal::usize_suffixed(compiled.states.len());
+    let attitudes = compiled.attitudes.iter().map(|it| attitude(it));
+    Some(quote! {
+        const HAS_ATTITUDES: ::core::primitive::bool = true;
+        fn upright(x: mbg_runtime::__private::SVector<T, #n>) -> mbg_runtime::__private::SVector<T, #n> {
+            let fixed: &[::core::primitive::usize] = &[];
+            #(#attitudes)*
+            x
+        }
+    })
 }
 
 /// Makes the states of an attitude a rotation.

@@ -113,7 +113,7 @@ fn constructor(compiled: &Compiled) -> TokenStream {
 
 fn system(compiled: &Compiled) -> TokenStream {
     let name = &compiled.model.name;
-    let close = close(compiled);
+    let (close, upright) = (close(compiled), close::upright(compiled));
     let [n, m, p, k] = [
         compiled.states.len(),
         compiled.model.inputs.len(),
@@ -189,6 +189,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #change_between
             #courses
             #close
+            #upright
             #sparsity
         }
     }

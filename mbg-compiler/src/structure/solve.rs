@@ -215,7 +215,7 @@ impl Solver<'_> {
             }
             if let Some(column) = level.last
                 && let Some(row) = tree.balance(&system, &passed, column)
-                && self.moves(number, equations[row])
+                && self.is_inertia((&tree, &system), row, (number, equations[row]))
                 && let Some(sign) = self.sign(number)
                 && system.entry(row, column) != Expression::ZERO
             {
@@ -254,7 +254,8 @@ impl Solver<'_> {
         Ok(())
     }
 
-    /// Eliminates what is fixed to other rates, from the leaves on, in the balance on an independent rate among the rows given.
+    /// Eliminates what is fixed to other rates, from the leaves on, in the balance on an independent rate among the rows given,
+    /// or else the efforts for which there is none.
     fn gather(
         &mut self,
         system: &mut System,
@@ -271,7 +272,8 @@ impl Solver<'_> {
             open = system.open().len();
             self.carry(system, tree, &all, fixed)?;
         }
-        Ok(())
+        let hindering = tree.hindering(system, rows, rate);
+        self.carry(system, tree, rows, hindering)
     }
 
     /// Eliminates columns by constant pivots in the rows given.
@@ -411,6 +413,19 @@ impl Solver<'_> {
             .into_iter()
             .map(|unknown| self.solution.values[unknown]);
         values.any(|value| slope.derivative(self.pool, value) != Expression::ZERO)
+    }
+
+    /// Whether a level's own rate has an inertia in a row, which is an equation: not beside the rate of a level further out that
+    /// is still there. The row is the balance of both together by then, and its columns are each for itself.
+    fn is_inertia(
+        &mut self,
+        (tree, system): (&Tree, &System),
+        row: usize,
+        (level, equation): (usize, usize),
+    ) -> bool {
+        let is_alone = self.formulation == Formulation::Composite
+            || !tree.holds_level_before(system, row, level);
+        is_alone && self.moves(level, equation)
     }
 
     /// Coefficients of the block's unknowns, and the sum of what is known.

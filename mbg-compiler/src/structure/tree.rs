@@ -282,6 +282,32 @@ impl Tree {
         is_only.then_some(row)
     }
 
+    /// Whether a row holds the independent rate of a level before this one.
+    pub(super) fn holds_level_before(&self, system: &System, row: usize, level: usize) -> bool {
+        let is_before = |column: usize| {
+            let turn = self.turns.get(&column);
+            self.independent.contains(&column) && turn.is_some_and(|turn| turn.level < level)
+        };
+        system.row(row).any(|(column, _)| is_before(column))
+    }
+
+    /// Efforts that keep a row of a closed loop from being the balance on an independent rate. They are across its axis, and are
+    /// there since what turns the frame is written as numbers, in which their coefficients do not cancel.
+    pub(super) fn hindering(
+        &self,
+        system: &System,
+        rows: &BTreeSet<usize>,
+        rate: usize,
+    ) -> Columns {
+        if self.multipliers.is_empty() || self.balance(system, rows, rate).is_some() {
+            return Columns::new();
+        }
+        let rows = system.rows_with(rate).filter(|row| rows.contains(row));
+        let columns = rows.flat_map(|row| system.row(row));
+        let columns = columns.map(|(column, _)| column);
+        columns.filter(|column| self.is_effort(*column)).collect()
+    }
+
     /// Turned rates in a row, and those that are turned together with them, from which nothing follows any more; and
     /// the efforts that come with them.
     pub(super) fn frame(&self, pool: &Pool, system: &System, row: usize) -> Columns {

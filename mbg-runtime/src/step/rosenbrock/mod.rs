@@ -142,6 +142,36 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
     }
 }
 
+impl<A, T: Real, const N: usize, const S: usize> Stages<A, T, N, S> {
+    /// The derivative at a stage. Jacobians of attitudes are exact along rotations alone, and stages are beside these: there the
+    /// model is asked at the rotation next to the stage, and what the Jacobian says of the way from it is added. That has the
+    /// Jacobian at the start of the step in every direction, as the order asks for, and is the derivative at all rotations.
+    #[inline(always)]
+    fn slope_of_stage<Y, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        t: T,
+        x: &SVector<T, N>,
+    ) -> SVector<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        if !Y::HAS_ATTITUDES {
+            return problem.slope(t, x);
+        }
+        let zero = T::from_f64(0.0);
+        let near = Y::upright(*x);
+        let mut slope = problem.slope(t, &near);
+        for (column, aside) in self.jacobian.column_iter().zip(&(x - near)) {
+            if *aside != zero {
+                slope.zip_apply(&column, |slope, by| *slope += by * *aside);
+            }
+        }
+        slope
+    }
+}
+
 #[allow(private_interfaces, reason = "no method is written outside")]
 impl<A, T, const N: usize, const S: usize> Stepper<A, T, N> for Stages<A, T, N, S>
 where
@@ -196,7 +226,7 @@ where
                 start.slope
             } else {
                 let t = span.at(T::from_f64(A::TABLEAU.nodes[stage]));
-                problem.slope(t, &(x + ahead))
+                self.slope_of_stage(problem, t, &(x + ahead))
             };
             let by_time = T::from_f64(A::TABLEAU.times[stage]) * length;
             let known = coupling.zip_map(&self.by_time, |coupling, change| {

@@ -18,12 +18,17 @@ where
     const AUTONOMOUS: bool = S::AUTONOMOUS;
     const SEEKS_CHANGES: bool = S::SEEKS_CHANGES;
     const HAS_COURSES: bool = true;
+    const HAS_ATTITUDES: bool = S::HAS_ATTITUDES;
 
     type Memory = S::Memory;
     type Conditioning = S::Conditioning;
 
     fn initial_state(&self) -> SVector<T, N> {
         self.system.initial_state()
+    }
+
+    fn upright(x: SVector<T, N>) -> SVector<T, N> {
+        S::upright(x)
     }
 
     fn derivative(

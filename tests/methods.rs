@@ -9,6 +9,8 @@ mod problems;
 
 #[path = "methods/changes.rs"]
 mod changes;
+#[path = "methods/driven.rs"]
+mod driven;
 #[path = "methods/events.rs"]
 mod events;
 #[path = "methods/hard.rs"]

@@ -59,8 +59,8 @@ pub struct Compiled {
     pub strokes: Vec<bool>,
     /// Where the Jacobian by the states can differ from zero.
     pub pattern: Pattern,
-    /// How many of the changes by time alone come once; others come again after a period.
-    pub changes_once: usize,
+    /// How many of the changes by time alone come once, and how others are told.
+    pub changes: changes::Counts,
     /// The thresholds of each argument of choices.
     pub thresholds: Vec<changes::Kind>,
     /// Things worth knowing.
@@ -123,6 +123,7 @@ impl Routines {
     pub const SOUGHT: usize = 16;
     pub const STARTED_FLOWS: usize = 17;
     pub const RESIDUALS_OF_START: usize = 18;
+    pub const SIDES: usize = 19;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -208,7 +209,7 @@ fn finish(
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let (times, arguments) = changes::of(&mut pool, rates, &by_state);
-    let requests: [Request; 19] = [
+    let requests: [Request; 20] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -225,9 +226,10 @@ fn finish(
         changes::listed(&arguments).into(),
         positions.values.clone().into(),
         flows.values.clone().into(),
-        times.sought.clone().into(),
+        times.telling().into(),
         started.evaluated().into(),
         started.values.clone().into(),
+        times.sides().into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);
@@ -257,7 +259,7 @@ fn finish(
         dependent: verdict.dependent,
         strokes: verdict.strokes,
         pattern,
-        changes_once: times.once.len(),
+        changes: times.counts(),
         thresholds: arguments.iter().map(changes::Argument::kind).collect(),
         notes,
         states: answers.states,

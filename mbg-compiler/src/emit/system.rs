@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::changes::{change_between, courses, next_change};
+use super::changes::{change_between, courses, has_changed, next_change};
 use super::close::{self, close};
 use super::routine::{Place, Setting, Writer, lines, written_lines};
 use super::tokens::block;
@@ -139,6 +139,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let next_change = next_change(compiled);
     let courses = courses(compiled);
     let change_between = change_between(compiled);
+    let has_changed = has_changed(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
@@ -187,6 +188,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #examined
             #next_change
             #change_between
+            #has_changed
             #courses
             #close
             #sparsity

@@ -201,8 +201,7 @@ fn finish(
     if diagnostics.any() {
         return None;
     }
-    let initial = |state: &usize| model.states[*state].initial;
-    let initial: Vec<Expression> = answers.states.iter().map(initial).collect();
+    let initial = answers.states.iter().map(|it| model.states[*it].initial);
     let rates = &answers.rates;
     let groups = jacobians::groups(&model, &answers.states);
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
@@ -217,7 +216,7 @@ fn finish(
         vec![answers.energy].into(),
         vec![answers.supplied, answers.dissipated].into(),
         conditioning.clone().into(),
-        initial.into(),
+        initial.collect::<Vec<_>>().into(),
         checked.into(),
         positions.evaluated().into(),
         flows.evaluated().into(),

@@ -87,11 +87,9 @@ fn counted(value: impl Fn(f64) -> f64) -> f64 {
 #[test]
 fn what_an_input_alone_switches_is_met() {
     let model = Switched::<f64>::new(SwitchedParameters::default()).unwrap();
-    let ways: [(fn(f64) -> f64, &str); 2] = [
-        (|t| 0.4 * t, "a line"),
-        (|t| 1.0 + f64::sin(4.0 * t), "a wave"),
-    ];
-    for (way, name) in ways {
+    let line: fn(f64) -> f64 = |t| 0.4 * t;
+    let wave: fn(f64) -> f64 = |t| 1.0 + f64::sin(4.0 * t);
+    for (way, name) in [(line, "a line"), (wave, "a wave")] {
         let above = lasting(|t| way(t) - 0.5);
         let wave = lasting(|t| f64::sin(7.0 * way(t)) - 0.2);
         let expected = [

@@ -8,8 +8,14 @@ use super::system::{body, memory};
 use crate::changes::Kind;
 use crate::compile::{Compiled, Routines};
 
+/// All of them that a model has.
+pub(super) fn changes(compiled: &Compiled) -> TokenStream {
+    let methods = [next_change, change_between, has_changed, courses];
+    methods.iter().filter_map(|told| told(compiled)).collect()
+}
+
 /// Where choices by time alone change; none where there are none.
-pub(super) fn next_change(compiled: &Compiled) -> Option<TokenStream> {
+fn next_change(compiled: &Compiled) -> Option<TokenStream> {
     let is_empty = compiled.program.routines[Routines::CHANGES]
         .results
         .is_empty();
@@ -26,7 +32,7 @@ pub(super) fn next_change(compiled: &Compiled) -> Option<TokenStream> {
 }
 
 /// How the arguments of choices go between two points; none where no step can pass more than it finds.
-pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
+fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let [states, inputs] = [compiled.states.len(), compiled.model.inputs.len()];
     let [n, m, both] = [states, inputs, states + inputs].map(Literal::usize_suffixed);
     let joined = (inputs > 0)
@@ -79,7 +85,7 @@ pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
 }
 
 /// Where choices by time and inputs change that have no times of their own; none where there are none.
-pub(super) fn change_between(compiled: &Compiled) -> Option<TokenStream> {
+fn change_between(compiled: &Compiled) -> Option<TokenStream> {
     let (asked, told) = by_time(compiled, Routines::SOUGHT)?;
     let (signs, turns) = told.split_at(compiled.changes.sought);
     let counts = [signs, turns].map(|told| Literal::usize_suffixed(told.len()));
@@ -97,7 +103,7 @@ pub(super) fn change_between(compiled: &Compiled) -> Option<TokenStream> {
 }
 
 /// Whether choices by time and inputs differ between two times; none where there are none.
-pub(super) fn has_changed(compiled: &Compiled) -> Option<TokenStream> {
+fn has_changed(compiled: &Compiled) -> Option<TokenStream> {
     let (asked, told) = by_time(compiled, Routines::SIDES)?;
     let (compared, turns) = told.split_at(2 * compiled.changes.compared);
     let pairs = compared.chunks(2).map(|pair| quote!([#(#pair),*]));

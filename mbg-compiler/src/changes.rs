@@ -197,8 +197,8 @@ fn add_sides(pool: &mut Pool, times: &mut Times, rates: &[Expression]) {
     add_new(&mut times.turning, turning);
 }
 
-/// What a step may pass more of than it finds: arguments of the state, of inputs where a law jumps, and waves, which go back over each
-/// threshold, with their angles. Steps end at [`times`].
+/// What a step may pass more of than it finds: arguments of the state, of inputs where a law jumps, and waves, which go back over
+/// each threshold, with their angles. Steps end at [`times`].
 fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Argument> {
     let mut arguments: Vec<Argument> = Vec::new();
     let jumping = jumping(pool, rates);

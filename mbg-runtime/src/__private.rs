@@ -126,8 +126,8 @@ const PLACES: f64 = 4.0;
 /// So often a time is halved until no other number is left.
 const HALVINGS: usize = 64;
 
-/// The first time between two, in any lane, at which one of the differences has changed its sign or some turns have gone over a whole
-/// number; with its slope.
+/// The first time between two, in any lane, at which one of the differences has changed its sign or some turns have gone over a
+/// whole number; with its slope.
 #[cold]
 pub fn change_between<T: Real, const G: usize, const H: usize>(
     from: T,

@@ -199,8 +199,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         None
     }
 
-    /// Whether a choice of the laws by time and inputs is another at one time than at another, by what the laws compare as they round
-    /// it. Next to a change, which is told but for rounding, integrators take the laws as they are where this no longer holds.
+    /// Whether a choice of the laws by time and inputs is another at one time than at another, by what the laws compare as they
+    /// round it. Times of changes are told but for rounding, and next to one integrators take the laws of a time that is on their own
+    /// side by this.
     #[must_use]
     fn has_changed(&self, _from: T, _to: T, _input: impl Fn(T) -> SVector<T, M>) -> bool {
         false
@@ -217,8 +218,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// [`Dual`](crate::Dual) numbers steps end at the thresholds at which a law jumps. A motion may stay at one whose argument has
     /// its rate.
     ///
-    /// Generated models give it, for arguments that the state or an input has a part in. Waves over time or one state, such as `cos(q) > 0.9`,
-    /// turn often, so half turns of their angles are told as well, with two thresholds each. None unless it is given.
+    /// Generated models give it, for arguments that the state has a part in, or an input where a law jumps. Waves over time or one
+    /// state, such as `cos(q) > 0.9`, turn often, so half turns of their angles are told as well, with two thresholds each. None
+    /// unless it is given.
     #[inline]
     fn courses(
         &self,

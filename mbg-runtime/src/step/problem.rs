@@ -15,8 +15,8 @@ const LOOKS: u32 = 64;
 const PLACES: f64 = 4.0;
 /// So much farther than where they are found to be others: what is rounded otherwise may change there again.
 const SURELY: f64 = 4.0;
-/// That is looked for no farther than within this part of a piece, and than so many roots of the precision of it, about which a wave
-/// is flat.
+/// That is looked for no farther than within this part of a piece, and than so many roots of the precision of it, about which a
+/// wave is flat.
 const LONGEST: f64 = 0.01;
 const SEVERAL: f64 = 64.0;
 
@@ -82,8 +82,8 @@ where
         }
     }
 
-    /// How far from the start of a piece on, or from its end back, laws of time are those of the piece: a law says for one side alone
-    /// what it is where it changes, and what it adds up there may round more than the time does, or hardly change.
+    /// How far from the start of a piece on, or from its end back, laws of time are those of the piece: a law says for one side
+    /// alone what it is where it changes, and what it adds up there may round more than the time does, or hardly change.
     fn within(&self, (since, end): (T, T), way: f64) -> T {
         let place = if way > 0.0 { since } else { end };
         let least = T::EPSILON * (PLACES * place.magnitude()).max(T::EPSILON);

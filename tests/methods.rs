@@ -11,6 +11,8 @@ mod problems;
 mod attitudes;
 #[path = "methods/changes.rs"]
 mod changes;
+#[path = "methods/driven.rs"]
+mod driven;
 #[path = "methods/events.rs"]
 mod events;
 #[path = "methods/hard.rs"]

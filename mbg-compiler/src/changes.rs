@@ -17,6 +17,7 @@ const MOST: usize = 64;
 const LITTLE: usize = 24;
 
 /// Times, in terms of parameters, at which steps of integration end.
+#[derive(Default)]
 pub struct Times {
     /// Each once.
     pub once: Vec<Expression>,
@@ -24,6 +25,12 @@ pub struct Times {
     pub again: Vec<[Expression; 2]>,
     /// What changes its sign at others, in terms of time and inputs, too.
     pub sought: Vec<Expression>,
+    /// What goes over whole numbers at others, likewise.
+    pub counted: Vec<Expression>,
+    /// What the laws compare by time and inputs, as they do.
+    pub compared: Vec<[Expression; 2]>,
+    /// What they count the whole turns of.
+    pub turning: Vec<Expression>,
 }
 
 impl Times {
@@ -31,6 +38,34 @@ impl Times {
     pub fn listed(&self) -> Vec<Expression> {
         [&self.once, self.again.as_flattened()].concat()
     }
+
+    /// What tells of others.
+    pub fn telling(&self) -> Vec<Expression> {
+        [&self.sought[..], &self.counted].concat()
+    }
+
+    /// What tells on which side of all of them the laws are.
+    pub fn sides(&self) -> Vec<Expression> {
+        [self.compared.as_flattened(), &self.turning].concat()
+    }
+
+    /// How many there are of each.
+    pub fn counts(&self) -> Counts {
+        Counts {
+            once: self.once.len(),
+            sought: self.sought.len(),
+            compared: self.compared.len(),
+        }
+    }
+}
+
+/// How many [`Times`] come once, and how many tell of others by their signs or by being the smaller of two.
+#[allow(missing_docs)]
+#[derive(Clone, Copy, Debug)]
+pub struct Counts {
+    pub once: usize,
+    pub sought: usize,
+    pub compared: usize,
 }
 
 /// An expression, and the values of it at which choices change.
@@ -98,53 +133,86 @@ pub fn of(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> (Times, V
 /// When what is by time and inputs changes. Where there is no closed form for it, as of what compares two waves, times at which a
 /// wave turns or goes through zero are among those that come again: between them it hardly changes its sign twice.
 pub fn times(pool: &mut Pool, rates: &[Expression]) -> Times {
-    let (mut once, mut again, mut sought) = (Vec::new(), Vec::new(), Vec::new());
+    let mut times = Times::default();
     for difference in differences(pool, rates) {
-        if !is_driven(pool, difference) {
+        let (is_driven, is_of_time) = (is_driven(pool, difference), is_of_time(pool, difference));
+        let unknown = match is_driven && !is_of_time {
+            true => vec![difference],
+            false => add_zeros(pool, &mut times, difference),
+        };
+        if unknown.is_empty() {
             continue;
         }
-        let mut is_known = is_of_time(pool, difference);
-        let branches = match is_known {
-            true => branches(pool, difference),
-            false => Vec::new(),
-        };
-        for branch in branches {
-            let (zero, zeros) = (zero(pool, branch), zeros(pool, branch));
-            is_known &= zero.is_some() || zeros.is_some() || !is_of_time(pool, branch);
-            add_new(&mut once, zero);
-            add_new(&mut again, zeros.unwrap_or_default());
-        }
-        if !is_known {
-            sought.push(difference);
-            add_new(&mut again, quarters(pool, difference));
+        let sought = if is_driven { vec![difference] } else { unknown };
+        for sought in sought {
+            add_new(&mut times.sought, [sought]);
+            add_new(&mut times.again, quarters(pool, sought));
         }
     }
     for turns in fractions(pool, rates) {
+        let mut is_known = is_of_time(pool, turns);
         for branch in branches(pool, turns) {
-            add_new(
-                &mut again,
-                repeated(pool, branch, &[Expression::ZERO], Expression::ONE),
-            );
+            if is_of_time(pool, branch) {
+                let found = repeated(pool, branch, &[Expression::ZERO], Expression::ONE);
+                is_known &= !found.is_empty();
+                add_new(&mut times.again, found);
+            }
+        }
+        if !is_known && is_driven(pool, turns) {
+            add_new(&mut times.counted, [turns]);
+            add_new(&mut times.again, quarters(pool, turns));
         }
     }
-    Times {
-        once,
-        again,
-        sought,
-    }
+    add_sides(pool, &mut times, rates);
+    times
 }
 
-/// What a step may pass more of than it finds: arguments of the state, and waves, which go back over each threshold, with their
-/// angles. Steps end at [`times`].
+/// Adds the times at which branches of time alone are zero, and tells of those of which these are not known.
+fn add_zeros(pool: &mut Pool, times: &mut Times, difference: Expression) -> Vec<Expression> {
+    let mut unknown = Vec::new();
+    for branch in branches(pool, difference) {
+        if !is_of_time(pool, branch) {
+            continue;
+        }
+        let (zero, zeros) = (zero(pool, branch), zeros(pool, branch));
+        if zero.is_none() && zeros.is_none() {
+            unknown.push(branch);
+        }
+        add_new(&mut times.once, zero);
+        add_new(&mut times.again, zeros.unwrap_or_default());
+    }
+    unknown
+}
+
+/// Adds what the laws ask by time and inputs: what they add up is rounded otherwise than what is left of it in a difference.
+fn add_sides(pool: &mut Pool, times: &mut Times, rates: &[Expression]) {
+    for (_, [a, b, ..]) in choices(pool, rates) {
+        let difference = pool.subtract(a, b);
+        if is_driven(pool, difference) {
+            add_new(&mut times.compared, [[a, b]]);
+        }
+    }
+    let mut turning = fractions(pool, rates);
+    turning.retain(|turns| is_driven(pool, *turns));
+    add_new(&mut times.turning, turning);
+}
+
+/// What a step may pass more of than it finds: arguments of the state, of inputs where a law jumps, and waves, which go back over
+/// each threshold, with their angles. Steps end at [`times`].
 fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Argument> {
     let mut arguments: Vec<Argument> = Vec::new();
+    let jumping = jumping(pool, rates);
     for difference in differences(pool, rates) {
         for branch in branches(pool, difference) {
             let Some((value, threshold)) = threshold(pool, branch) else {
                 continue;
             };
             let is_known = is_of_time(pool, branch) && zeros(pool, branch).is_some();
-            if is_known || angles(pool, value).is_empty() && !is_of_state(pool, value) {
+            let is_asked = match is_given(pool, branch) {
+                true => jumping.contains(&difference) && !comes_again(pool, branch),
+                false => is_moved(pool, value) || !angles(pool, value).is_empty(),
+            };
+            if is_known || !is_asked {
                 continue;
             }
             match *pool.operation(value) {
@@ -157,7 +225,7 @@ fn arguments(pool: &mut Pool, rates: &[Expression], states: &[Symbol]) -> Vec<Ar
         }
     }
     for turns in fractions(pool, rates) {
-        if is_of_state(pool, turns) {
+        if is_moved(pool, turns) {
             add_repeated(pool, &mut arguments, turns, Expression::ZERO);
         }
     }
@@ -239,18 +307,38 @@ fn is_of_time(pool: &Pool, value: Expression) -> bool {
     read.contains(&Symbol::Time) && read.iter().all(is_fixed)
 }
 
-fn is_of_state(pool: &Pool, value: Expression) -> bool {
-    let is_state = |it: &Symbol| matches!(it, Symbol::State(_) | Symbol::Unknown(_));
-    symbols(pool, &[value]).iter().any(is_state)
+/// Whether it changes with inputs, and with nothing but those and time while a model runs.
+fn is_given(pool: &Pool, value: Expression) -> bool {
+    let read = symbols(pool, &[value]);
+    let is_input = |it: &Symbol| matches!(it, Symbol::Input(_));
+    read.iter().any(is_input)
+        && !read
+            .iter()
+            .any(|it| matches!(it, Symbol::State(_) | Symbol::Unknown(_)))
 }
 
-/// What grows by one from each end of the way of a wave to the next, for waves over time or one state alone.
+/// Whether it begins anew with time at [`times`] that come again, as `mod(t, period) - input` does: between them it hardly changes
+/// its sign twice.
+fn comes_again(pool: &mut Pool, value: Expression) -> bool {
+    let turns = fractions(pool, &[value]);
+    turns.into_iter().any(|turns| is_of_time(pool, turns)) || !quarters(pool, value).is_empty()
+}
+
+/// Whether it changes with the state or an input.
+fn is_moved(pool: &Pool, value: Expression) -> bool {
+    let moves =
+        |it: &Symbol| matches!(it, Symbol::State(_) | Symbol::Unknown(_) | Symbol::Input(_));
+    symbols(pool, &[value]).iter().any(moves)
+}
+
+/// What grows by one from each end of the way of a wave to the next, for waves over one state alone, or over time and inputs.
 fn angles(pool: &mut Pool, value: Expression) -> Vec<Expression> {
     let mut read = symbols(pool, &[value]);
     read.retain(|it| !matches!(it, Symbol::Parameter(_)));
-    let [Symbol::State(_) | Symbol::Time] = read[..] else {
+    let is_given = |it: &Symbol| matches!(it, Symbol::Time | Symbol::Input(_));
+    if !matches!(read[..], [Symbol::State(_)]) && !read.iter().all(is_given) {
         return Vec::new();
-    };
+    }
     let mut waves = Vec::new();
     visit(pool, &[value], |_, operation| match *operation {
         Operation::Sine(angle) => waves.push((angle, true)),
@@ -288,6 +376,19 @@ fn differences(pool: &mut Pool, expressions: &[Expression]) -> Vec<Expression> {
     differences
 }
 
+/// What changes its sign where an expression may jump, which the smaller of two and what has no sign do not.
+fn jumping(pool: &mut Pool, expressions: &[Expression]) -> Vec<Expression> {
+    let mut choices = choices(pool, expressions);
+    choices.retain(|(part, _)| match *pool.operation(*part) {
+        Operation::Call(function, _) => {
+            !matches!(function, Function::Min | Function::Max | Function::Abs)
+        }
+        _ => false,
+    });
+    let of = |(_, [a, b, ..]): (_, [Expression; 4])| pool.subtract(a, b);
+    choices.into_iter().map(of).collect()
+}
+
 /// What each choice in some expressions is, and what it is between.
 fn choices(pool: &Pool, expressions: &[Expression]) -> Vec<(Expression, [Expression; 4])> {
     let mut found = Vec::new();
@@ -307,7 +408,8 @@ fn branches(pool: &mut Pool, expression: Expression) -> Vec<Expression> {
             break;
         };
         match choices(pool, &[expression]).first().copied() {
-            None => add_new(&mut found, [expression]),
+            None if is_number(pool, expression) => add_new(&mut found, [expression]),
+            None => {}
             Some((part, [_, _, c, d])) => {
                 let chosen = [d, c].map(|branch| replace(pool, expression, &[(part, branch)]));
                 open.extend(chosen.into_iter().flatten());
@@ -315,6 +417,19 @@ fn branches(pool: &mut Pool, expression: Expression) -> Vec<Expression> {
         }
     }
     found
+}
+
+/// Whether it has a value wherever its variables have: a call of constants is a constant but where it is no number, as the root of
+/// what is below zero. A law does not come to a branch with such a one.
+fn is_number(pool: &Pool, expression: Expression) -> bool {
+    let is_constant = |it: &Expression| pool.constant_value(*it).is_some();
+    let mut is_number = true;
+    visit(pool, &[expression], |_, operation| {
+        if let Operation::Call(_, arguments) = operation {
+            is_number &= !arguments.iter().all(is_constant);
+        }
+    });
+    is_number
 }
 
 /// The time at which an expression of time and parameters is zero, if it is a line.
@@ -361,6 +476,7 @@ fn quarters(pool: &mut Pool, expression: Expression) -> Vec<[Expression; 2]> {
             add_new(&mut angles, [angle]);
         }
     });
+    angles.retain(|angle| is_of_time(pool, *angle));
     let quarter = pool.irrational(0.5 * PI);
     let half = pool.irrational(PI);
     let places = [Expression::ZERO, quarter];

@@ -61,8 +61,8 @@ pub struct Compiled {
     pub strokes: Vec<bool>,
     /// Where the Jacobian by the states can differ from zero.
     pub pattern: Pattern,
-    /// How many of the changes by time alone come once; others come again after a period.
-    pub changes_once: usize,
+    /// How many of the changes by time alone come once, and how others are told.
+    pub changes: changes::Counts,
     /// The thresholds of each argument of choices.
     pub thresholds: Vec<changes::Kind>,
     /// Things worth knowing.
@@ -125,6 +125,7 @@ impl Routines {
     pub const SOUGHT: usize = 16;
     pub const STARTED_FLOWS: usize = 17;
     pub const RESIDUALS_OF_START: usize = 18;
+    pub const SIDES: usize = 19;
 }
 
 /// Compiles one model; none if anything was reported.
@@ -199,14 +200,13 @@ fn finish(
     if diagnostics.any() {
         return None;
     }
-    let initial = |state: &usize| model.states[*state].initial;
-    let initial: Vec<Expression> = answers.states.iter().map(initial).collect();
+    let initial = answers.states.iter().map(|it| model.states[*it].initial);
     let groups = jacobians::groups(&model, &answers.states);
     let (by_states, pattern) = jacobians::request(&mut pool, rates, rates, &by_state, &groups);
     let inputs = [(0..by_input.len()).collect()];
     let (by_inputs, _) = jacobians::request(&mut pool, &[], rates, &by_input, &inputs);
     let (times, arguments) = changes::of(&mut pool, rates, &by_state);
-    let requests: [Request; 19] = [
+    let requests: [Request; 20] = [
         rates.clone().into(),
         answers.outputs.clone().into(),
         by_states,
@@ -214,7 +214,7 @@ fn finish(
         vec![answers.energy].into(),
         vec![answers.supplied, answers.dissipated].into(),
         conditioning.clone().into(),
-        initial.into(),
+        initial.collect::<Vec<_>>().into(),
         checked.into(),
         positions.evaluated().into(),
         flows.evaluated().into(),
@@ -223,9 +223,10 @@ fn finish(
         changes::listed(&arguments).into(),
         positions.values.clone().into(),
         flows.values.clone().into(),
-        times.sought.clone().into(),
+        times.telling().into(),
         started.evaluated().into(),
         started.values.clone().into(),
+        times.sides().into(),
     ];
     share(&mut pool, rates);
     shorten(&mut pool, &requests);
@@ -256,7 +257,7 @@ fn finish(
         dependent: verdict.dependent,
         strokes: verdict.strokes,
         pattern,
-        changes_once: times.once.len(),
+        changes: times.counts(),
         thresholds: arguments.iter().map(changes::Argument::kind).collect(),
         notes,
         states: answers.states,

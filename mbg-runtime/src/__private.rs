@@ -126,24 +126,26 @@ const PLACES: f64 = 4.0;
 /// So often a time is halved until no other number is left.
 const HALVINGS: usize = 64;
 
-/// The first time between two, in any lane, at which one of the differences has changed its sign; with its slope.
+/// The first time between two, in any lane, at which one of the differences has changed its sign or some turns have gone over a
+/// whole number; with its slope.
 #[cold]
-pub fn change_between<T: Real, const G: usize>(
+pub fn change_between<T: Real, const G: usize, const H: usize>(
     from: T,
     to: T,
-    differences: impl Fn(T) -> [T; G],
+    at: impl Fn(T) -> ([T; G], [T; H]),
 ) -> Option<T> {
     let [from, to] = [from, to].map(crate::step::seen);
     let places = PLACES * T::EPSILON * from.abs().max(to.abs());
     let beside = places.max(BESIDE * (to - from));
     let (mut before, mut behind) = (from + beside, to - beside);
-    let at = |time: f64| differences(T::from_f64(time));
-    let first = at(before);
-    let has_changed = |differences: [T; G]| {
-        let mut products = first.iter().zip(differences).map(|(a, b)| *a * b);
+    let first = at(T::from_f64(before));
+    let has_changed = |time: f64| {
+        let (differences, turns) = at(T::from_f64(time));
+        let mut products = first.0.iter().zip(differences).map(|(a, b)| *a * b);
         products.any(|product| product.find(|lane| lane < 0.0).is_some())
+            || are_other_turns(&first.1, &turns)
     };
-    if before >= behind || !has_changed(at(behind)) {
+    if before >= behind || !has_changed(behind) {
         return None;
     }
     for _ in 0..HALVINGS {
@@ -151,21 +153,58 @@ pub fn change_between<T: Real, const G: usize>(
         if !(before < middle && middle < behind) {
             break;
         }
-        if has_changed(at(middle)) {
+        if has_changed(middle) {
             behind = middle;
         } else {
             before = middle;
         }
     }
     let (whole, zero) = (T::from_f64(behind), T::from_f64(0.0));
-    let slope = at(behind)
-        .into_iter()
-        .enumerate()
-        .fold(zero, |slope, (place, difference)| {
-            let own = whole.root_of(|t| differences(t)[place]) - whole;
-            (first[place] * difference).select_less(zero, own, slope)
-        });
+    let (differences, turns) = at(whole);
+    let mut slope = zero;
+    for (place, difference) in differences.into_iter().enumerate() {
+        let own = whole.root_of(|t| at(t).0[place]) - whole;
+        slope = (first.0[place] * difference).select_less(zero, own, slope);
+    }
+    for (place, turns) in turns.into_iter().enumerate() {
+        let [low, high] = [first.1[place], turns].map(whole_turns);
+        let level = low.max(high);
+        let own = whole.root_of(|t| at(t).1[place] - level) - whole;
+        slope = T::from_f64(0.5).select_less((high - low).abs(), own, slope);
+    }
     Some(whole + slope)
+}
+
+/// Whether one of what laws compare is the smaller of two at one time and not at another, in any lane, or some turns have another
+/// whole number below them.
+#[cold]
+pub fn has_changed<T: Real, const G: usize, const H: usize>(
+    from: T,
+    to: T,
+    at: impl Fn(T) -> ([[T; 2]; G], [T; H]),
+) -> bool {
+    let [(compared, turns), (compared_then, turns_then)] = [from, to].map(at);
+    let mut pairs = compared.iter().zip(&compared_then);
+    let side = |pair: &[T; 2]| {
+        let [zero, one] = [0.0, 1.0].map(T::from_f64);
+        pair[0].select_less(pair[1], one, zero)
+    };
+    let differs = |a: T, b: T| (a - b).find(|it| it != 0.0).is_some();
+    pairs.any(|(now, then)| differs(side(now), side(then))) || are_other_turns(&turns, &turns_then)
+}
+
+/// Whether other whole numbers are below some turns, in any lane.
+fn are_other_turns<T: Real, const H: usize>(turns: &[T; H], then: &[T; H]) -> bool {
+    let mut pairs = turns.iter().zip(then);
+    pairs.any(|(now, then)| {
+        let more = whole_turns(*then) - whole_turns(*now);
+        more.find(|it| it.abs() > 0.5).is_some()
+    })
+}
+
+/// The whole number below some turns, which has no slope.
+fn whole_turns<T: Real>(turns: T) -> T {
+    turns - turns.fraction()
 }
 
 /// Makes the states of an attitude, numbered by row, orthonormal again; one of which a state is fixed stays as it is.

@@ -137,8 +137,11 @@ impl<T: Real> Course<'_, T> {
         (known(from), known(to), lasting)
     }
 
-    /// How long from a value on with this rate and half its change the first threshold is.
+    /// How long from a value on with this rate and half its change the first threshold is at which choices change.
     fn soonest(&self, [value, rate, bend]: [f64; 3]) -> Option<f64> {
+        if !self.is_choice {
+            return None;
+        }
         let ways = self.thresholds.iter().flat_map(|threshold| {
             let beyond = value - seen(*threshold);
             match self.repeats {
@@ -292,6 +295,12 @@ mod tests {
         };
         close(unknown.within(4.0), 1.0);
         close(unknown.behind(4.0), 1.0);
+        // A wave turns where nothing else changes.
+        let turning = Course {
+            is_choice: false,
+            ..unknown
+        };
+        assert_eq!([turning.within(4.0), turning.behind(4.0)], [None; 2]);
     }
 
     #[test]

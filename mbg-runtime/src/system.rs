@@ -192,11 +192,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// The first time between two times, and at neither, at which a choice of the laws changes by time and inputs without a
     /// [`next_change`](Self::next_change) that tells of it, such as where a sine of time meets a triangle, or `mod(t, period)` an
-    /// input: what is compared has changed its sign there. Two such times between changes that are told are not found. Integrators
-    /// end a step there.
+    /// input: what is compared has changed its sign there, or what is counted has gone over a whole number. Two such times between
+    /// changes that are told are not found. Integrators end a step there.
     #[must_use]
     fn change_between(&self, _from: T, _to: T, _input: impl Fn(T) -> SVector<T, M>) -> Option<T> {
         None
+    }
+
+    /// Whether a choice of the laws by time and inputs is another at one time than at another, by what the laws compare as they
+    /// round it. Times of changes are told but for rounding, and next to one integrators take the laws of a time that is on their own
+    /// side by this.
+    #[must_use]
+    fn has_changed(&self, _from: T, _to: T, _input: impl Fn(T) -> SVector<T, M>) -> bool {
+        false
     }
 
     /// Tells of each argument of choices in the laws how it goes between two points, each a time, a state with its derivative, and
@@ -210,8 +218,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// [`Dual`](crate::Dual) numbers steps end at the thresholds at which a law jumps. A motion may stay at one whose argument has
     /// its rate.
     ///
-    /// Generated models give it, for arguments that the state has a part in. Waves over time or one state, such as `cos(q) > 0.9`,
-    /// turn often, so half turns of their angles are told as well, with two thresholds each. None unless it is given.
+    /// Generated models give it, for arguments that the state has a part in, or an input where a law jumps. Waves over time or one
+    /// state, such as `cos(q) > 0.9`, turn often, so half turns of their angles are told as well, with two thresholds each. None
+    /// unless it is given.
     #[inline]
     fn courses(
         &self,

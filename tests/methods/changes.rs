@@ -511,3 +511,148 @@ fn pulses_at_the_top_of_a_product_of_waves_are_met() {
     let error = pushed(&model, 10.0) - summed(law, 10.0);
     assert!(error.abs() < 2e-5, "{error:e}");
 }
+
+mbg! {
+    /// Laws that add more to the time than there is of it, so that they round more than it does.
+    model Ahead {
+        param shift = 0.97;
+        param ahead = 0.97;
+        param offset = 1000.0;
+        param phase = 100.3;
+        integral counted = floor(3.0 * t + shift);
+        integral early = if mod(t + ahead, 0.4) < 0.2 { 1.0 } else { 0.0 };
+        integral late = if t + offset > offset + 0.5 { 1.0 } else { 0.0 };
+        integral wave = if sin(5.0 * t + phase) > 0.5 { 1.0 } else { 0.0 };
+        output all = counted + early + late + wave;
+    }
+
+    /// What is on next to the crests of a wave.
+    model Crest {
+        param level = 0.999;
+        integral lasting = if sin(100.0 * t) > level { 1.0 } else { 0.0 };
+        output all = lasting;
+    }
+
+    /// What counts a wave that goes just beyond whole numbers.
+    model Floor {
+        param height = 1.0005;
+        integral counted = floor(height * sin(100.0 * t));
+        output all = counted;
+    }
+
+    /// What the time or a state begins, whichever is first.
+    model Either {
+        param level = 0.5;
+        integral way = 0.2;
+        integral lasting = if max(t, way) > level { 1.0 } else { 0.0 };
+        output all = lasting;
+    }
+}
+
+/// What is left at the end by all kinds of methods.
+fn by_all<T: Real, const N: usize>(
+    model: &impl System<T, N, 0, 1>,
+    end: f64,
+    mut each: impl FnMut(SVector<T, N>),
+) {
+    let mut by = |solver: &dyn Fn() -> SVector<T, N>| each(solver());
+    macro_rules! by {
+        ($($solver:expr),*) => { $(by(&|| {
+            let mut last = model.initial_state();
+            let (begin, end) = (T::from_f64(0.0), T::from_f64(end));
+            $solver
+                .integrate(model, &(), begin, end, last, |step| last = *step.state())
+                .unwrap();
+            last
+        });)* };
+    }
+    by!(
+        Fixed::new(Rk4, 0.01),
+        Fixed::new(Gauss6::default(), 0.03),
+        Adaptive::new(Tsit5, 1e-9, 1e-9),
+        Adaptive::new(Dop853, 1e-9, 1e-9),
+        Adaptive::new(Radau9, 1e-9, 1e-9)
+    );
+}
+
+#[test]
+fn laws_that_round_more_than_the_time_change_on_their_own_side() {
+    // Three times are counted; of those that come again, what is left of one, and two more.
+    let expected = [
+        3.0 - (6.0 - 3.0 * 0.97) / 3.0,
+        0.43,
+        0.5,
+        std::f64::consts::PI / 7.5,
+    ];
+    let model = Ahead::<f64>::new(AheadParameters::default()).unwrap();
+    by_all(&model, 1.0, |found| {
+        let error = (found - SVector::from(expected)).amax();
+        assert!(error < 1e-12, "{error:e}");
+    });
+    let model = Ahead::<Dual<f64>>::new(AheadParameters {
+        shift: Dual::variable(0.97),
+        ahead: Dual::variable(0.97),
+        ..Default::default()
+    });
+    let model = model.unwrap();
+    by_all(&model, 1.0, |found| {
+        let error = (found.map(|it| it.slope) - SVector::from([1.0, -1.0, 0.0, 0.0])).amax();
+        assert!(error < 1e-12, "{error:e}");
+    });
+    let model = Ahead::<f32>::new(AheadParameters::default()).unwrap();
+    by_all(&model, 1.0, |found| {
+        let error = (found.map(f64::from) - SVector::from(expected)).amax();
+        assert!(error < 3e-4, "{error:e}");
+    });
+}
+
+/// Where a wave is almost flat a little of it is a long time.
+#[test]
+fn changes_next_to_crests_are_met() {
+    for part in 0..100 {
+        let level = 1.0 - f64::powf(10.0, -0.1 - 0.05 * f64::from(part));
+        let model = Crest::new(CrestParameters { level }).unwrap();
+        let expected = 16.0 * 2.0 * level.acos() / 100.0;
+        by_all(&model, 1.0, |found| {
+            let error = found[0] - expected;
+            assert!(error.abs() < 1e-12, "{level}: {error:e}");
+        });
+    }
+}
+
+#[test]
+fn whole_numbers_below_a_wave_are_met() {
+    // Eight times above one, and seven times below minus one.
+    let expected = (2.0 * f64::acos(1.0 / 1.0005) + 8.0 * std::f64::consts::PI - 48.0) / 100.0;
+    let slope = 0.02 / (1.0005 * f64::sqrt(1.0005 * 1.0005 - 1.0));
+    let height = Dual::variable(1.0005);
+    let model = Floor::new(FloorParameters { height }).unwrap();
+    by_all(&model, 0.48, |found| {
+        let error = found[0].value - expected;
+        assert!(error.abs() < 1e-12, "{error:e}");
+        let error = found[0].slope / slope - 1.0;
+        assert!(error.abs() < 1e-9, "slope {error:e}");
+    });
+    // As many whole numbers as it goes over on its way.
+    let model = Floor::new(FloorParameters { height: 3.5 }).unwrap();
+    let above = |level: f64| 2.0 * f64::acos(level / 3.5);
+    // It ends in the eighth valley, below minus two.
+    let rest = 48.0 - 15.0 * std::f64::consts::PI;
+    let valley = 2.0 * rest - f64::asin(1.0 / 3.5) - f64::asin(2.0 / 3.5);
+    let expected =
+        above(1.0) + above(2.0) + above(3.0) - valley + 8.0 * std::f64::consts::PI - 48.0;
+    by_all(&model, 0.48, |found| {
+        let error = found[0] - expected / 100.0;
+        assert!(error.abs() < 1e-12, "{error:e}");
+    });
+}
+
+#[test]
+fn what_the_time_or_a_state_begins_is_met() {
+    let level = Dual::variable(0.5);
+    let model = Either::new(EitherParameters { level }).unwrap();
+    by_all(&model, 1.0, |found| {
+        let error = (found[1].value - 0.5).abs() + (found[1].slope + 1.0).abs();
+        assert!(error < 1e-12, "{error:e}");
+    });
+}

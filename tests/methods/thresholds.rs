@@ -244,3 +244,62 @@ fn refused_steps_end_where_they_went_over_a_threshold() {
     // Twenty and more of each before.
     by!(Tsit5 2.0, Dop853 2.0, Pirk8 2.0, Rodas4 2.0, Rodas5P 2.0, Radau5 2.0, Radau9 2.0);
 }
+
+mbg! {
+    /// What a state and the time pass together.
+    model Together {
+        param rate = 0.5;
+        integral way = 2.0;
+        integral left = mod(way - rate * t, 1.0);
+        integral counted = floor(t * way);
+        integral early = if mod(t, 0.5 + 0.0025 * way * way) < 0.2 { 1.0 } else { 0.0 };
+        integral wave = if sin(3.0 * t + way) > 0.2 { 1.0 } else { 0.0 };
+        output all = left + counted + early + wave;
+    }
+
+    /// Thresholds that are numbers on one side of another threshold alone.
+    model Sided {
+        integral way = 1.0;
+        let side = sign(way + 1.0);
+        integral root = if way > sqrt(side) { 1.0 } else { 0.0 };
+        integral both = if way > sqrt(max(side, 0.0)) + sqrt(abs(side)) { 1.0 } else { 0.0 };
+        integral power = if way > pow(side, 0.5) { 1.0 } else { 0.0 };
+        integral logarithm = if way > 0.5 + ln(side) { 1.0 } else { 0.0 };
+        integral angle = if way > asin(1.5 * side - 0.5) { 1.0 } else { 0.0 };
+        output all = root + both + power + logarithm + angle;
+    }
+}
+
+/// They were taken for times, which no state has a part in.
+#[test]
+fn what_a_state_and_the_time_pass_together_is_met() {
+    let model = Together::new(TogetherParameters::default()).unwrap();
+    // Four whole turns of 1.5 t, and the roots of k / 2 below 3.
+    let left = (2.0 + 0.5 * 0.5 * 0.5) / 1.5;
+    let counted = (1..18).map(|k| 3.0 - f64::sqrt(0.5 * f64::from(k))).sum();
+    // From each t = k (0.5 + t² / 100) on, for 0.2 s.
+    let root =
+        |k: f64, more: f64| (1.0 - f64::sqrt(1.0 - 0.04 * k * (0.5 * k + more))) / (0.02 * k);
+    let early = (1..6).map(|k| root(f64::from(k), 0.2).min(3.0) - root(f64::from(k), 0.0));
+    let early = 0.2 + early.sum::<f64>();
+    // The angle is 5 t.
+    let reach = std::f64::consts::PI - 2.0 * f64::asin(0.2);
+    let rest = 15.0 - 4.0 * std::f64::consts::PI - f64::asin(0.2);
+    let wave = (2.0 * reach + rest.min(reach)) / 5.0;
+    let expected = SVector::from([6.0, left, counted, early, wave]);
+    for (name, found) in by_all(&model, 3.0, 1e-10) {
+        let error = (found - expected).amax();
+        assert!(error < 1e-7, "{name}: {error:e}, {found} {expected}");
+    }
+}
+
+#[test]
+fn thresholds_that_are_no_numbers_are_none() {
+    let model = Sided::new(SidedParameters::default()).unwrap();
+    let angle = 3.0 - std::f64::consts::FRAC_PI_2;
+    let expected = SVector::from([3.0, 2.0, 1.0, 2.0, 2.5, angle]);
+    for (name, found) in by_all(&model, 3.0, 1e-10) {
+        let error = (found - expected).amax();
+        assert!(error < 1e-8, "{name}: {error:e}, {found}");
+    }
+}

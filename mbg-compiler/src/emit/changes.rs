@@ -8,13 +8,19 @@ use super::system::{body, memory};
 use crate::changes::Kind;
 use crate::compile::{Compiled, Routines};
 
+/// All of them that a model has.
+pub(super) fn changes(compiled: &Compiled) -> TokenStream {
+    let methods = [next_change, change_between, has_changed, courses];
+    methods.iter().filter_map(|told| told(compiled)).collect()
+}
+
 /// Where choices by time alone change; none where there are none.
-pub(super) fn next_change(compiled: &Compiled) -> Option<TokenStream> {
+fn next_change(compiled: &Compiled) -> Option<TokenStream> {
     let is_empty = compiled.program.routines[Routines::CHANGES]
         .results
         .is_empty();
     let body = body(compiled, Routines::CHANGES, &|times| {
-        let (once, again) = times.split_at(compiled.changes_once);
+        let (once, again) = times.split_at(compiled.changes.once);
         let again = again.chunks(2).map(|repeated| quote!([#(#repeated),*]));
         quote!(mbg_runtime::__private::next_of(t, &[#(#once),*], &[#(#again),*]))
     });
@@ -26,7 +32,7 @@ pub(super) fn next_change(compiled: &Compiled) -> Option<TokenStream> {
 }
 
 /// How the arguments of choices go between two points; none where no step can pass more than it finds.
-pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
+fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let [states, inputs] = [compiled.states.len(), compiled.model.inputs.len()];
     let [n, m, both] = [states, inputs, states + inputs].map(Literal::usize_suffixed);
     let joined = (inputs > 0)
@@ -79,24 +85,55 @@ pub(super) fn courses(compiled: &Compiled) -> Option<TokenStream> {
 }
 
 /// Where choices by time and inputs change that have no times of their own; none where there are none.
-pub(super) fn change_between(compiled: &Compiled) -> Option<TokenStream> {
-    let m = Literal::usize_suffixed(compiled.model.inputs.len());
-    let routine = &compiled.program.routines[Routines::SOUGHT];
-    let (steps, results) = lines(compiled, routine, Setting::Method);
-    let count = Literal::usize_suffixed(results.len());
-    (!results.is_empty()).then(|| {
-        quote! {
-            const SEEKS_CHANGES: ::core::primitive::bool = true;
-            fn change_between(
-                &self, from: T, to: T, input: impl ::core::ops::Fn(T) -> mbg_runtime::__private::SVector<T, #m>,
-            ) -> ::core::option::Option<T> {
-                mbg_runtime::__private::change_between(from, to, |t: T| -> [T; #count] {
-                    let u = &input(t);
-                    let _ = u;
-                    #steps
-                    [#(#results),*]
-                })
-            }
+fn change_between(compiled: &Compiled) -> Option<TokenStream> {
+    let (asked, told) = by_time(compiled, Routines::SOUGHT)?;
+    let (signs, turns) = told.split_at(compiled.changes.sought);
+    let counts = [signs, turns].map(|told| Literal::usize_suffixed(told.len()));
+    let [of_signs, of_turns] = counts;
+    let input = input(compiled);
+    Some(quote! {
+        const SEEKS_CHANGES: ::core::primitive::bool = true;
+        fn change_between(&self, from: T, to: T, input: #input) -> ::core::option::Option<T> {
+            mbg_runtime::__private::change_between(from, to, |t: T| -> ([T; #of_signs], [T; #of_turns]) {
+                #asked
+                ([#(#signs),*], [#(#turns),*])
+            })
         }
     })
+}
+
+/// Whether choices by time and inputs differ between two times; none where there are none.
+fn has_changed(compiled: &Compiled) -> Option<TokenStream> {
+    let (asked, told) = by_time(compiled, Routines::SIDES)?;
+    let (compared, turns) = told.split_at(2 * compiled.changes.compared);
+    let pairs = compared.chunks(2).map(|pair| quote!([#(#pair),*]));
+    let counts = [pairs.len(), turns.len()].map(Literal::usize_suffixed);
+    let [of_pairs, of_turns] = counts;
+    let input = input(compiled);
+    Some(quote! {
+        fn has_changed(&self, from: T, to: T, input: #input) -> ::core::primitive::bool {
+            mbg_runtime::__private::has_changed(from, to, |t: T| -> ([[T; 2]; #of_pairs], [T; #of_turns]) {
+                #asked
+                ([#(#pairs),*], [#(#turns),*])
+            })
+        }
+    })
+}
+
+/// What works out a routine at a time and an input, and its results, if it has any.
+fn by_time(compiled: &Compiled, routine: usize) -> Option<(TokenStream, Vec<TokenStream>)> {
+    let routine = &compiled.program.routines[routine];
+    let (steps, results) = lines(compiled, routine, Setting::Method);
+    let asked = quote! {
+        let u = &input(t);
+        let _ = u;
+        #steps
+    };
+    (!results.is_empty()).then_some((asked, results))
+}
+
+/// The type of an input over time.
+fn input(compiled: &Compiled) -> TokenStream {
+    let m = Literal::usize_suffixed(compiled.model.inputs.len());
+    quote!(impl ::core::ops::Fn(T) -> mbg_runtime::__private::SVector<T, #m>)
 }

@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::changes::{change_between, courses, next_change};
+use super::changes::changes;
 use super::close::{self, close};
 use super::routine::{Place, Setting, Writer, lines, written_lines};
 use super::tokens::block;
@@ -136,9 +136,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let conditioning = body(Routines::CONDITIONING, &|results| quote!([#(#results),*]));
     let [cold_energy, cold_conditioning] = [Routines::ENERGY, Routines::CONDITIONING]
         .map(|routine| cold_memory(compiled, routine, &quote!(Self::Memory)));
-    let next_change = next_change(compiled);
-    let courses = courses(compiled);
-    let change_between = change_between(compiled);
+    let changes = changes(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
@@ -185,9 +183,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             #[inline]
             fn conditioning(&self, #arguments) -> [T; #k] { #cold_conditioning #conditioning }
             #examined
-            #next_change
-            #change_between
-            #courses
+            #changes
             #close
             #upright
             #sparsity

@@ -11,6 +11,15 @@ use crate::{Columns, Input, Real, System, Trouble};
 /// Parts of a failed step at whose ends the input is looked at.
 const LOOKS: u32 = 64;
 
+/// In units of the last place of a time, laws are at least so far from where they change.
+const PLACES: f64 = 4.0;
+/// So much farther than where they are found to be others: what is rounded otherwise may change there again.
+const SURELY: f64 = 4.0;
+/// That is looked for no farther than within this part of a piece, and than so many roots of the precision of it, about which a
+/// wave is flat.
+const LONGEST: f64 = 0.01;
+const SEVERAL: f64 = 64.0;
+
 /// What a run carries from step to step besides the state.
 pub struct Problem<'a, T, S, I, const N: usize, const M: usize, const P: usize>
 where
@@ -68,10 +77,30 @@ where
                     .next_change(T::from_f64(f64::NEG_INFINITY))
                     .is_some());
         if changes {
-            // A law says for one side alone what it is where it changes.
-            let aside = |t: T| T::from_f64(T::EPSILON * (4.0 * t.magnitude()).max(T::EPSILON));
-            self.inside = (since + aside(since), end - aside(end));
+            let [first, last] = [1.0, -1.0].map(|way| self.within((since, end), way));
+            self.inside = (since + first, end + last);
         }
+    }
+
+    /// How far from the start of a piece on, or from its end back, laws of time are those of the piece: a law says for one side
+    /// alone what it is where it changes, and what it adds up there may round more than the time does, or hardly change.
+    fn within(&self, (since, end): (T, T), way: f64) -> T {
+        let place = if way > 0.0 { since } else { end };
+        let least = T::EPSILON * (PLACES * place.magnitude()).max(T::EPSILON);
+        let length = (end - since).magnitude();
+        let most = (SEVERAL * T::SINGULAR).min(LONGEST) * length;
+        let middle = since + T::from_f64(0.5) * (end - since);
+        let mut aside = least;
+        while aside <= most {
+            let beside = place + T::from_f64(way * aside);
+            let input = |t: T| self.input.value(t, since);
+            if !self.system.has_changed(beside, middle, input) {
+                let surely = if aside > least { SURELY * aside } else { aside };
+                return T::from_f64(way * surely);
+            }
+            aside *= 2.0;
+        }
+        T::from_f64(way * least)
     }
 
     /// The same problem, to be asked what the run itself is not to remember.

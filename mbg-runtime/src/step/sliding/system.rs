@@ -153,6 +153,10 @@ where
         self.system.change_between(from, to, input)
     }
 
+    fn has_changed(&self, from: T, to: T, input: impl Fn(T) -> SVector<T, M>) -> bool {
+        self.system.has_changed(from, to, input)
+    }
+
     /// As the laws see it, on the surfaces; of an argument that stays no more is told than that there is one.
     fn courses(
         &self,

@@ -269,14 +269,11 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                     slope,
                 };
                 let way = (rest, seen(span.length), end);
-                let watched;
-                (t, x, slope, watched) =
-                    match problem.beyond_threshold(&here, way, ends, observer)? {
-                        ControlFlow::Continue((next, watched)) => {
-                            (next.time, next.state, next.slope, watched)
-                        }
-                        ControlFlow::Break(walked) => return Ok(walked),
-                    };
+                let (next, watched) = match problem.beyond_threshold(&here, way, ends, observer)? {
+                    ControlFlow::Continue(beyond) => beyond,
+                    ControlFlow::Break(walked) => return Ok(walked),
+                };
+                (t, x, slope) = (next.time, next.state, next.slope);
                 steps.renew();
                 pace.control = self.begin(problem, (t, end), (&x, &slope), &tolerance);
                 (pace.approach.watched, pace.refused, pace.again) = (watched, 0, false);

@@ -133,6 +133,8 @@ pub struct Step<'a, T, const N: usize, Memory = ()> {
     pub(super) surfaces: Option<Surfaces<T>>,
     /// Whether it is known to go over none.
     pub(super) is_clear: bool,
+    /// Whether it is a straight line over a threshold, behind which the motion may stay at others.
+    pub(super) is_over: bool,
     polynomial: Option<Polynomial<T, N>>,
     source: &'a mut dyn FnMut() -> Polynomial<T, N>,
 }
@@ -151,6 +153,7 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
             memory,
             surfaces: None,
             is_clear: false,
+            is_over: false,
             polynomial: None,
             source,
         }

@@ -157,6 +157,7 @@ where
             length,
         };
         let mut step = Step::new(span, (x, next), self.memory, &mut line);
+        step.is_over = true;
         Ok(match observer(&mut step) {
             ControlFlow::Continue(()) => ControlFlow::Continue((until, next)),
             ControlFlow::Break(()) => ControlFlow::Break(()),

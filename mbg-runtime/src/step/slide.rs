@@ -192,7 +192,7 @@ where
 const SETTLED: u32 = 256;
 
 /// How often a run has been settled since time has gone on.
-struct Settled<T> {
+pub(super) struct Settled<T> {
     time: T,
     count: u32,
 }
@@ -306,8 +306,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                 }
                 let end = (step.end(), *step.state());
                 // Behind a threshold that is met the motion may be elsewhere.
-                let is_there = sliding.is_near(end, &memory);
-                if is_there
+                if !step.is_over
                     && (Self::LOOKS_WITHIN || !holds(end))
                     && let Some(time) = step.crossing(Direction::Falling, |t, x| hold(t, x, memory))
                 {

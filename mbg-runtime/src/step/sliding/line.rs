@@ -44,6 +44,17 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         aside
     }
 
+    /// The same of a state that is moved by such distances first, as far as numbers tell of these.
+    pub(super) fn aside_behind(&self, x: &SVector<T, N>, distances: &Each<T>) -> Each<T> {
+        let gradients = self.gradients.get();
+        let sizes: Each<f64> =
+            core::array::from_fn(|place| gradients[place].map(|by| by.magnitude()).norm());
+        let ways = (0..self.free).map(|place| seen(distances[place]).abs() / sizes[place]);
+        let way = ASIDE * T::EPSILON * ways.fold(0.0, f64::max);
+        let aside = self.aside(x);
+        core::array::from_fn(|place| aside[place] + T::from_f64(way * sizes[place]))
+    }
+
     /// How arguments of the free surfaces go across these, with the distances from all.
     pub(super) fn distances<const M: usize, const P: usize>(
         &self,
@@ -102,7 +113,8 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     {
         let (count, free) = (self.surfaces.count(), self.free);
         let (distances, moves) = self.distances(at, x, memory);
-        let aside = self.aside(x).map(|aside| T::from_f64(factor) * aside);
+        let aside = self.aside_behind(x, &distances);
+        let aside = aside.map(|aside| T::from_f64(factor) * aside);
         // Each free surface is met at the number of its place.
         let mut crossings: [f64; MOST] = core::array::from_fn(|place| place as f64);
         let mut forward = [1.0; MOST];

@@ -62,9 +62,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             evaluations: Cell::new(0),
         };
         let at = sliding.on_piece(t);
-        let near = sliding.near(&at, x, memory);
+        let near = sliding.near((&at, whole), x, memory);
         sliding.arrange(near, (&at, x), memory);
-        sliding.take_in(&at, x, memory);
+        sliding.take_in((&at, whole), x, memory);
         // What is left is put aside, and laws there are asked again: they need not be sums of what each makes different.
         while sliding.surfaces.count() > 0 {
             let sides = sliding.sides(&at, (x, 1.0), memory);
@@ -90,10 +90,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         None
     }
 
-    /// Those next to which the state is: what an argument jumps over it is not at, and a threshold may have jumped away.
+    /// Those next to which the state is, as far as numbers tell of it and of the time: what an argument jumps over it is not at, and a
+    /// threshold may have jumped away.
     fn near<const M: usize, const P: usize>(
         &self,
-        at: &Moment<T, M>,
+        (at, whole): (&Moment<T, M>, f64),
         x: &SVector<T, N>,
         memory: &S::Memory,
     ) -> Surfaces<T>
@@ -102,48 +103,21 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         I: Input<T, M>,
     {
         self.look(at, x, memory);
-        let places = self.near_ones(at, x, memory);
-        self.only(|place| places[*place])
-    }
-
-    /// Whether a state is next to all surfaces that are told apart.
-    pub(in super::super) fn is_near<const M: usize, const P: usize>(
-        &self,
-        (t, x): (T, SVector<T, N>),
-        memory: &S::Memory,
-    ) -> bool
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        let places = self.near_ones(&self.on_piece(t), &x, memory);
-        places.iter().take(self.surfaces.count()).all(|it| *it)
-    }
-
-    /// Next to which surfaces a state is.
-    fn near_ones<const M: usize, const P: usize>(
-        &self,
-        at: &Moment<T, M>,
-        x: &SVector<T, N>,
-        memory: &S::Memory,
-    ) -> Each<bool>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
+        let slope = (self.system).derivative(at.time, x, &at.input, &mut { *memory });
+        self.evaluations.set(self.evaluations.get() + 1);
         let aside = self.aside(x);
-        let rest = SVector::from_element(T::from_f64(0.0));
-        let [[distances, _], _] = self.told(at, [(x, &rest); 2], memory);
-        core::array::from_fn(|place| {
-            let least = seen(aside[place]) * NEAR / T::SINGULAR;
-            seen(distances[place]).abs() < least
+        let moment = T::EPSILON * at.time.magnitude().max(whole);
+        let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
+        self.only(|place| {
+            let least = seen(aside[*place]) + moment * seen(rates[*place]).abs();
+            seen(distances[*place]).abs() < NEAR / T::SINGULAR * least
         })
     }
 
     /// Takes in other thresholds that are as near: laws jump there, too, where these are asked.
     fn take_in<const M: usize, const P: usize>(
         &mut self,
-        at: &Moment<T, M>,
+        (at, whole): (&Moment<T, M>, f64),
         x: &SVector<T, N>,
         memory: &S::Memory,
     ) where
@@ -170,7 +144,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 number += 1;
             });
             self.surfaces = met;
-            let met = self.near(at, x, memory);
+            let met = self.near((at, whole), x, memory);
             self.arrange(met, (at, x), memory);
             if met.count() <= all.count() {
                 return;
@@ -330,7 +304,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
         let (distances, _) = self.distances(at, x, memory);
         let least = self
-            .aside(x)
+            .aside_behind(x, &distances)
             .map(|aside| T::from_f64(BESIDE * reach) * aside);
         let stays = sorted
             .iter()

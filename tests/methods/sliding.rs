@@ -8,6 +8,10 @@ use nalgebra::SVector;
 
 #[path = "sliding/constant_steps.rs"]
 mod constant_steps;
+#[path = "sliding/moving.rs"]
+mod moving;
+#[path = "sliding/networks.rs"]
+mod networks;
 #[path = "sliding/several.rs"]
 mod several;
 

@@ -141,7 +141,7 @@ mbg! {
 }
 
 /// What a run by each method comes to at an end, with the names; fixed steps are so long.
-fn by_all<const N: usize, const P: usize>(
+pub(super) fn by_all<const N: usize, const P: usize>(
     model: &impl System<f64, N, 0, P>,
     end: f64,
     tolerance: f64,

@@ -12,8 +12,11 @@ use crate::{Real, System};
 const ASIDE: f64 = 64.0;
 /// Surfaces are gone across at paces of their own, so that those that depend on them are not met where they are.
 const PACE: f64 = 0.618_033_988_749_894_9;
-/// So many times as long a line may be, for surfaces that it meets next to each other.
+/// So many times as long a line may be, for surfaces that it meets next to each other; where it is longer than so, others are tried.
 const LONGEST: f64 = 1024.0;
+const LONG: f64 = 8.0;
+/// So many lines are tried.
+const LINES: usize = 8;
 
 /// States before and behind each surface, in the order in which a line meets these.
 pub(super) struct Line<T, const N: usize> {
@@ -115,42 +118,32 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let (distances, moves) = self.distances(at, x, memory);
         let aside = self.aside_behind(x, &distances);
         let aside = aside.map(|aside| T::from_f64(factor) * aside);
-        // Each free surface is met at the number of its place.
-        let mut crossings: [f64; MOST] = core::array::from_fn(|place| place as f64);
-        let mut forward = [1.0; MOST];
-        let mut paces: [f64; MOST] =
-            core::array::from_fn(|place| 2.0 + 2.0 * ((PACE * place as f64) % 1.0));
-        let state = |paces: &[f64; MOST], along: f64| {
+        let state = |paces: &Each<f64>, along: f64| {
             let ways = core::array::from_fn(|place| {
                 let beyond = T::from_f64(paces[place] * (along - place as f64)) * aside[place];
                 beyond - distances[place]
             });
             self.moved(x, moves.solve(ways))
         };
+        let mut way = Way::along(1);
         if count > free {
-            let ends = [-0.5, free as f64 - 0.5];
-            let rest = SVector::from_element(T::from_f64(0.0));
-            let [first, last] = ends.map(|along| state(&paces, along));
-            let told = self.told(at, [(&first, &rest), (&last, &rest)], memory);
-            let mut rates: [f64; MOST] =
-                core::array::from_fn(|place| paces[place] * seen(aside[place]));
-            for place in free..count {
-                let [from, to] = told.map(|it| seen(it[0][place]));
-                rates[place] = (to - from) / free as f64;
-                crossings[place] = ends[0] - from / rates[place];
-                forward[place] = f64::signum(to - from);
+            let met = |way| self.met(way, (at, &aside), state, memory);
+            way = met(way);
+            for turns in 2..=LINES {
+                if way.longer < LONG {
+                    break;
+                }
+                let other = met(Way::along(turns));
+                way = if other.longer < way.longer {
+                    other
+                } else {
+                    way
+                };
             }
-            // Between two each is as far away as need be.
-            let longer = (0..count).map(|place| {
-                let others = (0..count).filter(|other| *other != place);
-                let gap = others.fold(1.0, |gap: f64, other| {
-                    gap.min((crossings[other] - crossings[place]).abs())
-                });
-                seen(aside[place]) / (0.5 * gap * rates[place].abs())
-            });
-            let longer = longer.fold(1.0, f64::max).min(LONGEST);
-            paces = paces.map(|pace| longer * pace);
+            let longer = way.longer.min(LONGEST);
+            way.paces = way.paces.map(|pace| longer * pace);
         }
+        let crossings = way.crossings;
         let mut order: [usize; MOST] = core::array::from_fn(|place| place);
         order[..count].sort_unstable_by(|a, b| crossings[*a].total_cmp(&crossings[*b]));
         let (mut states, mut reach) = ([*x; 1 + MOST], 0.0_f64);
@@ -163,16 +156,76 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
                 (None, Some(behind)) => behind - 0.5,
                 (None, None) => 0.0,
             };
-            *there = state(&paces, along);
-            for (place, pace) in paces.iter().enumerate().take(free) {
+            *there = state(&way.paces, along);
+            for (place, pace) in way.paces.iter().enumerate().take(free) {
                 reach = reach.max(pace * (along - place as f64).abs());
             }
         }
         Line {
             states,
             order,
-            forward,
+            forward: way.forward,
             reach,
+        }
+    }
+
+    /// A way with where it meets the surfaces that are not free, and how much longer it is to be, so that it is between each two as far
+    /// away as need be.
+    fn met<const M: usize, const P: usize>(
+        &self,
+        mut way: Way,
+        (at, aside): (&Moment<T, M>, &Each<T>),
+        state: impl Fn(&Each<f64>, f64) -> SVector<T, N>,
+        memory: &S::Memory,
+    ) -> Way
+    where
+        S: System<T, N, M, P>,
+    {
+        let (count, free) = (self.surfaces.count(), self.free);
+        let ends = [-0.5, free as f64 - 0.5];
+        let rest = SVector::from_element(T::from_f64(0.0));
+        let [first, last] = ends.map(|along| state(&way.paces, along));
+        let told = self.told(at, [(&first, &rest), (&last, &rest)], memory);
+        let mut rates: Each<f64> =
+            core::array::from_fn(|place| way.paces[place] * seen(aside[place]));
+        for place in free..count {
+            let [from, to] = told.map(|it| seen(it[0][place]));
+            rates[place] = (to - from) / free as f64;
+            way.crossings[place] = ends[0] - from / rates[place];
+            way.forward[place] = f64::signum(to - from);
+        }
+        let longer = (0..count).map(|place| {
+            let here = way.crossings[place];
+            let others = (0..count).filter(|other| *other != place);
+            let apart = others.map(|other| (way.crossings[other] - here).abs());
+            let gap = apart.fold(1.0, f64::min);
+            seen(aside[place]) / (0.5 * gap * rates[place].abs())
+        });
+        way.longer = longer.fold(1.0, f64::max);
+        way
+    }
+}
+
+/// How a line goes across surfaces.
+struct Way {
+    /// How fast across each free surface.
+    paces: Each<f64>,
+    /// Where it meets each: a free one at the number of its place.
+    crossings: Each<f64>,
+    forward: Each<f64>,
+    longer: f64,
+}
+
+impl Way {
+    /// One of several, by the golden ratio so many times.
+    fn along(turns: usize) -> Self {
+        let place = |place: usize| place as f64;
+        let pace = |place: usize| 2.0 + 2.0 * ((PACE * (turns * place) as f64) % 1.0);
+        Self {
+            paces: core::array::from_fn(pace),
+            crossings: core::array::from_fn(place),
+            forward: [1.0; MOST],
+            longer: 1.0,
         }
     }
 }

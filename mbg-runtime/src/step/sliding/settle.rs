@@ -15,6 +15,8 @@ use crate::{Input, Real, System};
 const BESIDE: f64 = 4.0;
 /// A state is next to a surface where digits beyond half of those that numbers have are surely beside it, but for this part.
 const NEAR: f64 = 1e-3;
+/// So it is where it comes there within so many units of the last place of the time.
+const MOMENT: f64 = 1024.0;
 /// So many times as far beside a surface a law is asked whether it jumps there.
 const WIDE: f64 = 1024.0;
 /// Gradients depend on each other if no more of one is beside the others than so many units of its last place.
@@ -106,11 +108,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let slope = (self.system).derivative(at.time, x, &at.input, &mut { *memory });
         self.evaluations.set(self.evaluations.get() + 1);
         let aside = self.aside(x);
-        let moment = T::EPSILON * at.time.magnitude().max(whole);
+        let moment = MOMENT * T::EPSILON * at.time.magnitude().max(whole);
         let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
         self.only(|place| {
-            let least = seen(aside[*place]) + moment * seen(rates[*place]).abs();
-            seen(distances[*place]).abs() < NEAR / T::SINGULAR * least
+            let least = NEAR / T::SINGULAR * seen(aside[*place]);
+            seen(distances[*place]).abs() < least + moment * seen(rates[*place]).abs()
         })
     }
 
@@ -279,8 +281,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
     }
 
-    /// The state surely beside what the motion does not stay at, if it is not farther away: that it has yet to come to. What is
-    /// passed is in the way where the motion stays at another one, as laws are asked a little off it.
+    /// The state surely beside what the motion does not stay at. What is passed is in the way where the motion stays at another one, as
+    /// laws are asked a little off it.
     fn put_aside<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
@@ -320,7 +322,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let ways = core::array::from_fn(|place| {
             let side = T::from_f64(side(place));
             let beyond = side * distances[place];
-            match seen(beyond).abs() < seen(least[place]) {
+            match seen(beyond) < seen(least[place]) {
                 true => side * (least[place] - beyond),
                 false => T::from_f64(0.0),
             }

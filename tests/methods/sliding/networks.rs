@@ -1,0 +1,175 @@
+//! Networks of bodies that rub at each other and at the ground, at random.
+
+use mbg_runtime::mbg;
+
+use super::several::by_all;
+
+mbg! {
+    /// Three bodies, each pair of which rubs, and each at the ground.
+    model Network {
+        param mass_a = 1.0; param mass_b = 1.0; param mass_c = 1.0;
+        param speed_a = 0.0; param speed_b = 0.0; param speed_c = 0.0;
+        param force_a = 0.0; param force_b = 0.0; param force_c = 0.0;
+        param most_ab = 0.0; param most_bc = 0.0; param most_ca = 0.0;
+        param most_a = 0.0; param most_b = 0.0; param most_c = 0.0;
+        1 a { I body { inertia: mass_a, initial_flow: speed_a } Se force { effort: force_a } }
+        1 b { I other { inertia: mass_b, initial_flow: speed_b } Se push { effort: force_b } }
+        1 c { I third { inertia: mass_c, initial_flow: speed_c } Se pull { effort: force_c } }
+        ab: Clutch { capacity: most_ab } (a, b);
+        bc: Clutch { capacity: most_bc } (b, c);
+        ca: Clutch { capacity: most_ca } (c, a);
+        at_a: Brake { capacity: most_a } (a);
+        at_b: Brake { capacity: most_b } (b);
+        at_c: Brake { capacity: most_c } (c);
+        output speeds[3] = [a.f, b.f, c.f];
+    }
+}
+
+/// How the slips go by the speeds.
+const SLIPS: [[f64; 3]; 6] = [
+    [1.0, -1.0, 0.0],
+    [0.0, 1.0, -1.0],
+    [-1.0, 0.0, 1.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+];
+/// Which of them there are in a kind of network.
+const KINDS: [&[usize]; 4] = [&[0, 1], &[0, 1, 2], &[0, 1, 3, 4], &[0, 1, 2, 3, 4, 5]];
+
+#[derive(Debug)]
+struct Rubbing {
+    masses: [f64; 3],
+    speeds: [f64; 3],
+    forces: [f64; 3],
+    most: [f64; 6],
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Rubbing {
+    /// Of a kind, by numbers from 0 to 1.
+    fn at_random(kind: &[usize], mut next: impl FnMut() -> f64) -> Self {
+        let masses = [(); 3].map(|()| 0.5 + 2.0 * next());
+        let rests = [(); 3].map(|()| next() < 0.4);
+        let speeds = rests.map(|rests| if rests { 0.0 } else { 2.0 * next() - 1.0 });
+        let forces = [(); 3].map(|()| 8.0 * next() - 4.0);
+        let mut most = [0.0; 6];
+        for place in kind {
+            most[*place] = 0.3 + 2.0 * next();
+        }
+        Self {
+            masses,
+            speeds,
+            forces,
+            most,
+        }
+    }
+
+    fn model(&self) -> Network<f64> {
+        let ([mass_a, mass_b, mass_c], [speed_a, speed_b, speed_c]) = (self.masses, self.speeds);
+        let [force_a, force_b, force_c] = self.forces;
+        let [most_ab, most_bc, most_ca, most_a, most_b, most_c] = self.most;
+        Network::new(NetworkParameters {
+            mass_a,
+            mass_b,
+            mass_c,
+            speed_a,
+            speed_b,
+            speed_c,
+            force_a,
+            force_b,
+            force_c,
+            most_ab,
+            most_bc,
+            most_ca,
+            most_a,
+            most_b,
+            most_c,
+        })
+        .unwrap()
+    }
+
+    /// How fast the speeds change where slips have these signs, or are held: of all efforts that friction allows, those by which the
+    /// bodies accelerate least (Gauss), one after the other until none changes.
+    fn accelerations(&self, signs: &[f64; 6]) -> [f64; 3] {
+        let mut efforts: [f64; 6] = core::array::from_fn(|place| self.most[place] * signs[place]);
+        let by = |efforts: &[f64; 6]| {
+            core::array::from_fn(|body| {
+                let slips = SLIPS.iter().zip(efforts);
+                let rubs: f64 = slips.map(|(slip, effort)| slip[body] * effort).sum();
+                (self.forces[body] - rubs) / self.masses[body]
+            })
+        };
+        for _ in 0..100_000 {
+            let mut change = 0.0_f64;
+            for place in (0..6).filter(|place| signs[*place] == 0.0) {
+                let (slip, most) = (&SLIPS[place], self.most[place]);
+                let mobility: f64 = slip
+                    .iter()
+                    .zip(&self.masses)
+                    .map(|(by, mass)| by * by / mass)
+                    .sum();
+                let effort = efforts[place] + dot(slip, &by(&efforts)) / mobility;
+                let effort = effort.clamp(-most, most);
+                change = change.max((effort - efforts[place]).abs());
+                efforts[place] = effort;
+            }
+            if change < 1e-15 {
+                break;
+            }
+        }
+        by(&efforts)
+    }
+
+    /// The speeds at an end, from one time to the next at which a slip is over.
+    fn speeds(&self, end: f64) -> [f64; 3] {
+        let (mut speeds, mut left) = (self.speeds, end);
+        while left > 1e-13 {
+            let signs = SLIPS.map(|slip| {
+                let slip = dot(&slip, &speeds);
+                if slip.abs() > 1e-10 {
+                    slip.signum()
+                } else {
+                    0.0
+                }
+            });
+            let accelerations = self.accelerations(&signs);
+            let over = SLIPS.iter().zip(&signs).filter_map(|(slip, sign)| {
+                let (slip, rate) = (dot(slip, &speeds), dot(slip, &accelerations));
+                (slip * rate < 0.0 && *sign != 0.0).then(|| -slip / rate)
+            });
+            let next = over.fold(left, f64::min);
+            for (speed, rate) in speeds.iter_mut().zip(accelerations) {
+                *speed += next * rate;
+            }
+            left -= next;
+        }
+        speeds
+    }
+}
+
+/// Bodies are caught, carried along, torn loose and stopped, several at once and where slips tell of each other.
+#[test]
+fn what_rubs_in_a_network_holds_where_it_can() {
+    let mut state = 1_u64;
+    let mut next = move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for number in 0..80 {
+        let network = Rubbing::at_random(KINDS[number % KINDS.len()], &mut next);
+        let expected = network.speeds(2.0);
+        for (name, _, speeds) in by_all(&network.model(), 2.0, 1e-8, 0.013) {
+            let errors: [f64; 3] = core::array::from_fn(|body| speeds[body] - expected[body]);
+            let error = errors
+                .iter()
+                .fold(0.0_f64, |most, error| most.max(error.abs()));
+            assert!(error < 1e-11, "{name}: {errors:?} in {network:?}");
+        }
+    }
+}

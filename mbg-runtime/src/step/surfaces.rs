@@ -30,6 +30,12 @@ pub(super) struct Surfaces<T> {
 impl<T: Real> Surfaces<T> {
     pub(super) const NONE: Self = Self { list: [None; MOST] };
 
+    pub(super) fn one(surface: Surface<T>) -> Self {
+        let mut one = Self::NONE;
+        one.add(surface);
+        one
+    }
+
     pub(super) fn count(&self) -> usize {
         self.iter().count()
     }

@@ -64,32 +64,81 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             evaluations: Cell::new(0),
         };
         let at = sliding.on_piece(t);
+        let start = *x;
         let near = sliding.near((&at, whole), x, memory);
         sliding.arrange(near, (&at, x), memory);
         sliding.take_in((&at, whole), x, memory);
+        let all = sliding.all();
+        let mut stays = sliding.search((&at, x), (&mut *memory, &mut *evaluations));
+        // A law that jumps on one side of a threshold alone, which is passed, does so where that is beside the others.
+        for passed in all.iter().filter(|_| all.count() > 1) {
+            if stays {
+                break;
+            }
+            let mut there = start;
+            sliding.arrange(all, (&at, &there), memory);
+            sliding.pass(*passed, (&at, &mut there), memory);
+            stays = sliding.search((&at, &mut there), (&mut *memory, &mut *evaluations));
+            *x = if stays { there } else { *x };
+        }
+        stays.then_some(sliding)
+    }
+
+    /// Whether the motion stays at some of the surfaces, which are then these, with the state put on them, or else beside all.
+    fn search<const M: usize, const P: usize>(
+        &mut self,
+        (at, x): (&Moment<T, M>, &mut SVector<T, N>),
+        (memory, evaluations): (&mut S::Memory, &mut u64),
+    ) -> bool
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
         // What is left is put aside, and laws there are asked again: they need not be sums of what each makes different.
-        while sliding.surfaces.count() > 0 {
-            let sides = sliding.sides(&at, (x, 1.0), memory);
-            let wide = sliding.sides(&at, (x, WIDE), memory);
-            *evaluations += sliding.evaluations.take();
-            let (choices, asides) = sliding.choices((&sides, &wide), (&at, x), memory)?;
-            let count = sliding.surfaces.count();
+        while self.surfaces.count() > 0 {
+            let sides = self.sides(at, (x, 1.0), memory);
+            let wide = self.sides(at, (x, WIDE), memory);
+            *evaluations += self.evaluations.take();
+            let Some((choices, asides)) = self.choices((&sides, &wide), (at, x), memory) else {
+                return false;
+            };
+            let count = self.surfaces.count();
             let stays = |place: &usize| matches!(asides[*place], Aside::On);
             if (0..count).all(|place| stays(&place)) {
                 // As a motion comes there: what it would be late by changes its slopes along this way.
                 let above = |place: usize| sides.above(place, choices[place]);
-                sliding.free_first(&core::array::from_fn(above), (&at, x), memory);
-                let sides = sliding.sides(&at, (x, 1.0), memory);
-                *evaluations += sliding.evaluations.take();
-                sliding.across = sides.across(sliding.free);
-                *x = sliding.onto(&at, x, memory);
-                return Some(sliding);
+                self.free_first(&core::array::from_fn(above), (at, x), memory);
+                let sides = self.sides(at, (x, 1.0), memory);
+                *evaluations += self.evaluations.take();
+                self.across = sides.across(self.free);
+                *x = self.onto(at, x, memory);
+                return true;
             }
-            let on = sliding.only(stays);
-            *x = sliding.put_aside((&at, x), (&asides, sides.reach()), memory);
-            sliding.arrange(on, (&at, x), memory);
+            let on = self.only(stays);
+            *x = self.put_aside((at, x), (&asides, sides.reach()), memory);
+            self.arrange(on, (at, x), memory);
         }
-        None
+        false
+    }
+
+    /// Puts a state beside one of the surfaces, where it is, and goes on without that.
+    fn pass<const M: usize, const P: usize>(
+        &mut self,
+        passed: Surface<T>,
+        (at, x): (&Moment<T, M>, &mut SVector<T, N>),
+        memory: &S::Memory,
+    ) where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let reach = self.line(at, (x, 1.0), memory).reach;
+        let rest = self.all().without(&Surfaces::one(passed));
+        let mut asides = [Aside::On; MOST];
+        if let Some((place, _)) = self.surfaces.of(passed.course) {
+            asides[place] = Aside::Passed;
+        }
+        *x = self.put_aside((at, x), (&asides, reach), memory);
+        self.arrange(rest, (at, x), memory);
     }
 
     /// Those next to which the state is, as far as numbers tell of it and of the time: what an argument jumps over it is not at, and a

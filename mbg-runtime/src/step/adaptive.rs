@@ -58,7 +58,9 @@ use crate::{Input, Real, System};
 /// clutch whose sides go together, a controller that switches its force. From there on the state goes along the threshold, by that
 /// mean of the derivatives at both sides which does not leave it (Filippov, *Differential Equations with Discontinuous Righthand
 /// Sides*, Kluwer 1988, §4), and along up to sixteen at once by the parts that each has in the mean (Utkin, *Sliding Modes in
-/// Control and Optimization*, Springer 1992, §2). Steps end where such a part is used up, as where a force tears a load loose. An
+/// Control and Optimization*, Springer 1992, §2). At which of several it stays is one linear complementarity problem (Murty, *Linear
+/// Complementarity*, Heldermann 1988): one may be torn loose where another is met, and arguments may tell of each other, as slips of
+/// clutches in a ring do. Steps end where such a part is used up, as where a force tears a load loose. An
 /// evaluation then takes one of the model on each side, and a Jacobian one on each side as well, without how an argument bends; that
 /// Jacobian is taken for dense. A block that friction stops:
 ///

@@ -27,7 +27,9 @@ type Along<T> = (Surfaces<T>, Each<T>);
 ///
 /// On both sides the motion leads to the threshold. Along it goes that mean of both which does not leave it (Filippov,
 /// *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988, §4); along several at once the mean whose parts are
-/// found from what each alone makes different (Utkin, *Sliding Modes in Control and Optimization*, Springer 1992, §2).
+/// found from what each alone makes different (Utkin, *Sliding Modes in Control and Optimization*, Springer 1992, §2). What each makes
+/// different is asked along a line beside the state that crosses one after the other, at which of them the motion stays is
+/// chosen of all at once, and settling there puts the state on these and beside the others.
 pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     system: &'a S,
     input: &'a I,

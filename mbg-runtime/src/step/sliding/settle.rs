@@ -11,6 +11,8 @@ use super::sides::{Sides, shortest};
 use super::{Each, Moment, SHORT, Sliding};
 use crate::{Input, Real, System};
 
+/// Times are apart by so many units of the last place.
+const PLACES: f64 = 8.0;
 /// What does not stay is put so many times as far beside a surface as those that do are asked.
 const BESIDE: f64 = 4.0;
 /// A state is next to a surface where digits beyond half of those that numbers have are surely beside it, but for this part.
@@ -330,8 +332,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
     }
 
-    /// The state surely beside what the motion does not stay at. What is passed is in the way where the motion stays at another one, as
-    /// laws are asked a little off it.
+    /// The state surely beside what the motion does not stay at, if it is not farther away: that it has yet to come to. What is
+    /// passed is in the way where the motion stays at another one, as laws are asked a little off it.
     fn put_aside<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
@@ -368,11 +370,19 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             }
             _ => 0.0,
         };
-        let ways = core::array::from_fn(|place| {
-            let side = T::from_f64(side(place));
-            let beyond = side * distances[place];
-            match seen(beyond) < seen(least[place]) {
-                true => side * (least[place] - beyond),
+        let soon = PLACES * T::EPSILON * at.time.magnitude();
+        let ways: Each<T> = core::array::from_fn(|place| {
+            let (side, way) = (T::from_f64(side(place)), distances[place]);
+            let (beyond, least) = (side * way, least[place]);
+            // It is not farther away than numbers tell, or times.
+            let is_near = match sorted[place] {
+                Aside::Left(_, rate) if seen(beyond) < 0.0 => {
+                    -seen(beyond) < seen(least).max(soon * rate.abs())
+                }
+                _ => seen(beyond) < seen(least),
+            };
+            match is_near {
+                true => side * (least - beyond),
                 false => T::from_f64(0.0),
             }
         });

@@ -6,13 +6,12 @@ use mbg_runtime::{
 
 mbg! {
     /// A ball that rolls on a turntable, whose centre goes in circles at 2/7 of the rate of the table.
-    #[derivative]
-    pub(crate) model Turntable {
-        causality componentwise;
+    component Rolling() {
+        param orientation: quaternion | matrix = quaternion;
         1 ground[6]; 1 ball[6]; 1 low[6]; 1 world[6];
         Sf fixed[6] { flow: 0.0 } -> ground;
         free: Free {
-            orientation: quaternion, initial_position: [0.5, 0.0, 0.1], initial_velocity: [0.2, 0.3, 0.0]
+            orientation: orientation, initial_position: [0.5, 0.0, 0.1], initial_velocity: [0.2, 0.3, 0.0]
         } (ground, ball);
         body: Body { mass: 0.5, inertia: 0.4 * 0.5 * 0.01 } (ball);
         down: Offset { by: transpose(free.orientation_b) * [0.0, 0.0, -0.1] } (ball, low);
@@ -22,21 +21,18 @@ mbg! {
         world[2] -> upright;
     }
 
-    /// The same with a matrix that tells how the ball is turned.
+    /// A quaternion tells how the ball is turned.
+    #[derivative]
+    pub(crate) model Turntable {
+        causality componentwise;
+        ball: Rolling ();
+    }
+
+    /// A matrix does.
     #[derivative]
     pub(crate) model TurntableOfMatrix {
         causality componentwise;
-        1 ground[6]; 1 ball[6]; 1 low[6]; 1 world[6];
-        Sf fixed[6] { flow: 0.0 } -> ground;
-        free: Free {
-            orientation: matrix, initial_position: [0.5, 0.0, 0.1], initial_velocity: [0.2, 0.3, 0.0]
-        } (ground, ball);
-        body: Body { mass: 0.5, inertia: 0.4 * 0.5 * 0.01 } (ball);
-        down: Offset { by: transpose(free.orientation_b) * [0.0, 0.0, -0.1] } (ball, low);
-        turn: Turn { by: transpose(free.orientation_b) } (low, world);
-        Sf grip[3] { flow: [-3.0 * free.position.y, 3.0 * free.position.x, 0.0] } -> world[3..6];
-        1 upright coordinate, initial_flow: 2.0;
-        world[2] -> upright;
+        ball: Rolling { orientation: matrix } ();
     }
 }
 

@@ -95,7 +95,8 @@ pub enum Cause {
     /// The model is in trouble: too near a singular set, say, or where a state, its derivative, or an entry of the Jacobian that
     /// an implicit method takes is not finite.
     Trouble(Trouble),
-    /// The step is so small that time does not advance by it; the problem is stiff or has a singularity there.
+    /// The step is so small that time does not advance by it; the problem is stiff, or has a singularity or a law that jumps without
+    /// end there.
     StepTooSmall,
     /// More steps than [`Adaptive::most`] or [`Auto::most`] allows, which a run over many jumps of an input may well need.
     ///
@@ -125,8 +126,8 @@ impl fmt::Display for Cause {
         match self {
             Self::Trouble(trouble) => trouble.fmt(formatter),
             Self::StepTooSmall => formatter.write_str(
-                "the step is too small for time to advance: the model is stiff or has a singularity there, or times so far from \
-                 zero are not told from each other: take f64, or begin at zero",
+                "the step is too small for time to advance: the model is stiff, or has a singularity or a law that jumps without \
+                 end there, or times so far from zero are not told from each other: take f64, or begin at zero",
             ),
             Self::TooManySteps { next } => write!(
                 formatter,

@@ -200,11 +200,10 @@ pub(super) struct Settled<T> {
 impl<T: Real> Settled<T> {
     /// Once more, unless that is without end.
     fn again(&mut self, time: T) -> Result<(), Stopped> {
-        self.count = match is_later(self.time, time) {
-            true => 0,
-            false => self.count + 1,
+        (self.time, self.count) = match is_later(self.time, time) {
+            true => (time, 0),
+            false => (self.time, self.count + 1),
         };
-        self.time = time;
         match self.count > SETTLED {
             true => Err(Stopped::new(time, Cause::StepTooSmall)),
             false => Ok(()),
@@ -280,7 +279,6 @@ pub(super) trait Walk<T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let mut refused = Surfaces::NONE;
         while less(here.0, end) {
             settled.again(here.0)?;
             let model = (problem.system, problem.input);
@@ -342,20 +340,10 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     }
                 }
                 (Walked::Left, Some(place)) => {
-                    // Which of thresholds along each other holds it is found by trying where numbers tell them apart no more.
-                    let is_at_once = !is_later(here.0, place.0);
-                    refused = match is_at_once {
-                        true => refused.with(&surfaces),
-                        false => Surfaces::NONE,
-                    };
                     if let Some(others) = problem.at_start(place) {
                         surfaces = surfaces.with(&others);
                     }
-                    surfaces = surfaces.without(&refused);
                     here = place;
-                    if surfaces.count() == 0 {
-                        break;
-                    }
                 }
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),
             }

@@ -164,7 +164,7 @@ fn what_rubs_in_a_network_holds_where_it_can() {
     for number in 0..80 {
         let network = Rubbing::at_random(KINDS[number % KINDS.len()], &mut next);
         let expected = network.speeds(2.0);
-        for (name, _, speeds) in by_all(&network.model(), 2.0, 1e-8, 0.013) {
+        for (name, _, speeds) in by_all(&network.model(), 2.0, 1e-8, 0.1) {
             let errors: [f64; 3] = core::array::from_fn(|body| speeds[body] - expected[body]);
             let error = errors
                 .iter()

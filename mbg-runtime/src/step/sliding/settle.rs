@@ -71,18 +71,19 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         sliding.arrange(near, (&at, x), memory);
         sliding.take_in((&at, whole), x, memory);
         let all = sliding.all();
-        let mut stays = sliding.search((&at, x), (&mut *memory, &mut *evaluations));
+        if sliding.search((&at, x), (&mut *memory, &mut *evaluations)) {
+            return Some(sliding);
+        }
         // A law that jumps on one side of a threshold alone, which is passed, does so where that is beside the others.
-        for passed in all.iter().filter(|_| all.count() > 1) {
-            if stays {
-                break;
-            }
+        let mut others = all.iter().filter(|_| all.count() > 1);
+        let stays = others.any(|passed| {
             let mut there = start;
             sliding.arrange(all, (&at, &there), memory);
             sliding.pass(*passed, (&at, &mut there), memory);
-            stays = sliding.search((&at, &mut there), (&mut *memory, &mut *evaluations));
+            let stays = sliding.search((&at, &mut there), (&mut *memory, &mut *evaluations));
             *x = if stays { there } else { *x };
-        }
+            stays
+        });
         stays.then_some(sliding)
     }
 
@@ -107,11 +108,16 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             let count = self.surfaces.count();
             let stays = |place: &usize| matches!(asides[*place], Aside::On);
             if (0..count).all(|place| stays(&place)) {
-                // As a motion comes there: what it would be late by changes its slopes along this way.
                 let above = |place: usize| sides.above(place, choices[place]);
-                self.free_first(&core::array::from_fn(above), (at, x), memory);
-                let sides = self.sides(at, (x, 1.0), memory);
+                let sides = match count > self.free {
+                    true => {
+                        self.free_first(&core::array::from_fn(above), (at, x), memory);
+                        self.sides(at, (x, 1.0), memory)
+                    }
+                    false => sides,
+                };
                 *evaluations += self.evaluations.take();
+                // As a motion comes there: what it would be late by changes its slopes along this way.
                 self.across = sides.across(self.free);
                 *x = self.onto(at, x, memory);
                 return true;
@@ -312,9 +318,6 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     {
         let before = self.surfaces;
         let count = before.count();
-        if count == self.free {
-            return;
-        }
         let mut order: [usize; MOST] = core::array::from_fn(|place| place);
         let left = |place: usize| above[place].min(1.0 - above[place]);
         order[..count].sort_unstable_by(|a, b| left(*b).total_cmp(&left(*a)));

@@ -78,7 +78,8 @@ impl<T: Real> Course<'_, T> {
     }
 
     /// Whether the argument stays on its sides of all thresholds at which choices change, at the second point and for so much time on its
-    /// way from the first as its rates tell, which leads somewhat farther.
+    /// way from the first as its rates tell, which leads somewhat farther; and begins no nearer beside one than it goes, where stages
+    /// between both points may be astray.
     #[inline]
     pub(crate) fn is_clear(&self, lasting: T) -> bool {
         let ([from, rate], [to, later]) = (self.from.map(seen), self.to.map(seen));
@@ -87,6 +88,8 @@ impl<T: Real> Course<'_, T> {
             to,
             from + rate * lasting,
             from + 0.5 * (rate + later) * lasting,
+            // The same way back.
+            from - (to - from),
         ];
         let clear = |threshold: &T| {
             let side = self.below(from, *threshold);

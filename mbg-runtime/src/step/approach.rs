@@ -105,8 +105,7 @@ impl Approach {
                 .soonest(&from, &to, |course, lasting| course.within(lasting))
                 .or_else(|| {
                     let place = (from.time, from.state);
-                    let line = problem.straight_to_threshold(&place, &from.slope, length);
-                    line.map(seen).filter(|ahead| *ahead > 0.0)
+                    problem.straight_to_threshold(&place, &from.slope, length)
                 }),
             _ => None,
         };

@@ -237,8 +237,8 @@ impl<T: Real, const N: usize> Way<T, N> {
         self.tries += 1;
         let next = problem.next_threshold(&self.here, slope, jump.length);
         if next.is_none() && self.tries <= TRIES {
-            let rest = problem.straight_to_threshold(&self.here, slope, jump.length);
-            if let Some(ahead) = rest.map(seen).filter(|ahead| *ahead > 0.0) {
+            let ahead = problem.straight_to_threshold(&self.here, slope, jump.length);
+            if let Some(ahead) = ahead {
                 self.near = Some(Jump { ahead, ..jump });
                 return None;
             }

@@ -9,8 +9,8 @@ use super::dense::Step;
 use super::fixed::Fixed;
 use super::grid::{FINEST, Grid, Parts};
 use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
-use super::method::{Method, Start, Stepper, along};
-use super::over::Place;
+use super::method::{Method, Start, Stepper};
+use super::over::{Place, straight};
 use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked};
 use super::thresholds::Point;
@@ -222,21 +222,13 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    let way = T::from_f64(way);
     let start = (from.span.start, from.x);
-    let end = (start.0 + way, along(&start.1, way, &from.slope));
-    let [first, last] = [start, end].map(|(time, state)| Point {
-        time,
-        state,
-        slope: from.slope,
-    });
+    let [first, last] = straight(&start, &from.slope, T::from_f64(way));
     let mut number = 0;
     let ahead = problem.soonest(&first, &last, |course, lasting| {
         let is_open = is_open(number);
         number += 1;
-        // What begins at one leaves it behind.
-        let ahead = course.reached(lasting).map(seen);
-        ahead.filter(|ahead| is_open && *ahead > 0.0)
+        course.within(lasting).filter(|_| is_open)
     })?;
     Some(Jump {
         start,
@@ -271,8 +263,9 @@ where
     is_clear
 }
 
-/// The line from the start of a step over a threshold, or almost, of an argument that the step itself has taken over none, as where it
-/// meets a jump that leads back at its stages; and not before a time. The stages of methods that take a Jacobian are bound to its end.
+/// A threshold that a step seems to have met at its stages, though it has not taken the argument over it: where the line from its start
+/// leads, or almost, as a jump leads back; or where what begins beside one has not gone as it should have. Not before a time. The stages
+/// of methods that take a Jacobian are bound to its end.
 fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     (from, change, whole): (&Start<T, N>, &SVector<T, N>, f64),
@@ -287,18 +280,18 @@ where
     let end = (from.span.end, from.x + change);
     let passed = passed(problem, from, end);
     let is_open = |number| !passed.contains(number);
-    let mut line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open)?;
-    if seen(line.start.0) + line.ahead < watched {
-        return None;
-    }
-    if line.ahead > length {
-        if is_bound || !is_led_back(problem, &line.start, end) {
-            return None;
-        }
+    let line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open);
+    let met = line.filter(|line| line.ahead <= length).or_else(|| {
+        let start = (from.span.start, from.x);
         // Some stage was beyond it already.
-        line.ahead = 0.5 * length;
-    }
-    Some(line)
+        (!is_bound && is_led_back(problem, &start, end)).then_some(Jump {
+            start,
+            ahead: 0.5 * length,
+            length: whole,
+            is_guess: true,
+        })
+    });
+    met.filter(|met| seen(met.start.0) + met.ahead >= watched)
 }
 
 /// Numbers of arguments, but for very large ones.

@@ -26,6 +26,20 @@ const DOUBLINGS: u32 = 100;
 /// A state at a time.
 pub(super) type Place<T, const N: usize> = (T, SVector<T, N>);
 
+/// The ends of a straight line.
+pub(super) fn straight<T: Real, const N: usize>(
+    from: &Place<T, N>,
+    slope: &SVector<T, N>,
+    way: T,
+) -> [Point<T, N>; 2] {
+    let to = (from.0 + way, along(&from.1, way, slope));
+    [*from, to].map(|(time, state)| Point {
+        time,
+        state,
+        slope: *slope,
+    })
+}
+
 impl<'a, T, S, I, const N: usize, const M: usize, const P: usize> Problem<'a, T, S, I, N, M, P>
 where
     T: Real,
@@ -39,16 +53,16 @@ where
         self.reached_with(from, to, &slope)
     }
 
-    /// How long a straight line goes on from a place to a threshold, within the length of a step.
+    /// How long a straight line goes on from a place to a threshold, within the length of a step; how arguments bend along it is minded,
+    /// as that of a slip whose direction turns.
     pub(super) fn straight_to_threshold(
         &self,
         from: &Place<T, N>,
         slope: &SVector<T, N>,
         length: f64,
-    ) -> Option<T> {
-        let length = T::from_f64(length);
-        let to = (from.0 + length, along(&from.1, length, slope));
-        self.reached_with(from, &to, slope)
+    ) -> Option<f64> {
+        let [from, to] = straight(from, slope, T::from_f64(length));
+        self.soonest(&from, &to, |course, lasting| course.within(lasting))
     }
 
     pub(super) fn reached_with(
@@ -77,8 +91,9 @@ where
         slope: &SVector<T, N>,
         length: f64,
     ) -> Option<T> {
-        let next = STRAIGHT * self.apart(from.0, length);
-        self.straight_to_threshold(from, slope, next)
+        let next = T::from_f64(STRAIGHT * self.apart(from.0, length));
+        let to = (from.0 + next, along(&from.1, next, slope));
+        self.reached_with(from, &to, slope)
     }
 
     /// How far apart times within a step so long are told from each other.

@@ -71,7 +71,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let rest = SVector::from_element(T::from_f64(0.0));
         let mut distances = [T::from_f64(0.0); MOST];
         let mut rates = SMatrix::from_element(T::from_f64(0.0));
-        for (own, across) in self.across.iter().take(self.free).enumerate() {
+        for (own, across) in self.across.get().iter().take(self.free).enumerate() {
             let [[_, at_rest], [there, faster]] = self.told(at, [(x, &rest), (x, across)], memory);
             distances = there;
             for other in 0..self.free {
@@ -84,7 +84,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     /// A state moved across the free surfaces.
     pub(super) fn moved(&self, x: &SVector<T, N>, ways: Each<T>) -> SVector<T, N> {
         let mut moved = *x;
-        for (across, way) in self.across.iter().zip(&ways).take(self.free) {
+        for (across, way) in self.across.get().iter().zip(&ways).take(self.free) {
             moved += across.map(|across| *way * across);
         }
         moved

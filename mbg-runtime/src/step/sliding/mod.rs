@@ -45,8 +45,8 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     shares: Each<T>,
     /// Others whose argument is one of these but for a factor, and how far from each it may be by rounding.
     twins: Along<T>,
-    /// How states change that go across each free surface, at a rate of one, and along the others.
-    across: Each<SVector<T, N>>,
+    /// How states change that go across each free surface, at a rate of one, and along the others, where the motion has come to.
+    across: Cell<Each<SVector<T, N>>>,
     /// How the argument of each changes with the states, where the motion has come to.
     gradients: Cell<Each<SVector<T, N>>>,
     /// How often the model was evaluated, but for once in each evaluation of these laws.
@@ -117,7 +117,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         self.ahead.set(PART * length);
     }
 
-    /// How far the motion is from leaving a surface, as a part of what the laws differ by there; not positive where it leaves one.
+    /// How far the motion is from leaving a surface, as a part of what the laws differ by there; not positive where it leaves one. Minds
+    /// how it goes across there: on the way surfaces may turn to where they have been gone across along before.
     pub(super) fn hold<const M: usize, const P: usize>(
         &self,
         t: T,
@@ -133,10 +134,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let least = (0..self.free).fold(most, |least, place| least.min(sides.held(place)));
         // What is left on purpose a little late is left for good.
         let late = T::from_f64(T::SINGULAR);
-        match sides.leads_back.iter().take(self.free).all(|it| *it) {
-            true => least + late,
-            false => zero,
+        if !sides.leads_back.iter().take(self.free).all(|it| *it) {
+            return zero;
         }
+        self.across.set(sides.across(self.free));
+        least + late
     }
 }
 

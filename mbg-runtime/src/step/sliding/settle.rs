@@ -61,7 +61,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             free: 0,
             shares: [zero; MOST],
             twins: (Surfaces::NONE, [zero; MOST]),
-            across: none,
+            across: Cell::new(none),
             gradients: Cell::new(none),
             evaluations: Cell::new(0),
         };
@@ -118,7 +118,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 };
                 *evaluations += self.evaluations.take();
                 // As a motion comes there: what it would be late by changes its slopes along this way.
-                self.across = sides.across(self.free);
+                self.across.set(sides.across(self.free));
                 *x = self.onto(at, x, memory);
                 return true;
             }
@@ -250,7 +250,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         self.twins = (twins, apart);
         self.surfaces = free.with(&bound);
         self.look(at, x, memory);
-        self.across = shortest(&self.gradients.get(), self.free);
+        self.across.set(shortest(&self.gradients.get(), self.free));
     }
 
     /// How the motion is at each surface, and how it goes on there.

@@ -180,17 +180,31 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     ) where
         S: System<T, N, M, P>,
     {
-        let rest = SVector::from_element(T::from_f64(0.0));
         let mut gradients = self.gradients.get();
         for state in 0..N {
-            let mut unit = rest;
-            unit[state] = T::from_f64(1.0);
-            let [[_, at_rest], [_, rates]] = self.told(at, [(x, &rest), (x, &unit)], memory);
-            for (gradient, (rate, own)) in gradients.iter_mut().zip(rates.iter().zip(&at_rest)) {
-                gradient[state] = *rate - *own;
+            let rates = self.by_state(state, (at, x), memory);
+            for (gradient, rate) in gradients.iter_mut().zip(&rates) {
+                gradient[state] = *rate;
             }
         }
         self.gradients.set(gradients);
+    }
+
+    /// How the argument of each surface changes with a state.
+    pub(super) fn by_state<const M: usize, const P: usize>(
+        &self,
+        state: usize,
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        memory: &S::Memory,
+    ) -> SVector<T, MOST>
+    where
+        S: System<T, N, M, P>,
+    {
+        let rest = SVector::from_element(T::from_f64(0.0));
+        let mut unit = rest;
+        unit[state] = T::from_f64(1.0);
+        let [[_, at_rest], [_, rates]] = self.told(at, [(x, &rest), (x, &unit)], memory);
+        SVector::from(rates) - SVector::from(at_rest)
     }
 
     /// What the model says on the sides of the surfaces, so many times as far from these as need be.

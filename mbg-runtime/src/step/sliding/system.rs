@@ -2,8 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::super::method::along;
 use super::super::surfaces::MOST;
-use super::{Moment, Sliding};
+use super::{Each, Moment, Sliding};
 use crate::input::quotient;
 use crate::{Course, Input, Meta, Power, Real, System, Trouble};
 
@@ -65,12 +66,16 @@ where
         u: &SVector<T, M>,
         memory: &mut S::Memory,
     ) -> SMatrix<T, N, N> {
-        let mut jacobian = self.along((t, x, u), memory, |x, memory| {
-            self.system.jacobian_state(t, x, u, memory)
-        });
+        let mut jacobian = self.along(
+            (t, x, u),
+            memory,
+            |x, memory| self.system.jacobian_state(t, x, u, memory),
+            |slope, memory| self.turning(t, (x, slope), memory),
+        );
         // The model is asked on the surfaces, wherever beside them the state is.
         for (across, gradient) in self
             .across
+            .get()
             .iter()
             .zip(&self.gradients.get())
             .take(self.free)
@@ -94,9 +99,12 @@ where
         u: &SVector<T, M>,
         memory: &mut S::Memory,
     ) -> SMatrix<T, N, M> {
-        self.along((t, x, u), memory, |x, memory| {
-            self.system.jacobian_input(t, x, u, memory)
-        })
+        self.along(
+            (t, x, u),
+            memory,
+            |x, memory| self.system.jacobian_input(t, x, u, memory),
+            |_, _| [SVector::from_element(T::from_f64(0.0)); MOST],
+        )
     }
 
     /// With how fast the input goes, which the mean follows.
@@ -218,13 +226,14 @@ where
 }
 
 impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
-    /// A Jacobian along the surfaces, from those on their sides: what would lead away from a surface is taken up by its part of the
-    /// mean. How arguments bend is left out.
+    /// A Jacobian along the surfaces, from those on their sides: what would lead away from a surface, which turns so under a motion with
+    /// this slope, is taken up by its part of the mean.
     fn along<const M: usize, const P: usize, const C: usize>(
         &self,
         (t, x, u): (T, &SVector<T, N>, &SVector<T, M>),
         memory: &mut S::Memory,
         mut of: impl FnMut(&SVector<T, N>, &mut S::Memory) -> SMatrix<T, N, C>,
+        turning: impl FnOnce(&SVector<T, N>, &S::Memory) -> Each<SVector<T, C>>,
     ) -> SMatrix<T, N, C>
     where
         S: System<T, N, M, P>,
@@ -233,18 +242,53 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let count = self.surfaces.count();
         let sides = self.sides(&self.moment(t, *u), (x, 1.0), memory);
         let mut jacobian = sides.mean(count, |x| of(x, memory));
-        let gradients = self.gradients.get();
-        for mut column in jacobian.column_iter_mut() {
-            let zero = T::from_f64(0.0);
-            let mut away = [zero; MOST];
-            for (away, gradient) in away.iter_mut().zip(&gradients).take(self.free) {
+        let (gradients, turning) = (self.gradients.get(), turning(&sides.derivative(), memory));
+        for (place, mut column) in jacobian.column_iter_mut().enumerate() {
+            let mut away = [T::from_f64(0.0); MOST];
+            let turning = gradients.iter().zip(&turning).take(self.free);
+            for (away, (gradient, turning)) in away.iter_mut().zip(turning) {
                 let pairs = gradient.iter().zip(column.iter());
-                *away = pairs.fold(zero, |sum, (by, change)| by.multiply_add(*change, sum));
+                *away = pairs.fold(turning[place], |sum, (by, change)| {
+                    by.multiply_add(*change, sum)
+                });
             }
             for (jump, part) in sides.jumps.iter().zip(&sides.rates.solve(away)) {
                 column -= jump.map(|jump| *part * jump);
             }
         }
         jacobian
+    }
+
+    /// How fast the gradient of each surface changes under a motion.
+    fn turning<const M: usize, const P: usize>(
+        &self,
+        t: T,
+        (x, slope): (&SVector<T, N>, &SVector<T, N>),
+        memory: &S::Memory,
+    ) -> Each<SVector<T, N>>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let mut turning = [SVector::from_element(T::from_f64(0.0)); MOST];
+        let by_state = |state: usize, time: T| {
+            let (way, at) = (
+                time - t,
+                self.moment(time, self.input.value(time, self.since)),
+            );
+            self.by_state(state, (&at, &along(x, way, slope)), memory)
+        };
+        let ahead = T::from_f64(self.ahead.get());
+        for state in 0..N {
+            // Most arguments are sums of states.
+            if by_state(state, t) == by_state(state, t + ahead) {
+                continue;
+            }
+            let rates = quotient(t, ahead, |time| by_state(state, time));
+            for (turning, rate) in turning.iter_mut().zip(&rates) {
+                turning[state] = *rate;
+            }
+        }
+        turning
     }
 }

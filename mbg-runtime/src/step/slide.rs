@@ -290,22 +290,20 @@ pub(super) trait Walk<T: Real, const N: usize> {
                 break;
             };
             let asked = core::mem::replace(&mut surfaces, sliding.all());
-            let mut along = problem.of(&sliding);
-            let (mut left, mut undone) = (None, 0);
+            let hold =
+                |t: T, x: &SVector<T, N>, memory: S::Memory| sliding.hold(t, x, &mut { memory });
+            let holds = |(t, x): Place<T, N>, memory| less(T::from_f64(0.0), hold(t, &x, memory));
+            if !holds(here, memory) {
+                problem.statistics.evaluations += sliding.evaluations.get();
+                surfaces = surfaces.with(&problem.at_start(here).unwrap_or(Surfaces::NONE));
+                continue;
+            }
+            let (mut along, mut left) = (problem.of(&sliding), None);
             let walked = self.walk(&mut along, (here, end), WhereItMeetsOne, &mut |step| {
-                let hold = |t: T, x: &SVector<T, N>, memory: S::Memory| {
-                    sliding.hold(t, x, &mut { memory })
-                };
-                let (start, memory) = ((step.start(), *step.first()), step.memory());
-                let holds = |(t, x): Place<T, N>| less(T::from_f64(0.0), hold(t, &x, memory));
-                if !holds(start) {
-                    (left, undone) = (Some(start), 1);
-                    return ControlFlow::Break(());
-                }
-                let end = (step.end(), *step.state());
+                let (memory, end) = (step.memory(), (step.end(), *step.state()));
                 // Behind a threshold that is met the motion may be elsewhere.
                 if !step.is_over
-                    && (Self::LOOKS_WITHIN || !holds(end))
+                    && (Self::LOOKS_WITHIN || !holds(end, memory))
                     && let Some(time) = step.crossing(Direction::Falling, |t, x| hold(t, x, memory))
                 {
                     let there = sliding.landed(time, &step.at(time), &memory);
@@ -326,8 +324,6 @@ pub(super) trait Walk<T: Real, const N: usize> {
             (problem.statistics, problem.memory) = (along.statistics, along.memory);
             (problem.probes, problem.conditioning) = (along.probes, along.conditioning);
             problem.statistics.evaluations += sliding.evaluations.get();
-            problem.statistics.steps -= undone;
-            problem.statistics.rejected += undone;
             match (walked, left) {
                 (Walked::Ended(x), _) => here = (end, x),
                 (Walked::Stays(place, others), _) => {
@@ -340,9 +336,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     }
                 }
                 (Walked::Left, Some(place)) => {
-                    if let Some(others) = problem.at_start(place) {
-                        surfaces = surfaces.with(&others);
-                    }
+                    surfaces = surfaces.with(&problem.at_start(place).unwrap_or(Surfaces::NONE));
                     here = place;
                 }
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),

@@ -87,7 +87,9 @@ fn by_hand(axes: [usize; 3], state: &[f64]) -> Vec<f64> {
     let jacobian = Matrix3::from_columns(&columns);
     let turn = turns[0] * turns[1] * turns[2];
     let rates = jacobian.try_inverse().unwrap() * (turn * spin_b - spin_a);
-    let efforts = 0.4 * rates + 5.0 * angles - Vector3::new(0.1, -0.2, 0.3);
+    let springs = Vector3::new(5.0, 7.0, 3.0).component_mul(&angles);
+    let dampers = Vector3::new(0.4, 0.2, 0.6).component_mul(&rates);
+    let efforts = dampers + springs - Vector3::new(0.1, -0.2, 0.3);
     let moment = jacobian.transpose().try_inverse().unwrap() * efforts;
     let hull = hull.cross(&spin_a) - 0.3 * spin_a + moment;
     let body = body.cross(&spin_b) - turn.transpose() * moment;
@@ -103,10 +105,14 @@ fn three_hinges_are_the_gimbals_for_every_sequence() {
     for [first, second, third] in sequences() {
         let arguments = format!(
             "first: {first}, second: {second}, third: {third}, initial: [0.2, 0.7, 0.1],
-             damping: 0.4, stiffness: 5.0, torque: [0.1, -0.2, 0.3]"
+             torque: [0.1, -0.2, 0.3]"
         );
-        let gimbals = two_bodies(&format!("joint: Gimbal {{ {arguments} }}"));
-        let series = two_bodies(&format!("joint: GimbalSeries {{ {arguments} }}"));
+        let gimbals = two_bodies(&format!(
+            "joint: Gimbal {{ {arguments}, damping: diag(0.4, 0.2, 0.6), stiffness: diag(5.0, 7.0, 3.0) }}"
+        ));
+        let series = two_bodies(&format!(
+            "joint: GimbalSeries {{ {arguments}, damping: [0.4, 0.2, 0.6], stiffness: [5.0, 7.0, 3.0] }}"
+        ));
         let word = if first == third { "sin" } else { "cos" };
         assert_eq!(gimbals.conditioning, [format!("{word}(joint.spring.q.y)")]);
         assert_eq!(series.conditioning, [format!("{word}(joint.y.spring.q)")]);

@@ -52,6 +52,23 @@ pub(crate) fn rotation(angles: Vector) -> Matrix {
     turns(angles, RIGHT)
 }
 
+/// Roll, pitch and yaw of a quaternion `[x, y, z, w]` of any length.
+pub(crate) fn angles([x, y, z, w]: [f64; 4]) -> Vector {
+    let sine = 2.0 * (w * y - x * z);
+    let (along, beside) = (w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z));
+    let cosine = along.hypot(beside);
+    // Upright, roll and yaw are about one line.
+    let yaw = if cosine <= RIGHT * sine.abs() {
+        0.0
+    } else {
+        beside.atan2(along)
+    };
+    // From what is left without the yaw, so that both fit where they are hard to tell apart.
+    let (sine_half, cosine_half) = (0.5 * yaw).sin_cos();
+    let roll = (cosine_half * x + sine_half * y).atan2(cosine_half * w + sine_half * z);
+    [2.0 * roll, sine.atan2(cosine), yaw]
+}
+
 fn turns(angles: Vector, near: f64) -> Matrix {
     let [(a, b), (c, d), (e, f)] = angles.map(|it| sin_cos(it, near));
     let about_x = [[1.0, 0.0, 0.0], [0.0, b, -a], [0.0, a, b]];
@@ -328,6 +345,47 @@ mod tests {
         let turn = rotation([-1.57079632679, 0.0, 3.14159265359]);
         assert_eq!(turn, [[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]]);
         assert!(rotation([1.5708, 0.0, 0.0])[1][1] != 0.0);
+    }
+
+    #[test]
+    fn angles_of_quaternions_are_those_of_the_rotation() {
+        for turn in [
+            [0.1, -0.2, 0.3, 0.9],
+            [-2.0, 3.0, 1.0, -0.5],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.5, 0.5, -0.5, 0.5],
+            [0.3, 0.6, -0.3, 0.6],
+            [0.1, -0.7, 0.1 + 1e-6, 0.7],
+            [0.0, 1.0, 0.0, 0.0],
+            [1e-3, 1.0, 1e-3, -1e-3],
+        ] {
+            let square: f64 = turn.iter().map(|it| it * it).sum();
+            let [x, y, z, w] = turn;
+            let expected = [
+                [
+                    w * w + x * x - y * y - z * z,
+                    2.0 * (x * y - w * z),
+                    2.0 * (x * z + w * y),
+                ],
+                [
+                    2.0 * (x * y + w * z),
+                    w * w - x * x + y * y - z * z,
+                    2.0 * (y * z - w * x),
+                ],
+                [
+                    2.0 * (x * z - w * y),
+                    2.0 * (y * z + w * x),
+                    w * w - x * x - y * y + z * z,
+                ],
+            ]
+            .map(|row| row.map(|it| it / square));
+            let found = turns(angles(turn), 0.0);
+            assert_near(&found, &expected);
+        }
+        assert_eq!(
+            angles([0.5, 0.5, -0.5, 0.5])[1],
+            std::f64::consts::FRAC_PI_2
+        );
     }
 
     #[test]

@@ -35,7 +35,9 @@
 //! - With `--stops`, `lower` and `upper` of a `limit` become a `Stop` at the rate of the joint. The component has parameters for
 //!   its `stop_stiffness` and `stop_dissipation`, on slides `slide_stop_stiffness` and `slide_stop_dissipation`, whose defaults
 //!   know nothing of the robot. What a `limit` says of efforts and velocities is left out, and all of it without the option.
-//! - What shows or collides is left out. Every other tag without an equation is named with its line.
+//! - An `origin` may have a `quat_xyzw` instead of `rpy`.
+//! - What shows or collides is left out. Every other tag without an equation is named with its line, and what else the tags
+//!   of poses, inertias and joints tell. A file for `xacro` is refused, as it may lack links.
 //!
 //! # Links, forces and Jacobians
 //!

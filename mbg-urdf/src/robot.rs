@@ -1,12 +1,12 @@
 //! A robot as a URDF file gives it, checked to be a tree.
 
 use std::collections::BTreeSet;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt;
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Error, Node, ParsingOptions};
 
-use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, measurable, rotation, squares};
+use crate::geometry::{Body, Matrix, Pose, RIGHT, Vector, angles, measurable, rotation, squares};
 
 /// Something about a line of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -144,6 +144,20 @@ impl Load {
 
 type Checked<T> = Result<T, Remark>;
 
+/// What is converted of tags of which the rest would be missed.
+const ATTRIBUTES: &[(&str, &[&str])] = &[
+    ("origin", &["xyz", "rpy", "quat_xyzw"]),
+    ("mass", &["value"]),
+    ("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]),
+    ("axis", &["xyz"]),
+    ("dynamics", &["damping", "friction"]),
+    ("mimic", &["joint", "multiplier", "offset"]),
+];
+
+/// A file that is still to be expanded may lack links without a word.
+const UNEXPANDED: &str =
+    "this is for xacro, which prints the URDF file to convert: `xacro FILE > robot.urdf`";
+
 /// Reads a file, and lists what of it means nothing to the equations of motion.
 pub(crate) fn read(
     text: &str,
@@ -156,7 +170,10 @@ pub(crate) fn read(
     };
     let document = Document::parse_with_options(text, options).map_err(|error| Remark {
         line: error.pos().row,
-        text: format!("this is no XML: {error}"),
+        text: match &error {
+            Error::UnknownNamespace(prefix, _) if prefix == "xacro" => UNEXPANDED.to_owned(),
+            _ => format!("this is no XML: {error}"),
+        },
     })?;
     let mut reader = Reader {
         document: &document,
@@ -164,6 +181,13 @@ pub(crate) fn read(
         stops,
         remarks: Vec::new(),
     };
+    let is_for_xacro = |it: &Node<'_, '_>| {
+        let namespace = it.tag_name().namespace();
+        namespace.is_some_and(|it| it.ends_with("xacro"))
+    };
+    if let Some(node) = document.descendants().find(is_for_xacro) {
+        return reader.fail(node, UNEXPANDED);
+    }
     let robot = reader.robot(document.root_element())?;
     reader.remarks.sort_by_key(|remark| remark.line);
     Ok((robot, reader.remarks))
@@ -199,7 +223,8 @@ impl<'a> Reader<'a> {
         self.remarks.push(remark);
     }
 
-    /// Names the tags inside `node` that are neither `known` nor without a bearing on the motion.
+    /// Names the tags inside `node` that are neither `known` nor without a bearing on the motion, and what else those that
+    /// are known tell.
     fn note_others(&mut self, node: Node<'_, '_>, known: &[&str]) {
         let mut seen = BTreeSet::new();
         for child in node.children().filter(Node::is_element) {
@@ -209,6 +234,11 @@ impl<'a> Reader<'a> {
                 self.note(child, format!("`{tag}` is not converted"));
             } else if known.contains(&tag) && !is_first {
                 self.note(child, format!("another `{tag}` is not converted"));
+            } else if let Some((_, told)) = ATTRIBUTES.iter().find(|(of, _)| *of == tag) {
+                let names = child.attributes().map(|it| it.name());
+                for name in names.filter(|name| !told.contains(name)) {
+                    self.note(child, format!("`{name}` of `{tag}` is not converted"));
+                }
             }
         }
     }
@@ -250,6 +280,7 @@ impl<'a> Reader<'a> {
                 .map(|it| format!("`{}`", links[*it].name))
                 .collect();
             let text = match names.len() {
+                0 if links.is_empty() => "a robot has a link".to_owned(),
                 0 => "no link is without a joint that holds it".to_owned(),
                 _ => format!("one link is the root, found {}", names.join(", ")),
             };
@@ -277,7 +308,9 @@ impl<'a> Reader<'a> {
     /// Names the joints that move nothing, nor any joint that mimics them: their equation is without a solution.
     fn note_massless(&mut self, robot: &Robot) {
         let mut loads: Vec<Load> = robot.links.iter().map(Load::of).collect();
-        for joint in robot.joints.iter().rev() {
+        // What floats does not move with what is before it.
+        let holding = |it: &&Joint| it.motion != Motion::Float;
+        for joint in robot.joints.iter().rev().filter(holding) {
             let load = loads[joint.child];
             let below = &mut loads[joint.parent];
             below.mass |= load.mass;
@@ -402,7 +435,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Where the coordinate of a joint ends, which a limit of the effort and the velocity alone does not tell.
-    fn limit(&self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<[f64; 2]>> {
+    fn limit(&mut self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<[f64; 2]>> {
         let ends = motion.is_single() && self.attribute(node, "type")? != "continuous";
         let (true, true, Some(element)) = (self.stops, ends, child(node, "limit")) else {
             return Ok(None);
@@ -419,6 +452,22 @@ impl<'a> Reader<'a> {
                 element,
                 format!("`lower` is above `upper`: {lower} and {upper}"),
             );
+        }
+        let name = shown(self.attribute(node, "name")?);
+        // So many files have it that do not tell the limits.
+        if lower == upper {
+            self.note(
+                element,
+                format!("`{name}` gets no stop, as its limits are both {lower}"),
+            );
+            return Ok(None);
+        }
+        // What mimics starts where its leader tells it to.
+        if child(node, "mimic").is_none() && !(lower..=upper).contains(&0.0) {
+            let text = format!(
+                "`{name}` starts beyond its stop, unless `initial` is from {lower} to {upper}"
+            );
+            self.note(element, text);
         }
         Ok(Some([lower, upper]))
     }
@@ -441,7 +490,7 @@ impl<'a> Reader<'a> {
             Some(element) if !matches!(motion, Motion::Fixed | Motion::Float) => element,
             _ => return Ok([1.0, 0.0, 0.0]),
         };
-        let axis = self.vector(element, "xyz")?;
+        let axis = self.numbers(element, ("xyz", "three"))?;
         if axis == [0.0; 3] {
             return self.fail(element, "an axis has a direction");
         }
@@ -480,18 +529,40 @@ impl<'a> Reader<'a> {
             return Ok(Pose::NONE);
         };
         let given = |name: &str| match element.attribute(name) {
-            Some(_) => self.vector(element, name),
+            Some(_) => self.numbers(element, (name, "three")),
             None => Ok([0.0; 3]),
         };
-        let (place, angles) = (given("xyz")?, given("rpy")?);
+        let place = given("xyz")?;
+        let angles = match element.attribute("quat_xyzw") {
+            Some(_) => self.quaternion(element)?,
+            None => given("rpy")?,
+        };
         Ok(Pose {
             place,
             turn: rotation(angles.map(|angle| self.angle(element, angle))),
         })
     }
 
+    /// The same as roll, pitch and yaw, so that right angles are told in one way.
+    fn quaternion(&self, node: Node<'a, 'a>) -> Checked<Vector> {
+        if node.attribute("rpy").is_some() {
+            return self.fail(node, "an `origin` has `rpy` or `quat_xyzw`, not both");
+        }
+        let quaternion = self.numbers(node, ("quat_xyzw", "four"))?;
+        match quaternion == [0.0; 4] {
+            true => self.fail(node, "no orientation has the quaternion zero"),
+            false => Ok(angles(quaternion)),
+        }
+    }
+
     /// An angle, or the multiple of a right angle that it is near.
     fn angle(&mut self, node: Node<'a, 'a>, angle: f64) -> f64 {
+        if angle.abs() > TAU + RIGHT {
+            self.note(
+                node,
+                format!("{angle} is more than a turn: `rpy` is in rad"),
+            );
+        }
         let right = FRAC_PI_2 * (angle / FRAC_PI_2).round();
         let off = (angle - right).abs();
         if off <= self.right_angles {
@@ -532,13 +603,19 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn vector(&self, node: Node<'a, 'a>, name: &str) -> Checked<Vector> {
+    /// Numbers in a row, of which a name tells how many.
+    fn numbers<const N: usize>(
+        &self,
+        node: Node<'a, 'a>,
+        (name, count): (&str, &str),
+    ) -> Checked<[f64; N]> {
         let text = self.attribute(node, name)?;
         let numbers = text.split_whitespace().map(str::parse::<f64>);
-        let numbers: Result<Vec<f64>, _> = numbers.collect();
-        match numbers.as_deref() {
-            Ok([x, y, z]) if [x, y, z].iter().all(|it| it.is_finite()) => Ok([*x, *y, *z]),
-            _ => self.fail(node, format!("`{name}` is three numbers, found `{text}`")),
+        let numbers: Option<Vec<f64>> = numbers.map(Result::ok).collect();
+        let numbers = numbers.and_then(|it| <[f64; N]>::try_from(it).ok());
+        match numbers.filter(|it| it.iter().all(|it| it.is_finite())) {
+            Some(numbers) => Ok(numbers),
+            None => self.fail(node, format!("`{name}` is {count} numbers, found `{text}`")),
         }
     }
 }

@@ -82,6 +82,31 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "11: an axis has a direction",
     ),
     (
+        "rpy=\"0 0 0\"",
+        "rpy=\"0 0 0\" quat_xyzw=\"0 0 0 1\"",
+        "8: an `origin` has `rpy` or `quat_xyzw`, not both",
+    ),
+    (
+        "rpy=\"0 0 0\"",
+        "quat_xyzw=\"0 0 0\"",
+        "8: `quat_xyzw` is four numbers, found `0 0 0`",
+    ),
+    (
+        "rpy=\"0 0 0\"",
+        "quat_xyzw=\"0 0 0 0\"",
+        "8: no orientation has the quaternion zero",
+    ),
+    (
+        "<link name=\"a\"/>",
+        "<xacro:wheel name=\"a\"/>",
+        "2: this is for xacro, which prints the URDF file to convert: `xacro FILE > robot.urdf`",
+    ),
+    (
+        "<link name=\"a\"/>",
+        "<wheel xmlns=\"http://www.ros.org/wiki/xacro\" name=\"a\"/>",
+        "2: this is for xacro, which prints the URDF file to convert: `xacro FILE > robot.urdf`",
+    ),
+    (
         "<parent link=\"a\"/>",
         "<parent link=\"b\"/>",
         "1: some joints hang on each other and not on `a`",
@@ -136,6 +161,12 @@ const MISTAKES: &[(&str, &str, &str)] = &[
 ];
 
 #[test]
+fn a_robot_without_links_is_told_so() {
+    let found = mbg_urdf::convert("<robot/>", "r.urdf", &Options::default()).unwrap_err();
+    assert_eq!(found.to_string(), "1: a robot has a link");
+}
+
+#[test]
 fn mistakes_are_told_with_their_lines() {
     for (part, changed, expected) in MISTAKES {
         let found =
@@ -159,6 +190,21 @@ fn what_is_left_out_is_told() {
             "<axis ",
             "<axis xyz=\"0 0 1\"/><axis ",
             "11: another `axis` is not converted",
+        ),
+        (
+            "rpy=\"0 0 0\"",
+            "rpy=\"0 0 90\"",
+            "8: 90 is more than a turn: `rpy` is in rad",
+        ),
+        (
+            "rpy=\"0 0 0\"",
+            "rpi=\"0 0 1\"",
+            "8: `rpi` of `origin` is not converted",
+        ),
+        (
+            "<axis ",
+            "<dynamics damping=\"1\" spring_stiffness=\"2\"/><axis ",
+            "11: `spring_stiffness` of `dynamics` is not converted",
         ),
         (
             "izz=\"1\"",
@@ -190,6 +236,66 @@ fn what_is_left_out_is_told() {
         let found = mbg_urdf::convert(&file(part, changed), "r.urdf", &Options::default()).unwrap();
         let told: Vec<String> = found.remarks.iter().map(ToString::to_string).collect();
         assert_eq!(told, [expected], "{changed}");
+    }
+}
+
+#[test]
+fn what_floats_is_no_load_of_the_joint_before_it() {
+    let part = "</robot>";
+    let text = file(
+        part,
+        "<link name=\"c\"/><joint name=\"k\" type=\"revolute\"><parent link=\"a\"/><child link=\"c\"/></joint></robot>",
+    );
+    let floating = text.replace(
+        "name=\"j\" type=\"revolute\"",
+        "name=\"j\" type=\"floating\"",
+    );
+    let floating = floating.replace("<parent link=\"a\"/>\n", "<parent link=\"c\"/>\n");
+    let found = mbg_urdf::convert(&floating, "r.urdf", &Options::default()).unwrap();
+    let told: Vec<String> = found.remarks.iter().map(ToString::to_string).collect();
+    let expected = "13: nothing that `k` moves has a mass or an inertia, which `mbg!` will refuse";
+    assert_eq!(told, [expected]);
+}
+
+#[test]
+fn stops_without_a_way_and_stops_that_push_at_the_start_are_told() {
+    let told = |limit: &str| {
+        let text = file("<axis ", &format!("<limit {limit}/><axis "));
+        let options = Options {
+            stops: true,
+            ..Options::default()
+        };
+        let found = mbg_urdf::convert(&text, "r.urdf", &options).unwrap();
+        let texts = found.remarks.iter().map(ToString::to_string);
+        texts.collect::<Vec<String>>()
+    };
+    assert_eq!(told("lower=\"-1\" upper=\"1\""), [""; 0]);
+    assert_eq!(
+        told("lower=\"0\" upper=\"0\""),
+        [
+            "11: `j` gets no stop, as its limits are both 0",
+            "11: `limit` is not converted"
+        ]
+    );
+    assert_eq!(
+        told("lower=\"-3\" upper=\"-0.1\""),
+        ["11: `j` starts beyond its stop, unless `initial` is from -3 to -0.1"]
+    );
+}
+
+/// Of any length and sign; that other angles are met, too, geometry's own tests show.
+#[test]
+fn an_orientation_may_be_a_quaternion() {
+    for (quaternion, angles) in [
+        ("0.5 0.5 0.5 0.5", "1.5707963267948966 0 1.5707963267948966"),
+        ("0 -2 0 -2", "0 1.5707963267948966 0"),
+    ] {
+        let [turned, expected] =
+            [("quat_xyzw", quaternion), ("rpy", angles)].map(|(name, value)| {
+                let text = file("rpy=\"0 0 0\"", &format!("{name}=\"{value}\""));
+                mbg_urdf::convert(&text, "r.urdf", &Options::default()).unwrap()
+            });
+        assert_eq!(turned, expected);
     }
 }
 

@@ -43,7 +43,7 @@ const JOINTS: [&str; 13] = [
 const ROTATIONS: [&str; 4] = [
     "FreeRotation { orientation: quaternion, initial_rate: [0.1, 2.0, 0.3] }",
     "Gimbal { initial_rate: [0.1, 2.0, 0.3], stiffness: 2.0 }",
-    "GimbalSeries { initial_rate: [0.1, 2.0, 0.3], damping: 0.2 }",
+    "GimbalSeries { initial_rate: [0.1, 2.0, 0.3], damping: [0.2, 0.1, 0.3], friction: [0.1, 0.2, 0.3] }",
     "GimbalAxis { axis: 1, friction: 0.3 }",
 ];
 

@@ -122,6 +122,25 @@ fn a_fixed_ground_changes_nothing() {
     }
 }
 
+/// Friction about the axes of gimbals between ground and fuselage, `J⁻ᵀ R J⁻¹ ω`, is another friction: momentum of the fuselage
+/// and its Euler angle about x at the end, of the equations by hand at 1e-12.
+#[test]
+fn friction_about_axes_of_gimbals_is_another() {
+    const MOMENTUM: [f64; 3] = [85.58367460526198, -38.043766998398713, 32.57298877177348];
+    let gimbals = "Gimbals { stiffness: 0.0, damping: drag }";
+    let end = |air| motion(System::grounded(FIXED, air, GIMBALS), 0.0, 5e-3, 20.0)[3999];
+    for (found, expected) in end(gimbals).iter().zip(MOMENTUM) {
+        assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+    }
+    for (air, expected) in [(gimbals, 0.4149494575273851), (FRICTION, 0.379976877)] {
+        // The platform stays, but for some 1e-5 rad, so that its gimbals turn back what the fuselage turns.
+        let [.., a, b, c] = end(air);
+        let across = a.sin() * c.cos() + a.cos() * b.sin() * c.sin();
+        let angle = f64::atan2(-across, a.cos() * b.cos());
+        assert!((angle - expected).abs() < 1e-4, "{angle} {expected}");
+    }
+}
+
 #[test]
 fn a_stiff_ground_tends_to_the_fixed_one_as_its_compliance() {
     let (step, end) = (1e-3, 5.0);

@@ -348,6 +348,7 @@ fn words_of_other_languages_are_answered_with_what_has_their_value() {
         ("clamp(0.7 - 2.0, -1.0, 0.5)", -1.0),
         ("interp(0.5, [0.0, 2.0], [1.0, 5.0])", 2.0),
         ("interp1([0.0, 2.0], [1.0, 5.0], 0.5)", 2.0),
+        ("interp1(0.5, [0.0, 2.0], [1.0, 5.0])", 2.0),
         ("norm([3.0, 4.0])", 5.0),
         ("dot([3.0, 4.0], [1.0, 2.0])", 11.0),
         ("radians(90)", std::f64::consts::FRAC_PI_2),

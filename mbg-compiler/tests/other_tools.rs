@@ -151,7 +151,7 @@ fn elements_of_other_tools_are_told_as_they_are_written_here() {
         )))
     };
     let behind = |element: &str| told(&masses(&format!("v -> {element} x_d {{ effort: 1.0 }};")));
-    insta::assert_snapshot!(["MR", "De", "Df", "SS", "RS", "IC", "L", "Sw", "R[2]"].map(within).join("\n"), @"
+    insta::assert_snapshot!(["MR", "De", "Df", "SS", "RS", "Ce", "Re", "IC", "L", "Sw", "R[2]"].map(within).join("\n"), @"
     2:7 expected an element, found `MR` [MBG0101]
       help: write `R`: any law may be modulated by what it reads
     2:7 expected an element, found `De` [MBG0101]
@@ -162,6 +162,10 @@ fn elements_of_other_tools_are_told_as_they_are_written_here() {
       help: a source and what it measures are written apart: `Se name { effort: … }` and `output measured = name.f;`, or `Sf` and `name.e`
     2:7 expected an element, found `RS` [MBG0101]
       help: write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: `Sf entropy { flow: name.e * name.f / node.e }`
+    2:7 expected an element, found `Ce` [MBG0101]
+      help: write `C name { effort: rt * ln(k * q), initial: … }`: the chemical potential of the amount `q`, with `rt` in `J/mol`
+    2:7 expected an element, found `Re` [MBG0101]
+      help: a reaction takes both affinities: `forward -> name[0]; name[1] -> reverse;` of a junction `0 name[2]`, and `name -> R reaction[2] { flow: [rate, -rate] }` with `let rate = kappa * (exp(name.e[0] / rt) - exp(name.e[1] / rt));`
     2:7 expected an element, found `IC` [MBG0101]
       help: write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`
     2:7 expected an element, found `L` [MBG0101]

@@ -86,6 +86,11 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "the rate must be `m/s` here, and this is `N*s`",
     ),
     (
+        "param goal: m = 1.0; integral way: m = goal - way;",
+        "goal -",
+        "the rate must be `m/s` here, and this is `m`",
+    ),
+    (
         "param start: m/s = 1.0; integral way: m = a.f, initial: start;",
         "start;",
         "`initial` must be `m` here, and this is `m/s`",

@@ -32,6 +32,19 @@ mbg! {
 }
 
 mbg! {
+    /// What comes over a weir from one second on, of which s have gone by, runs through a tank that was empty, and holds s⁴ then.
+    model Weir {
+        integral level = 1.0;
+        let over = max(level - 1.0, 0.0);
+        0 below {
+            C tank { stiffness: 1.0 }
+            Sf inlet { flow: 4.0 * powi(over, 3) + powi(over, 2) }
+            R drain { flow: sqrt(max(e, 0.0)) }
+        }
+    }
+}
+
+mbg! {
     /// A skate at a speed of 10 m/s along itself. Where it has turned by a right angle its states say no more how it slides.
     #[derivative]
     model Skate {
@@ -387,5 +400,28 @@ fn a_jacobian_of_before_a_kink_is_not_kept() {
             let small = errors.iter().all(|error| *error < most);
             assert!(small, "{blocking:e} at {tolerance:e}: {errors:?}");
         }
+    }
+}
+
+/// Next to the bottom of a tank the slope of the root is of any size: it makes changes small, and estimates, with each new Jacobian.
+#[test]
+fn a_tank_fills_from_its_bottom_on() {
+    fn error(solver: impl Integrator<2>) -> f64 {
+        let model = Weir::new(WeirParameters::default()).unwrap();
+        let mut end = model.initial_state();
+        let run = solver.integrate(&model, &(), 0.0, 2.0, end, |step| end = *step.state());
+        run.unwrap();
+        (end[0] - 1.0).abs()
+    }
+    for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
+        let absolute = 0.01 * tolerance;
+        let errors = [
+            error(Adaptive::new(Radau5, tolerance, absolute)),
+            error(Adaptive::new(Radau9, tolerance, absolute)),
+        ];
+        // The time of the threshold is told to 1e-12.
+        let most = tolerance + 1e-11;
+        let small = errors.iter().all(|error| *error < most);
+        assert!(small, "{tolerance:e}: {errors:?}");
     }
 }

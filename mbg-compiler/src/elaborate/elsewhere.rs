@@ -387,6 +387,8 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         ("step" | "heaviside" | "Heaviside", [time, at]) => return Some(step_at(time, at)),
         ("delay", [value, by]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
+        // Both orders are written elsewhere.
+        ("interp1", [_, Expr::Array(_), Expr::Array(_)]) => return instead("interp", arguments),
         _ if OUTSIDE.contains(&word) => {
             return Some(
                 "what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`"

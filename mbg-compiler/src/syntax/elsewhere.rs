@@ -47,6 +47,15 @@ pub(super) fn element(word: &str) -> Option<String> {
              `Sf entropy { flow: name.e * name.f / node.e }`"
                 .to_owned()
         }
+        "Ce" => {
+            "write `C name { effort: rt * ln(k * q), initial: … }`: the chemical potential of the amount `q`, with `rt` in `J/mol`"
+                .to_owned()
+        }
+        "Re" => {
+            "a reaction takes both affinities: `forward -> name[0]; name[1] -> reverse;` of a junction `0 name[2]`, and \
+             `name -> R reaction[2] { flow: [rate, -rate] }` with `let rate = kappa * (exp(name.e[0] / rt) - exp(name.e[1] / rt));`"
+                .to_owned()
+        }
         "IC" => {
             "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`"
                 .to_owned()

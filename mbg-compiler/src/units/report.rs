@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::dimension::Dimension;
 use super::inference::Mismatch;
 use super::ports::Mistake;
-use super::{expression_text, names, pseudo, symbol_text};
+use super::{expression_text, names, pseudo, second, symbol_text};
 use crate::causality::report::alternatives;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error};
@@ -44,6 +44,11 @@ pub(super) fn unit_text(unit: &Dimension) -> String {
         return format!("`{}`", names::text(unit));
     }
     "a unit that is not known".to_owned()
+}
+
+/// Whether what a state changes by is in the unit of the state, and wants a factor per second.
+fn is_without_its_rate(claim: &Claim, [rate, found]: [&Dimension; 2]) -> bool {
+    matches!(claim.subject, Subject::Rate(_)) && found.over(rate) == second()
 }
 
 /// What to do about a name whose unit is at fault.
@@ -235,7 +240,10 @@ impl<'a> Reporter<'a> {
     ) {
         let advice = advice.or_else(|| self.no_power(claim, units));
         let help = match advice.or_else(|| self.bare_argument(claim)) {
-            None if self.is_numeric(claim) || units.iter().any(|unit| unit.is_pure()) => {
+            None if self.is_numeric(claim)
+                || units.iter().any(|unit| unit.is_pure())
+                || is_without_its_rate(claim, units) =>
+            {
                 Some(FACTOR.to_owned())
             }
             advice => advice,

@@ -284,7 +284,7 @@ where
     let met = line.filter(|line| line.ahead <= length).or_else(|| {
         let start = (from.span.start, from.x);
         // Some stage was beyond it already.
-        (!is_bound && is_led_back(problem, &start, end)).then_some(Jump {
+        (!is_bound && is_led_back(problem, &start, end, is_open)).then_some(Jump {
             start,
             ahead: 0.5 * length,
             length: whole,
@@ -337,12 +337,13 @@ where
     passed
 }
 
-/// Whether an argument has not gone the way that it should have by its rates at both ends of a step.
+/// Whether an argument that is open has not gone the way that it should have by its rates at both ends of a step.
 #[cold]
 fn is_led_back<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     start: &Place<T, N>,
     end: Place<T, N>,
+    is_open: impl Fn(usize) -> bool,
 ) -> bool
 where
     T: Real,
@@ -352,12 +353,13 @@ where
     let memory = problem.memory;
     let [first, last] = [*start, end].map(|place| problem.point(place));
     problem.memory = memory;
-    let mut is_led_back = false;
+    let (mut is_led_back, mut number) = (false, 0);
     problem.courses(&first, &last, |course, lasting| {
         let ([from, rate], [to, later]) = (course.from.map(seen), course.to.map(seen));
         let way = 0.5 * (rate + later) * seen(lasting);
         let is_astray = ((to - from) - way).abs() > ASTRAY * way.abs();
-        is_led_back |= is_astray && !course.is_clear(lasting);
+        is_led_back |= is_astray && is_open(number) && !course.is_clear(lasting);
+        number += 1;
     });
     is_led_back
 }

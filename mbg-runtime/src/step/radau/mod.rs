@@ -215,8 +215,7 @@ where
             && error <= 1.0
         {
             let end = newton.slope_at_end(&stages);
-            // Of sweeps that are followed by a new Jacobian the next step tells.
-            if self.theta <= FAST && newton.gets_nowhere(&stages, &end, tolerance) {
+            if newton.gets_nowhere(&stages, (&end, &self.jacobian), tolerance) {
                 return self.refuse(&stages, FAR);
             }
             slope = Some(end);

@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use super::{FAST, Factors, Tabulated, transformed};
 use crate::step::linear::{Complex, Element};
@@ -262,12 +262,12 @@ where
     }
 
     /// Whether sweeps lead nowhere: the end is not where the slope of the model there leads to, by more than the tolerance, and
-    /// another sweep would leave as much. A Jacobian of before a kink that is far steeper than what follows makes all changes small,
-    /// and the estimate of the error as well.
+    /// another sweep would leave as much. A Jacobian that is far steeper than what follows, such as that of before a kink or of a root
+    /// next to zero, makes all changes small, and the estimate of the error as well.
     pub(super) fn gets_nowhere(
         &mut self,
         stages: &[SVector<T, N>; S],
-        slope: &SVector<T, N>,
+        (slope, jacobian): (&SVector<T, N>, &SMatrix<T, N, N>),
         tolerance: &Tolerance<N>,
     ) -> bool {
         let Start { span, x, .. } = self.start;
@@ -279,12 +279,19 @@ where
         if found <= 1.0 {
             return false;
         }
+        // What rounding of the states does to the slope.
+        let mut rounding = SVector::<T, N>::from_element(T::from_f64(0.0));
+        for (column, x) in jacobian.column_iter().zip((x + end).as_slice()) {
+            rounding.zip_apply(&column, |sum, entry| {
+                *sum += span.length * (entry * *x).abs()
+            });
+        }
+        if found <= NOISE * T::EPSILON * measure.norm(&rounding) {
+            return false;
+        }
         let (shift, factors) = &self.factors.real;
         let inverse = T::from_f64(1.0) / span.length;
         let ahead = factors.solved::<Y, M, P>(&left.map(|left| inverse * left));
-        if measure.norm(&ahead) <= NOISE * T::EPSILON * measure.norm(x) {
-            return false;
-        }
         let memory = self.problem.memory;
         let beside = self.problem.slope(span.end, &(x + end + ahead));
         self.problem.memory = memory;

@@ -35,6 +35,15 @@ enum Aside {
     Left(f64, f64),
 }
 
+/// What is found of a motion next to surfaces.
+#[derive(Clone, Copy, PartialEq)]
+enum Found {
+    Stays,
+    /// It goes away from all.
+    Leaves,
+    Nothing,
+}
+
 impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
     /// beside the others, on the side to which it goes. None where it leaves all. Counts evaluations of the model.
@@ -71,8 +80,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         sliding.arrange(near, (&at, x), memory);
         sliding.take_in((&at, whole), x, memory);
         let all = sliding.all();
-        if sliding.search((&at, x), (&mut *memory, &mut *evaluations)) {
-            return Some(sliding);
+        match sliding.search((&at, x), (&mut *memory, &mut *evaluations)) {
+            Found::Stays => return Some(sliding),
+            Found::Leaves => return None,
+            Found::Nothing => {}
         }
         // A law that jumps on one side of a threshold alone, which is passed, does so where that is beside the others.
         let mut others = all.iter().filter(|_| all.count() > 1);
@@ -80,19 +91,21 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             let mut there = start;
             sliding.arrange(all, (&at, &there), memory);
             sliding.pass(*passed, (&at, &mut there), memory);
-            let stays = sliding.search((&at, &mut there), (&mut *memory, &mut *evaluations));
+            let found = sliding.search((&at, &mut there), (&mut *memory, &mut *evaluations));
+            let stays = found == Found::Stays;
             *x = if stays { there } else { *x };
             stays
         });
         stays.then_some(sliding)
     }
 
-    /// Whether the motion stays at some of the surfaces, which are then these, with the state put on them, or else beside all.
+    /// Whether the motion stays at some of the surfaces, which are then these, with the state put on them, or else beside all that it
+    /// leaves.
     fn search<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &mut SVector<T, N>),
         (memory, evaluations): (&mut S::Memory, &mut u64),
-    ) -> bool
+    ) -> Found
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
@@ -103,7 +116,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             let wide = self.sides(at, (x, WIDE), memory);
             *evaluations += self.evaluations.take();
             let Some((choices, asides)) = self.choices((&sides, &wide), (at, x), memory) else {
-                return false;
+                return Found::Nothing;
             };
             let count = self.surfaces.count();
             let stays = |place: &usize| matches!(asides[*place], Aside::On);
@@ -120,13 +133,42 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 // As a motion comes there: what it would be late by changes its slopes along this way.
                 self.across.set(sides.across(self.free));
                 *x = self.onto(at, x, memory);
-                return true;
+                return Found::Stays;
             }
-            let on = self.only(stays);
+            let (on, left) = (self.only(stays), self.surfaces);
             *x = self.put_aside((at, x), (&asides, sides.reach()), memory);
             self.arrange(on, (at, x), memory);
+            if on.count() == 0 {
+                self.surfaces = left;
+                let found = self.left((at, x), &asides, memory);
+                *evaluations += self.evaluations.take();
+                return found;
+            }
         }
-        false
+        Found::Nothing
+    }
+
+    /// Whether the motion leaves the surfaces to the sides on which it has been put.
+    fn left<const M: usize, const P: usize>(
+        &self,
+        (at, x): (&Moment<T, M>, &SVector<T, N>),
+        asides: &Each<Aside>,
+        memory: &S::Memory,
+    ) -> Found
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let slope = (self.system).derivative(at.time, x, &at.input, &mut { *memory });
+        self.evaluations.set(self.evaluations.get() + 1);
+        let [[_, rates], _] = self.told(at, [(x, &slope); 2], memory);
+        let mut ways = asides.iter().zip(&rates).take(self.surfaces.count());
+        match ways
+            .all(|(aside, rate)| matches!(aside, Aside::Left(side, _) if side * seen(*rate) >= 0.0))
+        {
+            true => Found::Leaves,
+            false => Found::Nothing,
+        }
     }
 
     /// Puts a state beside one of the surfaces, where it is, and goes on without that.

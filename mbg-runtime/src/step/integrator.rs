@@ -321,6 +321,10 @@ impl<D: Integrator<N> + ?Sized, T: Real, const N: usize> Runs<T, N> for Parts<'_
         })
     }
 
+    fn length(&self) -> f64 {
+        0.0
+    }
+
     fn watched(&mut self, _t: T) -> f64 {
         f64::NEG_INFINITY
     }

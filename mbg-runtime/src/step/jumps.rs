@@ -68,6 +68,9 @@ pub(super) trait Runs<T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
 
+    /// How long steps are at least, but where they end before something.
+    fn length(&self) -> f64;
+
     /// From which time on jumps are met, where it was asked before how often.
     fn watched(&mut self, t: T) -> f64;
 }
@@ -185,10 +188,10 @@ impl<T: Real, const N: usize> Way<T, N> {
         }
         let mut found = None;
         let mut memory = problem.memory;
-        let mut beside = problem.beside();
+        let (mut beside, usual) = (problem.beside(), runs.length());
         let done = runs.to(problem, (self.here, target), self.watched, &mut |step| {
             beside.memory = memory;
-            found = beside.jump_within(step, self.watched, ends.are_all());
+            found = beside.jump_within(step, self.watched, (ends.are_all(), usual));
             if found.is_some() {
                 return ControlFlow::Break(());
             }
@@ -258,12 +261,13 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    /// The first jump of a law at a state that a step has gone over, but for those before a time; or the first threshold of all.
+    /// The first jump of a law at a state that a step has gone over, but for those before a time; or the first threshold of all. Steps
+    /// have a usual length at least.
     pub(super) fn jump_within(
         &mut self,
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
-        counts_all: bool,
+        (counts_all, usual): (bool, f64),
     ) -> Option<Jump<T, N>> {
         if step.is_clear || step.surfaces.is_some() {
             // Where it stays at thresholds the derivative is that along them.
@@ -271,7 +275,7 @@ where
         }
         let start = (step.start(), *step.first());
         let end = (step.end(), *step.state());
-        let length = seen(end.0 - start.0);
+        let length = seen(end.0 - start.0).max(usual);
         let mut from = start;
         for _ in 0..MOST {
             self.reached(&from, &end)?;

@@ -168,6 +168,10 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
         Ok(Ran::To(x))
     }
 
+    fn length(&self) -> f64 {
+        self.fixed.step
+    }
+
     fn watched(&mut self, t: T) -> f64 {
         let end = self.grid.end_of_step(t);
         match often(&mut self.asked, end) {
@@ -283,13 +287,7 @@ where
     let line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open);
     let met = line.filter(|line| line.ahead <= length).or_else(|| {
         let start = (from.span.start, from.x);
-        // Some stage was beyond it already.
-        (!is_bound && is_led_back(problem, &start, end, is_open)).then_some(Jump {
-            start,
-            ahead: 0.5 * length,
-            length: whole,
-            is_guess: true,
-        })
+        (!is_bound && is_led_back(problem, &start, end, is_open)).then(|| astray(from, whole))
     });
     met.filter(|met| seen(met.start.0) + met.ahead >= watched)
 }
@@ -378,18 +376,33 @@ where
     I: Input<T, M> + ?Sized,
 {
     let length = seen(from.span.length);
-    let line = line_to_threshold(problem, (from, whole), 2.0 * length, |_| true);
-    let Some(line) = line else {
-        return Near::Nothing;
-    };
     let tried = core::mem::replace(&mut problem.memory, memory);
     let mut beside = problem.beside();
-    let end = from.x + across.over(problem, from).change;
+    let change = across.over(problem, from).change;
+    let end = from.x + change;
     let mut dense = || across.polynomial(problem, from, &end);
     let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
-    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, false);
+    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, (false, whole));
     problem.memory = tried;
-    jump.map_or(Near::Threshold(line), Near::Jump)
+    let line = || line_to_threshold(problem, (from, whole), 2.0 * length, |_| true);
+    // Its stages may have been beyond one to which neither leads.
+    let beside = || (!is_clear(problem, from, &change)).then(|| astray(from, whole));
+    let threshold = || {
+        line()
+            .or_else(beside)
+            .map_or(Near::Nothing, Near::Threshold)
+    };
+    jump.map_or_else(threshold, Near::Jump)
+}
+
+/// A jump that the stages of a step seem to have met before its end.
+fn astray<T: Real, const N: usize>(from: &Start<T, N>, whole: f64) -> Jump<T, N> {
+    Jump {
+        start: (from.span.start, from.x),
+        ahead: 0.5 * seen(from.span.length),
+        length: whole,
+        is_guess: true,
+    }
 }
 
 /// `x + change`, where `lost` is what rounding took off the sums before.

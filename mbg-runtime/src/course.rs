@@ -118,46 +118,59 @@ impl<T: Real> Course<'_, T> {
         is_between.then_some(whole)
     }
 
-    /// About how long behind the first point a threshold is, if what leads to the second one bends evenly, within the time between both.
+    /// About how long behind the first point a threshold is, if what leads to the second one bends evenly, within the time between both;
+    /// in any lane.
     pub(crate) fn within(&self, lasting: T) -> Option<f64> {
-        let ([from, rate], to, lasting) = self.seen(lasting);
-        let bend = (to[0] - from - rate * lasting) / (lasting * lasting);
-        self.soonest([from, rate, bend])
-            .filter(|time| *time <= lasting)
+        let soonest = self.soonest(lasting, |[[from, rate], [to, _]], lasting| {
+            [
+                from,
+                rate,
+                (to - from - rate * lasting) / (lasting * lasting),
+            ]
+        });
+        soonest.filter(|time| *time <= seen(lasting))
     }
 
     /// About how long behind the second point the next threshold is, if the argument goes on to bend as it does between both.
     pub(crate) fn behind(&self, lasting: T) -> Option<f64> {
-        let ([_, before], [to, rate], lasting) = self.seen(lasting);
-        self.soonest([to, rate, 0.5 * (rate - before) / lasting])
+        self.soonest(lasting, |[[_, before], [to, rate]], lasting| {
+            [to, rate, 0.5 * (rate - before) / lasting]
+        })
     }
 
-    /// The values and rates as numbers, rates that are not known as if the way was straight.
-    fn seen(&self, lasting: T) -> ([f64; 2], [f64; 2], f64) {
-        let ([from, to], lasting) = ([self.from, self.to].map(|it| it.map(seen)), seen(lasting));
-        let mean = (to[0] - from[0]) / lasting;
-        let known = |[value, rate]: [f64; 2]| [value, if rate == 0.0 { mean } else { rate }];
-        (known(from), known(to), lasting)
-    }
-
-    /// How long from a value on with this rate and half its change the first threshold is at which choices change.
-    fn soonest(&self, [value, rate, bend]: [f64; 3]) -> Option<f64> {
+    /// How long it is to the first threshold at which choices change from a value with a rate and half its change, by the values and
+    /// rates at both points, of which those that are not known are as if the way was straight.
+    fn soonest(&self, lasting: T, way: impl Fn([[f64; 2]; 2], f64) -> [f64; 3]) -> Option<f64> {
         if !self.is_choice {
             return None;
         }
-        let ways = self.thresholds.iter().flat_map(|threshold| {
-            let beyond = value - seen(*threshold);
-            match self.repeats {
-                true => [whole_below(beyond), whole_below(-beyond).saturating_neg()]
-                    .map(|turns| turns as f64 - beyond),
-                false => [-beyond; 2],
-            }
+        let lanes = (0..).map_while(|number| {
+            let [from, to] = [self.from[0], self.to[0]].map(|it| lane(it, number));
+            let (from, to, lasting) = (from?, to?, lane(lasting, number)?);
+            let mean = (to - from) / lasting;
+            let rates =
+                [self.from[1], self.to[1]].map(|it| lane(it, number).filter(|it| *it != 0.0));
+            let [before, behind] = rates.map(|rate| rate.unwrap_or(mean));
+            let [value, rate, bend] = way([[from, before], [to, behind]], lasting);
+            let ways = self.thresholds.iter().flat_map(|threshold| {
+                let beyond = value - lane(*threshold, number).unwrap_or(f64::NAN);
+                match self.repeats {
+                    true => [whole_below(beyond), whole_below(-beyond).saturating_neg()]
+                        .map(|turns| turns as f64 - beyond),
+                    false => [-beyond; 2],
+                }
+            });
+            let times = ways.map(|way| {
+                let root = Real::sqrt(rate * rate + 4.0 * bend * way);
+                2.0 * way / (rate + if way < 0.0 { -root } else { root })
+            });
+            Some(
+                times
+                    .filter(|time| *time > 0.0)
+                    .fold(f64::INFINITY, f64::min),
+            )
         });
-        let times = ways.map(|way| {
-            let root = Real::sqrt(rate * rate + 4.0 * bend * way);
-            2.0 * way / (rate + if way < 0.0 { -root } else { root })
-        });
-        times.filter(|time| *time > 0.0).reduce(f64::min)
+        Some(lanes.fold(f64::INFINITY, f64::min)).filter(|time| time.is_finite())
     }
 
     /// What the argument is at a threshold, with the whole turns that it has made at the second point.

@@ -21,6 +21,8 @@ const JUMP_PLACES: f64 = 64.0;
 const MOST: usize = 16;
 /// So often a jump is come nearer to: an argument that itself jumps there is at a threshold on a line beyond that before it is there.
 const TRIES: usize = 48;
+/// The part of a step that goes on from where it has met a jump that is none.
+const SHORTER: f64 = 0.5;
 /// So often the place of a threshold is narrowed.
 const NARROWINGS: u32 = 100;
 
@@ -95,7 +97,7 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    let mut way = Way::new(here);
+    let mut way = Way::new(here, runs.length());
     loop {
         way.watched = way.watched.max(runs.watched(way.here.0));
         match way.follow(runs, problem, (end, ends), observer)? {
@@ -139,6 +141,10 @@ struct Way<T, const N: usize> {
     tries: usize,
     /// Jumps are met from this time on.
     watched: f64,
+    /// How long steps are, but where they end before something.
+    usual: f64,
+    /// How long the step was that met a jump last.
+    taken: f64,
 }
 
 /// Why a run has not gone on.
@@ -152,12 +158,14 @@ enum Followed {
 }
 
 impl<T: Real, const N: usize> Way<T, N> {
-    fn new(here: Place<T, N>) -> Self {
+    fn new(here: Place<T, N>, usual: f64) -> Self {
         Self {
             here,
             near: None,
             tries: 0,
             watched: f64::NEG_INFINITY,
+            usual,
+            taken: 0.0,
         }
     }
 
@@ -188,10 +196,10 @@ impl<T: Real, const N: usize> Way<T, N> {
         }
         let mut found = None;
         let mut memory = problem.memory;
-        let (mut beside, usual) = (problem.beside(), runs.length());
+        let mut beside = problem.beside();
         let done = runs.to(problem, (self.here, target), self.watched, &mut |step| {
             beside.memory = memory;
-            found = beside.jump_within(step, self.watched, (ends.are_all(), usual));
+            found = beside.jump_within(step, self.watched, ends.are_all());
             if found.is_some() {
                 return ControlFlow::Break(());
             }
@@ -220,8 +228,9 @@ impl<T: Real, const N: usize> Way<T, N> {
 
     /// Comes nearer to a jump that a step has met: how near is near enough goes by the first step that has.
     fn meet(&mut self, jump: Jump<T, N>) {
-        let before = self.near.as_ref().map_or(0.0, |near| near.length);
+        let before = self.near.as_ref().map_or(self.usual, |near| near.length);
         let length = jump.length.max(before);
+        self.taken = jump.length;
         self.here = jump.start;
         self.near = Some(Jump { length, ..jump });
     }
@@ -249,6 +258,13 @@ impl<T: Real, const N: usize> Way<T, N> {
         if next.is_none() && (!jump.is_guess || self.tries > TRIES) {
             let apart = problem.apart(self.here.0, jump.length);
             self.watched = seen(self.here.0) + jump.ahead + SOON * apart;
+            // What is not where it was seen is told better by a shorter step.
+            let ahead = SHORTER * self.taken;
+            self.near = (ahead > apart).then_some(Jump {
+                ahead,
+                is_guess: true,
+                ..jump
+            });
         }
         self.tries = 0;
         next
@@ -261,13 +277,12 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    /// The first jump of a law at a state that a step has gone over, but for those before a time; or the first threshold of all. Steps
-    /// have a usual length at least.
+    /// The first jump of a law at a state that a step has gone over, but for those before a time; or the first threshold of all.
     pub(super) fn jump_within(
         &mut self,
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
-        (counts_all, usual): (bool, f64),
+        counts_all: bool,
     ) -> Option<Jump<T, N>> {
         if step.is_clear || step.surfaces.is_some() {
             // Where it stays at thresholds the derivative is that along them.
@@ -275,7 +290,7 @@ where
         }
         let start = (step.start(), *step.first());
         let end = (step.end(), *step.state());
-        let length = seen(end.0 - start.0).max(usual);
+        let length = seen(end.0 - start.0);
         let mut from = start;
         for _ in 0..MOST {
             self.reached(&from, &end)?;

@@ -131,11 +131,8 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                 let is_clear = looks && is_clear(problem, &from, &trial.change);
                 if looks
                     && !is_clear
-                    && let Some(jump) = touched(
-                        problem,
-                        (&from, &trial.change, self.fixed.step),
-                        (watched, work.place_of_jacobian(&from).is_some()),
-                    )
+                    && let Some(jump) =
+                        touched(problem, (&from, &trial.change, self.fixed.step), watched)
                 {
                     problem.memory = memory;
                     return Ok(Ran::Met(jump));
@@ -268,12 +265,11 @@ where
 }
 
 /// A threshold that a step seems to have met at its stages, though it has not taken the argument over it: where the line from its start
-/// leads, or almost, as a jump leads back; or where what begins beside one has not gone as it should have. Not before a time. The stages
-/// of methods that take a Jacobian are bound to its end.
+/// leads, or almost, as a jump leads back; or where what begins beside one has not gone as it should have. Not before a time.
 fn touched<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     (from, change, whole): (&Start<T, N>, &SVector<T, N>, f64),
-    (watched, is_bound): (f64, bool),
+    watched: f64,
 ) -> Option<Jump<T, N>>
 where
     T: Real,
@@ -287,7 +283,7 @@ where
     let line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open);
     let met = line.filter(|line| line.ahead <= length).or_else(|| {
         let start = (from.span.start, from.x);
-        (!is_bound && is_led_back(problem, &start, end, is_open)).then(|| astray(from, whole))
+        is_led_back(problem, &start, end, is_open).then(|| astray(from, whole))
     });
     met.filter(|met| seen(met.start.0) + met.ahead >= watched)
 }
@@ -382,7 +378,7 @@ where
     let end = from.x + change;
     let mut dense = || across.polynomial(problem, from, &end);
     let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
-    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, (false, whole));
+    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, false);
     problem.memory = tried;
     let line = || line_to_threshold(problem, (from, whole), 2.0 * length, |_| true);
     // Its stages may have been beyond one to which neither leads.

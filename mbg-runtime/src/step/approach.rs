@@ -24,8 +24,9 @@ const MOST: usize = 12;
 pub(super) struct Approach {
     /// How far ahead the threshold is thought to be.
     ahead: Option<f64>,
-    /// The length of the step that went over it.
+    /// The length of the first step that went over it, and when that would have ended.
     length: f64,
+    until: f64,
     /// How often its place was estimated, and how many steps have come nearer to it.
     tries: usize,
     nearer: usize,
@@ -50,6 +51,7 @@ impl Approach {
         Self {
             ahead: None,
             length: 0.0,
+            until: f64::NEG_INFINITY,
             tries: 0,
             nearer: 0,
             watched: f64::NEG_INFINITY,
@@ -114,8 +116,9 @@ impl Approach {
             self.leave();
             return Come::Away;
         }
-        if self.ahead.is_none() {
-            self.length = length;
+        // How near is near goes by the step that has met it, not by what is left of that where one that came nearer was refused.
+        if self.ahead.is_none() && seen(from.time) >= self.until {
+            (self.length, self.until) = (length, seen(to.time));
         }
         if let Some(there) = self.arrive(problem, &from) {
             return there;

@@ -417,6 +417,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         };
         let soon = PLACES * T::EPSILON * at.time.magnitude();
         let ways: Each<T> = core::array::from_fn(|place| {
+            if matches!(sorted[place], Aside::On) {
+                // What is put on it later is not to move the others any more.
+                return -distances[place];
+            }
             let (side, way) = (T::from_f64(side(place)), distances[place]);
             let (beyond, least) = (side * way, least[place]);
             // It is not farther away than numbers tell, or times.

@@ -251,16 +251,22 @@ impl<T: Real, const N: usize> Way<T, N> {
         if next.is_none() && self.tries <= TRIES {
             let ahead = problem.straight_to_threshold(&self.here, slope, jump.length);
             if let Some(ahead) = ahead {
-                self.near = Some(Jump { ahead, ..jump });
+                let start = self.here;
+                self.near = Some(Jump {
+                    start,
+                    ahead,
+                    ..jump
+                });
                 return None;
             }
         }
         if next.is_none() && (!jump.is_guess || self.tries > TRIES) {
             let apart = problem.apart(self.here.0, jump.length);
-            self.watched = seen(self.here.0) + jump.ahead + SOON * apart;
+            self.watched = seen(jump.start.0) + jump.ahead + SOON * apart;
             // What is not where it was seen is told better by a shorter step.
             let ahead = SHORTER * self.taken;
             self.near = (ahead > apart).then_some(Jump {
+                start: self.here,
                 ahead,
                 is_guess: true,
                 ..jump

@@ -207,8 +207,9 @@ impl<T, const N: usize> Near<T, N> {
     }
 }
 
-/// How much of its way an argument may have missed by how its rate changes within a step.
-const ASTRAY: f64 = 0.01;
+/// How much of its way an argument may have missed by how its rate changes within a step: where the line from the start leads almost to a
+/// threshold, and where it begins beside one.
+const ASTRAY: [f64; 2] = [1e-3, 1e-2];
 
 /// The line from the start of a step, or of a part of one, to a threshold of the laws, if it comes to one within a length; of arguments
 /// that are open.
@@ -281,9 +282,11 @@ where
     let passed = passed(problem, from, end);
     let is_open = |number| !passed.contains(number);
     let line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open);
+    let [almost, beside] = ASTRAY;
+    let least = if line.is_some() { almost } else { beside };
     let met = line.filter(|line| line.ahead <= length).or_else(|| {
         let start = (from.span.start, from.x);
-        is_led_back(problem, &start, end, is_open).then(|| astray(from, whole))
+        is_led_back(problem, (&start, &end), (least, is_open)).then(|| astray(from, whole))
     });
     met.filter(|met| seen(met.start.0) + met.ahead >= watched)
 }
@@ -331,13 +334,12 @@ where
     passed
 }
 
-/// Whether an argument that is open has not gone the way that it should have by its rates at both ends of a step.
+/// Whether an argument that is open has missed such a part of the way that it should have gone by its rates at both ends of a step.
 #[cold]
 fn is_led_back<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
-    start: &Place<T, N>,
-    end: Place<T, N>,
-    is_open: impl Fn(usize) -> bool,
+    (start, end): (&Place<T, N>, &Place<T, N>),
+    (least, is_open): (f64, impl Fn(usize) -> bool),
 ) -> bool
 where
     T: Real,
@@ -345,13 +347,13 @@ where
     I: Input<T, M> + ?Sized,
 {
     let memory = problem.memory;
-    let [first, last] = [*start, end].map(|place| problem.point(place));
+    let [first, last] = [*start, *end].map(|place| problem.point(place));
     problem.memory = memory;
     let (mut is_led_back, mut number) = (false, 0);
     problem.courses(&first, &last, |course, lasting| {
         let ([from, rate], [to, later]) = (course.from.map(seen), course.to.map(seen));
         let way = 0.5 * (rate + later) * seen(lasting);
-        let is_astray = ((to - from) - way).abs() > ASTRAY * way.abs();
+        let is_astray = ((to - from) - way).abs() > least * way.abs();
         is_led_back |= is_astray && is_open(number) && !course.is_clear(lasting);
         number += 1;
     });

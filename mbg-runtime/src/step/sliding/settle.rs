@@ -400,7 +400,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 *aside = asides[place];
             }
         }
-        let (distances, _) = self.distances(at, x, memory);
+        let (distances, moves) = self.distances(at, x, memory);
         let least = self
             .aside_behind(x, &distances)
             .map(|aside| T::from_f64(BESIDE * reach) * aside);
@@ -435,7 +435,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 false => T::from_f64(0.0),
             }
         });
-        let mut moved = self.moved(x, ways);
+        let mut moved = self.moved(x, moves.solve(ways));
         if self.free < self.surfaces.count() {
             let rest = SVector::from_element(T::from_f64(0.0));
             let [[there, _], _] = self.told(at, [(&moved, &rest); 2], memory);
@@ -454,7 +454,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                     Aside::Left(_, rate) => T::from_f64(time * rate) - distances[place],
                     _ => ways[place],
                 });
-                moved = self.moved(x, ways);
+                moved = self.moved(x, moves.solve(ways));
             }
         }
         match moved.iter().all(|it| it.magnitude().is_finite()) {

@@ -14,6 +14,8 @@ mod moving;
 mod networks;
 #[path = "sliding/several.rs"]
 mod several;
+#[path = "sliding/turning.rs"]
+mod turning;
 
 mbg! {
     /// A block on a floor that a spring pulls.

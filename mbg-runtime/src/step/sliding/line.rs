@@ -127,7 +127,8 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         };
         let mut way = Way::along(1);
         if count > free {
-            let met = |way| self.met(way, (at, &aside), state, memory);
+            let ends = [-0.5, free as f64 - 0.5];
+            let met = |way| self.met(way, ends, (at, &aside), state, memory);
             way = met(way);
             for turns in 2..=LINES {
                 if way.longer < LONG {
@@ -142,6 +143,11 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             }
             let longer = way.longer.min(LONGEST);
             way.paces = way.paces.map(|pace| longer * pace);
+            // Far from where others are met rounding leads astray.
+            let met = way.crossings[..count].iter();
+            let first = met.clone().copied().fold(ends[0], f64::min);
+            let last = met.copied().fold(ends[1], f64::max);
+            way = self.met(way, [first, last], (at, &aside), state, memory);
         }
         let crossings = way.crossings;
         let mut order: [usize; MOST] = core::array::from_fn(|place| place);
@@ -169,11 +175,12 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         }
     }
 
-    /// A way with where it meets the surfaces that are not free, and how much longer it is to be, so that it is between each two as far
-    /// away as need be.
+    /// A way with where it meets the surfaces that are not free, by its ends, and how much longer it is to be, so that it is between
+    /// each two as far away as need be.
     fn met<const M: usize, const P: usize>(
         &self,
         mut way: Way,
+        ends: [f64; 2],
         (at, aside): (&Moment<T, M>, &Each<T>),
         state: impl Fn(&Each<f64>, f64) -> SVector<T, N>,
         memory: &S::Memory,
@@ -182,7 +189,6 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         S: System<T, N, M, P>,
     {
         let (count, free) = (self.surfaces.count(), self.free);
-        let ends = [-0.5, free as f64 - 0.5];
         let rest = SVector::from_element(T::from_f64(0.0));
         let [first, last] = ends.map(|along| state(&way.paces, along));
         let told = self.told(at, [(&first, &rest), (&last, &rest)], memory);
@@ -190,7 +196,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             core::array::from_fn(|place| way.paces[place] * seen(aside[place]));
         for place in free..count {
             let [from, to] = told.map(|it| seen(it[0][place]));
-            rates[place] = (to - from) / free as f64;
+            rates[place] = (to - from) / (ends[1] - ends[0]);
             way.crossings[place] = ends[0] - from / rates[place];
             way.forward[place] = f64::signum(to - from);
         }

@@ -207,8 +207,8 @@ impl<T, const N: usize> Near<T, N> {
     }
 }
 
-/// How much of its way an argument may have missed by how its rate changes within a step: where the line from the start leads almost to a
-/// threshold, and where it begins beside one.
+/// How much of its way an argument may have missed by how its rate changes within a step: where the line from the start leads almost to
+/// a threshold, and where it begins beside one.
 const ASTRAY: [f64; 2] = [1e-3, 1e-2];
 
 /// The line from the start of a step, or of a part of one, to a threshold of the laws, if it comes to one within a length; of arguments

@@ -29,8 +29,8 @@ const DEPENDENT: f64 = 4096.0;
 enum Aside {
     /// It stays on it.
     On,
-    /// Nothing leads back to it: it goes on where it is.
-    Passed,
+    /// Nothing leads back to it: it goes on over it, at this rate.
+    Passed(f64),
     /// To this side, below or above, at this rate.
     Left(f64, f64),
 }
@@ -185,7 +185,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let rest = self.all().without(&Surfaces::one(passed));
         let mut asides = [Aside::On; MOST];
         if let Some((place, _)) = self.surfaces.of(passed.course) {
-            asides[place] = Aside::Passed;
+            asides[place] = Aside::Passed(0.0);
         }
         *x = self.put_aside((at, x), (&asides, reach), memory);
         self.arrange(rest, (at, x), memory);
@@ -326,13 +326,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let asides = core::array::from_fn(|place| {
             let stays = matches!(choices[place], Choice::Stays(_))
                 || units[place].is_some_and(|unit| span.has::<T>(&unit));
+            let rate = sides.rate(place, &choices[..count]);
             match known.get(place) {
                 _ if stays => Aside::On,
-                Some(Some(_)) => Aside::Passed,
-                _ => {
-                    let side = sides.side(place, choices[place]);
-                    Aside::Left(side, sides.rate(place, &choices[..count]))
-                }
+                Some(Some(_)) => Aside::Passed(rate),
+                _ => Aside::Left(sides.side(place, choices[place]), rate),
             }
         });
         Some((choices, asides))
@@ -410,8 +408,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             .any(|aside| matches!(aside, Aside::On));
         let side = |place: usize| match sorted[place] {
             Aside::Left(side, _) => side,
-            Aside::Passed if stays && seen(distances[place]) != 0.0 => {
-                seen(distances[place]).signum()
+            // Where it goes it does not come to it at once again.
+            Aside::Passed(rate) if stays => {
+                let mut ways = [rate, seen(distances[place])].into_iter();
+                ways.find(|way| *way != 0.0).map_or(0.0, f64::signum)
             }
             _ => 0.0,
         };
@@ -428,6 +428,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 Aside::Left(_, rate) if seen(beyond) < 0.0 => {
                     -seen(beyond) < seen(least).max(soon * rate.abs())
                 }
+                Aside::Passed(_) => seen(beyond).abs() < seen(least),
                 _ => seen(beyond) < seen(least),
             };
             match is_near {

@@ -14,9 +14,8 @@ use crate::{Input, Real, System};
 /// The part of the way to a jump that steps leave, at least and at most: by how much its place may be off, which is less the nearer it
 /// is beside the step that met it. Stages that are beyond it would lead back.
 const LEFT: [f64; 2] = [1e-6, 0.1];
-/// A law jumps if it differs by more than this part of itself, or so many units of the last place.
-const JUMP: f64 = 1e-7;
-const JUMP_PLACES: f64 = 64.0;
+/// A rate jumps if it differs by more than this part of what it is made of, or so many units of the last place.
+const JUMP: [f64; 2] = [1e-7, 64.0];
 /// So many thresholds of one step are looked at.
 const MOST: usize = 16;
 /// So often a jump is come nearer to: an argument that itself jumps there is at a threshold on a line beyond that before it is there.
@@ -25,6 +24,12 @@ const TRIES: usize = 48;
 const SHORTER: f64 = 0.5;
 /// So often the place of a threshold is narrowed.
 const NARROWINGS: u32 = 100;
+
+/// By which part of what it is made of a rate differs that jumps.
+pub(super) fn least_jump<T: Real>() -> f64 {
+    let [part, places] = JUMP;
+    part.max(places * T::EPSILON)
+}
 
 /// A jump within a step that has been tried.
 pub(super) struct Jump<T, const N: usize> {
@@ -361,7 +366,7 @@ where
     /// Whether the derivative differs between two places next to each other.
     fn jumps(&mut self, before: &Place<T, N>, behind: &Place<T, N>) -> bool {
         let [a, b] = [before, behind].map(|(time, state)| self.slope(*time, state));
-        let part = JUMP.max(JUMP_PLACES * T::EPSILON);
+        let part = least_jump::<T>();
         let mut pairs = a.iter().zip(&b);
         pairs.any(|(a, b)| (*b - *a).magnitude() > part * (a.magnitude() + b.magnitude()))
     }

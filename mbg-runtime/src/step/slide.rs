@@ -311,8 +311,9 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     left = Some((time, there));
                 }
                 step.surfaces = Some(surfaces);
+                let goes_on = observer(step);
                 sliding.heed(seen(step.end() - step.start()));
-                match observer(step) {
+                match goes_on {
                     ControlFlow::Continue(()) if left.is_some() => ControlFlow::Break(()),
                     ControlFlow::Break(()) => {
                         left = None;
@@ -328,7 +329,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                 (Walked::Ended(x), _) => here = (end, x),
                 (Walked::Stays(place, others), _) => {
                     let is_news = others.without(&asked).count() > 0;
-                    let goes_on = is_news || is_later(here.0, place.0);
+                    let goes_on = is_news || less(here.0, place.0);
                     here = place;
                     surfaces = surfaces.with(&others);
                     if !goes_on {

@@ -11,6 +11,7 @@ use core::ops::Range;
 use nalgebra::SVector;
 
 use super::dense::Polynomial;
+use super::jumps::least_jump;
 use super::method::{
     Estimating, Family, Method, Start, Stepper, Trial, ahead, combination, each_stage, row,
 };
@@ -194,7 +195,9 @@ impl<A, T: Real, const N: usize, const S: usize, const F: usize> Slopes<A, T, N,
             let (least, most) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |known, slope| {
                 (known.0.min(slope), known.1.max(slope))
             });
-            let farther = FARTHER * (most - least);
+            // What differs by rounding alone is astray nowhere.
+            let farther =
+                FARTHER * (most - least) + least_jump::<T>() * least.abs().max(most.abs());
             further.iter().any(|slope| {
                 let slope = seen(slope[state]);
                 slope < least - farther || slope > most + farther

@@ -47,6 +47,8 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     twins: Along<T>,
     /// How states change that go across each free surface, at a rate of one, and along the others, where the motion has come to.
     across: Cell<Each<SVector<T, N>>>,
+    /// The same where it was last asked whether the motion stays.
+    beyond: Cell<Each<SVector<T, N>>>,
     /// How the argument of each changes with the states, where the motion has come to.
     gradients: Cell<Each<SVector<T, N>>>,
     /// How often the model was evaluated, but for once in each evaluation of these laws.
@@ -112,13 +114,13 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         Moment { time, input, rate }
     }
 
-    /// Minds how long a step was.
+    /// Minds how long a step was that is over, and how surfaces are gone across at its end: on the way they may turn along that.
     pub(super) fn heed(&self, length: f64) {
         self.ahead.set(PART * length);
+        self.across.set(self.beyond.get());
     }
 
-    /// How far the motion is from leaving a surface, as a part of what the laws differ by there; not positive where it leaves one. Minds
-    /// how it goes across there: on the way surfaces may turn to where they have been gone across along before.
+    /// How far the motion is from leaving a surface, as a part of what the laws differ by there; not positive where it leaves one.
     pub(super) fn hold<const M: usize, const P: usize>(
         &self,
         t: T,
@@ -137,7 +139,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         if !sides.leads_back.iter().take(self.free).all(|it| *it) {
             return zero;
         }
-        self.across.set(sides.across(self.free));
+        self.beyond.set(sides.across(self.free));
         least + late
     }
 }

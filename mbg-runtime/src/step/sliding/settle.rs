@@ -71,6 +71,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             shares: [zero; MOST],
             twins: (Surfaces::NONE, [zero; MOST]),
             across: Cell::new(none),
+            beyond: Cell::new(none),
             gradients: Cell::new(none),
             evaluations: Cell::new(0),
         };

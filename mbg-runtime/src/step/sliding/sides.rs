@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::super::jumps::least_jump;
 use super::super::seen;
 use super::super::surfaces::MOST;
 use super::choice::{Choice, chosen};
@@ -16,9 +17,6 @@ const FEW: usize = 3;
 const BENT: f64 = 0.125;
 /// A sum is zero but for rounding within so many units of the last place of its terms.
 const PLACES: f64 = 8.0;
-/// A rate jumps if it differs by more than this part of what it is made of, or so many units of the last place.
-const JUMP: f64 = 1e-7;
-const JUMP_PLACES: f64 = 64.0;
 
 /// What a model says on the sides of surfaces, along a line that crosses each.
 pub(super) struct Sides<T, const N: usize> {
@@ -228,7 +226,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let mut first = [zero; MOST];
         let mut faster = SMatrix::from_element(zero);
         let (mut leads_back, mut slower) = ([false; MOST], [0.0; MOST]);
-        let jump = JUMP.max(JUMP_PLACES * T::EPSILON);
+        let jump = least_jump::<T>();
         let gradients = self.gradients.get();
         for (number, own) in line.order.iter().copied().enumerate().take(count) {
             let [before, behind] = [&line.states[number], &line.states[1 + number]];

@@ -112,7 +112,12 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                     let jacobian = work.place_of_jacobian(&from);
                     problem.statistics.rejected += 1;
                     let near = match self.looks && !often(&mut self.lost, seen(t)) {
-                        true => near(problem, &mut across, (&from, self.fixed.step, memory)),
+                        true => near(
+                            problem,
+                            &mut across,
+                            (&from, self.fixed.step, memory),
+                            jacobian.is_some(),
+                        ),
                         false => Near::Nothing,
                     };
                     if near.may_be_halved(jacobian.is_some()) && parts.halve() {
@@ -367,6 +372,7 @@ fn near<T, S, I, const N: usize, const M: usize, const P: usize>(
     problem: &mut Problem<'_, T, S, I, N, M, P>,
     across: &mut Across<T, N>,
     (from, whole, memory): (&Start<T, N>, f64, S::Memory),
+    takes_jacobian: bool,
 ) -> Near<T, N>
 where
     T: Real,
@@ -374,6 +380,11 @@ where
     I: Input<T, M> + ?Sized,
 {
     let length = seen(from.span.length);
+    let line = line_to_threshold(problem, (from, whole), 2.0 * length, |_| true);
+    // What a Jacobian is lost by is told.
+    if line.is_none() && takes_jacobian {
+        return Near::Nothing;
+    }
     let tried = core::mem::replace(&mut problem.memory, memory);
     let mut beside = problem.beside();
     let change = across.over(problem, from).change;
@@ -382,14 +393,9 @@ where
     let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
     let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, false);
     problem.memory = tried;
-    let line = || line_to_threshold(problem, (from, whole), 2.0 * length, |_| true);
-    // Its stages may have been beyond one to which neither leads.
+    // Sweeps may have been beyond one to which neither leads.
     let beside = || (!is_clear(problem, from, &change)).then(|| astray(from, whole));
-    let threshold = || {
-        line()
-            .or_else(beside)
-            .map_or(Near::Nothing, Near::Threshold)
-    };
+    let threshold = || line.or_else(beside).map_or(Near::Nothing, Near::Threshold);
     jump.map_or_else(threshold, Near::Jump)
 }
 

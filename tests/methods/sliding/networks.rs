@@ -151,20 +151,16 @@ impl Rubbing {
     }
 }
 
-/// Numbers between zero and one, the same ones each time.
-pub(super) fn numbers(mut state: u64) -> impl FnMut() -> f64 {
-    move || {
+/// Bodies are caught, carried along, torn loose and stopped, several at once and where slips tell of each other.
+#[test]
+fn what_rubs_in_a_network_holds_where_it_can() {
+    let mut state = 1_u64;
+    let mut next = move || {
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// Bodies are caught, carried along, torn loose and stopped, several at once and where slips tell of each other.
-#[test]
-fn what_rubs_in_a_network_holds_where_it_can() {
-    let mut next = numbers(1);
+    };
     for number in 0..80 {
         let network = Rubbing::at_random(KINDS[number % KINDS.len()], &mut next);
         let expected = network.speeds(2.0);

@@ -3,66 +3,76 @@
 use mbg_runtime::mbg;
 use nalgebra::Vector3;
 
-use super::networks::numbers;
 use super::several::by_all;
 
 mbg! {
-    /// A flat body on three blades, which rub sideways and let it go along.
+    /// A flat body on up to four blades, which rub sideways and let it go along.
     model Sledge {
         param mass = 1.0; param inertia = 1.0;
         param start[3] = [0.0, 0.0, 0.0];
         param push[3] = [0.0, 0.0, 0.0];
         param stiffness[3] = [0.0, 0.0, 0.0];
-        param directions[3] = [0.0, 0.0, 0.0];
-        param arms[3] = [0.0, 0.0, 0.0];
-        param most[3] = [0.0, 0.0, 0.0];
+        param strain[3] = [0.0, 0.0, 0.0];
+        param directions[4] = [0.0, 0.0, 0.0, 0.0];
+        param arms[4] = [0.0, 0.0, 0.0, 0.0];
+        param most[4] = [0.0, 0.0, 0.0, 0.0];
         1 body[3] {
             I frame { inertia: [[mass, 0.0, 0.0], [0.0, mass, 0.0], [0.0, 0.0, inertia]], initial_flow: start }
             Se force { effort: push }
-            C spring { stiffness: [[stiffness.x, 0.0, 0.0], [0.0, stiffness.y, 0.0], [0.0, 0.0, stiffness.z]] }
+            C spring {
+                stiffness: [[stiffness.x, 0.0, 0.0], [0.0, stiffness.y, 0.0], [0.0, 0.0, stiffness.z]],
+                initial: strain
+            }
         }
         integral angle = body.f.z;
-        1 a { R rub_a { effort: most.x * sign(f) } }
-        1 b { R rub_b { effort: most.y * sign(f) } }
-        1 c { R rub_c { effort: most.z * sign(f) } }
-        body -> MTF at_a { flow: [[cos(angle + directions.x), sin(angle + directions.x), arms.x]] } -> a;
-        body -> MTF at_b { flow: [[cos(angle + directions.y), sin(angle + directions.y), arms.y]] } -> b;
-        body -> MTF at_c { flow: [[cos(angle + directions.z), sin(angle + directions.z), arms.z]] } -> c;
+        1 a { R rub_a { effort: most[0] * sign(f) } }
+        1 b { R rub_b { effort: most[1] * sign(f) } }
+        1 c { R rub_c { effort: most[2] * sign(f) } }
+        1 d { R rub_d { effort: most[3] * sign(f) } }
+        body -> MTF at_a { flow: [[cos(angle + directions[0]), sin(angle + directions[0]), arms[0]]] } -> a;
+        body -> MTF at_b { flow: [[cos(angle + directions[1]), sin(angle + directions[1]), arms[1]]] } -> b;
+        body -> MTF at_c { flow: [[cos(angle + directions[2]), sin(angle + directions[2]), arms[2]]] } -> c;
+        body -> MTF at_d { flow: [[cos(angle + directions[3]), sin(angle + directions[3]), arms[3]]] } -> d;
         output speeds[3] = body.f;
     }
 }
 
-/// A sledge with blades in any direction, or in the same one and across it; some rub, some have springs.
-fn at_random(blades: usize, next: &mut impl FnMut() -> f64) -> SledgeParameters<f64> {
-    let mut about = |middle: f64, most: f64| middle + most * (2.0 * next() - 1.0);
-    let (mass, inertia) = (about(1.0, 0.5), about(0.5, 0.4));
-    let start = [about(0.0, 2.0), about(0.0, 2.0), about(0.0, 3.0)];
-    let is_pushed = about(0.0, 1.0) > 0.0;
-    let push = [about(0.0, 3.0), about(0.0, 3.0), about(0.0, 2.0)]
-        .map(|it| if is_pushed { it } else { 0.0 });
-    let has_springs = about(0.0, 1.0) > 0.0;
-    let stiffness = [about(5.0, 5.0), about(5.0, 5.0), about(3.0, 3.0)]
-        .map(|it| if has_springs { it } else { 0.0 });
-    let (mut directions, mut arms, mut most) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-    for blade in 0..blades {
-        directions[blade] = match about(0.0, 1.0) {
-            ..-0.3 => about(0.0, 3.0),
-            ..0.3 => directions[0],
-            _ => directions[0] + core::f64::consts::FRAC_PI_2,
+/// A sledge with one to four blades in any direction, or in the same one and across it; some are pushed, some have springs, and blades
+/// that it has not rub by nothing.
+fn sledge(seed: u64) -> SledgeParameters<f64> {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut about = |middle: f64, most: f64| {
+        for _ in 0..3 {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+        }
+        middle + most * (2.0 * (state >> 11) as f64 / (1_u64 << 53) as f64 - 1.0)
+    };
+    let mut sledge = SledgeParameters {
+        mass: about(1.0, 0.5),
+        inertia: about(0.5, 0.4),
+        start: [2.0, 2.0, 3.0].map(|most| about(0.0, most)),
+        ..SledgeParameters::default()
+    };
+    if about(0.0, 1.0) > 0.0 {
+        sledge.push = [3.0, 3.0, 2.0].map(|most| about(0.0, most));
+    }
+    if about(0.0, 1.0) > 0.0 {
+        sledge.stiffness = [5.0, 5.0, 3.0].map(|most| about(most, most));
+    }
+    sledge.strain = [0.5; 3].map(|most| about(0.0, most));
+    for blade in 0..=(seed % 4) as usize {
+        let first = sledge.directions[0];
+        sledge.directions[blade] = match blade > 0 && about(0.0, 1.0) > 0.3 {
+            true if about(0.0, 1.0) > 0.0 => first,
+            true => first + core::f64::consts::FRAC_PI_2,
+            false => about(0.0, 3.0),
         };
-        arms[blade] = about(0.0, 1.0);
-        most[blade] = about(1.5, 1.3);
+        sledge.arms[blade] = about(0.0, 1.0);
+        sledge.most[blade] = about(1.5, 1.3);
     }
-    SledgeParameters {
-        mass,
-        inertia,
-        start,
-        push,
-        stiffness,
-        directions,
-        arms,
-        most,
-    }
+    sledge
 }
 
 /// The speeds at an end by impulses over short steps, of all that friction allows those by which the body is slowed down most
@@ -71,12 +81,12 @@ fn by_impulses(sledge: &SledgeParameters<f64>, end: f64, steps: u32) -> Vector3<
     let step = end / f64::from(steps);
     let masses = Vector3::new(sledge.mass, sledge.mass, sledge.inertia);
     let (push, stiffness) = (Vector3::from(sledge.push), Vector3::from(sledge.stiffness));
-    let (mut speeds, mut place) = (Vector3::from(sledge.start), Vector3::zeros());
-    let mut impulses = [0.0_f64; 3];
+    let (mut speeds, mut place) = (Vector3::from(sledge.start), Vector3::from(sledge.strain));
+    let mut impulses = [0.0_f64; 4];
     for _ in 0..steps {
         let middle: Vector3<f64> = place + 0.5 * step * speeds;
-        let blades: [Vector3<f64>; 3] = core::array::from_fn(|blade| {
-            let (sine, cosine) = (middle.z + sledge.directions[blade]).sin_cos();
+        let blades: [Vector3<f64>; 4] = core::array::from_fn(|blade| {
+            let (sine, cosine) = (middle.z - sledge.strain[2] + sledge.directions[blade]).sin_cos();
             Vector3::new(cosine, sine, sledge.arms[blade])
         });
         let mut next =
@@ -105,27 +115,27 @@ fn by_impulses(sledge: &SledgeParameters<f64>, end: f64, steps: u32) -> Vector3<
     speeds
 }
 
-/// Blades are caught, torn loose and turned away from where they held, one by one and at once where the body stands still.
+/// Blades are caught, torn loose and turned away from where they held, one by one and at once where the body stands still: those of
+/// thousands that were hardest.
 #[test]
 fn blades_hold_what_turns_with_the_body() {
-    let mut next = numbers(7);
-    for number in 0..24 {
-        let sledge = at_random(1 + number % 3, &mut next);
+    let hard = [
+        1, 4, 13, 22, 56, 86, 91, 96, 98, 157, 159, 203, 261, 290, 770, 1057, 1454, 1479, 1631,
+        2482, 3112, 3406, 3437,
+    ];
+    for seed in hard {
+        let sledge = sledge(seed);
         let impulses = by_impulses(&sledge, 2.0, 2000);
-        let all = by_all(&Sledge::new(sledge).unwrap(), 2.0, 1e-9, 0.01);
+        let all = by_all(&Sledge::new(sledge).unwrap(), 2.0, 1e-9, 2e-3);
         let [_, (_, _, expected), ..] = &all[..] else {
             unreachable!()
         };
-        assert!(
-            (expected - impulses).norm() < 2e-2,
-            "{expected} {impulses} {sledge:?}"
-        );
+        let error = (expected - impulses).norm();
+        assert!(error < 2e-2, "{seed}: {expected} {impulses}");
         for (name, _, speeds) in &all {
             let error = (speeds - expected).norm();
-            assert!(
-                error < if *name == "RK4" { 1e-5 } else { 1e-6 },
-                "{name}: {error:e} in {number}: {sledge:?}"
-            );
+            let most = if *name == "RK4" { 1e-5 } else { 1e-6 };
+            assert!(error < most, "{name}: {error:e} of {seed}");
         }
     }
 }

@@ -111,16 +111,13 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                 if !trial.error.is_finite() {
                     let jacobian = work.place_of_jacobian(&from);
                     problem.statistics.rejected += 1;
+                    let takes_jacobian = jacobian.is_some();
+                    let tried = (&from, self.fixed.step, memory);
                     let near = match self.looks && !often(&mut self.lost, seen(t)) {
-                        true => near(
-                            problem,
-                            &mut across,
-                            (&from, self.fixed.step, memory),
-                            jacobian.is_some(),
-                        ),
+                        true => near(problem, &mut across, tried, takes_jacobian),
                         false => Near::Nothing,
                     };
-                    if near.may_be_halved(jacobian.is_some()) && parts.halve() {
+                    if near.may_be_halved(takes_jacobian) && parts.halve() {
                         problem.memory = memory;
                         continue;
                     }

@@ -275,7 +275,10 @@ mod tests {
         // By the line, though it comes back.
         assert!(!clear([0.5, 0.5], [0.75, 0.0], false));
         assert!(!clear([1.0, -0.1], [0.5, 0.0], false));
-        assert!(clear([5.5, 0.1], [6.0, 0.0], true));
+        assert!(clear([5.75, 0.1], [6.0, 0.0], true));
+        // Nearer beside one than it goes.
+        assert!(!clear([5.5, 0.1], [6.0, 0.0], true));
+        assert!(!clear([1.125, 0.1], [1.375, 0.0], false));
         assert!(!clear([5.5, 0.1], [6.5, 0.0], true));
         assert!(!clear([5.25, -0.1], [5.0, 0.0], true));
         assert!(!clear([f64::NAN, 0.0], [5.0, 0.0], false));

@@ -75,7 +75,7 @@ pub(super) trait Runs<T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
 
-    /// How long steps are at least, but where they end before something.
+    /// How long steps are, but where they end before something; zero where that is not known.
     fn length(&self) -> f64;
 
     /// From which time on jumps are met, where it was asked before how often.

@@ -138,13 +138,13 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             }
             let (on, left) = (self.only(stays), self.surfaces);
             *x = self.put_aside((at, x), (&asides, sides.reach()), memory);
-            self.arrange(on, (at, x), memory);
             if on.count() == 0 {
                 self.surfaces = left;
                 let found = self.left((at, x), &asides, memory);
                 *evaluations += self.evaluations.take();
                 return found;
             }
+            self.arrange(on, (at, x), memory);
         }
         Found::Nothing
     }

@@ -27,6 +27,8 @@ pub(super) struct Approach {
     /// The length of the first step that went over it, and when that would have ended.
     length: f64,
     until: f64,
+    /// The length of the one that went over it last, but for those that were to come nearer.
+    last: f64,
     /// How often its place was estimated, and how many steps have come nearer to it.
     tries: usize,
     nearer: usize,
@@ -52,6 +54,7 @@ impl Approach {
             ahead: None,
             length: 0.0,
             until: f64::NEG_INFINITY,
+            last: 0.0,
             tries: 0,
             nearer: 0,
             watched: f64::NEG_INFINITY,
@@ -117,8 +120,11 @@ impl Approach {
             return Come::Away;
         }
         // How near is near goes by the step that has met it, not by what is left of that where one that came nearer was refused.
-        if self.ahead.is_none() && seen(from.time) >= self.until {
-            (self.length, self.until) = (length, seen(to.time));
+        if self.ahead.is_none() {
+            self.last = length;
+            if seen(from.time) >= self.until {
+                (self.length, self.until) = (length, seen(to.time));
+            }
         }
         if let Some(there) = self.arrive(problem, &from) {
             return there;
@@ -185,7 +191,7 @@ impl Approach {
             Some(_) => Come::Nearer,
             None => {
                 self.leave();
-                Come::Lost(SHORTER * self.length)
+                Come::Lost(SHORTER * self.last)
             }
         }
     }

@@ -158,6 +158,14 @@ const ATTRIBUTES: &[(&str, &[&str])] = &[
 const UNEXPANDED: &str =
     "this is for xacro, which prints the URDF file to convert: `xacro FILE > robot.urdf`";
 
+/// Of an attribute that is something else.
+fn unread(name: &str, wanted: &str, text: &str) -> String {
+    match text.contains("${") {
+        true => UNEXPANDED.to_owned(),
+        false => format!("`{name}` is {wanted}, found `{text}`"),
+    }
+}
+
 /// Reads a file, and lists what of it means nothing to the equations of motion.
 pub(crate) fn read(
     text: &str,
@@ -405,20 +413,15 @@ impl<'a> Reader<'a> {
                 return self.fail(node, text);
             }
         };
-        let limit = self.limit(node, motion)?;
+        let ends = self.ends(node, motion)?;
         let mut known = vec!["origin", "parent", "child", "axis", "dynamics", "mimic"];
-        known.extend(limit.map(|_| "limit"));
+        known.extend(ends.map(|_| "limit"));
         self.note_others(node, &known);
-        let (mut damping, mut friction) = (0.0, 0.0);
-        if let Some(dynamics) = child(node, "dynamics") {
-            damping = self.number_or(dynamics, "damping", 0.0)?;
-            friction = self.number_or(dynamics, "friction", 0.0)?;
-            if motion.is_several() && (damping, friction) != (0.0, 0.0) {
-                let kind = self.attribute(node, "type")?;
-                let text = format!("`dynamics` of a {kind} joint is not converted");
-                self.note(dynamics, text);
-            }
-        }
+        let limit = match ends {
+            Some(element) => self.limit(node, element)?,
+            None => None,
+        };
+        let [damping, friction] = self.losses(node, motion)?;
         Ok(Joint {
             motion,
             parent: self.linked(node, "parent", links)?,
@@ -434,15 +437,40 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Where the coordinate of a joint ends, which a limit of the effort and the velocity alone does not tell.
-    fn limit(&mut self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<[f64; 2]>> {
-        let ends = motion.is_single() && self.attribute(node, "type")? != "continuous";
-        let (true, true, Some(element)) = (self.stops, ends, child(node, "limit")) else {
-            return Ok(None);
+    /// The damping and the friction of a joint.
+    fn losses(&mut self, node: Node<'a, 'a>, motion: Motion) -> Checked<[f64; 2]> {
+        let Some(dynamics) = child(node, "dynamics") else {
+            return Ok([0.0; 2]);
         };
-        if element.attribute("lower").is_none() && element.attribute("upper").is_none() {
-            return Ok(None);
+        let names = ["damping", "friction"];
+        let mut losses = [0.0; 2];
+        for (loss, name) in losses.iter_mut().zip(names) {
+            *loss = self.number_or(dynamics, name, 0.0)?;
         }
+        if motion.is_several() && losses != [0.0; 2] {
+            let kind = self.attribute(node, "type")?;
+            let text = format!("`dynamics` of a {kind} joint is not converted");
+            self.note(dynamics, text);
+            return Ok([0.0; 2]);
+        }
+        for (loss, name) in losses.iter().zip(names).filter(|it| *it.0 < 0.0) {
+            let joint = shown(self.attribute(node, "name")?);
+            let text = format!("the `{name}` of `{joint}` drives it, as it is negative: {loss}");
+            self.note(dynamics, text);
+        }
+        Ok(losses)
+    }
+
+    /// The tag that tells where the coordinate of a joint ends, which a limit of the effort and the velocity alone does not.
+    fn ends(&self, node: Node<'a, 'a>, motion: Motion) -> Checked<Option<Node<'a, 'a>>> {
+        let ends = motion.is_single() && self.attribute(node, "type")? != "continuous";
+        let is_told =
+            |it: &Node<'_, '_>| ["lower", "upper"].iter().any(|end| it.has_attribute(*end));
+        Ok(child(node, "limit").filter(|limit| self.stops && ends && is_told(limit)))
+    }
+
+    /// Where the coordinate of a joint ends.
+    fn limit(&mut self, node: Node<'a, 'a>, element: Node<'a, 'a>) -> Checked<Option<[f64; 2]>> {
         let [lower, upper] = [
             self.number_or(element, "lower", 0.0)?,
             self.number_or(element, "upper", 0.0)?,
@@ -592,7 +620,7 @@ impl<'a> Reader<'a> {
         let text = self.attribute(node, name)?;
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => self.fail(node, format!("`{name}` is a number, found `{text}`")),
+            _ => self.fail(node, unread(name, "a number", text)),
         }
     }
 
@@ -615,7 +643,7 @@ impl<'a> Reader<'a> {
         let numbers = numbers.and_then(|it| <[f64; N]>::try_from(it).ok());
         match numbers.filter(|it| it.iter().all(|it| it.is_finite())) {
             Some(numbers) => Ok(numbers),
-            None => self.fail(node, format!("`{name}` is {count} numbers, found `{text}`")),
+            None => self.fail(node, unread(name, &format!("{count} numbers"), text)),
         }
     }
 }

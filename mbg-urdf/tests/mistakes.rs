@@ -67,6 +67,11 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "8: `xyz` is three numbers, found `0 1`",
     ),
     (
+        "rpy=\"0 0 0\"",
+        "rpy=\"0 0 ${turn}\"",
+        "8: this is for xacro, which prints the URDF file to convert: `xacro FILE > robot.urdf`",
+    ),
+    (
         "<parent link=\"a\"/>",
         "",
         "7: expected a `parent` inside `joint`",
@@ -212,6 +217,11 @@ fn what_is_left_out_is_told() {
             "3: mass or inertia of `b` is negative, as no body's can be",
         ),
         (
+            "<axis ",
+            "<dynamics damping=\"-0.1\"/><axis ",
+            "11: the `damping` of `j` drives it, as it is negative: -0.1",
+        ),
+        (
             "ixx=\"1\" iyy=\"1\"",
             "ixx=\"-1\" iyy=\"-1\"",
             "3: mass or inertia of `b` is negative, as no body's can be",
@@ -272,10 +282,7 @@ fn stops_without_a_way_and_stops_that_push_at_the_start_are_told() {
     assert_eq!(told("lower=\"-1\" upper=\"1\""), [""; 0]);
     assert_eq!(
         told("lower=\"0\" upper=\"0\""),
-        [
-            "11: `j` gets no stop, as its limits are both 0",
-            "11: `limit` is not converted"
-        ]
+        ["11: `j` gets no stop, as its limits are both 0"]
     );
     assert_eq!(
         told("lower=\"-3\" upper=\"-0.1\""),

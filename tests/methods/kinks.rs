@@ -1,8 +1,8 @@
 //! Steps of constant length across kinks of stiff laws.
 
 use mbg_runtime::{
-    Adaptive, Fixed, ImplicitMidpoint, Integrator, Method, Radau5, Radau9, Rodas4, Rodas5P, Ros2,
-    Statistics, System, mbg,
+    Adaptive, Fixed, ImplicitMidpoint, Integrator, Method, Radau5, Radau9, Rk4, Rodas4, Rodas5P,
+    Ros2, Statistics, System, mbg,
 };
 
 mbg! {
@@ -228,6 +228,20 @@ fn sticking_and_slipping_is_followed_at_fixed_steps_of_radau() {
     let radau5 = compressions(&model, &Fixed::new(Radau5, 1e-3));
     assert!(error(Radau5::NAME, 1e-3, radau5) < 1e-6);
     assert!(error(Rodas5P::NAME, 1e-3, compressions(&model, &rodas5p)) > 0.1);
+}
+
+/// Steps by which stages run away meet thresholds that are not there, at last one that would be behind the end: there is no way left to
+/// look for it on.
+#[test]
+fn runs_end_whose_steps_are_far_too_long_for_the_law_behind_a_kink() {
+    let model = Slipping::<f64>::new(SlippingParameters::default()).unwrap();
+    let mut last = 0.0;
+    Fixed::new(Rk4, 1e-2)
+        .integrate(&model, &(), 0.0, 2.0, model.initial_state(), |step| {
+            last = step.end();
+        })
+        .unwrap();
+    assert!(last == 2.0, "{last}");
 }
 
 /// Where rounding is a tenth of what a step across a kink is to be found to.

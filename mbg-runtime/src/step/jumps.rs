@@ -119,6 +119,10 @@ where
         }
         let length = jump.length;
         let Some(rest) = way.rest(problem, &here.slope, jump) else {
+            if !less(way.here.0, end) {
+                // There is no way left on which to come nearer.
+                way.near = None;
+            }
             if way.near.is_none()
                 && let Some(surfaces) = ends.behind(problem, &here)
             {

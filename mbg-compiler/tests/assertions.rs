@@ -143,3 +143,27 @@ fn parts_of_the_library_tell_what_their_parameters_must_be() {
     let expected = ("laminar", "`transition > 0` is asserted");
     assert_eq!(asserted.collect::<Vec<_>>(), [expected]);
 }
+
+/// What rubs or pushes by a negative number would drive what it touches.
+#[test]
+fn contacts_and_stops_take_power() {
+    let scene = |words: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[3]; 1 leg[3]; Sf still[3] {{ flow: 0.0 }} -> ground;
+             turn: PlanarRevolute (ground, leg); body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (leg);
+             tip: PlanarContact {{ radius: 0.1, {words} }} (leg); }}"
+        )
+    };
+    assert_eq!(
+        told(&scene("stiffness: 1e4, friction: 0.5, dissipation: 1.0")),
+        ""
+    );
+    for (words, broken) in [
+        ("stiffness: 1e4, friction: -0.5", "friction >= 0"),
+        ("stiffness: -1e4", "stiffness >= 0"),
+        ("stiffness: 1e4, dissipation: -1.0", "dissipation >= 0"),
+    ] {
+        let text = told(&scene(words));
+        assert!(text.contains(&format!("`{broken}` is asserted")), "{text}");
+    }
+}

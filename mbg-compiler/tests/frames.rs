@@ -342,3 +342,27 @@ fn what_only_the_library_asks_must_be_known() {
       help: or write `orientation_at: 1.0` where that of the world is meant
     ");
 }
+
+/// A number is no direction: it would pull as much along x as along y.
+#[test]
+fn gravity_in_a_plane_has_a_direction() {
+    for body in [
+        "PlanarBody { mass: 1.0, inertia: 1.0 }",
+        "PlanarPointMass { mass: 1.0 }",
+    ] {
+        let scene = |gravity: &str| {
+            format!(
+                "#[derivative] model M {{ causality componentwise; gravity {gravity}; 1 ground[3]; 1 arm[3];
+                 Sf still[3] {{ flow: 0.0 }} -> ground; slide: PlanarPrismatic (ground, arm); body: {body} (arm); }}"
+            )
+        };
+        for slip in ["-9.81", "[0.0, 0.0, -9.81]"] {
+            let help = told(&scene(slip));
+            assert!(
+                help.contains("write `gravity [0.0, -9.81];` in the model"),
+                "{help}"
+            );
+        }
+        assert_eq!(told(&scene("[0.0, -9.81]")), "");
+    }
+}

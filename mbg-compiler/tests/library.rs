@@ -455,7 +455,10 @@ fn a_chain_moves_as_newton_and_euler_say() {
 fn mistakes_inside_the_library_are_told_at_the_instance() {
     let planar = "model M { gravity [0.0, 0.0, -9.81]; 1 a[3];
         body: PlanarBody { mass: 1.0, inertia: 2.0 } (a); }";
-    insta::assert_snapshot!(elaborated(planar).err().unwrap(), @"1:19 `gravity` does not fit in `PlanarBody`: expected a number or a vector of 2, found a vector of 3 [MBG0204]");
+    insta::assert_snapshot!(elaborated(planar).err().unwrap(), @"
+    1:19 `gravity` does not fit in `PlanarBody`: `fall` has dimension 2, found a vector of 3 [MBG0204]
+      help: write `gravity [0.0, -9.81];` in the model
+    ");
     let axis = "model M { 1 a[6]; 1 b[6];
         hinge: Revolute { axis: 3 } (a, b); }";
     insta::assert_snapshot!(elaborated(axis).err().unwrap(), @"

@@ -338,3 +338,60 @@ fn a_diagonal_of_a_vector_is_told_by_its_components() {
         assert_eq!(told(&body(here)), "");
     }
 }
+
+/// A foot of a body in a plane, with a joint of its own.
+fn foot(joint: &str, foot: &str) -> String {
+    format!(
+        "#[derivative] model M {{ causality componentwise; gravity [0.0, -9.81]; 1 ground[3]; 1 leg[3];
+         Sf still[3] {{ flow: 0.0 }} -> ground;\nturn: PlanarRevolute {joint} (ground, leg);\n{foot} (leg);
+         body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (leg); }}"
+    )
+}
+
+#[test]
+fn what_rubs_on_the_ground_is_a_contact() {
+    for called in ["Ground", "Foot", "Floor", "Tire", "Wheel", "HertzContact"] {
+        let slip = foot("", &format!("f: {called} {{ stiffness: 1e4 }}"));
+        assert_eq!(typed(&slip), ["PlanarContact"], "{called}");
+    }
+    // A frame that stands is none.
+    assert_eq!(
+        typed(&foot("", "f: Ground")),
+        ["Sf f[3] { flow: 0.0 } -> leg;"]
+    );
+    let contact = |words: &str| {
+        foot(
+            "",
+            &format!("f: PlanarContact {{ stiffness: 1e4, {words} }}"),
+        )
+    };
+    follow(&contact, "mu: 0.5", "friction: 0.5");
+    let slow = |words: &str| contact(&format!("friction: 0.5, {words}"));
+    follow(&slow, "stiction_velocity: 0.1", "friction_speed: 0.1");
+    assert_eq!(
+        typed(&contact("restitution: 0.5")),
+        ["dissipation: 1.5 * (1 - e) / v"]
+    );
+    assert_eq!(typed(&contact("damping: 30.0")), ["dissipation"]);
+}
+
+#[test]
+fn where_a_joint_ends_and_what_holds_it_stands_beside_it() {
+    let beside = "turn_stop: Stop { displacement: turn.angle, lower: -1.0, upper: 1.0, stiffness: … } (turn.rate);";
+    let slip = foot(
+        "{ lower: -1.0, upper: 1.0 }",
+        "f: PlanarContact { stiffness: 1e4 }",
+    );
+    assert_eq!(typed(&slip), [beside; 2]);
+    let held = "turn_friction: Friction { sliding: 2.0, at_rest: holds } (turn.rate);";
+    let slip = foot(
+        "{ friction: 2.0, at_rest: holds }",
+        "f: PlanarContact { stiffness: 1e4 }",
+    );
+    assert!(told(&slip).contains(held), "{}", told(&slip));
+    for beside in [beside.replace('…', "1e3"), held.to_owned()] {
+        let scene = foot("", "f: PlanarContact { stiffness: 1e4 }");
+        let scene = scene.replace("\nf:", &format!("{beside}\nf:"));
+        assert_eq!(told(&scene), "");
+    }
+}

@@ -2,7 +2,6 @@
 
 use proc_macro2::Ident;
 
-use super::Builder;
 use super::calls::by_ports;
 use super::conditions::no_word;
 use super::driven;
@@ -12,6 +11,7 @@ use super::idle::without_bonds;
 use super::scope::{Entity, Scope};
 use super::tools;
 use super::unused::without_effect;
+use super::{Builder, beside};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
@@ -187,6 +187,10 @@ impl<'a> Builder<'a> {
                     }
                     continue;
                 }
+                if let Some(help) = beside::told(instance, argument, &names) {
+                    self.tell(scope, report.help(help));
+                    continue;
+                }
                 if let Some(here) = tools::parameter(&argument.name, &names) {
                     let value = argument.value.as_ref();
                     let is_start = here.starts_with("initial");
@@ -314,7 +318,7 @@ impl<'a> Builder<'a> {
             None => here.to_owned(),
         };
         let elements = tools::as_element(instance).or_else(|| tools::elements(instance, end));
-        let mut report = match (tools::component(&name.to_string()), elements) {
+        let mut report = match (beside::meant(instance), elements) {
             (Some(here), _) => {
                 let here = fitting(here);
                 report.help(format!("write `{here}`, as it is called here"))

@@ -7,6 +7,7 @@
 mod advice;
 mod assertions;
 mod attitude;
+mod beside;
 mod blame;
 mod bonds;
 mod branches;

@@ -1,0 +1,138 @@
+//! What other tools give their contacts and joints, and what stands beside these or has another law here.
+
+use proc_macro2::Ident;
+
+use super::elsewhere::value_text;
+use super::tools::{component, parameter};
+use crate::syntax::ast;
+
+/// Words for what is lost in an impact by the speeds before and behind it.
+const RESTITUTIONS: [&str; 4] = [
+    "restitution",
+    "coefficient_of_restitution",
+    "restitution_coefficient",
+    "e",
+];
+/// Words for a damper without regard to the depth.
+const DAMPERS: [&str; 6] = [
+    "damping",
+    "damping_coefficient",
+    "damping_constant",
+    "damper",
+    "kd",
+    "d",
+];
+/// Words for where a joint ends on one side, and what a `Stop` calls that.
+const ENDS: [(&str, &str); 6] = [
+    ("lower", "lower"),
+    ("lower_limit", "lower"),
+    ("min", "lower"),
+    ("upper", "upper"),
+    ("upper_limit", "upper"),
+    ("max", "upper"),
+];
+/// Words for both.
+const LIMITS: [&str; 4] = ["limits", "limit", "range", "joint_limits"];
+/// Words for friction that holds.
+const HOLDS: [&str; 2] = ["at_rest", "stiction"];
+
+/// The component of the library that is called otherwise elsewhere: a ground that rubs is no frame that stands, and a wheel on one
+/// frame none on a rack.
+pub(super) fn meant(instance: &ast::Instance) -> Option<&'static str> {
+    let is_on_one = instance.connections.len() == 1;
+    let rubs =
+        |it: &ast::Field| it.name == "stiffness" || parameter(&it.name, &["friction"]).is_some();
+    match component(&instance.component.to_string()) {
+        Some("Rack") if is_on_one => Some("Contact"),
+        None if is_on_one
+            && instance.component == "Ground"
+            && instance.arguments.iter().any(rubs) =>
+        {
+            Some("Contact")
+        }
+        here => here,
+    }
+}
+
+/// What to type for an argument that the component does not have; `names` are those of its parameters.
+pub(super) fn told(
+    instance: &ast::Instance,
+    argument: &ast::Field,
+    names: &[&str],
+) -> Option<String> {
+    let lost = names
+        .contains(&"dissipation")
+        .then(|| dissipation(&argument.name));
+    lost.flatten()
+        .or_else(|| stop(instance, argument))
+        .or_else(|| holds(instance, argument))
+}
+
+fn is_one_of(name: &Ident, words: &[&str]) -> bool {
+    words.iter().any(|word| name == word)
+}
+
+/// What a stop or a contact loses.
+fn dissipation(name: &Ident) -> Option<String> {
+    if is_one_of(name, &RESTITUTIONS) {
+        let rate = "1.5 * (1 - e) / v";
+        return Some(format!(
+            "write `dissipation: {rate}` for the coefficient of restitution e, near one, at the speed v; or stop at each impact \
+             by `Integrator::until` and change the speed there"
+        ));
+    }
+    is_one_of(name, &DAMPERS).then(|| {
+        "write `dissipation`, by speed: the damper acts by the depth d, `stiffness * d * dissipation` times its rate".to_owned()
+    })
+}
+
+/// The travel of a joint with one free axis.
+fn travel(instance: &ast::Instance) -> Option<&'static str> {
+    match instance.component.to_string().as_str() {
+        "Revolute" | "PlanarRevolute" => Some("angle"),
+        "Prismatic" | "PlanarPrismatic" => Some("travel"),
+        _ => None,
+    }
+}
+
+/// Where a joint ends: all that it is given of that.
+fn stop(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
+    let end = |name: &Ident| ENDS.iter().find(|(word, _)| name == word);
+    let is_end = |it: &Ident| end(it).is_some() || is_one_of(it, &LIMITS);
+    if !is_end(&argument.name) {
+        return None;
+    }
+    let (travel, name) = (travel(instance)?, &instance.name);
+    let ends = instance.arguments.iter().filter_map(|it| {
+        let (_, here) = end(&it.name)?;
+        Some(format!("{here}: {}", value_text(it.value.as_ref())))
+    });
+    let mut ends: Vec<String> = ends.collect();
+    if ends.is_empty() {
+        ends = ["lower", "upper"].map(|it| format!("{it}: …")).to_vec();
+    }
+    Some(format!(
+        "a joint ends at a stop beside it: \
+         `{name}_stop: Stop {{ displacement: {name}.{travel}, {}, stiffness: … }} ({name}.rate);`",
+        ends.join(", ")
+    ))
+}
+
+/// Friction that holds, where that of the component creeps.
+fn holds(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
+    if !is_one_of(&argument.name, &HOLDS) {
+        return None;
+    }
+    if instance.component == "Contact" {
+        let help = "in space friction creeps, below `friction_speed`; a `PlanarContact` holds";
+        return Some(help.to_owned());
+    }
+    travel(instance)?;
+    let name = &instance.name;
+    let given = instance.arguments.iter().find(|it| it.name == "friction");
+    let sliding = value_text(given.and_then(|it| it.value.as_ref()));
+    Some(format!(
+        "what holds is beside the joint, in the place of `friction`: \
+         `{name}_friction: Friction {{ sliding: {sliding}, at_rest: holds }} ({name}.rate);`"
+    ))
+}

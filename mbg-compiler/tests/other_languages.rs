@@ -744,3 +744,19 @@ fn remainders_and_whole_parts_have_their_functions() {
       help: a `param` of a model can change after the model is compiled: declare `let n = 2;` in its place
     ");
 }
+
+/// A value over time in parentheses is no unit, and an integrator with limits has a rate that ends there.
+#[test]
+fn values_over_time_and_integrals_with_limits_are_told() {
+    let of_time = "input u(t): N; Se s { effort: u } -> v;";
+    assert_eq!(typed(&masses(of_time)).remove(0), "input u: N;");
+    let of_time = "let u(t) = sin(t); Se s { effort: u } -> v;";
+    let written = typed(&masses(of_time)).remove(0);
+    assert_eq!(written, "let u = sin(t);");
+    let limited = "integral x = 2.0 - v.f, min: -1.0, max: 1.0; Se s { effort: x } -> v;";
+    let written = typed(&masses(limited)).remove(0);
+    let whole = format!(
+        "let upper = 1.0; let lower = -1.0; let rate = 2.0 - v.f; {written} Se s {{ effort: x }} -> v;"
+    );
+    assert_eq!(told(&masses(&whole)), "", "{written}");
+}

@@ -238,3 +238,60 @@ fn displacements_that_are_no_states_are_told_as_integrals() {
         "{rate}"
     );
 }
+
+/// Blocks of block diagrams, as components and as functions: what is told compiles, with what goes in.
+#[test]
+fn blocks_are_told_as_values_and_integrals() {
+    let shaft = |text: &str| {
+        format!(
+            "model M {{ 1 shaft {{ I rotor {{ inertia: 0.1 }} R r {{ resistance: 0.2 }} }}\n{text} }}"
+        )
+    };
+    let known = "input u; let v = shaft.f; let kp = 1.0; let ki = 2.0; let kd = 0.1; let rate = 2.0;
+        let a = 0.0; let b = 1.0; let c = -2.0; let d = -3.0; let e = 0.0; let f = 1.0; let g = 1.0; let h = 0.0;
+        let a0 = 2.0; let a1 = 3.0; let b0 = 1.0; let b1 = 0.5;";
+    for block in [
+        "PID",
+        "Gain",
+        "Sum",
+        "Product",
+        "Integrator",
+        "Differentiator",
+        "TransferFunction",
+        "Transfer_Fcn",
+        "StateSpace",
+        "LowPass",
+        "FirstOrder",
+        "Saturation",
+        "DeadZone",
+        "RateLimiter",
+        "Quantizer",
+        "Delay",
+        "TransportDelay",
+        "Constant",
+        "SineWave",
+        "LookupTable",
+    ] {
+        let instance = format!("w: {block} {{ k: 2.0 }} (shaft);");
+        let written = typed(&shaft(&instance)).remove(0);
+        let whole = format!("{known} {written} output w = w;");
+        assert_eq!(told(&shaft(&whole)), "", "{block}: {written}");
+    }
+    for (block, part) in [
+        ("Relay", "`Integrator::until` finds where it changes"),
+        ("UnitDelay", "stays over each step of `Rk4::step`"),
+        ("SpeedSensor", "write `output w = ….f;`"),
+        ("Scope", "write `output w = u;`, with what goes in as `u`"),
+    ] {
+        let text = told(&shaft(&format!("w: {block} (shaft);")));
+        assert!(text.contains(part), "{text}");
+    }
+    for (law, part) in [
+        ("tf([1.0], [1.0, 2.0])", "write `integral y_x[2] ="),
+        ("relay(shaft.f, 0.1)", "`Integrator::until`"),
+        ("quantize(shaft.f, 0.1)", "floor(u / 0.1 + 0.5);`"),
+    ] {
+        let text = told(&shaft(&format!("Se motor {{ effort: {law} }} -> shaft;")));
+        assert!(text.contains(part), "{text}");
+    }
+}

@@ -636,7 +636,7 @@ fn a_dead_zone_and_a_choice_of_one_side_are_told_whole() {
         )
     };
     let help = typed(&text("deadzone(f, w)")).remove(0);
-    assert_eq!(help, "(sign(f) * max(abs(f) - w, 0.0))");
+    assert_eq!(help, "(max(f - w, 0.0) + min(f + w, 0.0))");
     assert_eq!(told(&text(&help)), "");
     for choice in [
         "(if f > w { f })",

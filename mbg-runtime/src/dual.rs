@@ -14,7 +14,8 @@ use crate::{Columns, Real};
 /// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
 /// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event. So have the times at which an
 /// input jumps, or a law by time, parameters and inputs, and at which a law jumps since a state goes through a threshold: a step
-/// ends there, so that a run on dual numbers may have more steps than one of the values alone. Slopes of
+/// ends there. Steps of [`Adaptive`](crate::Adaptive) length are short enough for the slopes, too, also where the model rests. So a
+/// run on dual numbers may have more steps than one of the values alone. Slopes of
 /// slopes do not know how the motion bends at such a threshold. Where a motion stays on one, as a block does that dry friction by
 /// [`sign`](Real::sign) holds, they are those of that.
 ///
@@ -238,6 +239,14 @@ impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
 
     fn magnitude(self) -> f64 {
         self.value.magnitude()
+    }
+
+    fn slope_along(self, direction: usize) -> Option<f64> {
+        let columns = self.slope.as_columns();
+        match columns.get(direction) {
+            Some(slope) => Some(slope.magnitude()),
+            None => self.value.slope_along(direction - columns.len()),
+        }
     }
 
     fn multiply_add(self, factor: Self, addend: Self) -> Self {

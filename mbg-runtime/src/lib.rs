@@ -11,6 +11,7 @@
 //! | find where it rests, hovers or turns steadily | [`Trim`] |
 //! | find how it goes when it comes back after a period, and whether it stays so | [`PeriodicTrim`] |
 //! | design a controller for it | [`Linearised`]: its matrices, poles and frequency response |
+//! | run it with a controller, sampled or not | [controllers](language#controllers) |
 //! | estimate its state, predict its way | [`Rk4::transition`], [`Convertible::output_jacobian_state`] |
 //! | compute with other numbers | [`Real`], [`Dual`]; `lanes` with the feature of that name |
 //! | run batches on any processor | `batch` with the feature `dispatch` |

@@ -26,9 +26,6 @@ const PARTS: [f64; 3] = [1e-10, 1e-6, 1e-3];
 const LEFT: f64 = 1e-6;
 /// What has less influence on a state than this part of it may be the rounding of a run.
 const NOISE: f64 = 1e-9;
-/// A period is divided for its monodromy matrix until that changes by no more, or into so many parts.
-const SAME: f64 = 1e-7;
-const DIVIDED: u32 = 64;
 /// A start that is nearer to a threshold, in periods, is on it, and later by such a part.
 const BESIDE: f64 = 1e-9;
 const LATER: f64 = 1e-6;
@@ -54,7 +51,7 @@ const TINY: f64 = 1e-9;
 /// guess](PeriodicTrim::find_period).
 ///
 /// The motion is found by shooting: from a start it is followed for a period by the integrator that is given, and the start corrected
-/// by Newton's method with the exact derivatives of the end, which are those of the same steps on [`Dual`] numbers; through jumps
+/// by Newton's method with the derivatives of the end, which are those of the steps on [`Dual`] numbers; through jumps
 /// of laws by time and inputs, too. Corrections are damped until what is left falls; of those that are as good the one of least
 /// norm is taken, in units of what states and inputs do; states that change alike differ as in the guess, as with
 /// [`Trim`](crate::Trim). So the motion need not be one that others tend to. It is as exact as the integrator.
@@ -451,7 +448,7 @@ where
         })
     }
 
-    /// How the end of a motion changes with state and input at its start, by the same steps on dual numbers.
+    /// How the end of a motion changes with state and input at its start, by steps on dual numbers.
     fn slopes(
         &self,
         start: &Trimmed<N, M>,
@@ -492,47 +489,6 @@ where
         let system = self.system.converted(Several::unchanging);
         let (_, end) = self.follow(&system, state, &Constant(input), section, |_, _| ())?;
         Ok(end)
-    }
-
-    /// How the state after a period changes with that at the start, part by part: where nothing moves, long steps are as good as short
-    /// ones for the state, and not for its slopes.
-    fn monodromy(
-        &self,
-        start: Trimmed<N, M>,
-    ) -> Result<(SMatrix<f64, N, N>, SVector<f64, N>), Untrimmed> {
-        let in_parts = |count: u32| {
-            let mut whole = SMatrix::identity();
-            let mut start = start;
-            for part in 0..count {
-                let period = self.period / f64::from(count);
-                let time = self.time + f64::from(part) * period;
-                let part = Self {
-                    time,
-                    period,
-                    ..*self
-                };
-                let (slopes, end) = part.slopes_by_state(&start, None)?;
-                whole = slopes * whole;
-                start.state = end;
-            }
-            Ok((whole, start.state))
-        };
-        let (mut whole, mut end) = in_parts(1)?;
-        let mut count = 2;
-        while count <= DIVIDED {
-            let (finer, last) = in_parts(count)?;
-            let change = (finer - whole).amax();
-            (whole, end) = (finer, last);
-            // NaN does not come to an end by more parts.
-            if !matches!(
-                change.partial_cmp(&(SAME * whole.amax())),
-                Some(Ordering::Greater)
-            ) {
-                break;
-            }
-            count *= 2;
-        }
-        Ok((whole, end))
     }
 
     /// The start, or where it is a little later if it is on a threshold of a law: that is then met at the end, and only there.
@@ -719,7 +675,7 @@ where
             period: run.period,
             ..*self
         };
-        let (mut monodromy, end) = from.monodromy(start)?;
+        let (mut monodromy, end) = from.slopes_by_state(&start, None)?;
         if !from.leads_along((&start, &end), &run.strokes, &monodromy) {
             monodromy.fill(f64::NAN);
         }

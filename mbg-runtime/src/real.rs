@@ -72,6 +72,12 @@ pub trait Real:
         });
         largest.get()
     }
+    /// The slope along one of the directions in which it carries any, seen as `f64` as [`magnitude`](Self::magnitude) is; none
+    /// beyond the last.
+    #[doc(hidden)]
+    fn slope_along(self, _direction: usize) -> Option<f64> {
+        None
+    }
     /// `self · factor + addend`, rounded once where [`FUSED`] holds, else twice.
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend

@@ -1,8 +1,9 @@
 //! Orders of convergence, at the ends of steps and in between.
 
 use mbg_runtime::{
-    Differentiable, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Input, Integrator, Method,
-    Pirk8, Pirk16, Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth, Tsit5, Verner9,
+    Adaptive, Differentiable, Dop853, Dual, Estimating, Fixed, Gauss6, ImplicitMidpoint, Input,
+    Integrator, Method, Pirk8, Pirk16, Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, Smooth,
+    Tsit5, Verner9,
 };
 use nalgebra::SVector;
 
@@ -427,5 +428,43 @@ fn every_family_runs_on_dual_numbers() {
     ];
     for slope in slopes {
         assert!((slope - END.cos()).abs() < 1e-9, "{slopes:?}");
+    }
+}
+
+/// Of a model at rest the values are exact at steps of any length, and its slopes are those of its neighbours.
+#[test]
+fn every_family_takes_steps_for_the_slopes_of_what_rests() {
+    fn slopes<S: Estimating>(method: S) -> [f64; 2] {
+        let number = Dual::constant;
+        let start = SVector::from([Dual::variable(0.0), number(0.0)]);
+        let mut last = start;
+        Adaptive::new(method, 1e-9, 1e-9)
+            .integrate(
+                &Written(Oscillator),
+                &(),
+                number(0.0),
+                number(10.0),
+                start,
+                |step| last = *step.state(),
+            )
+            .unwrap();
+        last.map(|it| it.slope).into()
+    }
+    let all = [
+        slopes(Tsit5),
+        slopes(Dop853),
+        slopes(Verner9),
+        slopes(Pirk8),
+        slopes(Pirk16),
+        slopes(Ros2),
+        slopes(Rodas4),
+        slopes(Rodas5P),
+        slopes(Radau5),
+        slopes(Radau9),
+    ];
+    let (sine, cosine) = f64::sin_cos(10.0);
+    for [way, velocity] in all {
+        assert!((way - cosine).abs() < 1e-5, "{all:?}");
+        assert!((velocity + sine).abs() < 1e-5, "{all:?}");
     }
 }

@@ -20,7 +20,7 @@ const PI: &str = "3.141592653589793";
 const CHOICE: &str = "(if a { b } else { c })";
 
 /// What is zero up to a width on both sides.
-const DEAD_ZONE: &str = "(sign(x) * max(abs(x) - width, 0.0))";
+const DEAD_ZONE: &str = "(max(x - width, 0.0) + min(x + width, 0.0))";
 
 const ASINH: &str = "ln(x + sqrt(x * x + 1))";
 const ACOSH: &str = "ln(x + sqrt(x * x - 1))";

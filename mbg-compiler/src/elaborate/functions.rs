@@ -7,6 +7,7 @@ use syn::spanned::Spanned;
 
 use super::elsewhere;
 use super::expressions::{Evaluator, Names, Result, Value, fail, no_plain_name, whole_vector};
+use super::signals;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Product};
@@ -148,13 +149,16 @@ impl<N: Names> Evaluator<'_, N> {
                 format!("`{name}` is not a function of the language"),
             );
             let text = name.to_string();
-            return Err(Box::new(match elsewhere::instead(&text, arguments) {
-                Some(help) => report.help(help),
-                None => {
-                    let known = format!("functions are {}", FUNCTIONS.join(", "));
-                    report.did_you_mean(&text, &FUNCTIONS).help(known)
-                }
-            }));
+            let instead = elsewhere::instead(&text, arguments);
+            return Err(Box::new(
+                match instead.or_else(|| signals::block(&text, "y")) {
+                    Some(help) => report.help(help),
+                    None => {
+                        let known = format!("functions are {}", FUNCTIONS.join(", "));
+                        report.did_you_mean(&text, &FUNCTIONS).help(known)
+                    }
+                },
+            ));
         };
         check_count(name, function.arity(), arguments)?;
         let values: Result<Vec<_>> = arguments

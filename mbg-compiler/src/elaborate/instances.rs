@@ -9,6 +9,7 @@ use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
 use super::scope::{Entity, Scope};
+use super::signals;
 use super::tools;
 use super::unused::without_effect;
 use super::{Builder, beside};
@@ -317,7 +318,10 @@ impl<'a> Builder<'a> {
             Some((_, size)) => in_frames(here, size).unwrap_or_else(|| here.to_owned()),
             None => here.to_owned(),
         };
-        let elements = tools::as_element(instance).or_else(|| tools::elements(instance, end));
+        let value = instance.name.to_string();
+        let elements = tools::as_element(instance)
+            .or_else(|| tools::elements(instance, end))
+            .or_else(|| signals::block(&name.to_string(), &value));
         let mut report = match (beside::meant(instance), elements) {
             (Some(here), _) => {
                 let here = fitting(here);

@@ -40,6 +40,7 @@ mod rays;
 mod references;
 mod rings;
 mod scope;
+mod signals;
 mod size;
 mod spread;
 mod tools;

@@ -210,7 +210,19 @@ fn divided(tokens: TokenStream, mark: char) -> Vec<String> {
         .collect()
 }
 
-/// What to type for `force[N]` or `force(N)`, with the unit in brackets behind the name.
+/// What to type for an integral with limits.
+pub(super) const LIMITED: &str = "it is its rate that ends at limits: `integral x = if x > upper { min(rate, 0.0) } else if x < lower \
+                                  { max(rate, 0.0) } else { rate };`";
+
+/// Whether a limit of an integrator has this name elsewhere.
+pub(super) fn is_limit(word: &str) -> bool {
+    let limits = [
+        "min", "max", "limit", "limits", "lower", "upper", "outmin", "outmax",
+    ];
+    limits.contains(&word.to_lowercase().replace('_', "").as_str())
+}
+
+/// What to type for `force[N]` or `force(N)`, with the unit in brackets behind the name, and for `force(t)`.
 pub(super) fn unit_in_brackets(cursor: &Cursor, word: &str, name: &Ident) -> Option<String> {
     let mut brackets = [Delimiter::Bracket, Delimiter::Parenthesis].into_iter();
     let group = brackets.find_map(|delimiter| cursor.group(0, delimiter))?;
@@ -226,6 +238,12 @@ pub(super) fn unit_in_brackets(cursor: &Cursor, word: &str, name: &Ident) -> Opt
     }
     let unit: String = tokens.iter().map(ToString::to_string).collect();
     let rest = dump::tokens(until_end(cursor, 1));
+    if unit == "t" || unit == "time" {
+        let unit = if rest.starts_with(':') { "" } else { " " };
+        return Some(format!(
+            "all values may change with time: write `{word} {name}{unit}{rest};`"
+        ));
+    }
     let space = if rest.is_empty() { "" } else { " " };
     Some(format!(
         "a unit stands behind a colon: `{word} {name}: {unit}{space}{rest};`"

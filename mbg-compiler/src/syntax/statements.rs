@@ -531,6 +531,8 @@ fn trailing(
         let mut error = *cursor.expected(&format!("`{wanted}: value` after `,`"));
         if words::nearest(&word, &[wanted]).is_some() {
             error = error.help(format!("did you mean `{wanted}`?"));
+        } else if wanted == "initial" && elsewhere::is_limit(&word) {
+            error = error.help(elsewhere::LIMITED);
         }
         return Err(Box::new(error));
     }

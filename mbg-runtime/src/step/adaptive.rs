@@ -30,8 +30,12 @@ use crate::{Input, Real, System};
 /// so that no pulse is stepped over (all in Gustafsson, *ACM Transactions on Mathematical Software* 20
 /// (1994), 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
 /// exactly on the jumps of the input and where laws change by time alone
-/// ([`System::next_change`]), and the starting step is chosen anew behind each. With [`Dual`](crate::Dual)
-/// numbers the values alone control the step.
+/// ([`System::next_change`]), and the starting step is chosen anew behind each.
+///
+/// On [`Dual`](crate::Dual) numbers slopes control the step, too, so that those of a model at rest are as exact as those of one
+/// that moves. They make up a motion beside the other along each direction, whose error counts as small enough when it is no
+/// larger part of it than the larger tolerance, both in units of the tolerances of states. Slopes that are not finite do not
+/// count.
 ///
 /// Jumps that the input does not declare cost rejected steps, and in single precision the digits of time may be too few for
 /// what a stiff model does behind one: declare it. So that none is stepped over while the system is at rest,

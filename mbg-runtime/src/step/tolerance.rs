@@ -4,11 +4,16 @@ use nalgebra::SVector;
 
 use crate::Real;
 
+/// Directions of slopes that are measured: as many as the widest scalar has columns.
+const DIRECTIONS: usize = 16;
+
 /// Tolerances of each state.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<const N: usize> {
     pub(super) relative: f64,
     absolute: [f64; N],
+    /// The part of themselves by which slopes may be in error.
+    of_slopes: f64,
 }
 
 impl<const N: usize> Tolerance<N> {
@@ -18,32 +23,40 @@ impl<const N: usize> Tolerance<N> {
         Self {
             relative,
             absolute: core::array::from_fn(|state| absolute * size(state)),
+            of_slopes: relative.max(absolute),
         }
     }
 
     /// Errors in units of the tolerance at a state.
     #[inline]
     pub(super) fn around<T: Real>(&self, x: &SVector<T, N>) -> Measure<N> {
-        self.of(|state| x[state].magnitude())
+        self.of(|state| x[state].magnitude(), [x])
     }
 
     /// Errors in units of the tolerance on a step: each component of the larger of two states counts.
     #[inline]
     pub(super) fn between<T: Real>(&self, x: &SVector<T, N>, change: &SVector<T, N>) -> Measure<N> {
-        self.of(|state| {
-            x[state]
-                .abs()
-                .max((x[state] + change[state]).abs())
-                .magnitude()
-        })
+        let end = x + change;
+        let size = |state: usize| x[state].abs().max(end[state].abs()).magnitude();
+        self.of(size, [x, &end])
     }
 
     #[inline]
-    fn of(&self, size: impl Fn(usize) -> f64) -> Measure<N> {
-        let Self { relative, absolute } = self;
+    fn of<T: Real, const K: usize>(
+        &self,
+        size: impl Fn(usize) -> f64,
+        ends: [&SVector<T, N>; K],
+    ) -> Measure<N> {
+        let Self {
+            relative, absolute, ..
+        } = self;
         let factors =
             core::array::from_fn(|state| 1.0 / (absolute[state] + relative * size(state)));
-        Measure { factors }
+        let mut measure = Measure::of_values(factors);
+        if T::HAS_SLOPES {
+            measure.weigh_slopes(self.of_slopes, ends);
+        }
+        measure
     }
 }
 
@@ -76,9 +89,7 @@ impl<const N: usize> Sizes<N> {
                 0.0
             }
         };
-        Measure {
-            factors: self.0.map(factor),
-        }
+        Measure::of_values(self.0.map(factor))
     }
 
     /// Changes of states that may be rounding of other ones are no larger: of a state that has been nothing but rounding its own
@@ -95,16 +106,70 @@ impl<const N: usize> Sizes<N> {
     /// Errors of a step in units of what states have been and become.
     pub(super) fn between<T: Real>(&self, x: &SVector<T, N>, change: &SVector<T, N>) -> Measure<N> {
         let sizes = self.0.map(|size| size.max(ROUNDING * T::EPSILON));
-        Tolerance::new(1.0, 1.0, &sizes).between(x, change)
+        let measure = Tolerance::new(1.0, 1.0, &sizes).between(x, change);
+        Measure::of_values(measure.factors)
     }
 }
 
 /// What makes errors of each state comparable: the reciprocals of their tolerances.
 pub(super) struct Measure<const N: usize> {
     factors: [f64; N],
+    /// What makes slopes along each direction comparable with their states, in units of the tolerances; zero where they do not
+    /// count.
+    slopes: [f64; DIRECTIONS],
 }
 
 impl<const N: usize> Measure<N> {
+    /// One for which slopes do not count.
+    #[inline]
+    const fn of_values(factors: [f64; N]) -> Self {
+        Self {
+            factors,
+            slopes: [0.0; DIRECTIONS],
+        }
+    }
+
+    /// Lets so large a part of the slopes at the ends of a step be as large an error as a tolerance.
+    ///
+    /// They belong to one motion beside the other, of which the size is the largest of its components, both in units of the
+    /// tolerances: one that goes through zero need not be more exact there. Slopes that are not finite do not count, nor those
+    /// that are next to none.
+    fn weigh_slopes<T: Real, const K: usize>(&mut self, part: f64, ends: [&SVector<T, N>; K]) {
+        let Self { factors, slopes } = self;
+        for (direction, weight) in slopes.iter_mut().enumerate() {
+            let mut largest = 0.0;
+            for (x, factor) in ends.iter().flat_map(|end| end.iter().zip(&*factors)) {
+                let slope = factor * x.slope_along(direction).unwrap_or(0.0);
+                // A NaN stays.
+                if slope > largest || slope.is_nan() {
+                    largest = slope;
+                }
+            }
+            let error = part * largest;
+            *weight = if error > f64::MIN_POSITIVE / f64::EPSILON {
+                1.0 / error
+            } else {
+                0.0
+            };
+        }
+    }
+
+    /// The size of an error of one state in units of its tolerance.
+    #[inline]
+    fn size<T: Real>(&self, error: T, factor: f64) -> f64 {
+        let mut size = error.magnitude() * factor;
+        if T::HAS_SLOPES {
+            for (direction, weight) in self.slopes.iter().enumerate() {
+                let slope = error.slope_along(direction).unwrap_or(0.0) * factor * weight;
+                // So that a NaN of the value stays, and one of the slope does not count.
+                if slope > size {
+                    size = slope;
+                }
+            }
+        }
+        size
+    }
+
     /// Root of the mean square of an error in units of the tolerances.
     #[inline]
     pub(super) fn norm<T: Real>(&self, error: &SVector<T, N>) -> f64 {
@@ -116,7 +181,7 @@ impl<const N: usize> Measure<N> {
     pub(super) fn square<T: Real>(&self, error: &SVector<T, N>) -> f64 {
         let [error] = &error.data.0;
         let sum = sum_of::<N>(|place| {
-            let quotient = error[place].magnitude() * self.factors[place];
+            let quotient = self.size(error[place], self.factors[place]);
             quotient * quotient
         });
         sum * (1.0 / N.max(1) as f64)
@@ -129,7 +194,7 @@ impl<const N: usize> Measure<N> {
         for error in errors {
             let components = error.as_slice().iter().zip(&self.factors);
             for (sum, (component, factor)) in sums.iter_mut().zip(components) {
-                let quotient = component.magnitude() * factor;
+                let quotient = self.size(*component, *factor);
                 *sum = quotient.multiply_add(quotient, *sum);
             }
         }
@@ -159,6 +224,8 @@ fn sum_of<const N: usize>(term: impl Fn(usize) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::step::models::Oscillator;
+    use crate::{Adaptive, Dop853, Dual, Estimating, Four, Integrator, Pirk8, Step, Tsit5};
 
     #[test]
     fn many_terms_have_the_sum_of_few() {
@@ -167,5 +234,41 @@ mod tests {
         assert_eq!(sum_of::<3>(|place| place as f64), 3.0);
         assert_eq!(sum_of::<0>(|place| place as f64), 0.0);
         assert!(sum_of::<40>(|place| if place == 39 { f64::NAN } else { 1.0 }).is_nan());
+    }
+
+    /// At rest every step is exact for the values. Along two directions at once, one of which is tiny beside the other; what is no
+    /// number does not count.
+    #[test]
+    fn slopes_of_what_rests_are_as_exact_as_those_of_what_moves() {
+        type Both = Dual<f64, Four<f64>>;
+        fn assert_exact<M: Estimating>(method: M, aside: f64) {
+            let along = |slopes| Both {
+                value: 0.0,
+                slope: Four(slopes),
+            };
+            let rest = along([0.0; 4]);
+            let start = [[1.0, 0.0, 0.0, 0.0], [0.0, 1e-9, 0.0, aside]];
+            let start = SVector::from(start.map(along));
+            let mut last = start;
+            let end = Both {
+                value: 20.0,
+                ..rest
+            };
+            let solver = Adaptive::new(method, 1e-10, 1e-12);
+            let observer = |step: &mut Step<'_, Both, 2, ()>| last = *step.state();
+            solver
+                .integrate(&Oscillator, &(), rest, end, start, observer)
+                .unwrap();
+            let (sine, cosine) = 20.0_f64.sin_cos();
+            let found = last.map(|it| [it.slope.0[0], 1e9 * it.slope.0[1]]);
+            for (found, expected) in found.iter().zip([[cosine, sine], [-sine, cosine]]) {
+                for (found, expected) in found.iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-7, "{found} {expected}");
+                }
+            }
+        }
+        assert_exact(Tsit5, f64::NAN);
+        assert_exact(Dop853, f64::INFINITY);
+        assert_exact(Pirk8, 0.0);
     }
 }

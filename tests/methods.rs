@@ -25,6 +25,8 @@ mod kinks;
 mod orders;
 #[path = "methods/parallel.rs"]
 mod parallel;
+#[path = "methods/roots.rs"]
+mod roots;
 #[path = "methods/sampled.rs"]
 mod sampled;
 #[path = "methods/singular.rs"]

@@ -5,13 +5,14 @@ use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
-use super::approach::{Approach, Come};
+use super::approach::Come;
 use super::control::Control;
 use super::crossing::{Crossing, Taken};
 use super::dense::Step;
 use super::integrator::Integrator;
-use super::method::{Estimating, Family, Span, Start, Stepper, Trial, along};
+use super::method::{Estimating, Span, Start, Stepper, along};
 use super::over::Place;
+use super::pace::Pace;
 use super::probes::PARTS;
 use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked};
@@ -35,7 +36,7 @@ use crate::{Input, Real, System};
 /// On [`Dual`](crate::Dual) numbers slopes control the step, too, so that those of a model at rest are as exact as those of one
 /// that moves. They make up a motion beside the other along each direction, whose error counts as small enough when it is no
 /// larger part of it than the larger tolerance, both in units of the tolerances of states. Slopes that are not finite do not
-/// count.
+/// count, nor do any in steps that are no longer than a hundredth of that part of the run.
 ///
 /// Jumps that the input does not declare cost rejected steps, and in single precision the digits of time may be too few for
 /// what a stiff model does behind one: declare it. So that none is stepped over while the system is at rest,
@@ -217,9 +218,16 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
         let smallest =
             |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
+        let place = |time, state, slope| Point { time, state, slope };
         loop {
             self.check_count(problem, t, &pace.control)?;
             let length = steps.length(problem, &(t, x), (pace.control.length, pace.refused));
+            if S::HAS_COURSES && pace.is_to_look() {
+                let (here, way) = (place(t, x, slope), (length, end, &tolerance));
+                if let Some(rest) = ends.rest(problem, &here, way, observer)? {
+                    return Ok(rest);
+                }
+            }
             let length = pace.approach.length(length.min(self.longest));
             let (span, last) = next_span(t, end, length)?;
             if watch.is_blind(problem, &span) {
@@ -233,7 +241,8 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
             };
             let memory = problem.memory;
             let wide = steps.tolerance::<S, M, P>();
-            let used = wide.as_ref().unwrap_or(&tolerance);
+            let part = seen(span.length) / problem.whole;
+            let used = &wide.as_ref().unwrap_or(&tolerance).over(part);
             let trial = steps.attempt(problem, &from, used);
             let taken = steps.taken(problem, &from, &trial, used);
             let come = match pace.met(problem, &from, taken, ends.are_all()) {
@@ -262,6 +271,12 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                         pace.control.length.partial_cmp(&smallest(t)),
                         Some(Ordering::Greater)
                     ) {
+                        let (here, way) = (place(t, x, slope), (length, end, &tolerance));
+                        if S::HAS_COURSES
+                            && let Some(rest) = ends.rest(problem, &here, way, observer)?
+                        {
+                            return Ok(rest);
+                        }
                         let place = steps.place_of_jacobian(&from);
                         return Err(problem.too_small((&from, &trial.change), &tried, place));
                     }
@@ -269,11 +284,7 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                 }
             };
             if let Come::There(rest) = come {
-                let here = Point {
-                    time: t,
-                    state: x,
-                    slope,
-                };
+                let here = place(t, x, slope);
                 let way = (rest, seen(span.length), end);
                 let (next, watched) = match problem.beyond_threshold(&here, way, ends, observer)? {
                     ControlFlow::Continue(beyond) => beyond,
@@ -285,101 +296,6 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                 (pace.approach.watched, pace.refused, pace.again) = (watched, 0, false);
             }
         }
-    }
-}
-
-/// How a run goes on.
-struct Pace {
-    control: Control,
-    approach: Approach,
-    /// How often a step from the same place was refused, but for those that went over a threshold.
-    refused: u32,
-    /// Whether one was.
-    again: bool,
-}
-
-impl Pace {
-    const fn new(control: Control) -> Self {
-        Self {
-            control,
-            approach: Approach::new(),
-            refused: 0,
-            again: false,
-        }
-    }
-
-    /// Behind a step that was taken: where the run stands beside a threshold.
-    #[inline]
-    fn accept<F: Family, T: Real, S, I, const N: usize, const M: usize, const P: usize>(
-        &mut self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        steps: &mut Crossing<'_, F, T, N>,
-        (start, trial): (&Start<T, N>, &Trial<T, N>),
-        end: (&SVector<T, N>, &SVector<T, N>),
-    ) -> Come<T>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        let (time, length) = (seen(start.span.start), seen(start.span.length));
-        let come = self.approach.take(problem, start, end);
-        match come {
-            Come::Away => {
-                problem.probes.heed(time, length, trial.coarse);
-                steps.accept::<S, M, P>(&mut self.control, start, trial.error);
-            }
-            Come::Lost(length) => self.control.shorten(length),
-            _ => {}
-        }
-        (self.refused, self.again) = (0, false);
-        come
-    }
-
-    /// What is taken of a step: nothing of one that has met a threshold, where all count, as far as one can be come nearer to.
-    fn met<T: Real, S, I, const N: usize, const M: usize, const P: usize>(
-        &self,
-        problem: &Problem<'_, T, S, I, N, M, P>,
-        start: &Start<T, N>,
-        taken: Taken<T, N>,
-        counts: bool,
-    ) -> Taken<T, N>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        match taken {
-            Taken::Whole(end, _)
-                if S::HAS_COURSES && counts && self.approach.meets(problem, start, &end) =>
-            {
-                Taken::Nothing
-            }
-            taken => taken,
-        }
-    }
-
-    /// Behind one of which something is not taken.
-    fn refuse<F: Family, T: Real, S, I, const N: usize, const M: usize, const P: usize>(
-        &mut self,
-        problem: &Problem<'_, T, S, I, N, M, P>,
-        steps: &Crossing<'_, F, T, N>,
-        (start, trial): (&Start<T, N>, &Trial<T, N>),
-        taken: &Taken<T, N>,
-    ) -> Come<T>
-    where
-        S: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        self.again = true;
-        let come = self.approach.refuse(problem, start, trial, taken);
-        if matches!(come, Come::Away) {
-            self.refused += 1;
-            let length = seen(start.span.length);
-            match taken {
-                Taken::Until(clear) => self.control.shorten(*clear),
-                _ => steps.reject::<S, M, P>(&mut self.control, length, trial.error),
-            }
-        }
-        come
     }
 }
 

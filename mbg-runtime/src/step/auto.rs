@@ -188,7 +188,7 @@ impl Auto<'_> {
         I: Input<T, M> + ?Sized,
     {
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
-        problem.jacobian(start, x, &mut jacobian);
+        problem.jacobian((start, x), None, &mut jacobian);
         let (fastest, oscillates) = fastest(&jacobian, S::SPARSITY);
         let horizon = seen(end - start);
         let angle = fastest * horizon;

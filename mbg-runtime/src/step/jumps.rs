@@ -8,6 +8,7 @@ use super::dense::Step;
 use super::over::{Place, SOON};
 use super::problem::Problem;
 use super::slide::{Ends, Walked};
+use super::tolerance::{NOISE, Sizes};
 use super::{Stopped, less, seen};
 use crate::{Input, Real, System};
 
@@ -117,6 +118,11 @@ where
         if let Some(surfaces) = ends.at(problem, &here) {
             return Ok(Walked::Stays(way.here, surfaces));
         }
+        way.sizes.note(&here.state);
+        let tolerance = way.sizes.tolerance(NOISE * T::EPSILON);
+        if let Some(rest) = ends.rest(problem, &here, (jump.length, end, &tolerance), observer)? {
+            return Ok(rest);
+        }
         let length = jump.length;
         let Some(rest) = way.rest(problem, &here.slope, jump) else {
             if !less(way.here.0, end) {
@@ -154,6 +160,8 @@ struct Way<T, const N: usize> {
     usual: f64,
     /// How long the step was that met a jump last.
     taken: f64,
+    /// How large states have been that were looked at.
+    sizes: Sizes<N>,
 }
 
 /// Why a run has not gone on.
@@ -168,6 +176,8 @@ enum Followed {
 
 impl<T: Real, const N: usize> Way<T, N> {
     fn new(here: Place<T, N>, usual: f64) -> Self {
+        let mut sizes = Sizes::new();
+        sizes.note(&here.1);
         Self {
             here,
             near: None,
@@ -175,6 +185,7 @@ impl<T: Real, const N: usize> Way<T, N> {
             watched: f64::NEG_INFINITY,
             usual,
             taken: 0.0,
+            sizes,
         }
     }
 

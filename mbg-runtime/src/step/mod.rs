@@ -20,6 +20,7 @@ mod method;
 mod models;
 mod on_grid;
 mod over;
+mod pace;
 mod parallel;
 mod probes;
 mod problem;

@@ -160,21 +160,27 @@ where
             change = along(&change, left - T::from_f64(seen(left)), &ahead);
             ahead = self.slope(end, &(x + change));
         }
+        let end = until;
+        self.straight_step((Span { start, end, length }, x), (change, ahead), observer)
+    }
+
+    /// A step along a line to a threshold, or over it, with the derivative at its end.
+    pub(super) fn straight_step(
+        &mut self,
+        (span, x): (Span<T>, SVector<T, N>),
+        (change, ahead): (SVector<T, N>, SVector<T, N>),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), Place<T, N>>, Stopped> {
         // So short a way opens no loop. What a motion stays at may be elsewhere behind the threshold: it is not brought there.
-        let next = x + change;
+        let (end, next) = (span.end, x + change);
         self.statistics.steps += 1;
-        self.check(until, &next, &ahead)?;
+        self.check(end, &next, &ahead)?;
         // Of the change itself: beside the state it may be little more than rounding.
         let mut line = || Polynomial::straight(&x, change);
-        let span = Span {
-            start,
-            end: until,
-            length,
-        };
         let mut step = Step::new(span, (x, next), self.memory, &mut line);
         step.is_over = true;
         Ok(match observer(&mut step) {
-            ControlFlow::Continue(()) => ControlFlow::Continue((until, next)),
+            ControlFlow::Continue(()) => ControlFlow::Continue((end, next)),
             ControlFlow::Break(()) => ControlFlow::Break(()),
         })
     }

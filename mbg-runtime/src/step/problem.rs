@@ -213,9 +213,30 @@ where
     /// Writes `∂f/∂x` over a matrix that began with zeros: those that it has in every state stay. It may be asked for
     /// ahead: the memory stays as it is.
     ///
+    /// A law may have no slope at a state, as a root has none at zero: then it is that of where the motion is after so much time, if a
+    /// method knows by its errors how good that is.
+    pub(super) fn jacobian(
+        &mut self,
+        (t, x): (T, &SVector<T, N>),
+        ahead: Option<T>,
+        jacobian: &mut SMatrix<T, N, N>,
+    ) {
+        self.jacobian_at(t, x, jacobian);
+        if let Some(ahead) = ahead
+            && !jacobian.iter().all(|it| it.magnitude().is_finite())
+        {
+            let memory = self.memory;
+            let slope = self.slope(t, x);
+            self.memory = memory;
+            self.jacobian_at(t, &along(x, ahead, &slope), jacobian);
+        }
+    }
+
+    /// The same at a state.
+    ///
     /// A matrix on its way is on the stack no longer than the call.
     #[inline(never)]
-    pub(super) fn jacobian(&mut self, t: T, x: &SVector<T, N>, jacobian: &mut SMatrix<T, N, N>) {
+    fn jacobian_at(&mut self, t: T, x: &SVector<T, N>, jacobian: &mut SMatrix<T, N, N>) {
         self.statistics.jacobians += 1;
         let t = self.on_piece(t);
         let u = self.input.value(t, self.since);
@@ -229,12 +250,12 @@ where
     #[inline(never)]
     pub(super) fn factorise(
         &mut self,
-        (t, x): (T, &SVector<T, N>),
+        place: (T, &SVector<T, N>),
         scale: T,
         (jacobian, factors): (&mut SMatrix<T, N, N>, &mut Shifted<T, N>),
     ) {
         self.statistics.factorisations += 1;
-        self.jacobian(t, x, jacobian);
+        self.jacobian(place, None, jacobian);
         factors.factorise::<S, M, P>(T::from_f64(1.0), scale, jacobian);
     }
 
@@ -339,7 +360,7 @@ where
             return stopped;
         }
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
-        self.jacobian(t, &x, &mut jacobian);
+        self.jacobian((t, &x), None, &mut jacobian);
         if let Some(trouble) = Trouble::of_jacobian(&jacobian, [S::META.states; 2]) {
             return Stopped::new(time, Cause::Trouble(trouble));
         }

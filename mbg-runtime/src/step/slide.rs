@@ -6,11 +6,13 @@ use nalgebra::SVector;
 
 use super::dense::Step;
 use super::event::Direction;
+use super::method::Span;
 use super::over::Place;
 use super::problem::Problem;
 use super::sliding::Sliding;
 use super::surfaces::{Surfaces, is_later};
 use super::thresholds::Point;
+use super::tolerance::Tolerance;
 use super::{Cause, Stopped, less, seen};
 use crate::{Input, Real, System};
 
@@ -63,6 +65,17 @@ where
     ) -> Option<Surfaces<T>> {
         None
     }
+
+    /// Goes on to those at which the motion comes to rest within a step so long, and a tolerance.
+    fn rest(
+        self,
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        _here: &Point<T, N>,
+        _way: (f64, T, &Tolerance<N>),
+        _observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Option<Walked<T, N>>, Stopped> {
+        Ok(None)
+    }
 }
 
 /// At none.
@@ -105,6 +118,16 @@ where
         let met = problem.next_to(here);
         met.filter(|met| problem.stays(here, met))
     }
+
+    fn rest(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+        way: (f64, T, &Tolerance<N>),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Option<Walked<T, N>>, Stopped> {
+        problem.come_to_rest(here, way, observer)
+    }
 }
 
 /// At all that it meets. Beside thresholds at which a motion stays laws are asked a little off it: what it comes to is to be found
@@ -138,6 +161,16 @@ where
         here: &Point<T, N>,
     ) -> Option<Surfaces<T>> {
         problem.next_to(here)
+    }
+
+    fn rest(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+        way: (f64, T, &Tolerance<N>),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Option<Walked<T, N>>, Stopped> {
+        problem.come_to_rest(here, way, observer)
     }
 }
 
@@ -174,6 +207,48 @@ where
             return Ok(ControlFlow::Break(Walked::Stays((time, state), passed)));
         }
         Ok(ControlFlow::Continue((next, watched)))
+    }
+
+    /// Goes on to thresholds that a step so long comes to and at which the motion stays, if what is left of the way is within what a
+    /// tolerance allows: where laws have no slope there, such as roots, steps are held up beside them without end.
+    #[cold]
+    #[inline(never)]
+    fn come_to_rest(
+        &mut self,
+        here: &Point<T, N>,
+        (length, end, tolerance): (f64, T, &Tolerance<N>),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Option<Walked<T, N>>, Stopped> {
+        let Some(near) = self.ahead(here, length) else {
+            return Ok(None);
+        };
+        let mut memory = self.memory;
+        let (model, times) = (
+            (self.system, self.input),
+            (self.since, self.inside, self.whole),
+        );
+        let known = (&mut memory, &mut self.statistics.evaluations);
+        let measure = tolerance.around(&here.state);
+        let Some(rest) = Sliding::rest(model, times, here, (near, &measure), known) else {
+            return Ok(None);
+        };
+        let until = here.time + T::from_f64(rest.ahead);
+        if !is_later(here.time, until) || !less(until, end) {
+            return Ok(Some(Walked::Stays((here.time, rest.state), rest.surfaces)));
+        }
+        let span = Span {
+            start: here.time,
+            end: until,
+            length: until - here.time,
+        };
+        let change = rest.state - here.state;
+        let slope = self.slope(until, &rest.state);
+        Ok(Some(
+            match self.straight_step((span, here.state), (change, slope), observer)? {
+                ControlFlow::Continue(place) => Walked::Stays(place, rest.surfaces),
+                ControlFlow::Break(()) => Walked::Left,
+            },
+        ))
     }
 
     /// Whether the motion stays at some of these thresholds.

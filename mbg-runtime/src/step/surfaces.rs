@@ -116,6 +116,15 @@ where
         })
     }
 
+    /// The thresholds that a motion comes to within a time, as fast as it is, or at which it is.
+    pub(super) fn ahead(&self, here: &Point<T, N>, lasting: f64) -> Option<Surfaces<T>> {
+        self.surfaces(here, here, |course, level| {
+            let [value, rate] = course.from.map(seen);
+            let way = seen(level) - value;
+            way == 0.0 || (way * rate > 0.0 && way.abs() <= lasting * rate.abs())
+        })
+    }
+
     /// The thresholds of which this holds, unless several lanes have a time.
     fn surfaces(
         &self,

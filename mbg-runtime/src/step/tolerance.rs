@@ -7,6 +7,10 @@ use crate::Real;
 /// Directions of slopes that are measured: as many as the widest scalar has columns.
 const DIRECTIONS: usize = 16;
 
+/// A part of a run in which slopes may be in error as they like, in units of the part of themselves by which they may elsewhere: of
+/// those that begin where a law jumps, any error is as large as they are.
+const PASSING: f64 = 0.01;
+
 /// Tolerances of each state.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<const N: usize> {
@@ -25,6 +29,17 @@ impl<const N: usize> Tolerance<N> {
             absolute: core::array::from_fn(|state| absolute * size(state)),
             of_slopes: relative.max(absolute),
         }
+    }
+
+    /// The same for a step over such a part of a run.
+    #[inline]
+    pub(super) fn over(&self, part: f64) -> Self {
+        let of_slopes = if part < PASSING * self.of_slopes {
+            f64::INFINITY
+        } else {
+            self.of_slopes
+        };
+        Self { of_slopes, ..*self }
     }
 
     /// Errors in units of the tolerance at a state.
@@ -168,6 +183,11 @@ impl<const N: usize> Measure<N> {
             }
         }
         size
+    }
+
+    /// Errors of each state that are as large as its tolerance.
+    pub(super) fn errors(&self) -> [f64; N] {
+        self.factors.map(|factor| 1.0 / factor)
     }
 
     /// Root of the mean square of an error in units of the tolerances.

@@ -193,7 +193,7 @@ where
             self.is_second = !self.is_second;
         }
         let mut stages = self.predict(length);
-        self.factorise(problem, start, &stages);
+        self.factorise(problem, (start, &stages), tolerance.is_some());
         let mut newton =
             Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, &self.factors);
         let found = match tolerance {
@@ -272,8 +272,8 @@ where
     fn factorise<Y, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
-        start: &Start<T, N>,
-        stages: &[SVector<T, N>; S],
+        (start, stages): (&Start<T, N>, &[SVector<T, N>; S]),
+        is_controlled: bool,
     ) where
         Y: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
@@ -281,7 +281,8 @@ where
         let span = &start.span;
         if self.theta > FAST {
             let (t, x) = middle::<A, _, _, _, _>(start, stages);
-            problem.jacobian(t, &x, &mut self.jacobian);
+            let ahead = is_controlled.then_some(span.length);
+            problem.jacobian((t, &x), ahead, &mut self.jacobian);
             self.factors.length = None;
         }
         if self.factors.length == Some(span.length) {

@@ -62,7 +62,7 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
             // Loops go on from the start, not from where a sweep strayed to.
             problem.memory = memory;
             let slope = problem.slope(span.end, &end);
-            problem.jacobian(span.end, &end, &mut self.jacobian);
+            problem.jacobian((span.end, &end), None, &mut self.jacobian);
             problem.statistics.factorisations += 1;
             self.factors
                 .factorise::<Y, M, P>(inverse, one, &self.jacobian);

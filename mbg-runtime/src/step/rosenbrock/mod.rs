@@ -107,6 +107,12 @@ pub trait Tabulated<const S: usize>: Copy {
 const LOST: f64 = 0.25;
 /// The same for the parts of a step that was lost, which are to lead across the kink that is there.
 const NEAR: f64 = 0.03;
+/// A state that moves by no more than this part of what its slope was to lead to is to be slower by this part at the end: what slows
+/// down all the way goes farther.
+const HELD: f64 = 0.25;
+const FAST: f64 = 0.5;
+/// So small a part of the way is a law asked about that the Jacobian says to lead to where nothing goes on.
+const BESIDE: f64 = 1e-3;
 
 /// What is known where the step starts, and the stages of the last step.
 pub struct Stages<A, T, const N: usize, const S: usize> {
@@ -128,6 +134,45 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
         let error = combination(const { &A::TABLEAU.error }, &self.stages);
         let error = self.sizes.before::<T>().norm(&error);
         error.is_nan() || error > if start.is_part { NEAR } else { LOST }
+    }
+
+    /// Whether a state hardly moves although it was to go farther than this, and goes on as fast at the end, also where the Jacobian says
+    /// that it would not: one that is far steeper than what follows, such as that of a root next to zero, makes all stages small.
+    fn gets_nowhere<Y, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        change: &SVector<T, N>,
+        far: &[f64; N],
+    ) -> bool
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let way = |slope: T| (start.span.length * slope).magnitude();
+        let is_held = |state: usize| {
+            let expected = way(start.slope[state]);
+            expected > far[state] && change[state].magnitude() < HELD * expected
+        };
+        let is_fast = |state: usize, slope: &SVector<T, N>| {
+            way(slope[state]) > FAST * way(start.slope[state])
+        };
+        if !(0..N).any(is_held) {
+            return false;
+        }
+        let memory = problem.memory;
+        let (time, end) = (start.span.end, start.x + change);
+        let slope = problem.slope(time, &end);
+        let goes_on = |state: &usize| is_held(*state) && is_fast(*state, &slope);
+        let is_nowhere = (0..N).any(|state| goes_on(&state)) && {
+            let part = T::from_f64(BESIDE);
+            let ahead = self.factors.solved::<Y, M, P>(&slope).map(|way| part * way);
+            let change = problem.slope(time, &(end + ahead)) - slope;
+            let left = slope.zip_map(&change, |slope, change| slope + change / part);
+            (0..N).filter(goes_on).any(|state| is_fast(state, &left))
+        };
+        problem.memory = memory;
+        is_nowhere
     }
 
     /// What earlier stages add to the state and to the slope of a stage.
@@ -207,7 +252,8 @@ where
         // Of a part that is tried again the Jacobian is where a step across came to.
         let is_new = !start.again || start.is_part;
         if is_new {
-            problem.jacobian(span.start, x, &mut self.jacobian);
+            let ahead = tolerance.map(|_| length);
+            problem.jacobian((span.start, x), ahead, &mut self.jacobian);
         }
         // A longer step may have looked ahead to where the input is no number.
         if is_new || Trouble::of_state(Y::META, &self.by_time).is_some() {
@@ -239,16 +285,22 @@ where
         let error = match tolerance {
             Some(tolerance) => {
                 let error = combination(const { &A::TABLEAU.error }, &self.stages);
-                tolerance.between(x, &change).norm(&error)
-            }
-            None if self.is_lost(start) => match self.across(problem, start) {
-                Some(found) => {
-                    change = found;
-                    0.0
+                let measure = tolerance.between(x, &change);
+                let error = measure.norm(&error);
+                match error <= 1.0 && self.gets_nowhere(problem, start, &change, &measure.errors())
+                {
+                    true => f64::INFINITY,
+                    false => error,
                 }
-                None => f64::INFINITY,
-            },
-            None => 0.0,
+            }
+            None => {
+                let across = self.is_lost(start).then(|| self.across(problem, start));
+                change = across.flatten().unwrap_or(change);
+                match across {
+                    Some(None) => f64::INFINITY,
+                    _ => 0.0,
+                }
+            }
         };
         Trial {
             change,

@@ -63,6 +63,31 @@ struct Moment<T, const M: usize> {
 }
 
 impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
+    /// Of laws of a piece between such times, in a run so long.
+    fn of(
+        (system, input): (&'a S, &'a I),
+        (since, inside, whole): (T, (T, T), f64),
+        surfaces: Surfaces<T>,
+    ) -> Self {
+        let zero = T::from_f64(0.0);
+        let none = [SVector::from_element(zero); MOST];
+        Self {
+            system,
+            input,
+            since,
+            inside,
+            ahead: Cell::new(whole * SHORT),
+            surfaces,
+            free: 0,
+            shares: [zero; MOST],
+            twins: (Surfaces::NONE, [zero; MOST]),
+            across: Cell::new(none),
+            beyond: Cell::new(none),
+            gradients: Cell::new(none),
+            evaluations: Cell::new(0),
+        }
+    }
+
     /// Whether an argument is at its threshold because it is one of the others.
     fn is_twin(&self, number: usize, course: &Course<'_, T>) -> bool {
         let (twins, apart) = &self.twins;

@@ -1,14 +1,14 @@
 //! Which laws hold next to thresholds.
 
-use core::cell::Cell;
-
 use nalgebra::SVector;
 
 use super::super::seen;
 use super::super::surfaces::{MOST, Surface, Surfaces, is_between};
+use super::super::thresholds::Point;
+use super::super::tolerance::Measure;
 use super::choice::Choice;
 use super::sides::{Sides, shortest};
-use super::{Each, Moment, SHORT, Sliding};
+use super::{Each, Moment, Sliding};
 use crate::{Input, Real, System};
 
 /// Times are apart by so many units of the last place.
@@ -23,6 +23,20 @@ const MOMENT: f64 = 1024.0;
 const WIDE: f64 = 1024.0;
 /// Gradients depend on each other if no more of one is beside the others than so many units of its last place.
 const DEPENDENT: f64 = 4096.0;
+
+/// Steps that are held up beside a threshold are no farther from it than so many times the tolerance: as far as errors make up for
+/// what is not stable any more.
+const HELD_UP: f64 = 16.0;
+/// What comes to rest as roots do takes so much longer as it would at the rate that it has.
+const SLOWER: f64 = 2.0;
+
+/// Where a motion comes to rest.
+pub(in super::super) struct Rest<T, const N: usize> {
+    pub(in super::super) state: SVector<T, N>,
+    pub(in super::super) surfaces: Surfaces<T>,
+    /// How long it takes until then.
+    pub(in super::super) ahead: f64,
+}
 
 /// How a motion goes on at each of some surfaces.
 #[derive(Clone, Copy)]
@@ -58,23 +72,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let zero = T::from_f64(0.0);
-        let none = [SVector::from_element(zero); MOST];
-        let mut sliding = Self {
-            system,
-            input,
-            since,
-            inside,
-            ahead: Cell::new(whole * SHORT),
-            surfaces,
-            free: 0,
-            shares: [zero; MOST],
-            twins: (Surfaces::NONE, [zero; MOST]),
-            across: Cell::new(none),
-            beyond: Cell::new(none),
-            gradients: Cell::new(none),
-            evaluations: Cell::new(0),
-        };
+        let mut sliding = Self::of((system, input), (since, inside, whole), surfaces);
         let at = sliding.on_piece(t);
         let start = *x;
         let near = sliding.near((&at, whole), x, memory);
@@ -98,6 +96,46 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             stays
         });
         stays.then_some(sliding)
+    }
+
+    /// Those of some surfaces that are no farther from a state than errors may be, if the motion stays at them.
+    pub(in super::super) fn rest<const M: usize, const P: usize>(
+        model: (&'a S, &'a I),
+        times: (T, (T, T), f64),
+        here: &Point<T, N>,
+        (surfaces, measure): (Surfaces<T>, &Measure<N>),
+        (memory, evaluations): (&mut S::Memory, &mut u64),
+    ) -> Option<Rest<T, N>>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let x = &here.state;
+        let is_near = |there: &SVector<T, N>| measure.norm(&(there - x)) <= HELD_UP;
+        let mut sliding = Self::of(model, times, surfaces);
+        let at = sliding.on_piece(here.time);
+        let mut near = Surfaces::NONE;
+        let mut ahead = 0.0_f64;
+        for surface in surfaces.iter() {
+            sliding.arrange(Surfaces::one(*surface), (&at, x), memory);
+            if is_near(&sliding.onto(&at, x, memory)) {
+                near.add(*surface);
+                let [[distances, rates], _] = sliding.told(&at, [(x, &here.slope); 2], memory);
+                let time = seen(distances[0] / rates[0]).abs();
+                ahead = ahead.max(if time.is_finite() { time } else { 0.0 });
+            }
+        }
+        sliding.arrange(near, (&at, x), memory);
+        let mut there = sliding.onto(&at, x, memory);
+        let place = (here.time, &mut there);
+        let sliding = Self::settled(model, times, place, near, (&mut *memory, evaluations))?;
+        // As the motion itself comes there.
+        let state = sliding.landed(here.time, x, memory);
+        is_near(&state).then(|| Rest {
+            state,
+            surfaces: sliding.all(),
+            ahead: SLOWER * ahead,
+        })
     }
 
     /// Whether the motion stays at some of the surfaces, which are then these, with the state put on them, or else beside all that it

@@ -241,8 +241,9 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
             };
             let memory = problem.memory;
             let wide = steps.tolerance::<S, M, P>();
-            let part = seen(span.length) / problem.whole;
-            let used = &wide.as_ref().unwrap_or(&tolerance).over(part);
+            let used = &wide
+                .unwrap_or(tolerance)
+                .over(seen(span.length) / problem.whole);
             let trial = steps.attempt(problem, &from, used);
             let taken = steps.taken(problem, &from, &trial, used);
             let come = match pace.met(problem, &from, taken, ends.are_all()) {
@@ -266,34 +267,26 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                     problem.statistics.rejected += 1;
                     let tried = core::mem::replace(&mut problem.memory, memory);
                     let come = pace.refuse(problem, &steps, (&from, &trial), &missed);
-                    // Written so that a step of NaN is refused as well.
-                    if !matches!(
-                        pace.control.length.partial_cmp(&smallest(t)),
-                        Some(Ordering::Greater)
-                    ) {
+                    if !is_longer(pace.control.length, smallest(t)) {
                         let (here, way) = (place(t, x, slope), (length, end, &tolerance));
-                        if S::HAS_COURSES
-                            && let Some(rest) = ends.rest(problem, &here, way, observer)?
-                        {
-                            return Ok(rest);
-                        }
-                        let place = steps.place_of_jacobian(&from);
-                        return Err(problem.too_small((&from, &trial.change), &tried, place));
+                        let rest = ends.rest(problem, &here, way, observer)?;
+                        let jacobian = steps.place_of_jacobian(&from);
+                        let tried = (&from, &trial.change, &tried);
+                        return rest.ok_or_else(|| problem.too_small(tried, jacobian));
                     }
                     come
                 }
             };
             if let Come::There(rest) = come {
-                let here = place(t, x, slope);
-                let way = (rest, seen(span.length), end);
+                let (here, way) = (place(t, x, slope), (rest, seen(span.length), end));
                 let (next, watched) = match problem.beyond_threshold(&here, way, ends, observer)? {
                     ControlFlow::Continue(beyond) => beyond,
                     ControlFlow::Break(walked) => return Ok(walked),
                 };
                 (t, x, slope) = (next.time, next.state, next.slope);
                 steps.renew();
-                pace.control = self.begin(problem, (t, end), (&x, &slope), &tolerance);
-                (pace.approach.watched, pace.refused, pace.again) = (watched, 0, false);
+                let control = self.begin(problem, (t, end), (&x, &slope), &tolerance);
+                pace.begin(control, watched);
             }
         }
     }
@@ -411,6 +404,11 @@ impl<M: Estimating> Adaptive<'_, M> {
             trial
         }
     }
+}
+
+/// Whether a step is longer than another one, which one of NaN is not.
+fn is_longer(length: f64, other: f64) -> bool {
+    matches!(length.partial_cmp(&other), Some(Ordering::Greater))
 }
 
 /// A step of this length, or up to the end where that is hardly farther; and whether it is the last.

@@ -35,6 +35,13 @@ impl Pace {
         }
     }
 
+    /// Goes on anew, where thresholds are met from a time on.
+    pub(super) fn begin(&mut self, control: Control, watched: f64) {
+        self.control = control;
+        self.approach.watched = watched;
+        (self.refused, self.again) = (0, false);
+    }
+
     /// Whether it is time to ask whether the motion comes to rest at a threshold: steps that are held up there go on without end.
     pub(super) fn is_to_look(&mut self) -> bool {
         self.tries += 1;

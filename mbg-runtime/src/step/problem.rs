@@ -372,8 +372,7 @@ where
     #[cold]
     pub(super) fn too_small(
         &mut self,
-        (start, change): (&Start<T, N>, &SVector<T, N>),
-        tried: &S::Memory,
+        (start, change, tried): (&Start<T, N>, &SVector<T, N>, &S::Memory),
         place: Option<(T, SVector<T, N>)>,
     ) -> Stopped {
         match check_result(self.system, start.span.start, change, tried) {

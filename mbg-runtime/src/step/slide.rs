@@ -219,7 +219,12 @@ where
         (length, end, tolerance): (f64, T, &Tolerance<N>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Option<Walked<T, N>>, Stopped> {
-        let Some(near) = self.ahead(here, length) else {
+        let near = if S::HAS_COURSES {
+            self.ahead(here, length)
+        } else {
+            None
+        };
+        let Some(near) = near else {
             return Ok(None);
         };
         let mut memory = self.memory;

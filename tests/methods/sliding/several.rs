@@ -318,3 +318,78 @@ fn what_holds_by_others_holds_too() {
         assert!(errors.amax() < 1e-9, "{name}: {outputs}");
     }
 }
+
+mbg! {
+    /// A box on two corners that both hold, and slip alike but for what it turns.
+    #[derivative]
+    model Standing {
+        causality componentwise;
+        param friction = 0.5;
+        param stiffness: N/m = 1e5;
+        param dissipation: s/m = 1.0;
+        param depth: m = 0.0;
+        param push: N = 0.0;
+        gravity [0.0, -9.81];
+        1 ground[3]; 1 rail[3]; 1 axle[3]; 1 block[3]; 1 left[3]; 1 right[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        along: PlanarPrismatic { force: push } (ground, rail);
+        up: PlanarPrismatic { direction: 1.5707963267948966, initial: 0.2 - depth } (rail, axle);
+        turn: PlanarRevolute (axle, block);
+        body: PlanarBody { mass: 2.0, inertia: 0.1 / 3.0 } (block);
+        to_left: PlanarOffset { x: -0.1, y: -0.2 } (block, left);
+        to_right: PlanarOffset { x: 0.1, y: -0.2 } (block, right);
+        one: PlanarContact {
+            stiffness: stiffness, dissipation: dissipation, friction: friction, at_rest: holds
+        } (left);
+        other: PlanarContact {
+            stiffness: stiffness, dissipation: dissipation, friction: friction, at_rest: holds
+        } (right);
+        output travel: m = along.travel;
+        output forces[2]: N = [one.force, other.force];
+    }
+}
+
+/// Released just above the ground it comes to stand; pushed harder than it holds it slides, once the corners no longer hold it up.
+#[test]
+fn a_box_on_two_corners_stands_and_slides() {
+    let soft = StandingParameters {
+        stiffness: 1e4,
+        dissipation: 20.0,
+        ..Default::default()
+    };
+    let rest = 2.0 * 9.81 / 2e5;
+    let pushed = StandingParameters {
+        friction: 0.3,
+        depth: rest,
+        push: 12.0,
+        ..Default::default()
+    };
+    macro_rules! by {
+        ($($name:literal: $solver:expr),*) => {
+            $({
+                let found = |parameters, end| {
+                    let model = Standing::new(parameters).unwrap();
+                    let (_, outputs, statistics) = last(&model, &(), end, &$solver);
+                    let tried = statistics.steps + statistics.rejected;
+                    assert!(tried < 12_000, "{}: {tried}", $name);
+                    <[f64; 3]>::from(outputs)
+                };
+                let [travel, one, other] = found(soft.clone(), 1.0);
+                assert!(travel.abs() < 1e-9, "{}: {travel:e}", $name);
+                for force in [one, other] {
+                    assert!((force - 9.81).abs() < 1e-6, "{}: {force}", $name);
+                }
+                found(StandingParameters::default(), 0.3);
+                // By four methods that agree to nine digits, at a tolerance of 1e-7 and less.
+                let [travel, ..] = found(pushed.clone(), 1.0);
+                assert!((travel - 1.532_878_452).abs() < 1e-8, "{}: {travel}", $name);
+            })*
+        };
+    }
+    by!(
+        "Dop853": Adaptive::new(Dop853, 1e-8, 1e-10),
+        "Rodas5P": Adaptive::new(Rodas5P, 1e-8, 1e-10),
+        "Radau9": Adaptive::new(Radau9, 1e-8, 1e-10),
+        "RK4": Fixed::new(Rk4, 1e-4)
+    );
+}

@@ -9,7 +9,7 @@ use super::{Each, Moment, Sliding};
 use crate::{Real, System};
 
 /// How far beside a threshold laws are asked, in units of the rounding of its argument.
-const ASIDE: f64 = 64.0;
+pub(super) const ASIDE: f64 = 64.0;
 /// Surfaces are gone across at paces of their own, so that those that depend on them are not met where they are.
 const PACE: f64 = 0.618_033_988_749_894_9;
 /// So many times as long a line may be, for surfaces that it meets next to each other; where it is longer than so, others are tried.
@@ -55,7 +55,15 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let ways = (0..self.free).map(|place| seen(distances[place]).abs() / sizes[place]);
         let way = ASIDE * T::EPSILON * ways.fold(0.0, f64::max);
         let aside = self.aside(x);
-        core::array::from_fn(|place| aside[place] + T::from_f64(way * sizes[place]))
+        // What is at it by others is to be crossed with it.
+        let (twins, likes) = &self.twins;
+        let mut farther = [0.0_f64; MOST];
+        for like in likes.iter().take(twins.count()) {
+            farther[like.leader] = farther[like.leader].max(like.apart);
+        }
+        core::array::from_fn(|place| {
+            aside[place] * T::from_f64(1.0 + farther[place]) + T::from_f64(way * sizes[place])
+        })
     }
 
     /// How arguments of the free surfaces go across these, with the distances from all.

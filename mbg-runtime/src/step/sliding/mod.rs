@@ -20,8 +20,27 @@ const PART: f64 = 0.25;
 
 /// One for each surface.
 type Each<V> = [V; MOST];
-/// Surfaces on which a motion is by others, and how far from each it may be by rounding.
-type Along<T> = (Surfaces<T>, Each<T>);
+/// Surfaces on which a motion is by others, and how each is like another one.
+type Along<T> = (Surfaces<T>, Each<Like>);
+
+/// How a surface is another one, but for a factor.
+#[derive(Clone, Copy)]
+struct Like {
+    /// The place of the other one.
+    leader: usize,
+    /// How many times as fast its argument changes.
+    size: f64,
+    /// How far from it the motion may be, in units of what is surely beside the other.
+    apart: f64,
+}
+
+impl Like {
+    const NOTHING: Self = Self {
+        leader: 0,
+        size: 0.0,
+        apart: 0.0,
+    };
+}
 
 /// The laws of a model whose motion stays at thresholds of them: friction that holds, a relay that goes on and off without end.
 ///
@@ -80,7 +99,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             surfaces,
             free: 0,
             shares: [zero; MOST],
-            twins: (Surfaces::NONE, [zero; MOST]),
+            twins: (Surfaces::NONE, [Like::NOTHING; MOST]),
             across: Cell::new(none),
             beyond: Cell::new(none),
             gradients: Cell::new(none),
@@ -88,12 +107,19 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
     }
 
-    /// Whether an argument is at its threshold because it is one of the others.
-    fn is_twin(&self, number: usize, course: &Course<'_, T>) -> bool {
-        let (twins, apart) = &self.twins;
+    /// Whether an argument is at its threshold because it is one of the others, next to such states.
+    fn is_twin(&self, number: usize, course: &Course<'_, T>, asides: &[Each<T>; 2]) -> bool {
+        let (twins, likes) = &self.twins;
         twins.of(number).is_some_and(|(place, level)| {
-            let mut values = [course.from[0], course.to[0]].into_iter();
-            values.all(|it| (it - level).magnitude() <= seen(apart[place]))
+            let Like {
+                leader,
+                size,
+                apart,
+            } = likes[place];
+            let values = [course.from[0], course.to[0]].into_iter();
+            values
+                .zip(asides)
+                .all(|(it, aside)| (it - level).magnitude() <= apart * size * seen(aside[leader]))
         })
     }
 

@@ -7,14 +7,17 @@ use super::super::surfaces::{MOST, Surface, Surfaces, is_between};
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
 use super::choice::Choice;
+use super::line::ASIDE;
 use super::sides::{Sides, shortest};
-use super::{Each, Moment, Sliding};
+use super::{Each, Like, Moment, Sliding};
 use crate::{Input, Real, System};
 
 /// Times are apart by so many units of the last place.
 const PLACES: f64 = 8.0;
 /// What does not stay is put so many times as far beside a surface as those that do are asked.
 const BESIDE: f64 = 4.0;
+/// So many times as much as they are unlike twins may become so.
+const GROWS: f64 = 4.0;
 /// A state is next to a surface where digits beyond half of those that numbers have are surely beside it, but for this part.
 const NEAR: f64 = 1e-3;
 /// So it is where it comes there within so many units of the last place of the time.
@@ -22,11 +25,14 @@ const MOMENT: f64 = 1024.0;
 /// So many times as far beside a surface a law is asked whether it jumps there.
 const WIDE: f64 = 1024.0;
 /// Gradients depend on each other if no more of one is beside the others than so many units of its last place.
-const DEPENDENT: f64 = 4096.0;
+const DEPENDENT: f64 = 1_048_576.0;
 
 /// Steps that are held up beside a threshold are no farther from it than so many times the tolerance: as far as errors make up for
 /// what is not stable any more.
 const HELD_UP: f64 = 16.0;
+/// What a law differs by on both sides of a threshold grows so with their distance where it is a root of that at least, in units of
+/// what tells that it bends.
+const ROOT: f64 = 16.0;
 /// What comes to rest as roots do takes so much longer as it would at the rate that it has.
 const SLOWER: f64 = 2.0;
 
@@ -81,7 +87,16 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let all = sliding.all();
         match sliding.search((&at, x), (&mut *memory, &mut *evaluations)) {
             Found::Stays => return Some(sliding),
-            Found::Leaves => return None,
+            Found::Leaves => {
+                // What is led almost alike may be met as soon as these are left.
+                let others = surfaces.without(&all);
+                let model = (system, input);
+                let (times, known) = ((since, inside, whole), (memory, evaluations));
+                return match others.count() < surfaces.count() && others.count() > 0 {
+                    true => Self::settled(model, times, (t, x), others, known),
+                    false => None,
+                };
+            }
             Found::Nothing => {}
         }
         // A law that jumps on one side of a threshold alone, which is passed, does so where that is beside the others.
@@ -98,7 +113,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         stays.then_some(sliding)
     }
 
-    /// Those of some surfaces that are no farther from a state than errors may be, if the motion stays at them.
+    /// Those of some surfaces that are no farther from a state than errors may be, if the motion stays at them and laws do not jump there.
     pub(in super::super) fn rest<const M: usize, const P: usize>(
         model: (&'a S, &'a I),
         times: (T, (T, T), f64),
@@ -129,9 +144,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let mut there = sliding.onto(&at, x, memory);
         let place = (here.time, &mut there);
         let sliding = Self::settled(model, times, place, near, (&mut *memory, evaluations))?;
+        // Where a law jumps steps end without this.
+        let [near, wide] = [1.0, WIDE].map(|factor| sliding.sides(&at, (&there, factor), memory));
+        let is_root = (0..sliding.free).all(|place| wide.bends(&near, place, ROOT));
         // As the motion itself comes there.
         let state = sliding.landed(here.time, x, memory);
-        is_near(&state).then(|| Rest {
+        (is_root && is_near(&state)).then(|| Rest {
             state,
             surfaces: sliding.all(),
             ahead: SLOWER * ahead,
@@ -248,10 +266,22 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let aside = self.aside(x);
         let moment = MOMENT * T::EPSILON * at.time.magnitude().max(whole);
         let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
-        self.only(|place| {
-            let least = NEAR / T::SINGULAR * seen(aside[*place]);
-            seen(distances[*place]).abs() < least + moment * seen(rates[*place]).abs()
-        })
+        let (gradients, slope) = (self.gradients.get(), slope.map(seen));
+        let (mut span, mut least) = (Span::of_nothing(), [0.0; MOST]);
+        for (place, least) in least.iter_mut().enumerate().take(self.surfaces.count()) {
+            let (mut alone, mut rate) = (1.0, seen(rates[place]));
+            if let Some(unit) = unit(&gradients[place]) {
+                let rest = span.beside(&unit);
+                if span.add::<T>(&unit) {
+                    // What is almost led along others moves states far where it is moved a little.
+                    alone = rest.norm();
+                    rate -= gradients[place].map(seen).norm() * (unit - rest).dot(&slope);
+                }
+            }
+            let near = (NEAR / T::SINGULAR * alone).max(1.0) * seen(aside[place]);
+            *least = near + moment * rate.abs();
+        }
+        self.only(|place| seen(distances[*place]).abs() < least[*place])
     }
 
     /// Takes in other thresholds that are as near: laws jump there, too, where these are asked.
@@ -305,20 +335,24 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         self.surfaces = surfaces;
         self.look(at, x, memory);
         let gradients = self.gradients.get();
-        let aside = self.aside(x);
         let (mut span, mut units) = (Span::of_nothing(), [SVector::zeros(); MOST]);
         let (mut free, mut bound, mut twins) = (Surfaces::NONE, Surfaces::NONE, Surfaces::NONE);
-        let mut apart = [T::from_f64(0.0); MOST];
+        let mut likes = [Like::NOTHING; MOST];
         for (place, surface) in surfaces.iter().enumerate() {
             let Some(unit) = unit(&gradients[place]) else {
                 // No state leads there.
                 continue;
             };
-            let is_twin = |other: &SVector<f64, N>| {
-                (other - unit).norm().min((other + unit).norm()) < DEPENDENT * T::EPSILON
-            };
-            if units[..place].iter().any(is_twin) {
-                apart[twins.count()] = T::from_f64(BESIDE) * aside[place];
+            let differs =
+                |other: &SVector<f64, N>| (other - unit).norm().min((other + unit).norm());
+            let leads = |other: &SVector<f64, N>| differs(other) < DEPENDENT * T::EPSILON;
+            if let Some(leader) = units[..place].iter().position(leads) {
+                let size = |place: usize| gradients[place].map(seen).norm();
+                likes[twins.count()] = Like {
+                    leader,
+                    size: size(place) / size(leader),
+                    apart: BESIDE * (1.0 + GROWS * differs(&units[leader]) / (ASIDE * T::EPSILON)),
+                };
                 twins.add(*surface);
             } else if span.add::<T>(&unit) {
                 free.add(*surface);
@@ -328,8 +362,13 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             units[place] = unit;
         }
         self.free = free.count();
-        self.twins = (twins, apart);
         self.surfaces = free.with(&bound);
+        for like in likes.iter_mut().take(twins.count()) {
+            let leader = surfaces.iter().nth(like.leader);
+            let place = leader.and_then(|leader| self.surfaces.of(leader.course));
+            like.leader = place.map_or(0, |(place, _)| place);
+        }
+        self.twins = (twins, likes);
         self.look(at, x, memory);
         self.across.set(shortest(&self.gradients.get(), self.free));
     }
@@ -438,9 +477,17 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             }
         }
         let (distances, moves) = self.distances(at, x, memory);
-        let least = self
-            .aside_behind(x, &distances)
-            .map(|aside| T::from_f64(BESIDE * reach) * aside);
+        let aside = self.aside_behind(x, &distances);
+        let (gradients, mut span) = (self.gradients.get(), Span::of_nothing());
+        let least: Each<T> = core::array::from_fn(|place| {
+            let unit = unit(&gradients[place]).filter(|_| place < self.free);
+            let alone = unit.map_or(1.0, |unit| {
+                let rest = span.beside(&unit).norm();
+                span.add::<T>(&unit);
+                rest
+            });
+            T::from_f64(BESIDE * reach * alone) * aside[place]
+        });
         let stays = sorted
             .iter()
             .take(self.free)

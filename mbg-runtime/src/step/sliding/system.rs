@@ -182,11 +182,13 @@ where
             self.onto(&Moment { time, input, rate }, x, memory)
         };
         let (x, ahead) = (on(from, x, u, rate), on(to, ahead, u_ahead, rate_ahead));
+        let asides = [self.aside(&x), self.aside(&ahead)];
         let mut number = 0;
         let from = (from, [&x, slope], [u, rate]);
         let to = (to, [&ahead, slope_ahead], [u_ahead, rate_ahead]);
         self.system.courses(from, to, memory, |course| {
-            let stays = self.surfaces.of(number).is_some() || self.is_twin(number, &course);
+            let stays =
+                self.surfaces.of(number).is_some() || self.is_twin(number, &course, &asides);
             let thresholds = if stays { &[] } else { course.thresholds };
             each(Course {
                 thresholds,

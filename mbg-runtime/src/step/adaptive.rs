@@ -1,6 +1,5 @@
 //! Steps whose length follows the error.
 
-use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
 use nalgebra::SVector;
@@ -215,8 +214,6 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
         let mut slope = problem.slope(t, &x);
         problem.check(t, &x, &slope)?;
         let mut pace = Pace::new(self.begin(problem, (t, end), (&x, &slope), &tolerance));
-        let smallest =
-            |t: T| T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(end - start));
         let mut watch = Watch::new(seen(end - start));
         let place = |time, state, slope| Point { time, state, slope };
         loop {
@@ -267,7 +264,7 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                     problem.statistics.rejected += 1;
                     let tried = core::mem::replace(&mut problem.memory, memory);
                     let come = pace.refuse(problem, &steps, (&from, &trial), &missed);
-                    if !is_longer(pace.control.length, smallest(t)) {
+                    if !is_told(pace.control.length, (t, end - start)) {
                         let (here, way) = (place(t, x, slope), (length, end, &tolerance));
                         let rest = ends.rest(problem, &here, way, observer)?;
                         let jacobian = steps.place_of_jacobian(&from);
@@ -406,9 +403,9 @@ impl<M: Estimating> Adaptive<'_, M> {
     }
 }
 
-/// Whether a step is longer than another one, which one of NaN is not.
-fn is_longer(length: f64, other: f64) -> bool {
-    matches!(length.partial_cmp(&other), Some(Ordering::Greater))
+/// Whether the end of a step so long is told from its start, in a run over such a time; that of NaN is not.
+fn is_told<T: Real>(length: f64, (t, whole): (T, T)) -> bool {
+    length > T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(whole))
 }
 
 /// A step of this length, or up to the end where that is hardly farther; and whether it is the last.

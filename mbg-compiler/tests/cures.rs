@@ -78,7 +78,7 @@ fn components_are_told_that_fit_and_are_near() {
     assert_eq!(told(&scene(3, "PlanarRevolute")), "");
     assert_eq!(first_typed(&scene(6, "Hinge { axis: 2 }"))[0], "Revolute");
     assert_eq!(told(&scene(6, "Revolute { axis: 2 }")), "");
-    for far in ["PID { gain: 1.0 }", "Controller { gain: 1.0 }"] {
+    for far in ["Governor { gain: 1.0 }", "Autopilot { gain: 1.0 }"] {
         insta::allow_duplicates! {
             insta::assert_snapshot!(
                 first_help(&floating("", &format!("control: {far} (hull);"))),

@@ -26,7 +26,7 @@ pub(super) enum Walked<T, const N: usize> {
     Stays(Place<T, N>, Surfaces<T>),
 }
 
-/// At which thresholds a walk ends: at none unless it is told.
+/// At which thresholds a walk ends: at none unless it is told, but for those at which it comes to rest.
 pub(super) trait Ends<T, S, I: ?Sized, const N: usize, const M: usize, const P: usize>:
     Copy
 where
@@ -69,12 +69,12 @@ where
     /// Goes on to those at which the motion comes to rest within a step so long, and a tolerance.
     fn rest(
         self,
-        _problem: &mut Problem<'_, T, S, I, N, M, P>,
-        _here: &Point<T, N>,
-        _way: (f64, T, &Tolerance<N>),
-        _observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        here: &Point<T, N>,
+        way: (f64, T, &Tolerance<N>),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Option<Walked<T, N>>, Stopped> {
-        Ok(None)
+        problem.come_to_rest(here, way, observer)
     }
 }
 
@@ -88,6 +88,15 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
+    fn rest(
+        self,
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        _here: &Point<T, N>,
+        _way: (f64, T, &Tolerance<N>),
+        _observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Option<Walked<T, N>>, Stopped> {
+        Ok(None)
+    }
 }
 
 /// At those at which the motion stays.
@@ -117,16 +126,6 @@ where
     ) -> Option<Surfaces<T>> {
         let met = problem.next_to(here);
         met.filter(|met| problem.stays(here, met))
-    }
-
-    fn rest(
-        self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        here: &Point<T, N>,
-        way: (f64, T, &Tolerance<N>),
-        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Option<Walked<T, N>>, Stopped> {
-        problem.come_to_rest(here, way, observer)
     }
 }
 
@@ -161,16 +160,6 @@ where
         here: &Point<T, N>,
     ) -> Option<Surfaces<T>> {
         problem.next_to(here)
-    }
-
-    fn rest(
-        self,
-        problem: &mut Problem<'_, T, S, I, N, M, P>,
-        here: &Point<T, N>,
-        way: (f64, T, &Tolerance<N>),
-        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Option<Walked<T, N>>, Stopped> {
-        problem.come_to_rest(here, way, observer)
     }
 }
 

@@ -113,7 +113,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         stays.then_some(sliding)
     }
 
-    /// Those of some surfaces that are no farther from a state than errors may be, if the motion stays at them and laws do not jump there.
+    /// Those of some surfaces that are no farther from a state than errors may be, if the motion stays at them and laws do not
+    /// jump there.
     pub(in super::super) fn rest<const M: usize, const P: usize>(
         model: (&'a S, &'a I),
         times: (T, (T, T), f64),

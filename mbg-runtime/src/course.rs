@@ -7,6 +7,11 @@ use crate::step::seen;
 
 /// How much farther than a step the way from its start is looked at.
 pub(crate) const FARTHER: f64 = 1.25;
+/// What begins beside a threshold is nearer to it than this part of its way.
+const BESIDE: f64 = 1e-2;
+/// What hardly moves goes no more than this part of its way, and on by more than this part of its rate.
+const HELD: f64 = 0.25;
+const FAST: f64 = 0.5;
 
 /// How an argument of choices in the laws goes between two points, as [`System::courses`](crate::System::courses) tells it.
 #[derive(Clone, Copy, Debug)]
@@ -104,6 +109,29 @@ impl<T: Real> Course<'_, T> {
                 && ends.iter().all(|end| self.below(*end, *threshold) == side)
         };
         !self.is_choice || self.thresholds.iter().all(clear)
+    }
+
+    /// Whether the first point is beside a threshold at which choices change, nearer than a part of the way that the argument goes, or
+    /// was to go in so much time.
+    pub(crate) fn begins_beside(&self, lasting: T) -> bool {
+        let ([from, rate], to) = (self.from.map(seen), seen(self.to[0]));
+        let way = (rate * seen(lasting)).abs().max((to - from).abs());
+        let is_beside = |threshold: &T| {
+            let beyond = from - seen(*threshold);
+            let turns = match self.repeats {
+                true => whole_below(beyond + 0.5) as f64,
+                false => 0.0,
+            };
+            (beyond - turns).abs() <= BESIDE * way
+        };
+        self.is_choice && self.thresholds.iter().any(is_beside)
+    }
+
+    /// Whether the argument hardly moves from beside a threshold in so much time, though it was to, and goes on to.
+    pub(crate) fn is_held(&self, lasting: T) -> bool {
+        let ([from, rate], [to, later]) = (self.from.map(seen), self.to.map(seen));
+        let moved = (to - from) / seen(lasting);
+        moved.abs() < HELD * rate.abs() && later / rate > FAST && self.begins_beside(lasting)
     }
 
     /// At how many whole turns behind a threshold an argument meets it that goes from one place to another, both beyond it.

@@ -18,6 +18,14 @@ mbg! {
 }
 
 mbg! {
+    /// The same without a force, and without a threshold at which it may rest.
+    model Still {
+        1 v { I b { inertia: 2.0 } R r { effort: sqrt(f) } }
+        output y = v.f;
+    }
+}
+
+mbg! {
     /// A flux of a magnet, whose current a diode blocks at the start.
     model Blocked {
         param blocking = 1e9;
@@ -85,6 +93,19 @@ impl Law<2, 0> for Filling {
     fn slope<T: Real>(&self, x: &SVector<T, 2>, _: &SVector<T, 0>) -> SVector<T, 2> {
         let power = x[0] * x[0].abs().sqrt();
         SVector::from([T::from_f64(1.0), power - x[1]])
+    }
+}
+
+/// The same where the level stays.
+#[derive(Clone, Copy)]
+struct Resting;
+
+impl Law<2, 0> for Resting {
+    const STATES: &'static [Variable] = Filling::STATES;
+
+    fn slope<T: Real>(&self, x: &SVector<T, 2>, none: &SVector<T, 0>) -> SVector<T, 2> {
+        let slope = Filling.slope(x, none);
+        SVector::from([T::from_f64(0.0), slope[1]])
     }
 }
 
@@ -167,75 +188,61 @@ where
     )
 }
 
+/// What stays where a law has no slope gives no Jacobian at any time.
 #[test]
 fn a_jacobian_that_is_not_finite_is_told_as_such() {
-    let model = Throttled::new(ThrottledParameters::default()).unwrap();
-    for stopped in at_fixed_steps(ends(&model, [0.0])) {
+    let model = Still::new(StillParameters::default()).unwrap();
+    for (solver, end) in ends(&model, [0.0]) {
         assert_eq!(
-            stopped.to_string(),
-            "stopped at t = 0: the Jacobian is not finite: the derivative of `b.p` by `b.p`"
+            end.unwrap_err().to_string(),
+            "stopped at t = 0: the Jacobian is not finite: the derivative of `b.p` by `b.p`",
+            "{solver}"
         );
     }
     // By the names of row and column.
-    for stopped in at_fixed_steps(ends(&Written(Filling), [0.0, 0.0])) {
+    for (solver, end) in ends(&Written(Resting), [0.0, 0.0]) {
         let (of, by) = ("pipe", "level");
         let cause = Cause::Trouble(Trouble::JacobianNotFinite { of, by });
-        assert_eq!((stopped.time, stopped.cause), (0.0, cause));
+        let stopped = end.unwrap_err();
+        assert_eq!((stopped.time, stopped.cause), (0.0, cause), "{solver}");
     }
 }
 
-/// What divides by an infinite entry would let the state stand still.
+/// Where a law has no slope at the start alone, it is that of a little later, or of where a step ends.
 #[test]
-fn a_jacobian_that_is_infinite_is_told_too() {
-    let cause = Cause::Trouble(Trouble::JacobianNotFinite {
-        of: "level",
-        by: "level",
-    });
-    let one = at_fixed_steps(ends(&Written(Rising), [0.0]));
-    let two = at_fixed_steps(ends(&Written(Rising), [0.0, 0.5]));
-    for stopped in one.into_iter().chain(two) {
-        assert_eq!((stopped.time, stopped.cause), (0.0, cause));
+fn steps_go_on_where_a_jacobian_is_infinite() {
+    fn check<const N: usize, const P: usize>(
+        system: &impl System<f64, N, 0, P>,
+        start: [f64; N],
+        error: impl Fn(SVector<f64, N>) -> f64,
+    ) {
+        for (solver, end) in ends(system, start) {
+            let most = match solver {
+                _ if solver.starts_with("Adaptive") => 1e-5,
+                _ if solver.contains("Ros2") || solver.contains("Midpoint") => 5e-3,
+                _ => 5e-4,
+            };
+            let error = error(end.unwrap());
+            assert!(error.abs() < most, "{solver}: {error:e}");
+        }
     }
-}
-
-/// What methods at constant steps tell.
-fn at_fixed_steps<E: std::fmt::Debug>(
-    ends: Vec<(&'static str, Result<E, Stopped>)>,
-) -> Vec<Stopped> {
-    let fixed = ends
-        .into_iter()
-        .filter(|(name, _)| name.starts_with("Fixed"));
-    let stops: Vec<Stopped> = fixed.map(|(_, end)| end.unwrap_err()).collect();
-    assert_eq!(stops.len(), 7);
-    stops
-}
-
-/// Where errors are known it is that of a little later.
-#[test]
-fn adaptive_steps_go_on_where_a_jacobian_is_infinite() {
-    fn adaptive<const N: usize>(
-        ends: Vec<(&'static str, Result<SVector<f64, N>, Stopped>)>,
-    ) -> Vec<SVector<f64, N>> {
-        let adaptive = ends
-            .into_iter()
-            .filter(|(name, _)| name.starts_with("Adaptive"));
-        let ends: Vec<SVector<f64, N>> = adaptive.map(|(_, end)| end.unwrap()).collect();
-        assert_eq!(ends.len(), 5);
-        ends
-    }
-    let model = Throttled::new(ThrottledParameters::default()).unwrap();
     // With the root s of a level: t = -2 s - 2 ln(1 - s); the speed is half the momentum.
     let time = |level: f64| -2.0 * level.sqrt() - 2.0 * f64::ln_1p(-level.sqrt());
-    for end in adaptive(ends(&model, [0.0])) {
-        assert!((2.0 * time(end[0] / 2.0) - 1.0).abs() < 1e-5, "{end}");
-    }
-    for end in adaptive(ends(&Written(Rising), [0.0])) {
-        assert!((time(end[0]) - 1.0).abs() < 1e-5, "{end}");
-    }
-    for end in adaptive(ends(&Written(Rising), [0.0, 0.5])) {
-        assert!((time(end[0]) - 1.0).abs() < 1e-5, "{end}");
-        assert!((time(end[1]) - time(0.5) - 1.0).abs() < 1e-5, "{end}");
-    }
+    let model = Throttled::new(ThrottledParameters::default()).unwrap();
+    check(&model, [0.0], |end| 2.0 * time(end[0] / 2.0) - 1.0);
+    check(&Written(Rising), [0.0], |end| time(end[0]) - 1.0);
+    check(&Written(Rising), [0.0, 0.5], |end| {
+        let second = time(end[1]) - time(0.5) - 1.0;
+        (time(end[0]) - 1.0).abs().max(second.abs())
+    });
+    // The level is the time, and the pipe p by its rate t^(3/2) - p.
+    let pipe = (1..=2000).fold(0.0, |sum: f64, part| {
+        let time = (f64::from(part) - 0.5) / 2000.0;
+        sum + time * time.sqrt() * (time - 1.0).exp() / 2000.0
+    });
+    check(&Written(Filling), [0.0, 0.0], |end| {
+        (end[0] - 1.0).abs().max((end[1] - pipe).abs())
+    });
 }
 
 #[test]

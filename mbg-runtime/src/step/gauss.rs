@@ -278,7 +278,8 @@ where
             return false;
         };
         let scale = start.span.length * T::from_f64(A::TABLEAU.matrix[0][0]);
-        problem.factorise((start.span.start, &start.x), scale, (jacobian, factors));
+        let place = (start.span.start, &start.x);
+        problem.factorise((place, Some(start.span.length)), scale, (jacobian, factors));
         self.sizes.note(&start.x);
         let along = |slope: SVector<T, N>| slope.map(|slope| start.span.length * slope);
         let (mut before, mut last) = (f64::INFINITY, f64::INFINITY);

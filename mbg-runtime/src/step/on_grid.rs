@@ -281,7 +281,7 @@ where
 {
     let length = seen(from.span.length);
     let end = (from.span.end, from.x + change);
-    let passed = passed(problem, from, end);
+    let passed = problem.met(&(from.span.start, from.x), &end);
     let is_open = |number| !passed.contains(number);
     let line = line_to_threshold(problem, (from, whole), FARTHER * length, is_open);
     let [almost, beside] = ASTRAY;
@@ -291,49 +291,6 @@ where
         is_led_back(problem, (&start, &end), (least, is_open)).then(|| astray(from, whole))
     });
     met.filter(|met| seen(met.start.0) + met.ahead >= watched)
-}
-
-/// Numbers of arguments, but for very large ones.
-struct Numbers(u128);
-
-impl Numbers {
-    fn add(&mut self, number: usize) {
-        self.0 |= Self::bit(number);
-    }
-
-    const fn contains(&self, number: usize) -> bool {
-        self.0 & Self::bit(number) != 0
-    }
-
-    const fn bit(number: usize) -> u128 {
-        if number < 128 { 1 << number } else { 0 }
-    }
-}
-
-/// The arguments that a step has taken over a threshold.
-fn passed<T, S, I, const N: usize, const M: usize, const P: usize>(
-    problem: &Problem<'_, T, S, I, N, M, P>,
-    from: &Start<T, N>,
-    end: Place<T, N>,
-) -> Numbers
-where
-    T: Real,
-    S: System<T, N, M, P>,
-    I: Input<T, M> + ?Sized,
-{
-    let [first, last] = [(from.span.start, from.x), end].map(|(time, state)| Point {
-        time,
-        state,
-        slope: from.slope,
-    });
-    let (mut passed, mut number) = (Numbers(0), 0);
-    problem.courses(&first, &last, |course, lasting| {
-        if course.reached(lasting).is_some() {
-            passed.add(number);
-        }
-        number += 1;
-    });
-    passed
 }
 
 /// Whether an argument that is open has missed such a part of the way that it should have gone by its rates at both ends of a step.

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use nalgebra::SVector;
 
 use super::dense::{Polynomial, Step};
-use super::method::{Span, along};
+use super::method::{Span, Start, along};
 use super::problem::Problem;
 use super::thresholds::Point;
 use super::{Stopped, less, seen};
@@ -63,6 +63,33 @@ where
     ) -> Option<f64> {
         let [from, to] = straight(from, slope, T::from_f64(length));
         self.soonest(&from, &to, |course, lasting| course.within(lasting))
+    }
+
+    /// Whether a step begins beside a threshold, where a law may be a root.
+    pub(super) fn begins_beside(&self, start: &Start<T, N>) -> bool {
+        let Start { span, x, slope, .. } = start;
+        let [from, to] = straight(&(span.start, *x), slope, span.length);
+        let mut is_beside = false;
+        self.courses(&from, &to, |course, lasting| {
+            is_beside |= course.begins_beside(lasting);
+        });
+        is_beside
+    }
+
+    /// Whether an argument of choices hardly moves within a step that goes on as fast at its end.
+    pub(super) fn is_held(
+        &self,
+        start: &Start<T, N>,
+        (end, slope): (&SVector<T, N>, &SVector<T, N>),
+    ) -> bool {
+        let Start { span, x, .. } = start;
+        let ends = [(span.start, *x, start.slope), (span.end, *end, *slope)];
+        let [from, to] = ends.map(|(time, state, slope)| Point { time, state, slope });
+        let mut is_held = false;
+        self.courses(&from, &to, |course, lasting| {
+            is_held |= course.is_held(lasting);
+        });
+        is_held
     }
 
     pub(super) fn reached_with(

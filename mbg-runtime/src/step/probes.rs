@@ -232,7 +232,7 @@ where
         }
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         let mut factors = Shifted::empty();
-        self.factorise((t, x), length, (&mut jacobian, &mut factors));
+        self.factorise(((t, x), None), length, (&mut jacobian, &mut factors));
         !is_small(measure.norm(&factors.solved::<S, M, P>(defect)), LARGE)
     }
 }

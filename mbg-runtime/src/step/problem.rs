@@ -214,7 +214,7 @@ where
     /// ahead: the memory stays as it is.
     ///
     /// A law may have no slope at a state, as a root has none at zero: then it is that of where the motion is after so much time, if a
-    /// method knows by its errors how good that is.
+    /// method goes by it to find its stages alone, or knows by its errors how good that is.
     pub(super) fn jacobian(
         &mut self,
         (t, x): (T, &SVector<T, N>),
@@ -246,16 +246,16 @@ where
             .derivative_and_jacobian_into(t, x, &u, &mut memory, &mut derivative, jacobian);
     }
 
-    /// Writes the Jacobian, and factors of `I − scale ∂f/∂x`.
+    /// Writes the Jacobian at a place, or ahead of it, and factors of `I − scale ∂f/∂x`.
     #[inline(never)]
     pub(super) fn factorise(
         &mut self,
-        place: (T, &SVector<T, N>),
+        (place, ahead): ((T, &SVector<T, N>), Option<T>),
         scale: T,
         (jacobian, factors): (&mut SMatrix<T, N, N>, &mut Shifted<T, N>),
     ) {
         self.statistics.factorisations += 1;
-        self.jacobian(place, None, jacobian);
+        self.jacobian(place, ahead, jacobian);
         factors.factorise::<S, M, P>(T::from_f64(1.0), scale, jacobian);
     }
 

@@ -4,6 +4,7 @@ use nalgebra::SVector;
 
 use super::dense::Polynomial;
 use super::method::{Family, Span};
+use super::over::Place;
 use super::problem::Problem;
 use super::seen;
 use super::tolerance::Measure;
@@ -29,6 +30,28 @@ pub(super) struct Point<T, const N: usize> {
     pub(super) state: SVector<T, N>,
     /// The derivative of the state there.
     pub(super) slope: SVector<T, N>,
+}
+
+/// Numbers of arguments, but for very large ones.
+pub(super) struct Numbers(u128);
+
+impl Numbers {
+    fn add(&mut self, number: usize) {
+        self.0 |= Self::bit(number);
+    }
+
+    pub(super) const fn contains(&self, number: usize) -> bool {
+        self.0 & Self::bit(number) != 0
+    }
+
+    /// Whether any number is in both.
+    pub(super) const fn meets(&self, others: &Self) -> bool {
+        self.0 & others.0 != 0
+    }
+
+    const fn bit(number: usize) -> u128 {
+        if number < 128 { 1 << number } else { 0 }
+    }
 }
 
 /// A step with what is known of it: its dense output, and how its errors are measured.
@@ -84,6 +107,23 @@ where
             });
         }
         count
+    }
+
+    /// The arguments of choices that go over a threshold from one place to another.
+    pub(super) fn met(&self, from: &Place<T, N>, to: &Place<T, N>) -> Numbers {
+        let [from, to] = [from, to].map(|place| Point {
+            time: place.0,
+            state: place.1,
+            slope: SVector::from_element(T::from_f64(0.0)),
+        });
+        let (mut met, mut number) = (Numbers(0), 0);
+        self.courses(&from, &to, |course, lasting| {
+            if course.reached(lasting).is_some() {
+                met.add(number);
+            }
+            number += 1;
+        });
+        met
     }
 
     fn inputs_at(&self, points: [&Point<T, N>; 2]) -> [SVector<T, M>; 2] {

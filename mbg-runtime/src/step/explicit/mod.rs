@@ -11,7 +11,6 @@ use core::ops::Range;
 use nalgebra::SVector;
 
 use super::dense::Polynomial;
-use super::jumps::least_jump;
 use super::method::{
     Estimating, Family, Method, Start, Stepper, Trial, ahead, combination, each_stage, row,
 };
@@ -134,9 +133,6 @@ pub trait Tabulated<const S: usize, const F: usize>: Copy {
     const TABLEAU: Tableau<S, F>;
 }
 
-/// So many times as far apart as those of a step slopes of stages for the dense output may be beyond these.
-const FARTHER: f64 = 1.0;
-
 /// The slopes of the last step.
 pub struct Slopes<A, T, const N: usize, const S: usize, const F: usize> {
     slopes: [SVector<T, N>; F],
@@ -183,26 +179,28 @@ where
             self.slopes[STAGE] = last;
         });
     }
-}
 
-impl<A, T: Real, const N: usize, const S: usize, const F: usize> Slopes<A, T, N, S, F> {
-    /// Whether a stage for the dense output alone was beyond a threshold, which no error tells: its slope is far from those of the
-    /// step.
-    fn is_astray(&self) -> bool {
-        let (own, further) = self.slopes.split_at((S + 1).min(F));
-        (0..N).any(|state| {
-            let slopes = own.iter().map(|slope| seen(slope[state]));
-            let (least, most) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |known, slope| {
-                (known.0.min(slope), known.1.max(slope))
-            });
-            // What differs by rounding alone is astray nowhere.
-            let farther =
-                FARTHER * (most - least) + least_jump::<T>() * least.abs().max(most.abs());
-            further.iter().any(|slope| {
-                let slope = seen(slope[state]);
-                slope < least - farther || slope > most + farther
-            })
-        })
+    /// Whether a stage for the dense output alone was beyond a threshold that the step is not, which no error tells.
+    fn is_astray<Y, I, const M: usize, const P: usize>(
+        &self,
+        problem: &Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        end: &SVector<T, N>,
+    ) -> bool
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let ends = [(start.span.start, start.x), (start.span.end, *end)];
+        let mut is_astray = false;
+        each_stage!(STAGE in S + 1..F => {
+            let (base, factor) = self.base::<STAGE>(start);
+            let x = ahead(&base, factor, &self.slopes[STAGE - 1]);
+            let stage = (start.span.at(T::from_f64(A::TABLEAU.nodes[STAGE])), x);
+            let [before, behind] = ends.each_ref().map(|end| problem.met(end, &stage));
+            is_astray |= before.meets(&behind);
+        });
+        is_astray
     }
 }
 
@@ -284,7 +282,7 @@ where
         let scaled = |slope: SVector<T, N>| slope.map(|slope| length * slope);
         let mut polynomial =
             Polynomial::cubic((&start.x, scaled(start.slope)), (end, scaled(last)));
-        if Y::HAS_COURSES && self.is_astray() {
+        if Y::HAS_COURSES && self.is_astray(problem, start, end) {
             return polynomial;
         }
         let higher = polynomial.coefficients.iter_mut().skip(3);

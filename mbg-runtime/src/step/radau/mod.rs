@@ -11,7 +11,7 @@ use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::linear::{Complex, Element};
-use super::method::{Estimating, Family, Method, Start, Stepper, Trial, combination};
+use super::method::{Estimating, Family, Method, Start, Stepper, Trial, along, combination};
 use super::problem::Problem;
 use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
@@ -102,6 +102,8 @@ pub trait Tabulated<const S: usize, const PAIRS: usize>: Copy {
 const FAST: f64 = 1e-3;
 /// Steps may become so long that a sweep reduces the error by this; the factor is about in proportion to the length.
 const SLOW: f64 = 0.2;
+/// A step without a tolerance ends where the slope there leads to, but for such a part of what states have been.
+const ASTRAY: f64 = 1e-3;
 
 /// The length of a step and the coefficients of its polynomial.
 type Taken<T, const N: usize, const S: usize> = (T, [SVector<T, N>; S]);
@@ -193,7 +195,7 @@ where
             self.is_second = !self.is_second;
         }
         let mut stages = self.predict(length);
-        self.factorise(problem, (start, &stages), tolerance.is_some());
+        self.factorise(problem, (start, &stages));
         let mut newton =
             Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, &self.factors);
         let found = match tolerance {
@@ -211,12 +213,12 @@ where
             newton.error(&stages, tolerance, self.rejected || self.last().is_none())
         });
         let mut slope = None;
-        if let Some(tolerance) = tolerance
-            && error <= 1.0
-        {
+        if error <= 1.0 && (tolerance.is_some() || newton.begins_beside()) {
             let end = newton.slope_at_end(&stages);
-            if newton.gets_nowhere(&stages, (&end, &self.jacobian), tolerance) {
-                return self.refuse(&stages, FAR);
+            let by_size = (self.sizes.tolerance(ASTRAY), f64::INFINITY);
+            let (tolerance, left) = tolerance.map_or(by_size, |given| (*given, FAR));
+            if newton.gets_nowhere(&stages, (&end, &self.jacobian), &tolerance) {
+                return self.refuse(&stages, left);
             }
             slope = Some(end);
         }
@@ -273,16 +275,18 @@ where
         &mut self,
         problem: &mut Problem<'_, T, Y, I, N, M, P>,
         (start, stages): (&Start<T, N>, &[SVector<T, N>; S]),
-        is_controlled: bool,
     ) where
         Y: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
         let span = &start.span;
         if self.theta > FAST {
-            let (t, x) = middle::<A, _, _, _, _>(start, stages);
-            let ahead = is_controlled.then_some(span.length);
-            problem.jacobian((t, &x), ahead, &mut self.jacobian);
+            let (t, mut x) = middle::<A, _, _, _, _>(start, stages);
+            if start.is_part && start.again && problem.begins_beside(start) {
+                // A root next to zero is far steeper there than anywhere on the way.
+                x = along(&start.x, t - span.start, &start.slope);
+            }
+            problem.jacobian((t, &x), Some(span.length), &mut self.jacobian);
             self.factors.length = None;
         }
         if self.factors.length == Some(span.length) {

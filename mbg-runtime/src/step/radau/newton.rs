@@ -255,6 +255,11 @@ where
         stages
     }
 
+    /// Whether the step begins beside a threshold.
+    pub(super) fn begins_beside(&self) -> bool {
+        self.problem.begins_beside(self.start)
+    }
+
     /// The slope of the model where the step ends.
     pub(super) fn slope_at_end(&mut self, stages: &[SVector<T, N>; S]) -> SVector<T, N> {
         let Start { span, x, .. } = self.start;

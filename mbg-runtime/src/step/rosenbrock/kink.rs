@@ -15,6 +15,8 @@ use crate::{Input, Real, System};
 const SWEEPS: u32 = 8;
 /// A state is found when a sweep moves it by so small a part of what states have been.
 const FOUND: f64 = 1e-6;
+/// What a sweep leaves of the equations is less than this part of what it found.
+const SHRINKS: f64 = 0.5;
 /// One step and two of half its length may be apart by so large a part of it.
 const APART: f64 = 1e-3;
 
@@ -39,7 +41,10 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
         for half in start.span.halves() {
             end = self.euler(problem, &half, &end)?;
         }
-        let apart = self.sizes.before::<T>().norm(&(end - whole));
+        let apart = self
+            .sizes
+            .between(&start.x, &(end - start.x))
+            .norm(&(end - whole));
         (apart < APART).then(|| end - start.x)
     }
 
@@ -58,20 +63,25 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
         let inverse = one / span.length;
         let memory = problem.memory;
         let mut end = *x;
-        for _ in 0..SWEEPS {
+        let [mut moved, mut found] = [f64::INFINITY; 2];
+        for _ in 0..=SWEEPS {
             // Loops go on from the start, not from where a sweep strayed to.
             problem.memory = memory;
             let slope = problem.slope(span.end, &end);
-            problem.jacobian((span.end, &end), None, &mut self.jacobian);
+            let lacking = slope.zip_zip_map(&end, x, |slope, end, x| slope - inverse * (end - x));
+            let measure = self.sizes.between(x, &(end - x));
+            let left = measure.norm(&lacking.map(|lacking| span.length * lacking));
+            // Where the slope is far steeper than what follows sweeps are short that leave as much as they found.
+            if moved < FOUND && (left < FOUND || left < SHRINKS * found) {
+                return Some(end);
+            }
+            problem.jacobian((span.end, &end), Some(span.length), &mut self.jacobian);
             problem.statistics.factorisations += 1;
             self.factors
                 .factorise::<Y, M, P>(inverse, one, &self.jacobian);
-            let lacking = slope.zip_zip_map(&end, x, |slope, end, x| slope - inverse * (end - x));
             let change = self.factors.solved::<Y, M, P>(&lacking);
             end += change;
-            if self.sizes.before::<T>().norm(&change) < FOUND {
-                return Some(end);
-            }
+            (moved, found) = (measure.norm(&change), left);
         }
         None
     }

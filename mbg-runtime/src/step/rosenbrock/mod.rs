@@ -12,7 +12,7 @@ use super::control::Rule;
 use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{
-    Estimating, Family, Method, Start, Stepper, Trial, combination, continued, of_stage, row,
+    Estimating, Family, Method, Start, Stepper, Trial, along, combination, continued, of_stage, row,
 };
 use super::problem::Problem;
 use super::tolerance::{Sizes, Tolerance};
@@ -165,14 +165,53 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
         let slope = problem.slope(time, &end);
         let goes_on = |state: &usize| is_held(*state) && is_fast(*state, &slope);
         let is_nowhere = (0..N).any(|state| goes_on(&state)) && {
-            let part = T::from_f64(BESIDE);
-            let ahead = self.factors.solved::<Y, M, P>(&slope).map(|way| part * way);
-            let change = problem.slope(time, &(end + ahead)) - slope;
-            let left = slope.zip_map(&change, |slope, change| slope + change / part);
+            let left = self.slope_ahead(problem, (time, &end), &slope);
             (0..N).filter(goes_on).any(|state| is_fast(state, &left))
         };
         problem.memory = memory;
         is_nowhere
+    }
+
+    /// The slope where a state is led to that goes so fast, by what it is a little ahead.
+    fn slope_ahead<Y, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        (time, x): (T, &SVector<T, N>),
+        slope: &SVector<T, N>,
+    ) -> SVector<T, N>
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        let part = T::from_f64(BESIDE);
+        let way = self.factors.solved::<Y, M, P>(slope);
+        let change = problem.slope(time, &along(x, part, &way)) - slope;
+        slope.zip_map(&change, |slope, change| slope + change / part)
+    }
+
+    /// Whether an argument gets nowhere from beside a threshold, where a law may be a root.
+    fn is_held<Y, I, const M: usize, const P: usize>(
+        &self,
+        problem: &mut Problem<'_, T, Y, I, N, M, P>,
+        start: &Start<T, N>,
+        change: &SVector<T, N>,
+    ) -> bool
+    where
+        Y: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        if !Y::HAS_COURSES || !problem.begins_beside(start) {
+            return false;
+        }
+        let memory = problem.memory;
+        let (time, end) = (start.span.end, start.x + change);
+        let slope = problem.slope(time, &end);
+        let is_held = problem.is_held(start, (&end, &slope)) && {
+            let left = self.slope_ahead(problem, (time, &end), &slope);
+            problem.is_held(start, (&end, &left))
+        };
+        problem.memory = memory;
+        is_held
     }
 
     /// What earlier stages add to the state and to the slope of a stage.
@@ -287,20 +326,19 @@ where
                 let error = combination(const { &A::TABLEAU.error }, &self.stages);
                 let measure = tolerance.between(x, &change);
                 let error = measure.norm(&error);
-                match error <= 1.0 && self.gets_nowhere(problem, start, &change, &measure.errors())
-                {
-                    true => f64::INFINITY,
-                    false => error,
-                }
+                let gets_nowhere = error <= 1.0
+                    && (self.gets_nowhere(problem, start, &change, &measure.errors())
+                        || self.is_held(problem, start, &change));
+                if gets_nowhere { f64::INFINITY } else { error }
             }
-            None => {
-                let across = self.is_lost(start).then(|| self.across(problem, start));
-                change = across.flatten().unwrap_or(change);
-                match across {
-                    Some(None) => f64::INFINITY,
-                    _ => 0.0,
+            None => match self.is_lost(start) || self.is_held(problem, start, &change) {
+                true => {
+                    let across = self.across(problem, start);
+                    change = across.unwrap_or(change);
+                    across.map_or(f64::INFINITY, |_| 0.0)
                 }
-            }
+                false => 0.0,
+            },
         };
         Trial {
             change,

@@ -271,13 +271,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let (mut span, mut least) = (Span::of_nothing(), [0.0; MOST]);
         for (place, least) in least.iter_mut().enumerate().take(self.surfaces.count()) {
             let (mut alone, mut rate) = (1.0, seen(rates[place]));
-            if let Some(unit) = unit(&gradients[place]) {
-                let rest = span.beside(&unit);
-                if span.add::<T>(&unit) {
-                    // What is almost led along others moves states far where it is moved a little.
-                    alone = rest.norm();
-                    rate -= gradients[place].map(seen).norm() * (unit - rest).dot(&slope);
-                }
+            if let Some(unit) = unit(&gradients[place])
+                && let Some(rest) = span.add::<T>(&unit)
+            {
+                // What is almost led along others moves states far where it is moved a little.
+                alone = rest.norm();
+                rate -= gradients[place].map(seen).norm() * (unit - rest).dot(&slope);
             }
             let near = (NEAR / T::SINGULAR * alone).max(1.0) * seen(aside[place]);
             *least = near + moment * rate.abs();
@@ -355,7 +354,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                     apart: BESIDE * (1.0 + GROWS * differs(&units[leader]) / (ASIDE * T::EPSILON)),
                 };
                 twins.add(*surface);
-            } else if span.add::<T>(&unit) {
+            } else if span.add::<T>(&unit).is_some() {
                 free.add(*surface);
             } else {
                 bound.add(*surface);
@@ -482,11 +481,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let (gradients, mut span) = (self.gradients.get(), Span::of_nothing());
         let least: Each<T> = core::array::from_fn(|place| {
             let unit = unit(&gradients[place]).filter(|_| place < self.free);
-            let alone = unit.map_or(1.0, |unit| {
-                let rest = span.beside(&unit).norm();
-                span.add::<T>(&unit);
-                rest
-            });
+            let rest = unit.and_then(|unit| span.add::<T>(&unit));
+            let alone = rest.map_or(1.0, |rest| rest.norm());
             T::from_f64(BESIDE * reach * alone) * aside[place]
         });
         let stays = sorted
@@ -576,17 +572,17 @@ impl<const N: usize> Span<N> {
         self.beside(unit).norm() < DEPENDENT * T::EPSILON
     }
 
-    /// Adds a unit; whether it was beside it.
-    fn add<T: Real>(&mut self, unit: &SVector<f64, N>) -> bool {
+    /// Adds a unit, with what of it was beside it, if anything was.
+    fn add<T: Real>(&mut self, unit: &SVector<f64, N>) -> Option<SVector<f64, N>> {
         if self.has::<T>(unit) {
-            return false;
+            return None;
         }
         let rest = self.beside(unit);
         if let Some(next) = self.basis.get_mut(self.count) {
             *next = rest / rest.norm();
             self.count += 1;
         }
-        true
+        Some(rest)
     }
 }
 

@@ -302,7 +302,14 @@ impl Reducer<'_> {
             .scalars
             .equations
             .iter()
-            .map(|equation| equation.terms.keys().copied().collect())
+            .map(|equation| {
+                equation
+                    .terms
+                    .keys()
+                    .chain(&equation.signals)
+                    .copied()
+                    .collect()
+            })
             .collect();
         let unknown_of = matching::of_all_equations(&incidence, self.scalars.unknowns)?;
         let mut containing = vec![Vec::new(); self.scalars.unknowns];
@@ -644,7 +651,7 @@ impl Reducer<'_> {
     }
 
     /// Efforts that follow from the states alone and divide by nothing that varies, each after those from which it
-    /// follows. Others, such as the moment between concentric hinges, whose axes may come to lie in one plane, are
+    /// follows; an effort that its law gives by iteration is among them. Others, such as the moment between concentric hinges, whose axes may come to lie in one plane, are
     /// eliminated with the rates that they belong to: so what is divided by are the inertias of the mechanism. Where
     /// loops are closed, all that follow from the states are known: what is left there has pivots of its own.
     fn known_beforehand(
@@ -665,8 +672,9 @@ impl Reducer<'_> {
         loop {
             let is_ready = |(unknown, equation): &&(usize, &Equation)| {
                 let mut others = equation.terms.keys().chain(&equation.signals);
+                let divisor = equation.terms.get(unknown);
                 open.contains(unknown)
-                    && self.pool.rate(equation.terms[unknown]) != Rate::Varying
+                    && divisor.is_none_or(|it| self.pool.rate(*it) != Rate::Varying)
                     && others.all(|other| other == unknown || !open.contains(other))
             };
             let ready: Vec<usize> = efforts.iter().filter(is_ready).map(|it| it.0).collect();

@@ -164,6 +164,24 @@ mbg! {
         output rates[3] = [engine.f, shaft.f, load.f];
         output current = store.f;
     }
+
+    /// A condenser microphone at a voltage: its charge follows from that, and the way of its plate is a state.
+    #[derivative]
+    pub(crate) model Microphone {
+        param field = 0.4;
+        param gap: m = 3.0;
+        1 plate {
+            I membrane { inertia: 2.0 }
+            R air { resistance: 0.5 }
+        }
+        0 condenser[2] { C plates { energy: powi(q[0], 2) * (gap + q[1] * q[1]) / (2 * field) } }
+        Se supply { effort: 4.0 + sin(2.0 * t) } -> condenser[0];
+        plate -> condenser[1];
+        output speed = plate.f;
+        output charge = plates.q[0];
+        output way = plates.q[1];
+        output current = supply.f;
+    }
 }
 
 /// An audit of a model, with what else is to hold at each state.
@@ -282,6 +300,28 @@ fn what_a_law_gives_by_iteration_is_imposed_on_no_storage() {
     });
     let model = Slipping::new(SlippingParameters::default()).unwrap();
     assert!(imbalance(&model, &Constant(SVector::zeros()), 1e-3, 2000) < 1e-11);
+}
+
+#[test]
+fn of_a_law_that_is_linear_in_what_is_lost_alone_the_rest_stays_a_state() {
+    audited!(Microphone, MicrophoneParameters, |probe: &Probe<
+        _,
+        2,
+        0,
+    >| {
+        let [speed, charge, way, current] = probe.outputs().into();
+        let (sine, cosine) = (2.0 * probe.time).sin_cos();
+        let (voltage, change) = (4.0 + sine, 2.0 * cosine);
+        let gap = 3.0 + way.value * way.value;
+        near(charge.value, 0.4 * voltage / gap, EXACT);
+        near(way.slope, speed.value, EXACT);
+        let force = charge.value * charge.value * way.value / 0.4;
+        near(speed.slope, (-force - 0.5 * speed.value) / 2.0, EXACT);
+        let opening = 2.0 * way.value * speed.value;
+        let expected = 0.4 * (change / gap - voltage * opening / (gap * gap));
+        near(current.value, expected, EXACT);
+        near(charge.slope, expected, EXACT);
+    });
 }
 
 /// The matrix of the multiports, and the part of it that belongs to x and y, or x and z.

@@ -3,7 +3,71 @@
 
 mod told;
 
-use told::told;
+use told::{diagnose, told, typed};
+
+fn beside_a_mass(statements: &str) -> String {
+    format!("model M {{ 1 a {{ I m {{ inertia: 1.0 }} }} {statements} }}")
+}
+
+#[test]
+fn elements_with_a_colon_and_bonds_with_a_stroke_are_told() {
+    let in_chain = |element: &str| beside_a_mass(&format!("a -> {element} {{ resistance: 2.0 }};"));
+    let written = typed(&in_chain("R: b")).remove(0);
+    assert_eq!(written, "R b");
+    assert_eq!(told(&in_chain(&written)), "");
+    for bond in ["a ->| b", "a |-> b"] {
+        let text =
+            |bond: &str| beside_a_mass(&format!("1 b {{ R r {{ resistance: 2.0 }} }} {bond};"));
+        let written = typed(&text(bond)).remove(0);
+        assert_eq!(told(&text(&written)), "", "{bond}");
+    }
+}
+
+#[test]
+fn what_bonds_do_not_share_is_read_at_an_element() {
+    let node = |read: &str| {
+        format!(
+            "model M {{ 0 n {{ Se s {{ effort: 1.0 }} }} 1 a {{ I m {{ inertia: 1.0 }} }} n -> a; output y = {read}; }}"
+        )
+    };
+    for (common, own) in [("n.f", "s.f"), ("a.e", "m.e")] {
+        assert_eq!(typed(&node(common)), [own]);
+        assert_eq!(told(&node(own)), "");
+    }
+}
+
+/// The shapes of modes of a beam at one place of it.
+#[test]
+fn a_row_of_a_matrix_is_told_where_a_vector_stands_in_brackets() {
+    let beam = |matrix: &str| {
+        format!(
+            "model M {{ let shapes = [0.5, 0.8, 0.3]; 1 modes[3] {{ I m {{ inertia: 1.0 }} }} 1 place {{ R r {{ resistance: 2.0 }} }}
+             modes -> TF t {{ flow: {matrix} }} -> place; }}"
+        )
+    };
+    let written = typed(&beam("[shapes]")).pop().unwrap();
+    assert_eq!(written, "transpose(shapes)");
+    assert_eq!(told(&beam(&written)), "");
+}
+
+/// Coordinates move masses through a matrix that has no inverse: with one stroke for all of a bond nothing gives the rates.
+#[test]
+fn dependent_masses_behind_a_matrix_are_told_one_stroke_per_component() {
+    let text = |causality: &str| {
+        format!(
+            "#[derivative] model M {{ {causality} 1 rates[2] coordinate; integral ways[2] = rates.f;
+             1 c[3] {{ I m {{ inertia: diag(2.0, 1.5, 1.0) }} }} rates.x -> C k {{ stiffness: 4.0 }};
+             rates -> MTF j {{ flow: [[cos(ways[0]), ways[1]], [sin(ways[0]), 1.0], [0.5, ways[0]]] }} -> c; }}"
+        )
+    };
+    let report = diagnose(&text("")).list()[0].clone();
+    assert!(
+        report.helps[0].contains("`causality componentwise;`"),
+        "{:?}",
+        report.helps
+    );
+    assert_eq!(told(&text("causality componentwise;")), "");
+}
 
 /// A dependence elsewhere takes nothing from a law that is solved by iteration.
 #[test]

@@ -15,7 +15,7 @@ use super::own::{OWN, Own, OwnPath, compared};
 use super::turns::Turns;
 use crate::codes;
 use crate::diagnostics::error;
-use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
+use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate, Symbol};
 use crate::syntax::words::is_two_port;
 
@@ -471,14 +471,12 @@ impl Lookup<'_, '_> {
                 Place::Junction(id),
                 range,
             ))),
-            ("e", JunctionKind::One) => Some(fail(
-                name.span(),
-                "a 1-junction has no common effort; read it at an element",
-            )),
-            ("f", JunctionKind::Zero) => Some(fail(
-                name.span(),
-                "a 0-junction has no common flow; read it at an element",
-            )),
+            ("e", JunctionKind::One) => {
+                Some(self.no_common(id, name, "a 1-junction has no common effort"))
+            }
+            ("f", JunctionKind::Zero) => {
+                Some(self.no_common(id, name, "a 0-junction has no common flow"))
+            }
             (_, kind) => {
                 let known = match kind {
                     JunctionKind::Zero => "`e`",
@@ -487,6 +485,22 @@ impl Lookup<'_, '_> {
                 Some(no_variable(&self.graph.junctions[id.0].name, name, known))
             }
         }
+    }
+
+    /// Where to read what the bonds of a junction do not share: at its elements.
+    fn no_common(&self, id: JunctionId, name: &Ident, message: &str) -> Result<Value> {
+        let message = format!("{message}; read it at an element");
+        let report = error(codes::EXPRESSION, name.span(), message);
+        let mut elements = self.graph.across(id).filter_map(|end| match end {
+            End::OnePort(element) => Some(&self.graph.elements[element.0].name),
+            _ => None,
+        });
+        Err(Box::new(match elements.next() {
+            Some(first) => report.help(format!(
+                "write `{first}.{name}`, or that of another element there"
+            )),
+            None => report,
+        }))
     }
 
     pub(super) fn signals(

@@ -17,6 +17,9 @@ use crate::diagnostics::Diagnostic;
 /// What may stand at either end of an arrow.
 const NODE: &str = "a junction, a port or an element";
 
+/// What to type for `a ->| b`, with the bar of a causal stroke.
+const STROKES: &str = "strokes are found while compiling: a bond is written `a -> b`";
+
 /// Reads `a -> R x { … } -> b;`, given the attributes before it.
 pub(super) fn chain(
     cursor: &mut Cursor,
@@ -28,6 +31,9 @@ pub(super) fn chain(
     let mut arrows = Vec::new();
     while let Some(arrow) = cursor.take_arrow() {
         arrows.push(arrow);
+        if cursor.punct(0, '|') {
+            return Err(Box::new((*cursor.expected(NODE)).help(STROKES)));
+        }
         let derivative = Attributes::read(cursor, sink)?.derivative;
         if let Some(help) = component_between(cursor, nodes.last()) {
             let wanted = format!("{NODE} after `->`");
@@ -63,7 +69,8 @@ fn node(
     what: &str,
     sink: &mut Sink<'_>,
 ) -> Parsed<ChainNode> {
-    let named = cursor.ident(1).is_some() || cursor.group(1, Delimiter::Brace).is_some();
+    let behind = usize::from(cursor.punct(1, ':'));
+    let named = cursor.ident(1 + behind).is_some() || cursor.group(1, Delimiter::Brace).is_some();
     if let Some(kind) = kind(cursor, 0)
         && named
     {
@@ -149,6 +156,7 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
     let wanted = format!("`->` after {}", cursor.previous());
     let found = cursor.found();
     let error = match found.as_str() {
+        "`|`" => (*cursor.expected(&wanted)).help(STROKES),
         "`=>`" | "`-`" => (*cursor.expected(&wanted)).help("a bond is written `a -> b`"),
         "`<-`" | "`<`" => (*cursor.expected(&wanted))
             .help("a bond points where its power is positive: write `b -> a`"),

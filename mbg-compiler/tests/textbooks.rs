@@ -24,6 +24,49 @@ fn elements_with_a_colon_and_bonds_with_a_stroke_are_told() {
 }
 
 #[test]
+fn a_stiffness_in_the_place_of_a_compliance_is_told_by_its_unit() {
+    let spring = |law: &str| {
+        format!(
+            "model M {{ param k: N/m = 1.0; param b: N*s/m = 2.0; param m: kg = 1.0; 1 a {{ I body {{ inertia: m }} {law} }} }}"
+        )
+    };
+    for (element, name, taken, meant) in [
+        ("C", "spring", "compliance: k", "stiffness: k"),
+        ("R", "damper", "conductance: b", "resistance: b"),
+    ] {
+        let other = |law: &str| spring(&format!("{element} {name} {{ {law} }}"));
+        let written = typed(&other(taken)).pop().unwrap();
+        assert_eq!(written, meant);
+        assert_eq!(told(&other(&written)), "");
+    }
+    // A mass is neither.
+    let mass = diagnose(&spring("C spring { compliance: m }")).list()[0].clone();
+    assert!(mass.helps.is_empty(), "{:?}", mass.helps);
+}
+
+/// `int`, `resint` and `ddt` are functions in 20-sim.
+#[test]
+fn functions_of_simulators_elements_without_names_and_strokes_of_elements_are_told() {
+    let pushed = |effort: &str| beside_a_mass(&format!("a -> Se s {{ effort: {effort} }};"));
+    for function in ["int(a.f, 0.5)", "resint(a.f, 0.5)"] {
+        let written = typed(&pushed(function));
+        let [integral, name] = &written[..] else {
+            panic!("{written:?}")
+        };
+        assert_eq!(integral, "integral name = a.f, initial: 0.5;");
+        let declared = beside_a_mass(&format!("{integral} Se s {{ effort: {name} }} -> a;"));
+        assert_eq!(told(&declared), "");
+    }
+    assert!(told(&pushed("dt(a.f)")).contains("laws take no derivatives"));
+    let text = |element: &str| beside_a_mass(&format!("a -> {element};"));
+    let written = typed(&text("R { resistance: 2.0 }")).remove(0);
+    let named = written.replace('…', "resistance: 2.0");
+    assert_eq!(told(&text(&named)), "");
+    let stroke = text("R r { resistance: 2.0, causality: resistive }");
+    assert!(told(&stroke).contains("strokes are found while compiling"));
+}
+
+#[test]
 fn what_bonds_do_not_share_is_read_at_an_element() {
     let node = |read: &str| {
         format!(

@@ -156,6 +156,7 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         codes::RECTANGULAR_INVERSE => imposing(graph, &elements),
         _ => None,
     };
+    let behind_source = usize::from(imposed.is_some());
     // Beside a source nothing can give what it imposes.
     let end = without_source(graph, conflict).or(end);
     let place = end.as_ref().map_or(place, |end| graph.end_name(end));
@@ -179,7 +180,7 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         helps.push(COMPONENTWISE.to_owned());
     }
     if outlook.is_acceptable() && accepts_dependence(graph) {
-        helps.insert(0, COMPONENTWISE.to_owned());
+        helps.insert(behind_source, COMPONENTWISE.to_owned());
     }
     if explain::blocks_axes(graph, &elements) {
         helps.push(JACOBIAN.to_owned());

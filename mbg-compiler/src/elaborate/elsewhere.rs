@@ -273,6 +273,13 @@ pub(super) fn other_source(
     ))
 }
 
+/// What to type for the causality of an element, which is not chosen here.
+pub(super) fn stroke(word: &Ident) -> Option<String> {
+    (word == "causality").then(|| {
+        "strokes are found while compiling; `#[derivative]` before a storage lets it follow from others".to_owned()
+    })
+}
+
 /// What to type for the start of a storage that stands behind a word of another name.
 pub(super) fn start(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
     here(STARTS, kind, word, value)
@@ -381,8 +388,11 @@ const OUTSIDE: &[&str] = &[
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     match (word, arguments) {
         ("powf", [base, exponent]) => return Some(power(base, exponent)),
-        ("der" | "ddt" | "derivative", [of]) => return Some(rate(of)),
-        ("integral" | "integrate" | "int", [of]) => return Some(integral(of)),
+        ("der" | "ddt" | "dt" | "derivative", [of]) => return Some(rate(of)),
+        ("integral" | "integrate" | "int" | "resint", [of]) => return Some(integral(of, None)),
+        ("integral" | "integrate" | "int" | "resint", [of, initial]) => {
+            return Some(integral(of, Some(initial)));
+        }
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
         ("step" | "heaviside" | "Heaviside", [time, at]) => return Some(step_at(time, at)),
         ("delay", [value, by]) => return Some(delay(value, by)),
@@ -476,9 +486,11 @@ fn is_flow_or_effort(read: &Expr) -> bool {
 }
 
 /// What to declare where an integral is meant.
-fn integral(of: &Expr) -> String {
+fn integral(of: &Expr, initial: Option<&Expr>) -> String {
     let rate = dump::expression(of);
-    format!("an integral is declared: write `integral name = {rate};`, and read `name`")
+    let initial = initial.map(dump::expression);
+    let initial = initial.map_or_else(String::new, |initial| format!(", initial: {initial}"));
+    format!("an integral is declared: write `integral name = {rate}{initial};`, and read `name`")
 }
 
 /// Where the energy of a whole model and its rate are found.

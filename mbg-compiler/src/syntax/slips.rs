@@ -56,6 +56,14 @@ pub(super) fn without_colon(cursor: &Cursor, kind: &str) -> Option<String> {
     Some(format!("write `{kind} {name}`, without the colon"))
 }
 
+/// What to type for `R { … }`, which lacks a name.
+pub(super) fn unnamed(cursor: &Cursor, kind: &str) -> Option<String> {
+    cursor.group(0, Delimiter::Brace)?;
+    Some(format!(
+        "each element has a name: write `{kind} name {{ … }}`"
+    ))
+}
+
 /// What to type for `R[2] valve { … }`, with the size behind the kind.
 pub(super) fn size_first(cursor: &Cursor, kind: &str) -> Option<String> {
     cursor.group(0, Delimiter::Bracket)?;

@@ -169,7 +169,7 @@ mbg! {
     #[derivative]
     pub(crate) model Microphone {
         param field = 0.4;
-        param gap: m = 3.0;
+        param gap = 3.0;
         1 plate {
             I membrane { inertia: 2.0 }
             R air { resistance: 0.5 }

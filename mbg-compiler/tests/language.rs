@@ -423,7 +423,7 @@ model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }}
 fn mistakes_in_loops_are_told() {
     insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } a.x -> lings[0].b;"), @"
     2:48 `lings[0].b` is not declared [MBG0203]
-      help: junctions here are `a`
+      help: did you mean `links`?
     ");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } links[2].b -> a.x;"), @"2:41 `links` runs over 0..2, there is no `links[2]` [MBG0203]");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = links[k-1].v; }"), @"

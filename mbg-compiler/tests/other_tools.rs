@@ -169,7 +169,7 @@ fn elements_of_other_tools_are_told_as_they_are_written_here() {
     2:7 expected an element, found `IC` [MBG0101]
       help: write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`
     2:7 expected an element, found `L` [MBG0101]
-      help: write `I`: a coil is an inertia, `I name { inertia: … }` with its inductance
+      help: write `I name { inertia: … }`
     2:7 expected an element, found `Sw` [MBG0101]
       help: a switch is `R name { conductance: if … { … } else { … } }`, or on the average an `MTF`
     2:8 expected the name of the element after `R`, found `[` [MBG0101]
@@ -207,8 +207,11 @@ fn variables_of_elements_are_told_by_their_kind() {
     };
     insta::assert_snapshot!(["m", "c", "r", "g"].map(read).join("\n"), @"
     2:74 `m` is an element; write `m.p`, `.e` or `.f` [MBG0213]
+      help: for its inertia give that a name: `param m_inertia = …;` and `inertia: m_inertia`
     2:74 `c` is an element; write `c.q`, `.e` or `.f` [MBG0213]
+      help: for its stiffness give that a name: `param c_stiffness = …;` and `stiffness: c_stiffness`
     2:74 `r` is an element; write `r.e` or `.f` [MBG0213]
+      help: for its resistance give that a name: `param r_resistance = …;` and `resistance: r_resistance`
     2:74 `g` is an element; a two-port has two efforts and two flows; read them at a junction [MBG0213]
     ");
 }
@@ -293,5 +296,137 @@ fn blocks_are_told_as_values_and_integrals() {
     ] {
         let text = told(&shaft(&format!("Se motor {{ effort: {law} }} -> shaft;")));
         assert!(text.contains(part), "{text}");
+    }
+}
+
+/// Without regard to capitals, in a bond, in the braces of a junction, as a statement and as a component.
+#[test]
+fn elements_are_told_in_any_case_and_place() {
+    for (called, kind) in [
+        ("MSe", "Se"),
+        ("mse", "Se"),
+        ("MSF", "Sf"),
+        ("mR", "R"),
+        ("Spring", "C"),
+        ("Mass", "I"),
+        ("Resistor", "R"),
+    ] {
+        for place in [
+            format!("{called} x {{ effort: 1.0 }};"),
+            format!("v -> {called} x {{ effort: 1.0 }};"),
+            format!("1 z {{ {called} x {{ effort: 1.0 }} }} z -> v;"),
+        ] {
+            let helps = diagnose(&masses(&place)).list()[0].helps.clone();
+            let is_told = helps[0].contains(&format!("`{kind}`"))
+                || helps[0].contains(&format!("`{kind} name {{"))
+                || helps[0].contains("x: Resistor");
+            assert!(is_told, "{place}: {helps:?}");
+        }
+    }
+    for (called, written) in [
+        ("x: mse { effort: 1.0 } (v);", "Se x { effort: 1.0 } -> v;"),
+        (
+            "x: MR { resistance: 1.0 } (v);",
+            "v -> R x { resistance: 1.0 };",
+        ),
+        ("x: ZeroJunction (w[0]);", "0 x; w[0] -> x;"),
+    ] {
+        assert_eq!(typed(&masses(called)).pop().unwrap(), written);
+    }
+    for written in [
+        "Se x { effort: 1.0 } -> v;",
+        "v -> R x { resistance: 1.0 };",
+        "0 x; w[0] -> x; x -> C y { stiffness: 1.0 };",
+    ] {
+        assert_eq!(told(&masses(written)), "");
+    }
+    assert_eq!(
+        typed(&masses("v -> OneJunction x { } -> w[0];")),
+        ["1 name;"]
+    );
+    assert_eq!(typed(&masses("OneJunction x;")), ["1 x"]);
+}
+
+/// Blocks as statements, with what makes them compile, and components of the library without their junctions.
+#[test]
+fn blocks_that_stand_alone_are_told_as_values() {
+    for (block, written) in [
+        ("Integrator i;", "integral i = u, initial: 0.0;"),
+        ("Gain i { k: 2.0 };", "let i = 2.0 * u;"),
+        ("Sum i(k = 2.0);", "let i = u - u;"),
+        ("i: LowPass;", "integral i = (u - i) / 0.1;"),
+    ] {
+        let first = typed(&masses(block)).remove(0).replace("u - v", "u - u");
+        assert_eq!(first, written);
+        let whole = format!("input u; {written} output y = i;");
+        assert_eq!(told(&masses(&whole)), "");
+    }
+    let sensor = told(&masses("Sensor w;"));
+    assert!(sensor.contains("read without a sensor"), "{sensor}");
+    assert_eq!(
+        typed(&masses("Friction f { sliding: 1.0 };")),
+        ["f: Friction { sliding: 1.0 } (…);"]
+    );
+    assert_eq!(told(&masses("f: Friction { sliding: 1.0 } (v);")), "");
+}
+
+/// What is read in the place of a velocity, a torque and their like.
+#[test]
+fn quantities_are_told_as_variables_of_bonds() {
+    for (read, written) in [
+        ("v.velocity", "v.f"),
+        ("v.omega", "v.f"),
+        ("v.v", "v.f"),
+        ("m.momentum", "m.p"),
+        ("m.torque", "m.e"),
+        ("k.voltage", "k.e"),
+        ("k.v", "k.e"),
+        ("c.charge", "c.q"),
+        ("c.position", "c.q"),
+        ("c.power", "c.e * c.f"),
+        ("v.force", "m.e"),
+        ("v.e", "m.e"),
+        ("k.current", "c.f"),
+    ] {
+        let first = typed(&masses(&format!("output y = {read};"))).remove(0);
+        assert_eq!(first, written, "{read}");
+        assert_eq!(told(&masses(&format!("output y = {written};"))), "");
+    }
+    let way = typed(&masses("output y = v.angle;"));
+    assert_eq!(way, ["integral q_v = v.f, initial: 0.0;", "q_v"]);
+    assert_eq!(
+        told(&masses(&format!("{} output y = {};", way[0], way[1]))),
+        ""
+    );
+    assert_eq!(typed(&masses("output y = velocity;")), ["v.f", "w.f"]);
+    let energy = typed(&masses("output y = c.energy;")).remove(0);
+    assert_eq!(energy, "0.5 * c.q * c.e");
+}
+
+/// A frame without a velocity is read by halves, a joint and a contact by what they tell.
+#[test]
+fn quantities_of_frames_and_components_are_told() {
+    let scene = |read: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 hull[6];
+             Sf still[6] {{ flow: 0.0 }} -> ground; free: Free (ground, hull);
+             body: Body {{ mass: 1.0, inertia: 1.0 }} (hull); pad: Contact {{ stiffness: 1e4, friction: 0.5 }} (hull);
+             1 arm[6]; hinge: Revolute {{ axis: 1 }} (hull, arm); rod: Body {{ mass: 1.0, inertia: 1.0 }} (arm); {read} }}"
+        )
+    };
+    for (read, written, size) in [
+        ("hull.velocity", "hull.f[3..6]", "[3]"),
+        ("hull.omega", "hull.f[0..3]", "[3]"),
+        ("hull.position", "free.position_b", "[3]"),
+        ("hinge.velocity", "hinge.rate.f", ""),
+        ("hinge.phi", "hinge.angle", ""),
+        ("pad.normal_force", "pad.force", ""),
+        ("pad.penetration", "pad.depth", ""),
+        ("pad.friction_force", "pad.rubbing.e", "[3]"),
+        ("pad.rubbing.contact.e", "pad.rubbing.e", "[3]"),
+    ] {
+        let output = |read: &str| scene(&format!("output y{size} = {read};"));
+        assert_eq!(typed(&output(read)), [written], "{read}");
+        assert_eq!(told(&output(written)), "");
     }
 }

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
-use super::definitions::{Missing, by_component, end_excluded};
+use super::definitions::{Missing, by_component, of_entries};
 use super::elsewhere;
 use super::expressions::{Evaluator, Result, Step, Value};
 use super::laws::{Reader, words_of};
@@ -260,7 +260,7 @@ impl<'a> Builder<'a> {
         let entries = self.entries(&value, dimension, name);
         entries.map_err(|report| match value {
             Value::Scalar(_) => by_component(report, expression, dimension),
-            Value::Matrix(_) => end_excluded(report, expression, dimension),
+            Value::Matrix(_) => of_entries(report, expression, dimension),
         })
     }
 
@@ -484,7 +484,7 @@ impl<'a> Builder<'a> {
     /// Hands over.
     pub(super) fn finish(mut self, model: &ast::Model) -> Elaborated {
         let rings = self.rings();
-        let in_time = self.in_time();
+        let moved = self.moved();
         Elaborated {
             documentation: model.documentation.clone(),
             visibility: model.visibility.clone(),
@@ -499,7 +499,7 @@ impl<'a> Builder<'a> {
             assumptions: self.assumptions,
             rings,
             moving_inputs: self.moving_inputs,
-            in_time,
+            moved,
         }
     }
 }

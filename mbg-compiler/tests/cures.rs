@@ -744,23 +744,6 @@ fn vectors_and_matrices_are_told_apart() {
 }
 
 #[test]
-fn the_nearest_name_inside_a_loop_is_told() {
-    let scene = |use_: &str| {
-        format!(
-            "model M {{ 1 v; cells: for k in 0..2 {{ 1 node {{ I m {{ inertia: 1.0 }} }} }} v -> C c {{ stiffness: 1.0 }}; {use_} }}"
-        )
-    };
-    for (slip, meant) in [
-        ("output y = cells[0].nod.f;", "cells[0].node"),
-        ("output y = cels[0].node.f;", "cells"),
-        ("Se s { effort: 1.0 } -> cells[0].nod;", "cells[0].node"),
-        ("Se s { effort: 1.0 } -> cell[0].node;", "cells"),
-    ] {
-        assert_eq!(first_typed(&scene(slip)), [meant], "{slip}");
-    }
-}
-
-#[test]
 fn equations_of_rates_and_starts_are_integrals() {
     let scene = |text: &str| {
         format!("model M {{ input u; 1 v {{ I m {{ inertia: 1.0 }} }} {text} output y = x + u; }}")

@@ -459,10 +459,19 @@ fn mistakes_in_loops_are_told() {
     2:16 expected a whole number that is known while the model is compiled, found `1e3` [MBG0217]
       help: a whole number has no decimal point: write `1000`
     ");
-    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]");
+    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"
+    2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]
+      help: they are counted from 0: the last is `a[2]`
+    ");
     insta::assert_snapshot!(mistake("a[2..1] -> R r { resistance: 1.0 };"), @"2:1 `a[2..1]` selects no component [MBG0204]");
-    insta::assert_snapshot!(mistake("output y = a.f[3];"), @"2:16 component 3 of a vector of 3 does not exist [MBG0204]");
-    insta::assert_snapshot!(mistake("output y[2] = a.f[2..4];"), @"2:19 components 2..4 of a vector of 3 do not exist [MBG0204]");
+    insta::assert_snapshot!(mistake("output y = a.f[3];"), @"
+    2:16 component 3 of a vector of 3 does not exist [MBG0204]
+      help: they are counted from 0: the last is `[2]`
+    ");
+    insta::assert_snapshot!(mistake("output y[2] = a.f[2..4];"), @"
+    2:19 components 2..4 of a vector of 3 do not exist [MBG0204]
+      help: they are counted from 0: the last is `[2]`
+    ");
     insta::assert_snapshot!(mistake("for k in 0..2 { param p = 1.0; input u; gravity 1.0; }"), @"
     2:23 a parameter belongs to a model or a component; in a loop, use `let` [MBG0213]
     2:38 an input belongs to a model; give a component a parameter or a port [MBG0213]

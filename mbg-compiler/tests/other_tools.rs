@@ -430,3 +430,90 @@ fn quantities_of_frames_and_components_are_told() {
         assert_eq!(told(&output(written)), "");
     }
 }
+
+#[test]
+fn the_nearest_name_inside_a_loop_is_told() {
+    let scene = |use_: &str| {
+        format!(
+            "model M {{ 1 v; cells: for k in 0..2 {{ 1 node {{ I m {{ inertia: 1.0 }} }} }} v -> C c {{ stiffness: 1.0 }}; {use_} }}"
+        )
+    };
+    for (slip, meant) in [
+        ("output y = cells[0].nod.f;", "cells[0].node"),
+        ("output y = cels[0].node.f;", "cells"),
+        ("Se s { effort: 1.0 } -> cells[0].nod;", "cells[0].node"),
+        ("Se s { effort: 1.0 } -> cell[0].node;", "cells"),
+    ] {
+        assert_eq!(typed_first(&scene(slip)), meant, "{slip}");
+    }
+}
+
+/// What is written in one statement or without a name elsewhere, and values in the place of junctions.
+#[test]
+fn statements_are_told_apart() {
+    for (slip, written) in [
+        (
+            "output v.f, m.p;",
+            vec!["output name = v.f; output name_1 = m.p;"],
+        ),
+        ("1 a, b;", vec!["1 a; 1 b;"]),
+        (
+            "input u; u -> v;",
+            vec!["Se u_source { effort: u }", "Sf u_source { flow: u }"],
+        ),
+        (
+            "f: Friction { sliding: 1.0 };",
+            vec!["f: Friction { sliding: 1.0 } (a, b);"],
+        ),
+    ] {
+        assert_eq!(typed(&masses(slip)), written);
+    }
+    for written in [
+        "output name = v.f; output name_1 = m.p;",
+        "1 a; 1 b; a -> R r { resistance: 1.0 }; b -> R s { resistance: 1.0 }; v -> a; v -> b;",
+        "input u; Se u_source { effort: u } -> v;",
+    ] {
+        assert_eq!(told(&masses(written)), "");
+    }
+    let inside = "component K(port a) { a -> R r { resistance: 1.0 }; }";
+    let read = |path: &str| {
+        format!(
+            "{inside} {}",
+            masses(&format!("k0: K (v); output y = {path};"))
+        )
+    };
+    assert_eq!(typed(&read("r.e")), ["k0.r.e"]);
+    assert_eq!(told(&read("k0.r.e")), "");
+}
+
+/// A spring knows no length without load, and a stop asks for the coordinate of its joint.
+#[test]
+fn lengths_without_load_and_coordinates_are_told() {
+    let spring = |law: &str| masses(&format!("v -> C s {{ {law} }};"));
+    for (slip, written) in [
+        ("stiffness: 10.0, rest: 0.2", "effort: 10.0 * (q - 0.2)"),
+        ("stiffness: 10.0, preload: 3.0", "effort: 3.0 + 10.0 * q"),
+    ] {
+        assert_eq!(typed(&spring(slip))[0], written);
+        assert_eq!(told(&spring(written)), "");
+    }
+    let scene = |displacement: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 g[3]; 1 a[3]; Sf f[3] {{ flow: 0.0 }} -> g; j: PlanarRevolute (g, a);
+             b: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (a);
+             s: Stop {{ {displacement}lower: -1.0, upper: 1.0, stiffness: 1e3 }} (j.rate); }}"
+        )
+    };
+    let written = typed(&scene("")).remove(0);
+    assert_eq!(written, "{ displacement: j.angle }");
+    let value = written.trim_matches(['{', '}', ' ']);
+    assert_eq!(told(&scene(&format!("{value}, "))), "");
+    for (vector, written) in [
+        ("vec![1.0, 2.0]", "[1.0, 2.0]"),
+        ("vec2(1.0, 2.0)", "[1.0, 2.0]"),
+    ] {
+        let read = |vector: &str| masses(&format!("output y[2] = {vector};"));
+        assert_eq!(typed(&read(vector)), [written]);
+        assert_eq!(told(&read(written)), "");
+    }
+}

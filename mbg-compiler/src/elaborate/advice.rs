@@ -35,6 +35,7 @@ impl Lookup<'_, '_> {
                 let in_loop = self.scopes.in_loop(self.scope, path);
                 let known = in_loop.or_else(|| self.in_instance(pool, path));
                 let known = known.or_else(|| self.scopes.meant_inside(self.scope, path));
+                let known = known.or_else(|| self.scopes.in_component(self.scope, path));
                 let known = known.or_else(|| self.of_output(path));
                 match path {
                     [Step { name, index: None }] => {

@@ -87,7 +87,7 @@ fn dissipation(name: &Ident) -> Option<String> {
 }
 
 /// The travel of a joint with one free axis.
-fn travel(instance: &ast::Instance) -> Option<&'static str> {
+pub(super) fn travel(instance: &ast::Instance) -> Option<&'static str> {
     match instance.component.to_string().as_str() {
         "Revolute" | "PlanarRevolute" => Some("angle"),
         "Prismatic" | "PlanarPrismatic" => Some("travel"),

@@ -326,6 +326,30 @@ pub(super) fn effort_at_start(
     Some(format!("write `initial: {start}`: its state is `q`"))
 }
 
+/// Where a spring without load is, as its length or its angle is told elsewhere.
+const RESTS: &[&str] = &[
+    "rest",
+    "rest_length",
+    "free_length",
+    "natural_length",
+    "length",
+    "l0",
+];
+
+/// What to type for a spring that is given where it is without load, or its load at zero.
+pub(super) fn preloaded(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
+    let text = match word {
+        _ if RESTS.iter().any(|rest| word == rest) => "k * (q - x)",
+        _ if word == "preload" => "x + k * q",
+        _ => return None,
+    };
+    let mut laws = element.fields.iter().filter(|it| it.name == "stiffness");
+    let stiffness = laws.next()?.value.as_ref()?;
+    let value = value.filter(|_| element.kind == ElementKind::C)?;
+    let effort = filled(text, &[("k", stiffness), ("x", value)]);
+    Some(format!("write `effort: {effort}` in the place of both"))
+}
+
 /// What stands behind a word, or a place for it.
 pub(super) fn value_text(value: Option<&Expr>) -> String {
     value.map_or_else(|| "…".to_owned(), dump::expression)
@@ -401,6 +425,10 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         ("energy" | "power", []) => return Some(of_system(word)),
         // Both orders are written elsewhere.
         ("interp1", [_, Expr::Array(_), Expr::Array(_)]) => return instead("interp", arguments),
+        ("vec" | "vec2" | "vec3" | "vector" | "array" | "Vector3", entries) => {
+            let entries: Vec<String> = entries.iter().map(dump::expression).collect();
+            return Some(format!("write `[{}]`", entries.join(", ")));
+        }
         _ if OUTSIDE.contains(&word) => {
             return Some(
                 "what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`"
@@ -437,6 +465,10 @@ pub(super) fn of_rust(expression: &Expr) -> Option<String> {
                 inside.join(", ")
             ))
         }
+        Expr::Macro(list) if list.mac.path.is_ident("vec") => Some(format!(
+            "write `[{}]`",
+            dump::tokens(list.mac.tokens.clone())
+        )),
         Expr::Tuple(list) => {
             let entries: Vec<String> = list.elems.iter().map(dump::expression).collect();
             Some(format!("write `[{}]`", entries.join(", ")))

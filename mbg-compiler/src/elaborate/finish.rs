@@ -299,6 +299,7 @@ impl<'a> Builder<'a> {
             let here = elsewhere::law(kind, word, value);
             let here = here.or_else(|| elsewhere::start(kind, word, value));
             let here = here.or_else(|| elsewhere::other_source(element, word, value));
+            let here = here.or_else(|| elsewhere::preloaded(element, word, value));
             let report = match here.or_else(|| elsewhere::effort_at_start(element, word, value)) {
                 Some(help) => report.help(help),
                 None => report.did_you_mean(&field.name.to_string(), &words),

@@ -261,7 +261,11 @@ impl<'a> Builder<'a> {
                     self.definition(inner, name, shape, (inner, default))
                 }
                 (None, None) => {
-                    self.missing_argument(scope, (instance, component), name, "…");
+                    let value = self
+                        .coordinate(scope, instance)
+                        .filter(|_| name == "displacement");
+                    let value = value.unwrap_or_else(|| "…".to_owned());
+                    self.missing_argument(scope, (instance, component), name, &value);
                     Entity::Opaque
                 }
             };
@@ -270,6 +274,21 @@ impl<'a> Builder<'a> {
             }
             self.name(inner, name, value);
         }
+    }
+
+    /// The angle or travel of the joint whose rate an instance is given.
+    fn coordinate(&self, scope: usize, instance: &ast::Instance) -> Option<String> {
+        let [given] = &instance.connections[..] else {
+            return None;
+        };
+        let text = dump::reference(given);
+        let (joint, _) = text.rsplit_once('.').filter(|(_, last)| *last == "rate")?;
+        let Some(Entity::Instance(inner)) = self.scopes.find(scope, joint) else {
+            return None;
+        };
+        let (_, called) = self.called.get(inner)?;
+        let travel = beside::travel(called)?;
+        Some(format!("{joint}.{travel}"))
     }
 
     /// Reports a parameter without a value, unless a word that is not known was meant to be its name, or stands for all of them.

@@ -37,7 +37,11 @@ const VARIABLES: &[(&str, &[&str])] = &[
             "angular_velocity",
             "omega",
             "w",
+            "angle_rate",
+            "angular_rate",
+            "angular_speed",
             "current",
+            "i",
             "volume_flow",
             "flow_rate",
             "heat_flow",
@@ -84,6 +88,7 @@ const OF_INSTANCES: &[(&[&str], &[&str])] = &[
             "contact_force",
             "reaction",
             "reaction_force",
+            "fn",
             "n",
         ],
         &["force"],
@@ -93,7 +98,7 @@ const OF_INSTANCES: &[(&[&str], &[&str])] = &[
 
 /// The same for the variables of bonds.
 const BY_VARIABLE: &[(&str, &[&str])] = &[
-    ("f", &["rate.f", "velocity.f"]),
+    ("f", &["rate.f"]),
     ("q", &["angle", "travel", "position_b"]),
     ("e", &["force", "effort"]),
 ];
@@ -241,7 +246,8 @@ impl Lookup<'_, '_> {
         word: &str,
     ) -> Option<String> {
         let mut of_instances = OF_INSTANCES.iter();
-        let named = of_instances.find(|(words, _)| words.contains(&word));
+        let plain = word.to_lowercase();
+        let named = of_instances.find(|(words, _)| words.contains(&plain.as_str()));
         let by_variable = || {
             let variable = variable(word)?;
             let mut known = BY_VARIABLE.iter();

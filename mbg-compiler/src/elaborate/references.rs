@@ -92,6 +92,13 @@ impl Builder<'_> {
                     Entity::Instance(inner) => self.junctions_in(*inner),
                     _ => Vec::new(),
                 };
+                if entity.is_value() {
+                    return Err(Box::new(report.help(format!(
+                        "a value is no bond, and comes from a source: `Se {0}_source {{ effort: {text} }}` or \
+                         `Sf {0}_source {{ flow: {text} }}` in its place",
+                        reference.path[0].name
+                    ))));
+                }
                 if junctions.is_empty() {
                     return Err(Box::new(report));
                 }
@@ -170,6 +177,7 @@ impl Builder<'_> {
         let help = self.scopes.later(scope, &steps);
         let help = help.or_else(|| self.scopes.in_loop(scope, &steps));
         let help = help.or_else(|| self.scopes.meant_inside(scope, &steps));
+        let help = help.or_else(|| self.scopes.in_component(scope, &steps));
         if let Some(help) = help.or_else(|| self.junctions_inside(scope, &steps)) {
             return Box::new(report.help(help));
         }

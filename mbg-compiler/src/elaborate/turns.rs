@@ -52,6 +52,26 @@ impl Scopes {
         }
     }
 
+    /// What to write for a path whose first name is declared in a component in use alone.
+    pub(super) fn in_component(&self, scope: usize, path: &[Step]) -> Option<String> {
+        let first = path.first()?.name.to_string();
+        if self.find(scope, &first).is_some() {
+            return None;
+        }
+        let mut instances = self[scope].names.iter();
+        let (name, _) = instances.find(|(_, entity)| match entity {
+            Entity::Instance(inner) => {
+                let found = self[*inner].names.get(&first);
+                self[*inner].library.is_none() && found.is_some()
+            }
+            _ => false,
+        })?;
+        Some(format!(
+            "it is declared in a component: write `{name}.{}`",
+            text(path)
+        ))
+    }
+
     /// The scope of one iteration of a loop, which is read from another scope.
     pub(super) fn iteration(
         &self,

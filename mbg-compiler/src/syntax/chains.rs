@@ -306,8 +306,10 @@ pub(super) fn instance(
                 "an element is written `{component} {name} {{ … }}`, without a colon"
             ))
         } else {
+            let (name, component) = (name.to_string(), component.to_string());
+            let written = slips::statement(&name, &component, braces.as_ref(), "a, b");
             error.help(format!(
-                "the junctions for its ports stand in parentheses: `{name}: {component} (a, b);`"
+                "the junctions for its ports stand in parentheses: `{written}`"
             ))
         };
         return Err(Box::new(error));

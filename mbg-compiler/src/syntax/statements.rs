@@ -409,9 +409,16 @@ fn named_value(
 /// What to type for `output mass.p;`, which lacks a name; what stands before the dot was read as one.
 fn nameless(cursor: &Cursor, word: &str, first: &Ident) -> Option<String> {
     let length = cursor.length_until(|it, at| it.punct(at, ';'));
-    let rest = dump::tokens(cursor.ahead(length).iter().cloned().collect());
+    let ahead = cursor.ahead(length);
+    let values = ahead.split(|token| slips::is_mark(token, ','));
+    let values = values.map(|value| dump::tokens(value.iter().cloned().collect()));
+    let declared = values.enumerate().map(|(place, value)| match place {
+        0 => format!("{word} name = {first}{value};"),
+        _ => format!("{word} name_{place} = {value};"),
+    });
+    let declared: Vec<String> = declared.collect();
     let is_read = cursor.punct(0, '.');
-    is_read.then(|| format!("a value has a name: `{word} name = {first}{rest};`"))
+    is_read.then(|| format!("a value has a name: `{}`", declared.join(" ")))
 }
 
 /// Reads the value of gravity and its `;`.
@@ -676,6 +683,11 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
             elements
         }
         None => {
+            if let Some(help) = several(cursor, kind.digit(), &name) {
+                return Err(Box::new(
+                    (*cursor.expected("`;` after the junction")).help(help),
+                ));
+            }
             let started = initial_flow.is_some();
             let words = [
                 ("[", dimension.is_some() || started),
@@ -697,6 +709,22 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         initial_flow,
         elements,
     })
+}
+
+/// What to type for `1 a, b;`.
+fn several(cursor: &Cursor, digit: char, first: &Ident) -> Option<String> {
+    let length = cursor.length_until(|it, at| it.punct(at, ';'));
+    let mut names = cursor
+        .ahead(length)
+        .split(|token| slips::is_mark(token, ','));
+    let is_empty = names.next()?.is_empty();
+    let names = names.map(|name| match name {
+        [TokenTree::Ident(name)] => Some(format!(" {digit} {name};")),
+        _ => None,
+    });
+    let names = names.collect::<Option<Vec<_>>>()?.concat();
+    (is_empty && !names.is_empty())
+        .then(|| format!("each junction has a statement of its own: `{digit} {first};{names}`"))
 }
 
 /// Ends a junction without braces; with each word that may stand before the end comes whether it was read.

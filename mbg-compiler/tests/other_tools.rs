@@ -517,3 +517,62 @@ fn lengths_without_load_and_coordinates_are_told() {
         assert_eq!(told(&read(written)), "");
     }
 }
+
+/// Moments about axes, and what a body begins with.
+#[test]
+fn bodies_are_given_a_tensor_and_begin_with_their_frames() {
+    let body = |frame: &str, words: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; {frame} b: Body {{ mass: 1.0, {words} }} (hull); output y[6] = hull.f; }}"
+        )
+    };
+    let frame = "1 hull[6];";
+    let told_first = |words: &str| {
+        let diagnostics = diagnose(&body(frame, words));
+        diagnostics.list()[0].helps[0].clone()
+    };
+    assert_eq!(
+        told_first("ixx: 1.0, iyy: 2.0, izz: 3.0"),
+        "write `inertia: diag(1.0, 2.0, 3.0)`"
+    );
+    let missing = told(&body(frame, "ixx: 1.0, iyy: 2.0, izz: 3.0"));
+    assert!(
+        !missing.contains("needs a value for `inertia`"),
+        "{missing}"
+    );
+    let moments = "inertia: diag(1.0, 2.0, 3.0)";
+    assert_eq!(told(&body(frame, moments)), "");
+    let start = typed(&body(frame, &format!("{moments}, initial_velocity: 1.0")));
+    assert_eq!(start, ["1 hull[6] coordinate, initial_flow: …;"]);
+    let begun = start[0].replace('…', "[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]");
+    assert_eq!(told(&body(&begun, moments)), "");
+}
+
+/// What a branch of a circuit tells, and literals that are no numbers.
+#[test]
+fn branches_and_literals_are_told() {
+    let circuit = |read: &str| {
+        format!(
+            "model M {{ 0 a {{ Se s {{ effort: 1.0 }} }} 0 b {{ Se z {{ effort: 0.0 }} }} 0 m; r: Resistor {{ resistance: 1.0 }} (a, m);
+             c: Capacitor {{ capacitance: 1.0 }} (m, b); output y = {read}; }}"
+        )
+    };
+    for (read, written) in [
+        ("r.i", "r.current"),
+        ("r.v", "r.voltage"),
+        ("c.charge", "c.capacitor.q"),
+    ] {
+        assert_eq!(typed(&circuit(read)), [written]);
+        assert_eq!(told(&circuit(written)), "");
+    }
+    let literal = told(&masses("let on = true; output y = on;"));
+    assert!(
+        literal.contains("write `1.0`, and ask `> 0.5`"),
+        "{literal}"
+    );
+    let word = told(&masses("let kind = \"linear\"; output y = kind;"));
+    assert!(
+        word.contains("`param kind: linear | cubic = linear;`"),
+        "{word}"
+    );
+}

@@ -314,6 +314,7 @@ impl<'a> Builder<'a> {
         };
         if is_misspelt(&name_text, arguments.clone(), &known)
             || arguments.clone().any(is_meant)
+            || name_text == "inertia" && arguments.clone().any(beside::is_moment)
             || arguments.any(is_shortened)
             || instance.arguments.iter().any(is_ratio)
         {

@@ -93,14 +93,16 @@ const OF_INSTANCES: &[(&[&str], &[&str])] = &[
         ],
         &["force"],
     ),
+    (&["charge"], &["capacitor.q"]),
+    (&["u", "v"], &["voltage"]),
     (&["penetration", "indentation", "compression"], &["depth"]),
 ];
 
 /// The same for the variables of bonds.
 const BY_VARIABLE: &[(&str, &[&str])] = &[
-    ("f", &["rate.f"]),
+    ("f", &["rate.f", "current"]),
     ("q", &["angle", "travel", "position_b"]),
-    ("e", &["force", "effort"]),
+    ("e", &["force", "effort", "voltage"]),
 ];
 
 /// Angular velocities of frames in space, which come before their velocities.

@@ -203,42 +203,7 @@ impl<'a> Builder<'a> {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
         for argument in &instance.arguments {
             if !names.iter().any(|known| argument.name == known) {
-                let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
-                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
-                if let Some(vector) = tools::vector(&argument.name, &instance.arguments, &names) {
-                    if let Some(written) = vector {
-                        self.tell(scope, report.help(format!("write `{written}`")));
-                    }
-                    continue;
-                }
-                if let Some(help) = beside::told(instance, argument, &names) {
-                    self.tell(scope, report.help(help));
-                    continue;
-                }
-                if let Some(here) = tools::parameter(&argument.name, &names) {
-                    let value = argument.value.as_ref();
-                    let is_start = here.starts_with("initial");
-                    let by_rate = driven::by_rate(instance, component)
-                        .filter(|_| is_start && self.moves_by_itself(scope, value));
-                    let help = by_rate.unwrap_or_else(|| {
-                        format!("write `{here}: {}`", elsewhere::value_text(value))
-                    });
-                    self.tell(scope, report.help(help));
-                    continue;
-                }
-                let way = tools::by_ratio(instance, argument)
-                    .or_else(|| tools::at_point(instance, argument));
-                if let Some(way) = way {
-                    self.tell(scope, report.help(way));
-                    continue;
-                }
-                let longer = ending_in(&argument.name.to_string(), &names);
-                let report = match longer.is_empty() {
-                    true => report.did_you_mean(&argument.name.to_string(), &names),
-                    false => report.help(format!("write {}", alternatives(&longer))),
-                };
-                let help = format!("its parameters are {}", listing(known.clone()));
-                self.tell(scope, report.help(help));
+                self.unknown_argument(scope, (instance, component), argument, &names);
             }
         }
         for choice in component.choices() {
@@ -274,6 +239,56 @@ impl<'a> Builder<'a> {
             }
             self.name(inner, name, value);
         }
+    }
+
+    /// Reports an argument that is no parameter of the component, with what to type in its place.
+    fn unknown_argument(
+        &mut self,
+        scope: usize,
+        (instance, component): (&ast::Instance, &ast::Component),
+        argument: &ast::Field,
+        names: &[&str],
+    ) {
+        let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
+        let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+        if let Some(vector) = tools::vector(&argument.name, &instance.arguments, names) {
+            if let Some(written) = vector {
+                self.tell(scope, report.help(format!("write `{written}`")));
+            }
+            return;
+        }
+        let here = beside::told(instance, argument, names)
+            .or_else(|| self.parameter_here(scope, (instance, component), argument, names))
+            .or_else(|| tools::by_ratio(instance, argument))
+            .or_else(|| tools::at_point(instance, argument));
+        if let Some(help) = here {
+            return self.tell(scope, report.help(help));
+        }
+        let longer = ending_in(&argument.name.to_string(), names);
+        let report = match longer.is_empty() {
+            true => report.did_you_mean(&argument.name.to_string(), names),
+            false => report.help(format!("write {}", alternatives(&longer))),
+        };
+        let known = names.iter().map(|name| (*name).to_owned());
+        let help = format!("its parameters are {}", listing(known));
+        self.tell(scope, report.help(help));
+    }
+
+    /// What to type for a parameter that has another name elsewhere; a motion is none for the start.
+    fn parameter_here(
+        &self,
+        scope: usize,
+        (instance, component): (&ast::Instance, &ast::Component),
+        argument: &ast::Field,
+        names: &[&str],
+    ) -> Option<String> {
+        let here = tools::parameter(&argument.name, names)?;
+        let value = argument.value.as_ref();
+        let is_start = here.starts_with("initial");
+        let by_rate = driven::by_rate(instance, component)
+            .filter(|_| is_start && self.moves_by_itself(scope, value));
+        let written = || format!("write `{here}: {}`", elsewhere::value_text(value));
+        Some(by_rate.unwrap_or_else(written))
     }
 
     /// The angle or travel of the joint whose rate an instance is given.

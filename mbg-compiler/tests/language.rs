@@ -489,7 +489,10 @@ fn mistakes_in_values_are_told() {
     insta::assert_snapshot!(mistake("let p[2] = [1.0, 2.0, 3.0]; output y = p.x;"), @"2:5 `p` has dimension 2, found a vector of 3 [MBG0204]");
     insta::assert_snapshot!(mistake("let p = nowhere;"), @"2:9 `nowhere` is not declared [MBG0203]");
     insta::assert_snapshot!(mistake("let p = 1.0; let p = 2.0;"), @"2:18 `p` is declared twice [MBG0202]");
-    insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"2:14 expected a junction or an element, found `p` [MBG0203]");
+    insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"
+    2:14 expected a junction or an element, found `p` [MBG0203]
+      help: a value is no bond, and comes from a source: `Se p_source { effort: p }` or `Sf p_source { flow: p }` in its place
+    ");
 }
 
 #[test]

@@ -245,7 +245,11 @@ impl<N: Names> Evaluator<'_, N> {
                 integer.base10_digits().to_owned(),
                 integer.suffix().to_owned(),
             ),
-            _ => return fail(literal.span(), "expected a number"),
+            _ => {
+                let report = error(codes::EXPRESSION, literal.span(), "expected a number");
+                let help = no_number(literal);
+                return Err(Box::new(help.into_iter().fold(report, Diagnostic::help)));
+            }
         };
         match self.pool.literal(&text) {
             Some(value) if suffix.is_empty() || suffix == "f64" => {
@@ -656,5 +660,22 @@ fn member(field: &syn::ExprField) -> Result<Ident> {
                 report.help(format!("write `{base}[{}]`", number.index)),
             ))
         }
+    }
+}
+
+/// What to type for a literal that is no number.
+fn no_number(literal: &Lit) -> Option<String> {
+    match literal {
+        Lit::Bool(truth) => {
+            let number = if truth.value { "1.0" } else { "0.0" };
+            Some(format!(
+                "a value is a number: write `{number}`, and ask `> 0.5`"
+            ))
+        }
+        Lit::Str(_) => Some(
+            "a choice of words is a parameter of a component: `param kind: linear | cubic = linear;`"
+                .to_owned(),
+        ),
+        _ => None,
     }
 }

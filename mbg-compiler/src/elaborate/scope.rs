@@ -14,8 +14,8 @@ use super::model::{Assumption, Parameter, Place, Quantity, Signals};
 use super::own::{OWN, Own, OwnPath, compared};
 use super::turns::Turns;
 use crate::codes;
-use crate::diagnostics::error;
-use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId, JunctionKind};
+use crate::diagnostics::{Diagnostic, error};
+use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate, Symbol};
 use crate::syntax::words::is_two_port;
 
@@ -393,20 +393,28 @@ impl Lookup<'_, '_> {
                     "`{name}` is a loop; read what is inside an iteration, `{name}[{start}].…`"
                 ),
             ),
-            Entity::Element(id) => fail(name.span(), self.is_element(*id, name)),
+            Entity::Element(id) => Err(self.is_element(*id, name)),
             _ => fail(name.span(), format!("`{name}` has no value here")),
         }
     }
 
     /// What to write where an element stands in the place of a value.
-    fn is_element(&self, id: ElementId, name: &Ident) -> String {
-        let known = match self.graph.elements[id.0].kind {
-            ElementKind::I => format!("write `{name}.p`, `.e` or `.f`"),
-            ElementKind::C => format!("write `{name}.q`, `.e` or `.f`"),
-            kind if is_two_port(kind) => TWO_PORT_VARIABLE.to_owned(),
-            _ => format!("write `{name}.e` or `.f`"),
+    fn is_element(&self, id: ElementId, name: &Ident) -> Box<Diagnostic> {
+        let (known, coefficient) = match self.graph.elements[id.0].kind {
+            ElementKind::I => (format!("write `{name}.p`, `.e` or `.f`"), Some("inertia")),
+            ElementKind::C => (format!("write `{name}.q`, `.e` or `.f`"), Some("stiffness")),
+            ElementKind::R => (format!("write `{name}.e` or `.f`"), Some("resistance")),
+            kind if is_two_port(kind) => (TWO_PORT_VARIABLE.to_owned(), None),
+            _ => (format!("write `{name}.e` or `.f`"), None),
         };
-        format!("`{name}` is an element; {known}")
+        let message = format!("`{name}` is an element; {known}");
+        let report = error(codes::EXPRESSION, name.span(), message);
+        let help = coefficient.map(|word| {
+            format!(
+                "for its {word} give that a name: `param {name}_{word} = …;` and `{word}: {name}_{word}`"
+            )
+        });
+        Box::new(help.into_iter().fold(report, Diagnostic::help))
     }
 
     /// Whether a name is declared as something with a value.
@@ -451,6 +459,20 @@ impl Lookup<'_, '_> {
         }
     }
 
+    /// What differs from bond to bond of a junction.
+    fn not_common<T>(
+        &self,
+        id: JunctionId,
+        name: &Ident,
+        junction: &str,
+        variable: &str,
+    ) -> Result<T> {
+        let message = format!("{junction} has no common {variable}; read it at an element");
+        let report = error(codes::EXPRESSION, name.span(), message);
+        let help = self.of_elements(id, name);
+        Err(Box::new(help.into_iter().fold(report, Diagnostic::help)))
+    }
+
     fn junction_variable(
         &mut self,
         pool: &mut Pool,
@@ -471,12 +493,8 @@ impl Lookup<'_, '_> {
                 Place::Junction(id),
                 range,
             ))),
-            ("e", JunctionKind::One) => {
-                Some(self.no_common(id, name, "a 1-junction has no common effort"))
-            }
-            ("f", JunctionKind::Zero) => {
-                Some(self.no_common(id, name, "a 0-junction has no common flow"))
-            }
+            ("e", JunctionKind::One) => Some(self.not_common(id, name, "a 1-junction", "effort")),
+            ("f", JunctionKind::Zero) => Some(self.not_common(id, name, "a 0-junction", "flow")),
             (_, kind) => {
                 let known = match kind {
                     JunctionKind::Zero => "`e`",
@@ -485,22 +503,6 @@ impl Lookup<'_, '_> {
                 Some(no_variable(&self.graph.junctions[id.0].name, name, known))
             }
         }
-    }
-
-    /// Where to read what the bonds of a junction do not share: at its elements.
-    fn no_common(&self, id: JunctionId, name: &Ident, message: &str) -> Result<Value> {
-        let message = format!("{message}; read it at an element");
-        let report = error(codes::EXPRESSION, name.span(), message);
-        let mut elements = self.graph.across(id).filter_map(|end| match end {
-            End::OnePort(element) => Some(&self.graph.elements[element.0].name),
-            _ => None,
-        });
-        Err(Box::new(match elements.next() {
-            Some(first) => report.help(format!(
-                "write `{first}.{name}`, or that of another element there"
-            )),
-            None => report,
-        }))
     }
 
     pub(super) fn signals(

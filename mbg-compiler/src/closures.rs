@@ -140,8 +140,8 @@ fn report(model: &Elaborated, number: usize, component: usize, diagnostics: &mut
         graph.origins.span(closure.origin),
         message,
     );
-    if let Some((notes, help)) = model.given_in_time(&closure.name) {
-        let report = notes.into_iter().fold(report, Diagnostic::note);
+    if let Some((notes, help)) = model.given_what_moves(&closure.name) {
+        let report = notes.iter().fold(report, Diagnostic::note);
         return diagnostics.report(report.help(help));
     }
     let report = report

@@ -304,14 +304,17 @@ pub fn error(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// At most eight names, then how many more.
+/// How many names a listing leaves out, if any, and how many it has at most before it does.
+const LEFT_OUT: usize = 4;
+const LISTED: usize = 8;
+
+/// All names where they are few, and the first of many, then how many more.
 #[must_use]
 pub fn listing<I: IntoIterator<Item = String>>(names: I) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
-    let shown = names.iter().take(8).cloned().collect::<Vec<_>>().join(", ");
-    if names.len() > 8 {
-        format!("{shown} and {} more", names.len() - 8)
-    } else {
-        shown
+    let more = names.len().saturating_sub(LISTED);
+    if more < LEFT_OUT {
+        return names.join(", ");
     }
+    format!("{} and {more} more", names[..LISTED].join(", "))
 }

@@ -135,11 +135,11 @@ fn check_reads(model: &Elaborated, pool: &Pool, diagnostics: &mut Diagnostics) {
             let message =
                 format!("the displacement of `{name}` reads {what}, whose rate nothing knows");
             let report = error(codes::DISPLACEMENT, place(model, element), message);
-            diagnostics.report(
-                report.help(
-                    "tell it in terms of states, of positions that components tell, or of `t`",
-                ),
-            );
+            let known = "tell it in terms of states, of positions that components tell, or of `t`";
+            diagnostics.report(match model.given_what_moves(name) {
+                Some((notes, help)) => notes.iter().fold(report, Diagnostic::note).help(help),
+                None => report.help(known),
+            });
         }
     }
 }
@@ -170,8 +170,8 @@ pub fn check(
             };
             let message = format!("the displacement of `{name}` does not change as `{name}` flows");
             let report = error(codes::DISPLACEMENT, place(model, element), message);
-            if let Some((notes, help)) = model.given_in_time(name) {
-                let report = notes.into_iter().fold(report, Diagnostic::note);
+            if let Some((notes, help)) = model.given_what_moves(name) {
+                let report = notes.iter().fold(report, Diagnostic::note);
                 diagnostics.report(report.help(help));
                 continue;
             }

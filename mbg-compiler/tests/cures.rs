@@ -683,3 +683,103 @@ fn what_follows_from_several_storages_is_not_merged() {
         "or merge the storages into one: `c3: …`"
     );
 }
+
+#[test]
+fn components_are_counted_from_zero() {
+    let scene = |read: &str| {
+        format!("model M {{ 1 w[3] {{ I b {{ inertia: 1.0 }} }} let x = [1.0, 2.0, 3.0]; {read} }}")
+    };
+    for (read, last) in [
+        ("output y = x[3];", "[2]"),
+        ("output y = w.f[3];", "[2]"),
+        ("output y[3] = x[1..4];", "[2]"),
+        ("Se s { effort: 1.0 } -> w[3];", "w[2]"),
+    ] {
+        let help = format!("they are counted from 0: the last is `{last}`");
+        assert_eq!(first_help(&scene(read)), help, "{read}");
+    }
+    assert_eq!(
+        first_help(&scene("output y[2] = x[0..=1];")),
+        "write `[0..2]`"
+    );
+    assert_eq!(
+        told(&scene("output y[2] = x[0..2]; output z = w.f[2];")),
+        ""
+    );
+    // Another number is no slip of counting.
+    assert_eq!(first_help(&scene("output y = x[7];")), "");
+}
+
+#[test]
+fn vectors_and_matrices_are_told_apart() {
+    let scene = |law: &str, effort: &str| {
+        format!("model M {{ 1 w[3] {{ I b {{ inertia: {law} }} Se s {{ effort: {effort} }} }} }}")
+    };
+    assert_eq!(
+        first_help(&scene("1.0", "diag(1.0, 2.0, 3.0)")),
+        "`diag` is a matrix: write `[1.0, 2.0, 3.0]`"
+    );
+    assert_eq!(
+        first_help(&scene(
+            "[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0]",
+            "0.0"
+        )),
+        "a matrix is written by rows: `[[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]]`"
+    );
+    let by_rows = "[[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]]";
+    assert_eq!(told(&scene(by_rows, "[1.0, 2.0, 3.0]")), "");
+    let load = |force: &str| floating("", &format!("push: Load {{ force: {force} }} (hull);"));
+    assert_eq!(
+        first_typed(&load("diag(0.0, 0.0, u)")).pop().unwrap(),
+        "[0.0, 0.0, u]"
+    );
+    assert_eq!(told(&load("[0.0, 0.0, u]")), "");
+    let planar =
+        "model M { 1 a[3]; b: PlanarBody { mass: 1.0, inertia: diag(1.0, 1.0, 1.0) } (a); }";
+    assert!(
+        told(planar).contains("expected a number, found a 3×3 matrix"),
+        "{}",
+        told(planar)
+    );
+}
+
+#[test]
+fn equations_of_rates_and_starts_are_integrals() {
+    let scene = |text: &str| {
+        format!("model M {{ input u; 1 v {{ I m {{ inertia: 1.0 }} }} {text} output y = x + u; }}")
+    };
+    for equation in [
+        "dx/dt = v.f - u;",
+        "d(x)/dt = v.f - u;",
+        "der(x) = v.f - u;",
+        "ddt(x) = v.f - u;",
+        "x_dot = v.f - u;",
+        "der x = v.f - u;",
+    ] {
+        let written = first_typed(&scene(equation));
+        assert_eq!(written, ["integral x = v.f - u;"], "{equation}");
+        assert_eq!(told(&scene(&written[0])), "");
+    }
+    for start in ["init x = 1.0;", "initial x = 1.0;", "start x = 1.0;"] {
+        let written = first_typed(&scene(start)).pop().unwrap();
+        assert_eq!(written, "integral x = …, initial: 1.0;");
+        assert_eq!(told(&scene(&written.replace('…', "v.f"))), "");
+    }
+    assert_eq!(
+        first_typed(&scene("integral x = v.f initial 0.5;")),
+        [", initial: …"]
+    );
+    assert_eq!(
+        first_help(&scene("equation der(x) = v.f;")),
+        "statements stand side by side, in no sections: leave `equation` out"
+    );
+    assert_eq!(
+        first_help(&scene("m.initial = 1.0;")),
+        "what is given to an element or an instance stands in its braces: `{ …, initial: … }`"
+    );
+    assert!(first_help(&scene("reinit(v, 1.0);")).starts_with("events are found"));
+    assert_eq!(
+        first_typed(&scene("output r[2, 2] = u;")).pop().unwrap(),
+        "output r_0[2] = …; output r_1[2] = …;"
+    );
+}

@@ -423,7 +423,7 @@ model M {{ 1 a[3] {{ I m {{ inertia: 1.0 }} }}
 fn mistakes_in_loops_are_told() {
     insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } a.x -> lings[0].b;"), @"
     2:48 `lings[0].b` is not declared [MBG0203]
-      help: junctions here are `a`
+      help: did you mean `links`?
     ");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { 1 b; a.x -> b; } links[2].b -> a.x;"), @"2:41 `links` runs over 0..2, there is no `links[2]` [MBG0203]");
     insta::assert_snapshot!(mistake("links: for k in 0..2 { let v = links[k-1].v; }"), @"
@@ -459,10 +459,19 @@ fn mistakes_in_loops_are_told() {
     2:16 expected a whole number that is known while the model is compiled, found `1e3` [MBG0217]
       help: a whole number has no decimal point: write `1000`
     ");
-    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]");
+    insta::assert_snapshot!(mistake("for k in 0..4 { a[k] -> R r { resistance: 1.0 }; }"), @"
+    2:17 `a` has 3 components, `a[k]` asks for more [MBG0204]
+      help: they are counted from 0: the last is `a[2]`
+    ");
     insta::assert_snapshot!(mistake("a[2..1] -> R r { resistance: 1.0 };"), @"2:1 `a[2..1]` selects no component [MBG0204]");
-    insta::assert_snapshot!(mistake("output y = a.f[3];"), @"2:16 component 3 of a vector of 3 does not exist [MBG0204]");
-    insta::assert_snapshot!(mistake("output y[2] = a.f[2..4];"), @"2:19 components 2..4 of a vector of 3 do not exist [MBG0204]");
+    insta::assert_snapshot!(mistake("output y = a.f[3];"), @"
+    2:16 component 3 of a vector of 3 does not exist [MBG0204]
+      help: they are counted from 0: the last is `[2]`
+    ");
+    insta::assert_snapshot!(mistake("output y[2] = a.f[2..4];"), @"
+    2:19 components 2..4 of a vector of 3 do not exist [MBG0204]
+      help: they are counted from 0: the last is `[2]`
+    ");
     insta::assert_snapshot!(mistake("for k in 0..2 { param p = 1.0; input u; gravity 1.0; }"), @"
     2:23 a parameter belongs to a model or a component; in a loop, use `let` [MBG0213]
     2:38 an input belongs to a model; give a component a parameter or a port [MBG0213]
@@ -480,7 +489,10 @@ fn mistakes_in_values_are_told() {
     insta::assert_snapshot!(mistake("let p[2] = [1.0, 2.0, 3.0]; output y = p.x;"), @"2:5 `p` has dimension 2, found a vector of 3 [MBG0204]");
     insta::assert_snapshot!(mistake("let p = nowhere;"), @"2:9 `nowhere` is not declared [MBG0203]");
     insta::assert_snapshot!(mistake("let p = 1.0; let p = 2.0;"), @"2:18 `p` is declared twice [MBG0202]");
-    insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"2:14 expected a junction or an element, found `p` [MBG0203]");
+    insta::assert_snapshot!(mistake("let p = 1.0; p -> a;"), @"
+    2:14 expected a junction or an element, found `p` [MBG0203]
+      help: a value is no bond, and comes from a source: `Se p_source { effort: p }` or `Sf p_source { flow: p }` in its place
+    ");
 }
 
 #[test]

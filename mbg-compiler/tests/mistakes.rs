@@ -716,7 +716,7 @@ fn paths_that_lead_nowhere_are_answered_with_what_can_be_read() {
     ");
     insta::assert_snapshot!(read("hinge.theta"), @"
     4:18 `hinge.theta` is not declared [MBG0203]
-      help: of `hinge` can be read `angle`, `gravity_b`, `orientation_b`, `position_b`, `turn`, `force.e`, `moment.e`, `rate.f` and 2 more
+      help: write `hinge.angle`
     ");
     insta::assert_snapshot!(read("hinge.angel"), @"
     4:18 `hinge.angel` is not declared [MBG0203]

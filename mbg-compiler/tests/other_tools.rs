@@ -169,7 +169,7 @@ fn elements_of_other_tools_are_told_as_they_are_written_here() {
     2:7 expected an element, found `IC` [MBG0101]
       help: write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`
     2:7 expected an element, found `L` [MBG0101]
-      help: write `I`: a coil is an inertia, `I name { inertia: … }` with its inductance
+      help: write `I name { inertia: … }`
     2:7 expected an element, found `Sw` [MBG0101]
       help: a switch is `R name { conductance: if … { … } else { … } }`, or on the average an `MTF`
     2:8 expected the name of the element after `R`, found `[` [MBG0101]
@@ -207,8 +207,11 @@ fn variables_of_elements_are_told_by_their_kind() {
     };
     insta::assert_snapshot!(["m", "c", "r", "g"].map(read).join("\n"), @"
     2:74 `m` is an element; write `m.p`, `.e` or `.f` [MBG0213]
+      help: for its inertia give that a name: `param m_inertia = …;` and `inertia: m_inertia`
     2:74 `c` is an element; write `c.q`, `.e` or `.f` [MBG0213]
+      help: for its stiffness give that a name: `param c_stiffness = …;` and `stiffness: c_stiffness`
     2:74 `r` is an element; write `r.e` or `.f` [MBG0213]
+      help: for its resistance give that a name: `param r_resistance = …;` and `resistance: r_resistance`
     2:74 `g` is an element; a two-port has two efforts and two flows; read them at a junction [MBG0213]
     ");
 }
@@ -294,4 +297,282 @@ fn blocks_are_told_as_values_and_integrals() {
         let text = told(&shaft(&format!("Se motor {{ effort: {law} }} -> shaft;")));
         assert!(text.contains(part), "{text}");
     }
+}
+
+/// Without regard to capitals, in a bond, in the braces of a junction, as a statement and as a component.
+#[test]
+fn elements_are_told_in_any_case_and_place() {
+    for (called, kind) in [
+        ("MSe", "Se"),
+        ("mse", "Se"),
+        ("MSF", "Sf"),
+        ("mR", "R"),
+        ("Spring", "C"),
+        ("Mass", "I"),
+        ("Resistor", "R"),
+    ] {
+        for place in [
+            format!("{called} x {{ effort: 1.0 }};"),
+            format!("v -> {called} x {{ effort: 1.0 }};"),
+            format!("1 z {{ {called} x {{ effort: 1.0 }} }} z -> v;"),
+        ] {
+            let helps = diagnose(&masses(&place)).list()[0].helps.clone();
+            let is_told = helps[0].contains(&format!("`{kind}`"))
+                || helps[0].contains(&format!("`{kind} name {{"))
+                || helps[0].contains("x: Resistor");
+            assert!(is_told, "{place}: {helps:?}");
+        }
+    }
+    for (called, written) in [
+        ("x: mse { effort: 1.0 } (v);", "Se x { effort: 1.0 } -> v;"),
+        (
+            "x: MR { resistance: 1.0 } (v);",
+            "v -> R x { resistance: 1.0 };",
+        ),
+        ("x: ZeroJunction (w[0]);", "0 x; w[0] -> x;"),
+    ] {
+        assert_eq!(typed(&masses(called)).pop().unwrap(), written);
+    }
+    for written in [
+        "Se x { effort: 1.0 } -> v;",
+        "v -> R x { resistance: 1.0 };",
+        "0 x; w[0] -> x; x -> C y { stiffness: 1.0 };",
+    ] {
+        assert_eq!(told(&masses(written)), "");
+    }
+    assert_eq!(
+        typed(&masses("v -> OneJunction x { } -> w[0];")),
+        ["1 name;"]
+    );
+    assert_eq!(typed(&masses("OneJunction x;")), ["1 x"]);
+}
+
+/// Blocks as statements, with what makes them compile, and components of the library without their junctions.
+#[test]
+fn blocks_that_stand_alone_are_told_as_values() {
+    for (block, written) in [
+        ("Integrator i;", "integral i = u, initial: 0.0;"),
+        ("Gain i { k: 2.0 };", "let i = 2.0 * u;"),
+        ("Sum i(k = 2.0);", "let i = u - u;"),
+        ("i: LowPass;", "integral i = (u - i) / 0.1;"),
+    ] {
+        let first = typed(&masses(block)).remove(0).replace("u - v", "u - u");
+        assert_eq!(first, written);
+        let whole = format!("input u; {written} output y = i;");
+        assert_eq!(told(&masses(&whole)), "");
+    }
+    let sensor = told(&masses("Sensor w;"));
+    assert!(sensor.contains("read without a sensor"), "{sensor}");
+    assert_eq!(
+        typed(&masses("Friction f { sliding: 1.0 };")),
+        ["f: Friction { sliding: 1.0 } (…);"]
+    );
+    assert_eq!(told(&masses("f: Friction { sliding: 1.0 } (v);")), "");
+}
+
+/// What is read in the place of a velocity, a torque and their like.
+#[test]
+fn quantities_are_told_as_variables_of_bonds() {
+    for (read, written) in [
+        ("v.velocity", "v.f"),
+        ("v.omega", "v.f"),
+        ("v.v", "v.f"),
+        ("m.momentum", "m.p"),
+        ("m.torque", "m.e"),
+        ("k.voltage", "k.e"),
+        ("k.v", "k.e"),
+        ("c.charge", "c.q"),
+        ("c.position", "c.q"),
+        ("c.power", "c.e * c.f"),
+        ("v.force", "m.e"),
+        ("v.e", "m.e"),
+        ("k.current", "c.f"),
+    ] {
+        let first = typed(&masses(&format!("output y = {read};"))).remove(0);
+        assert_eq!(first, written, "{read}");
+        assert_eq!(told(&masses(&format!("output y = {written};"))), "");
+    }
+    let way = typed(&masses("output y = v.angle;"));
+    assert_eq!(way, ["integral q_v = v.f, initial: 0.0;", "q_v"]);
+    assert_eq!(
+        told(&masses(&format!("{} output y = {};", way[0], way[1]))),
+        ""
+    );
+    assert_eq!(typed(&masses("output y = velocity;")), ["v.f", "w.f"]);
+    let energy = typed(&masses("output y = c.energy;")).remove(0);
+    assert_eq!(energy, "0.5 * c.q * c.e");
+}
+
+/// A frame without a velocity is read by halves, a joint and a contact by what they tell.
+#[test]
+fn quantities_of_frames_and_components_are_told() {
+    let scene = |read: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 hull[6];
+             Sf still[6] {{ flow: 0.0 }} -> ground; free: Free (ground, hull);
+             body: Body {{ mass: 1.0, inertia: 1.0 }} (hull); pad: Contact {{ stiffness: 1e4, friction: 0.5 }} (hull);
+             1 arm[6]; hinge: Revolute {{ axis: 1 }} (hull, arm); rod: Body {{ mass: 1.0, inertia: 1.0 }} (arm); {read} }}"
+        )
+    };
+    for (read, written, size) in [
+        ("hull.velocity", "hull.f[3..6]", "[3]"),
+        ("hull.omega", "hull.f[0..3]", "[3]"),
+        ("hull.position", "free.position_b", "[3]"),
+        ("hinge.velocity", "hinge.rate.f", ""),
+        ("hinge.phi", "hinge.angle", ""),
+        ("pad.normal_force", "pad.force", ""),
+        ("pad.penetration", "pad.depth", ""),
+        ("pad.friction_force", "pad.rubbing.e", "[3]"),
+        ("pad.rubbing.contact.e", "pad.rubbing.e", "[3]"),
+    ] {
+        let output = |read: &str| scene(&format!("output y{size} = {read};"));
+        assert_eq!(typed(&output(read)), [written], "{read}");
+        assert_eq!(told(&output(written)), "");
+    }
+}
+
+#[test]
+fn the_nearest_name_inside_a_loop_is_told() {
+    let scene = |use_: &str| {
+        format!(
+            "model M {{ 1 v; cells: for k in 0..2 {{ 1 node {{ I m {{ inertia: 1.0 }} }} }} v -> C c {{ stiffness: 1.0 }}; {use_} }}"
+        )
+    };
+    for (slip, meant) in [
+        ("output y = cells[0].nod.f;", "cells[0].node"),
+        ("output y = cels[0].node.f;", "cells"),
+        ("Se s { effort: 1.0 } -> cells[0].nod;", "cells[0].node"),
+        ("Se s { effort: 1.0 } -> cell[0].node;", "cells"),
+    ] {
+        assert_eq!(typed_first(&scene(slip)), meant, "{slip}");
+    }
+}
+
+/// What is written in one statement or without a name elsewhere, and values in the place of junctions.
+#[test]
+fn statements_are_told_apart() {
+    for (slip, written) in [
+        (
+            "output v.f, m.p;",
+            vec!["output name = v.f; output name_1 = m.p;"],
+        ),
+        ("1 a, b;", vec!["1 a; 1 b;"]),
+        (
+            "input u; u -> v;",
+            vec!["Se u_source { effort: u }", "Sf u_source { flow: u }"],
+        ),
+        (
+            "f: Friction { sliding: 1.0 };",
+            vec!["f: Friction { sliding: 1.0 } (a, b);"],
+        ),
+    ] {
+        assert_eq!(typed(&masses(slip)), written);
+    }
+    for written in [
+        "output name = v.f; output name_1 = m.p;",
+        "1 a; 1 b; a -> R r { resistance: 1.0 }; b -> R s { resistance: 1.0 }; v -> a; v -> b;",
+        "input u; Se u_source { effort: u } -> v;",
+    ] {
+        assert_eq!(told(&masses(written)), "");
+    }
+    let inside = "component K(port a) { a -> R r { resistance: 1.0 }; }";
+    let read = |path: &str| {
+        format!(
+            "{inside} {}",
+            masses(&format!("k0: K (v); output y = {path};"))
+        )
+    };
+    assert_eq!(typed(&read("r.e")), ["k0.r.e"]);
+    assert_eq!(told(&read("k0.r.e")), "");
+}
+
+/// A spring knows no length without load, and a stop asks for the coordinate of its joint.
+#[test]
+fn lengths_without_load_and_coordinates_are_told() {
+    let spring = |law: &str| masses(&format!("v -> C s {{ {law} }};"));
+    for (slip, written) in [
+        ("stiffness: 10.0, rest: 0.2", "effort: 10.0 * (q - 0.2)"),
+        ("stiffness: 10.0, preload: 3.0", "effort: 3.0 + 10.0 * q"),
+    ] {
+        assert_eq!(typed(&spring(slip))[0], written);
+        assert_eq!(told(&spring(written)), "");
+    }
+    let scene = |displacement: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 g[3]; 1 a[3]; Sf f[3] {{ flow: 0.0 }} -> g; j: PlanarRevolute (g, a);
+             b: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (a);
+             s: Stop {{ {displacement}lower: -1.0, upper: 1.0, stiffness: 1e3 }} (j.rate); }}"
+        )
+    };
+    let written = typed(&scene("")).remove(0);
+    assert_eq!(written, "{ displacement: j.angle }");
+    let value = written.trim_matches(['{', '}', ' ']);
+    assert_eq!(told(&scene(&format!("{value}, "))), "");
+    for (vector, written) in [
+        ("vec![1.0, 2.0]", "[1.0, 2.0]"),
+        ("vec2(1.0, 2.0)", "[1.0, 2.0]"),
+    ] {
+        let read = |vector: &str| masses(&format!("output y[2] = {vector};"));
+        assert_eq!(typed(&read(vector)), [written]);
+        assert_eq!(told(&read(written)), "");
+    }
+}
+
+/// Moments about axes, and what a body begins with.
+#[test]
+fn bodies_are_given_a_tensor_and_begin_with_their_frames() {
+    let body = |frame: &str, words: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; {frame} b: Body {{ mass: 1.0, {words} }} (hull); output y[6] = hull.f; }}"
+        )
+    };
+    let frame = "1 hull[6];";
+    let told_first = |words: &str| {
+        let diagnostics = diagnose(&body(frame, words));
+        diagnostics.list()[0].helps[0].clone()
+    };
+    assert_eq!(
+        told_first("ixx: 1.0, iyy: 2.0, izz: 3.0"),
+        "write `inertia: diag(1.0, 2.0, 3.0)`"
+    );
+    let missing = told(&body(frame, "ixx: 1.0, iyy: 2.0, izz: 3.0"));
+    assert!(
+        !missing.contains("needs a value for `inertia`"),
+        "{missing}"
+    );
+    let moments = "inertia: diag(1.0, 2.0, 3.0)";
+    assert_eq!(told(&body(frame, moments)), "");
+    let start = typed(&body(frame, &format!("{moments}, initial_velocity: 1.0")));
+    assert_eq!(start, ["1 hull[6] coordinate, initial_flow: …;"]);
+    let begun = start[0].replace('…', "[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]");
+    assert_eq!(told(&body(&begun, moments)), "");
+}
+
+/// What a branch of a circuit tells, and literals that are no numbers.
+#[test]
+fn branches_and_literals_are_told() {
+    let circuit = |read: &str| {
+        format!(
+            "model M {{ 0 a {{ Se s {{ effort: 1.0 }} }} 0 b {{ Se z {{ effort: 0.0 }} }} 0 m; r: Resistor {{ resistance: 1.0 }} (a, m);
+             c: Capacitor {{ capacitance: 1.0 }} (m, b); output y = {read}; }}"
+        )
+    };
+    for (read, written) in [
+        ("r.i", "r.current"),
+        ("r.v", "r.voltage"),
+        ("c.charge", "c.capacitor.q"),
+    ] {
+        assert_eq!(typed(&circuit(read)), [written]);
+        assert_eq!(told(&circuit(written)), "");
+    }
+    let literal = told(&masses("let on = true; output y = on;"));
+    assert!(
+        literal.contains("write `1.0`, and ask `> 0.5`"),
+        "{literal}"
+    );
+    let word = told(&masses("let kind = \"linear\"; output y = kind;"));
+    assert!(
+        word.contains("`param kind: linear | cubic = linear;`"),
+        "{word}"
+    );
 }

@@ -93,7 +93,10 @@ fn entries_of_matrices_are_read_by_rows() {
     3:15 expected `]`, found `,` [MBG0101]
       help: an entry of a matrix is taken from a row: `[1][2]`
     ");
-    insta::assert_snapshot!(told(&text("m[3][0]")), @"3:14 row 3 of a 3×3 matrix does not exist [MBG0204]");
+    insta::assert_snapshot!(told(&text("m[3][0]")), @"
+    3:14 row 3 of a 3×3 matrix does not exist [MBG0204]
+      help: they are counted from 0: the last is `[2]`
+    ");
     insta::assert_snapshot!(told(&text("m[0]")), @"
     3:8 `y` has dimension 1, found a vector of 3 [MBG0204]
       help: write `output y[3] = m[0];`

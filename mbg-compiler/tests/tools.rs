@@ -395,3 +395,98 @@ fn where_a_joint_ends_and_what_holds_it_stands_beside_it() {
         assert_eq!(told(&scene), "");
     }
 }
+
+#[test]
+fn a_frame_is_given_as_a_whole() {
+    let space = |part: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 hull[6];
+             Sf still[6] {{ flow: 0.0 }} -> ground; free: Free (ground, hull); body: Body {{ mass: 1.0, inertia: 1.0 }} (hull);
+             {part} }}"
+        )
+    };
+    assert_eq!(
+        typed(&space("c: Contact { stiffness: 1e4 } (hull[3..6]);")),
+        ["hull"]
+    );
+    let planar = foot("", "f: PlanarContact { stiffness: 1e4 }").replace("}\n (leg);", "} (leg);");
+    assert_eq!(
+        typed(&planar.replace("1e4 } (leg)", "1e4 } (leg[1..3])")),
+        ["leg"]
+    );
+    // Half of a frame in space has as many components as a frame in a plane.
+    insta::assert_snapshot!(told(&space("c: PlanarContact { stiffness: 1e4 } (hull[3..6]);")), @"
+    3:51 port `at` takes a frame in a plane, and `hull[3..6]` is one half of a frame in space [MBG0204]
+      help: write `Contact`, which is for frames in space, and give it all of that frame
+    ");
+    assert_eq!(told(&space("c: Contact { stiffness: 1e4 } (hull);")), "");
+}
+
+#[test]
+fn a_ground_that_is_no_plane_is_a_stop() {
+    let scene = |part: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, -9.81]; 1 foot[3]; integral way[3] = foot.f;
+             body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (foot); {part} }}"
+        )
+    };
+    let ground = "0.1 * sin(3.0 * way[1])";
+    let contact = |height: &str, position: &str| {
+        scene(&format!(
+            "c: PlanarContact {{ stiffness: 1e4, height: {height}, position_at: {position} }} (foot);"
+        ))
+    };
+    let written = typed(&contact(ground, "way[1..3]")).pop().unwrap();
+    assert_eq!(
+        written,
+        "1 c_approach; foot[1..3] -> MTF c_down { flow: [[slope, -1.0]] } -> c_approach; \
+         c: Stop { displacement: ground - height_at, upper: 0.0, stiffness: … } (c_approach);"
+    );
+    let written = written.replace('…', "1e4");
+    let around = format!(
+        "let ground = {ground}; let slope = 0.3 * cos(3.0 * way[1]); let height_at = way[2];"
+    );
+    assert_eq!(told(&scene(&format!("{around} {written}"))), "");
+    // A position that is not that of the frame, and a height that no flow knows.
+    insta::assert_snapshot!(told(&contact("0.0", "[way[2], way[1]]")), @"
+    2:67 the displacement of `c.stop.upper_spring` does not change as `c.stop.upper_spring` flows [MBG0309]
+      `[way[2], way[1]]` does not move as `foot` does
+      help: leave `position_at` out where joints lead to `foot` from a frame that is held: they tell it; else give the integral of its velocity in axes of the world
+    ");
+    let lifted = scene(
+        "input u; c: PlanarContact { stiffness: 1e4, height: u, position_at: way[1..3] } (foot);",
+    );
+    insta::assert_snapshot!(told(&lifted), @"
+    2:76 the displacement of `c.stop.upper_spring` reads the input `u`, whose rate nothing knows [MBG0309]
+      `height` of `c` changes with time, and no flow knows that rate
+      `height`: Of the ground along its normal, from the origin of the world. It stands still
+      help: give `height` a value that stays: what moves is a junction with a flow, such as a frame behind a joint whose rate is given, `Sf drive { flow: … } -> joint.rate;`
+    ");
+    assert_eq!(told(&contact("0.0", "way[1..3]")), "");
+}
+
+#[test]
+fn all_parameters_are_listed_where_they_are_few() {
+    let contact = foot("", "f: PlanarContact { stiffness: 1e4, wobble: 1.0 }");
+    let contact = told(&contact);
+    assert!(contact.contains("`at_rest`"), "{contact}");
+    let joint = foot("{ wobble: 1.0 }", "f: PlanarContact { stiffness: 1e4 }");
+    let joint = told(&joint);
+    assert!(joint.contains("`initial_rate`"), "{joint}");
+}
+
+#[test]
+fn what_other_tools_have_for_a_ground_is_declared() {
+    let scene = |more: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 arm[3]; {more} hinge: PlanarRevolute (world, arm);
+             body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (arm); }}"
+        )
+    };
+    let written = typed(&scene("")).remove(0);
+    assert_eq!(
+        written,
+        "1 world[3]; Sf world_fixed[3] { flow: 0.0 } -> world;"
+    );
+    assert_eq!(told(&scene(&written)), "");
+}

@@ -591,3 +591,25 @@ fn a_loop_that_is_open_at_the_start_is_told() {
       help: give its joints `initial` values that close it: else they are moved by least norm before the first step
     ");
 }
+
+/// A contact acts on what moves; what stands still may stand at a way from what is held.
+#[test]
+fn contacts_on_what_stands_are_told() {
+    let scene = |part: &str| {
+        warned(&format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, -9.81]; 1 ground[3]; 1 tip[3]; 1 arm[3];
+             Sf still[3] {{ flow: 0.0 }} -> ground; up: PlanarOffset {{ y: 1.0 }} (ground, tip);
+             hinge: PlanarRevolute (tip, arm); body: PlanarBody {{ mass: 1.0, inertia: 1.0 }} (arm);
+             {part} }}"
+        ))
+    };
+    insta::assert_snapshot!(scene("c: PlanarContact { stiffness: 1e4, friction: 0.5 } (ground);"), @"
+    4:14 `c` changes nothing: `ground` does not move [MBG0224]
+      help: remove it, or give it a frame that moves
+    ");
+    insta::assert_snapshot!(scene("c: PlanarContact { stiffness: 1e4, friction: 0.5, at_rest: holds } (tip);"), @"
+    4:14 `c` changes nothing: `tip` does not move [MBG0224]
+      help: remove it, or give it a frame that moves
+    ");
+    assert_eq!(scene("c: PlanarContact { stiffness: 1e4 } (arm);"), "");
+}

@@ -148,6 +148,40 @@ mbg! {
         output rates[2] = [first.f, second.f];
         output momenta[4] = [heavy.p, light.p, left.p, right.p];
     }
+
+    /// A coupling whose law gives its flow by its torque joins an engine to a shaft with a gear. A measurement of the
+    /// torque charges a capacitor, so that its rate is needed.
+    #[derivative]
+    pub(crate) model Slipping {
+        causality componentwise;
+        1 engine { I flywheel { inertia: 1.5, initial_flow: 3.0 } }
+        0 coupling { R slip { flow: (exp(e) - exp(-e)) / 2 } }
+        1 shaft { I rotor { inertia: 2.0 } R bearing { resistance: 0.4 } }
+        engine -> coupling -> shaft;
+        1 load { I drum { inertia: 0.5 } }
+        shaft -> TF gear { flow: 3.0 } -> load;
+        0 measured { Se sensor { effort: coupling.e } C store { compliance: 0.3 } }
+        output rates[3] = [engine.f, shaft.f, load.f];
+        output current = store.f;
+    }
+
+    /// A condenser microphone at a voltage: its charge follows from that, and the way of its plate is a state.
+    #[derivative]
+    pub(crate) model Microphone {
+        param field = 0.4;
+        param gap = 3.0;
+        1 plate {
+            I membrane { inertia: 2.0 }
+            R air { resistance: 0.5 }
+        }
+        0 condenser[2] { C plates { energy: powi(q[0], 2) * (gap + q[1] * q[1]) / (2 * field) } }
+        Se supply { effort: 4.0 + sin(2.0 * t) } -> condenser[0];
+        plate -> condenser[1];
+        output speed = plate.f;
+        output charge = plates.q[0];
+        output way = plates.q[1];
+        output current = supply.f;
+    }
 }
 
 /// An audit of a model, with what else is to hold at each state.
@@ -245,6 +279,48 @@ fn a_modulus_of_time_has_a_rate_too() {
         let (ratio, change) = (1.0 + 0.5 * sine, cosine);
         let torque = probe.input[0] - ratio * change * 0.6 * rate.value;
         near(rate.slope, torque / (1.1 + ratio * ratio * 0.6), EXACT);
+    });
+}
+
+#[test]
+fn what_a_law_gives_by_iteration_is_imposed_on_no_storage() {
+    audited!(Slipping, SlippingParameters, |probe: &Probe<_, 2, 0>| {
+        let [engine, shaft, load, current] = probe.outputs().into();
+        let slip = engine.value - shaft.value;
+        let torque = slip.asinh();
+        let changes = [
+            -torque / 1.5,
+            (torque - 0.4 * shaft.value) / (2.0 + 9.0 * 0.5),
+        ];
+        near(engine.slope, changes[0], EXACT);
+        near(shaft.slope, changes[1], EXACT);
+        near(load.value, 3.0 * shaft.value, EXACT);
+        let change = (changes[0] - changes[1]) / (1.0 + slip * slip).sqrt();
+        near(current.value, 0.3 * change, EXACT);
+    });
+    let model = Slipping::new(SlippingParameters::default()).unwrap();
+    assert!(imbalance(&model, &Constant(SVector::zeros()), 1e-3, 2000) < 1e-11);
+}
+
+#[test]
+fn of_a_law_that_is_linear_in_what_is_lost_alone_the_rest_stays_a_state() {
+    audited!(Microphone, MicrophoneParameters, |probe: &Probe<
+        _,
+        2,
+        0,
+    >| {
+        let [speed, charge, way, current] = probe.outputs().into();
+        let (sine, cosine) = (2.0 * probe.time).sin_cos();
+        let (voltage, change) = (4.0 + sine, 2.0 * cosine);
+        let gap = 3.0 + way.value * way.value;
+        near(charge.value, 0.4 * voltage / gap, EXACT);
+        near(way.slope, speed.value, EXACT);
+        let force = charge.value * charge.value * way.value / 0.4;
+        near(speed.slope, (-force - 0.5 * speed.value) / 2.0, EXACT);
+        let opening = 2.0 * way.value * speed.value;
+        let expected = 0.4 * (change / gap - voltage * opening / (gap * gap));
+        near(current.value, expected, EXACT);
+        near(charge.slope, expected, EXACT);
     });
 }
 

@@ -25,6 +25,12 @@ impl Outlook {
         matches!(self, Self::Soluble)
     }
 
+    /// Whether storages depend on each other and that can be accepted.
+    #[must_use]
+    pub fn is_acceptable(&self) -> bool {
+        matches!(self, Self::Acceptable)
+    }
+
     /// How to accept that storages are no states; nothing where that does not help.
     #[must_use]
     pub fn acceptance<'a>(&self, storages: impl Iterator<Item = &'a Element>) -> Option<String> {

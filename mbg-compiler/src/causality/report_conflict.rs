@@ -156,6 +156,7 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
         codes::RECTANGULAR_INVERSE => imposing(graph, &elements),
         _ => None,
     };
+    let behind_source = usize::from(imposed.is_some());
     // Beside a source nothing can give what it imposes.
     let end = without_source(graph, conflict).or(end);
     let place = end.as_ref().map_or(place, |end| graph.end_name(end));
@@ -178,10 +179,19 @@ fn helps(graph: &BondGraph, conflict: &Conflict, outlook: &Outlook) -> Vec<Strin
     if outlook.is_soluble() && conflict.code != codes::FIXED_RESISTOR {
         helps.push(COMPONENTWISE.to_owned());
     }
+    if outlook.is_acceptable() && accepts_dependence(graph) {
+        helps.insert(behind_source, COMPONENTWISE.to_owned());
+    }
     if explain::blocks_axes(graph, &elements) {
         helps.push(JACOBIAN.to_owned());
     }
     helps
+}
+
+/// Whether every storage may follow from others, as under a model's `#[derivative]`.
+fn accepts_dependence(graph: &BondGraph) -> bool {
+    let mut storages = graph.elements.iter().filter(|it| it.has_states());
+    storages.all(|storage| storage.derivative)
 }
 
 /// The frame that nothing holds, where the conflict is that no bond gives it its flow.

@@ -21,17 +21,28 @@ impl Lookup<'_, '_> {
             Ok(Some((Entity::Junction(id, _), count))) => {
                 let id = *id;
                 let known = self.at_junction(pool, path, count, id);
-                known.or_else(|| self.as_integral(pool, path, count))
+                let known = known.or_else(|| self.as_integral(pool, path, count));
+                known.or_else(|| self.by_quantity(pool, path, count))
             }
             Ok(Some((Entity::Element(_), count))) => {
                 let known = self.behind_index(pool, path, count, true);
-                known.or_else(|| self.as_integral(pool, path, count))
+                let known = known.or_else(|| self.as_integral(pool, path, count));
+                let known = known.or_else(|| self.by_quantity(pool, path, count));
+                known.or_else(|| self.inside_element(pool, path, count))
             }
             Ok(Some((Entity::Instance(_), count))) => self.behind_index(pool, path, count, false),
             Ok(None) => {
                 let in_loop = self.scopes.in_loop(self.scope, path);
-                let known = in_loop.or_else(|| self.in_instance(path));
-                known.or_else(|| self.of_output(path))
+                let known = in_loop.or_else(|| self.in_instance(pool, path));
+                let known = known.or_else(|| self.scopes.meant_inside(self.scope, path));
+                let known = known.or_else(|| self.scopes.in_component(self.scope, path));
+                let known = known.or_else(|| self.of_output(path));
+                match path {
+                    [Step { name, index: None }] => {
+                        known.or_else(|| self.of_what(&name.to_string()))
+                    }
+                    _ => known,
+                }
             }
             _ => None,
         }
@@ -143,16 +154,7 @@ impl Lookup<'_, '_> {
                 let text = self.read(pool, &own(variable))?;
                 Some(format!("write `{text}.{}`", component.name))
             }
-            ([variable], None) => {
-                let elements = self.elements_with(junction, &variable.name);
-                let plural = if elements.len() > 1 {
-                    "elements have"
-                } else {
-                    "element has"
-                };
-                let texts = elements.iter().map(|it| format!("{it}.{}", variable.name));
-                (!elements.is_empty()).then(|| format!("its {plural} one: {}", listing(texts)))
-            }
+            ([variable], None) => self.of_elements(junction, &variable.name),
             ([_, ..], None) => {
                 let text = self.read(pool, &[before, rest].concat())?;
                 Some(format!(
@@ -171,6 +173,18 @@ impl Lookup<'_, '_> {
         let mut ways = [Some(path), picked].into_iter().flatten();
         let has_value = ways.any(|way| matches!(self.value(pool, way), Some(Ok(_))));
         has_value.then(|| text(path))
+    }
+
+    /// Where a variable is read that elements at a junction have.
+    pub(super) fn of_elements(&self, junction: JunctionId, variable: &Ident) -> Option<String> {
+        let elements = self.elements_with(junction, variable);
+        let plural = match elements.len() {
+            0 => return None,
+            1 => "element has",
+            _ => "elements have",
+        };
+        let texts = elements.iter().map(|it| format!("{it}.{variable}"));
+        Some(format!("its {plural} one: {}", listing(texts)))
     }
 
     /// Elements at a junction that have a variable of this name, by their paths from here.
@@ -201,8 +215,18 @@ impl Lookup<'_, '_> {
         }
     }
 
+    /// `pad.rubbing.e` for `pad.rubbing.contact.e`, where `rubbing` is an element.
+    fn inside_element(&mut self, pool: &mut Pool, path: &[Step], count: usize) -> Option<String> {
+        let (front, [_, variable]) = path.split_at(count) else {
+            return None;
+        };
+        let own = [front, std::slice::from_ref(variable)].concat();
+        let text = self.read(pool, &own)?;
+        Some(format!("write `{text}`: an element has nothing inside"))
+    }
+
     /// What can be read of the instance in which the path ends.
-    fn in_instance(&self, path: &[Step]) -> Option<String> {
+    fn in_instance(&mut self, pool: &mut Pool, path: &[Step]) -> Option<String> {
         let (inner, count) = (1..path.len()).rev().find_map(|count| {
             match self.scopes.follow(self.scope, &path[..count]) {
                 Ok(Some((Entity::Instance(inner), found))) if found == count => {
@@ -214,6 +238,9 @@ impl Lookup<'_, '_> {
         let (front, name) = (text(&path[..count]), path[count].name.to_string());
         let known = self.readable(inner);
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
+        if let Some(quantity) = self.by_quantity_inside(pool, &path[..count], &name) {
+            return Some(quantity);
+        }
         if let Some(near) = nearest(&name, &names) {
             return Some(format!("did you mean `{front}.{near}`?"));
         }

@@ -3,8 +3,9 @@
 use proc_macro2::Ident;
 
 use super::elsewhere::value_text;
+use super::frames::{IN_PLANE, IN_SPACE};
 use super::tools::{component, parameter};
-use crate::syntax::ast;
+use crate::syntax::{ast, dump};
 
 /// Words for what is lost in an impact by the speeds before and behind it.
 const RESTITUTIONS: [&str; 4] = [
@@ -36,6 +37,18 @@ const LIMITS: [&str; 4] = ["limits", "limit", "range", "joint_limits"];
 /// Words for friction that holds.
 const HOLDS: [&str; 2] = ["at_rest", "stiction"];
 
+/// Moments of inertia about axes of a frame.
+const MOMENTS: [[&str; 2]; 3] = [["ixx", "i_11"], ["iyy", "i_22"], ["izz", "i_33"]];
+/// Words for what a body begins with.
+const STARTS: [&str; 6] = [
+    "initial_velocity",
+    "initial_angular_velocity",
+    "initial_rate",
+    "initial_flow",
+    "velocity",
+    "v0",
+];
+
 /// The component of the library that is called otherwise elsewhere: a ground that rubs is no frame that stands, and a wheel on one
 /// frame none on a rack.
 pub(super) fn meant(instance: &ast::Instance) -> Option<&'static str> {
@@ -66,6 +79,43 @@ pub(super) fn told(
     lost.flatten()
         .or_else(|| stop(instance, argument))
         .or_else(|| holds(instance, argument))
+        .or_else(|| moments(instance, argument, names))
+        .or_else(|| start_of_body(instance, argument))
+}
+
+/// Whether a word is a moment of inertia, which a tensor has on its diagonal.
+pub(super) fn is_moment(word: &Ident) -> bool {
+    let word = word.to_string().to_lowercase();
+    MOMENTS.iter().flatten().any(|known| *known == word)
+}
+
+/// The tensor of moments that are given one by one.
+fn moments(instance: &ast::Instance, argument: &ast::Field, names: &[&str]) -> Option<String> {
+    if !is_moment(&argument.name) || !names.contains(&"inertia") {
+        return None;
+    }
+    let entries = MOMENTS.map(|words| {
+        let mut given = instance.arguments.iter();
+        let given = given.find(|it| words.contains(&it.name.to_string().to_lowercase().as_str()));
+        given.map_or_else(|| "…".to_owned(), |it| value_text(it.value.as_ref()))
+    });
+    Some(format!("write `inertia: diag({})`", entries.join(", ")))
+}
+
+/// A body begins as its frame does.
+fn start_of_body(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
+    let size = match instance.component.to_string().as_str() {
+        "Body" | "PointMass" => IN_SPACE,
+        "PlanarBody" | "PlanarPointMass" => IN_PLANE,
+        _ => return None,
+    };
+    let frame = instance.connections.first().map(dump::reference)?;
+    is_one_of(&argument.name, &STARTS).then(|| {
+        format!(
+            "a body begins as its frame does: write `1 {frame}[{size}] coordinate, initial_flow: …;` with the angular velocity, \
+             then the velocity, or give the joint that leads there its rate at the start"
+        )
+    })
 }
 
 fn is_one_of(name: &Ident, words: &[&str]) -> bool {
@@ -87,7 +137,7 @@ fn dissipation(name: &Ident) -> Option<String> {
 }
 
 /// The travel of a joint with one free axis.
-fn travel(instance: &ast::Instance) -> Option<&'static str> {
+pub(super) fn travel(instance: &ast::Instance) -> Option<&'static str> {
     match instance.component.to_string().as_str() {
         "Revolute" | "PlanarRevolute" => Some("angle"),
         "Prismatic" | "PlanarPrismatic" => Some("travel"),

@@ -167,6 +167,9 @@ impl Builder<'_> {
             message: format!("`{name}` does not fit in `{component}`: {told}"),
             ..inner
         };
+        if inside.is_some() {
+            report.helps.clear();
+        }
         if report.code == codes::WHOLE_NUMBER {
             let tilts = self.components.get(component);
             let tilts =

@@ -225,7 +225,7 @@ impl<'a> Builder<'a> {
                 Box::new(report.help(tools::along_an_axis(expression)))
             }
             true => by_component(report, expression, size),
-            false => end_excluded(report, expression, size),
+            false => of_entries(report, expression, size),
         })
     }
 
@@ -271,16 +271,46 @@ pub(super) fn by_component(
     }
 }
 
-/// What to type where a range is one component short.
-pub(super) fn end_excluded(
+/// What to type where a range is one component short, or a diagonal matrix stands for a vector.
+pub(super) fn of_entries(
     report: Box<Diagnostic>,
-    range: &Expr,
+    found: &Expr,
     dimension: usize,
 ) -> Box<Diagnostic> {
-    match longer_range(range, dimension) {
+    match longer_range(found, dimension).or_else(|| off_diagonal(found, dimension)) {
         Some(help) => Box::new(report.help(help)),
         None => report,
     }
+}
+
+/// `[a, b, c]` for `diag(a, b, c)` where a vector of three is wanted.
+pub(super) fn off_diagonal(matrix: &Expr, dimension: usize) -> Option<String> {
+    let Expr::Call(call) = elsewhere::bare(matrix) else {
+        return None;
+    };
+    let is_diagonal = matches!(&*call.func, Expr::Path(name) if name.path.is_ident("diag"));
+    let entries: Vec<String> = call.args.iter().map(dump::expression).collect();
+    (is_diagonal && entries.len() == dimension)
+        .then(|| format!("`diag` is a matrix: write `[{}]`", entries.join(", ")))
+}
+
+/// What to type where a matrix of so many rows is wanted: with these entries on its diagonal, or with all of them by rows.
+pub(super) fn as_matrix(vector: &Expr, size: usize) -> Option<String> {
+    let Expr::Array(vector) = elsewhere::bare(vector) else {
+        return None;
+    };
+    let entries: Vec<String> = vector.elems.iter().map(dump::expression).collect();
+    if size < 2 || entries.len() != size * size {
+        return None;
+    }
+    let rows = entries
+        .chunks(size)
+        .map(|row| format!("[{}]", row.join(", ")));
+    let rows: Vec<String> = rows.collect();
+    Some(format!(
+        "a matrix is written by rows: `[{}]`",
+        rows.join(", ")
+    ))
 }
 
 /// `w.f[1..3]` for `w.f[1..2]` where two components are wanted.

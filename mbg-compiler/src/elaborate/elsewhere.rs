@@ -1,17 +1,14 @@
 //! Words of other languages and tools, and what is written here instead.
 
-use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::spanned::Spanned;
 use syn::{BinOp, Expr, ExprBinary, Lit, Member, Stmt, UnOp};
 
 use super::constants::plain_name;
 use super::indices::component_index;
-use crate::graph::ElementKind;
 use crate::symbolic::LARGEST_POWER;
-use crate::syntax::ast::Element;
 use crate::syntax::dump;
-use crate::syntax::words::{ELEMENTS, law_words};
 
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
@@ -34,6 +31,10 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("tau", &[], "6.283185307179586"),
     ("TAU", &[], "6.283185307179586"),
     ("time", &[], "t"),
+    ("g", &[], "9.81"),
+    ("euler", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
+    ("euler_angles", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
+    ("rpy", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
     ("arctan", &["x"], "atan(x)"),
     ("arctan2", &["y", "x"], "atan2(y, x)"),
     ("arcsin", &["x"], "asin(x)"),
@@ -150,203 +151,9 @@ pub(super) fn curve_of_points(arguments: &[Expr]) -> Option<String> {
     Some(format!("interpolate({x}, [{places}], [{values}])"))
 }
 
-/// What the coefficients of elements are called in the parts of physics, and the words of their laws.
-const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
-    (
-        ElementKind::I,
-        &[
-            "inductance",
-            "mass",
-            "moment",
-            "moment_of_inertia",
-            "inertance",
-        ],
-        "inertia",
-    ),
-    // A capacity is flow gathered by effort: the inverse of what a spring is known by.
-    (ElementKind::C, &["capacitance", "capacity"], "compliance"),
-    (
-        ElementKind::C,
-        &["spring_constant", "spring_rate", "k", "elastance"],
-        "stiffness",
-    ),
-    (
-        ElementKind::R,
-        &[
-            "damping",
-            "friction",
-            "viscosity",
-            "drag",
-            "impedance",
-            "r",
-            "b",
-            "d",
-        ],
-        "resistance",
-    ),
-    (ElementKind::R, &["admittance", "mobility"], "conductance"),
-    // The variable that a law gives in the place of its word.
-    (ElementKind::R, &["e"], "effort"),
-    (ElementKind::R, &["f"], "flow"),
-    (ElementKind::C, &["e"], "effort"),
-    (ElementKind::I, &["f"], "flow"),
-    (
-        ElementKind::Se,
-        &[
-            "voltage", "force", "torque", "moment", "pressure", "value", "e",
-        ],
-        "effort",
-    ),
-    (
-        ElementKind::Sf,
-        &["current", "velocity", "speed", "rate", "value", "f"],
-        "flow",
-    ),
-];
-
-/// What the states of storages at the start are called, and the words for them.
-const STARTS: &[(ElementKind, &[&str], &str)] = &[
-    (
-        ElementKind::I,
-        &[
-            "initial_velocity",
-            "initial_speed",
-            "initial_rate",
-            "initial_current",
-        ],
-        "initial_flow",
-    ),
-    (ElementKind::I, &["initial_momentum", "p0"], "initial"),
-    (
-        ElementKind::C,
-        &[
-            "initial_displacement",
-            "initial_position",
-            "initial_angle",
-            "initial_charge",
-            "q0",
-        ],
-        "initial",
-    ),
-];
-
-/// What the effort of a compliance at the start is called.
-const EFFORTS: &[&str] = &[
-    "initial_effort",
-    "initial_voltage",
-    "initial_force",
-    "initial_pressure",
-    "initial_temperature",
-];
-
-/// What the number of a transformer or gyrator is called.
-const RATIOS: &[&str] = &["ratio", "modulus", "gain", "n", "m", "r"];
-
-/// What to type for the law of an element that stands behind a word of another name.
-pub(super) fn law(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
-    if let Some(law) = converter_law(kind) {
-        return by_converter(law, &word.to_string(), value);
-    }
-    here(COEFFICIENTS, kind, word, value)
-}
-
-/// Whether some element has a law behind this word.
-pub(super) fn is_law(word: &Ident) -> bool {
-    let mut laws = ELEMENTS.iter().flat_map(|(_, kind)| law_words(*kind));
-    laws.any(|law| word == law)
-}
-
-/// What to type for a source that is given what the other kind gives.
-pub(super) fn other_source(
-    element: &Element,
-    word: &Ident,
-    value: Option<&Expr>,
-) -> Option<String> {
-    let (other, what) = match element.kind {
-        ElementKind::Se if word == "flow" => ("Sf", "flow"),
-        ElementKind::Sf if word == "effort" => ("Se", "effort"),
-        _ => return None,
-    };
-    let (name, value) = (&element.name, value_text(value));
-    Some(format!(
-        "a source of {what} is written `{other} {name} {{ {what}: {value} }}`"
-    ))
-}
-
-/// What to type for the start of a storage that stands behind a word of another name.
-pub(super) fn start(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
-    here(STARTS, kind, word, value)
-}
-
-/// What to type for a word of an element that has another name in a table.
-fn here(
-    table: &[(ElementKind, &[&str], &str)],
-    kind: ElementKind,
-    word: &Ident,
-    value: Option<&Expr>,
-) -> Option<String> {
-    let mut own = table.iter().filter(|(owner, ..)| *owner == kind);
-    let (.., here) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
-    Some(format!("write `{here}: {}`", value_text(value)))
-}
-
-/// What to type for a compliance that is given its effort at the start in the place of its state.
-pub(super) fn effort_at_start(
-    element: &Element,
-    word: &Ident,
-    value: Option<&Expr>,
-) -> Option<String> {
-    let is_effort = EFFORTS.iter().any(|effort| word == effort);
-    let value = value.filter(|_| is_effort && element.kind == ElementKind::C)?;
-    let law = |word: &str| {
-        let law = element.fields.iter().find(|field| field.name == word);
-        law.and_then(|law| law.value.as_ref())
-    };
-    let start = match (law("compliance"), law("stiffness")) {
-        (Some(compliance), _) => filled("c * x", &[("c", compliance), ("x", value)]),
-        (_, Some(stiffness)) => filled("x / k", &[("k", stiffness), ("x", value)]),
-        _ => {
-            return Some(
-                "write `initial: …` with the `q` at which its law gives this effort".to_owned(),
-            );
-        }
-    };
-    Some(format!("write `initial: {start}`: its state is `q`"))
-}
-
 /// What stands behind a word, or a place for it.
 pub(super) fn value_text(value: Option<&Expr>) -> String {
     value.map_or_else(|| "…".to_owned(), dump::expression)
-}
-
-/// What the law of an element with two ports gives behind it.
-fn converter_law(kind: ElementKind) -> Option<&'static str> {
-    match kind {
-        ElementKind::TF | ElementKind::MTF => Some("flow"),
-        ElementKind::GY | ElementKind::MGY => Some("effort"),
-        _ => None,
-    }
-}
-
-/// What to type for the number of a transformer or gyrator: its law multiplies the flow before it.
-fn by_converter(law: &str, word: &str, value: Option<&Expr>) -> Option<String> {
-    let text = value_text(value);
-    let number = value.filter(|value| !matches!(value, Expr::Array(_)));
-    let inverse = number.map(|value| filled("1 / x", &[("x", value)]));
-    let rule = format!("the {law} behind it is that times the flow before it");
-    match (word, inverse) {
-        // What one variable is multiplied by, the other is divided by, as power stays.
-        ("effort" | "flow", Some(inverse)) => Some(format!("write `{law}: {inverse}`: {rule}")),
-        ("effort" | "flow", None) => {
-            Some(format!("write `{law}: …` with the inverse of it: {rule}"))
-        }
-        _ if !RATIOS.contains(&word) => None,
-        // The ratio of a gear is told either way.
-        (_, Some(inverse)) if law == "flow" => Some(format!(
-            "write `flow: {text}`: {rule}; write `flow: {inverse}` if the flow is divided by it"
-        )),
-        _ => Some(format!("write `{law}: {text}`: {rule}")),
-    }
 }
 
 /// What the words of a choice are called elsewhere, and here.
@@ -381,14 +188,21 @@ const OUTSIDE: &[&str] = &[
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     match (word, arguments) {
         ("powf", [base, exponent]) => return Some(power(base, exponent)),
-        ("der" | "ddt" | "derivative", [of]) => return Some(rate(of)),
-        ("integral" | "integrate" | "int", [of]) => return Some(integral(of)),
+        ("der" | "ddt" | "dt" | "derivative", [of]) => return Some(rate(of)),
+        ("integral" | "integrate" | "int" | "resint", [of]) => return Some(integral(of, None)),
+        ("integral" | "integrate" | "int" | "resint", [of, initial]) => {
+            return Some(integral(of, Some(initial)));
+        }
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
         ("step" | "heaviside" | "Heaviside", [time, at]) => return Some(step_at(time, at)),
         ("delay", [value, by]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
         // Both orders are written elsewhere.
         ("interp1", [_, Expr::Array(_), Expr::Array(_)]) => return instead("interp", arguments),
+        ("vec" | "vec2" | "vec3" | "vector" | "array" | "Vector3", entries) => {
+            let entries: Vec<String> = entries.iter().map(dump::expression).collect();
+            return Some(format!("write `[{}]`", entries.join(", ")));
+        }
         _ if OUTSIDE.contains(&word) => {
             return Some(
                 "what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`"
@@ -425,6 +239,10 @@ pub(super) fn of_rust(expression: &Expr) -> Option<String> {
                 inside.join(", ")
             ))
         }
+        Expr::Macro(list) if list.mac.path.is_ident("vec") => Some(format!(
+            "write `[{}]`",
+            dump::tokens(list.mac.tokens.clone())
+        )),
         Expr::Tuple(list) => {
             let entries: Vec<String> = list.elems.iter().map(dump::expression).collect();
             Some(format!("write `[{}]`", entries.join(", ")))
@@ -476,9 +294,11 @@ fn is_flow_or_effort(read: &Expr) -> bool {
 }
 
 /// What to declare where an integral is meant.
-fn integral(of: &Expr) -> String {
+fn integral(of: &Expr, initial: Option<&Expr>) -> String {
     let rate = dump::expression(of);
-    format!("an integral is declared: write `integral name = {rate};`, and read `name`")
+    let initial = initial.map(dump::expression);
+    let initial = initial.map_or_else(String::new, |initial| format!(", initial: {initial}"));
+    format!("an integral is declared: write `integral name = {rate}{initial};`, and read `name`")
 }
 
 /// Where the energy of a whole model and its rate are found.
@@ -707,7 +527,7 @@ pub(super) fn number(expression: &Expr) -> Option<f64> {
 }
 
 /// A text with expressions in place of its names.
-fn filled(text: &str, places: &[(&str, &Expr)]) -> String {
+pub(super) fn filled(text: &str, places: &[(&str, &Expr)]) -> String {
     let Ok(tokens) = text.parse::<TokenStream>() else {
         return text.to_owned();
     };

@@ -245,7 +245,11 @@ impl<N: Names> Evaluator<'_, N> {
                 integer.base10_digits().to_owned(),
                 integer.suffix().to_owned(),
             ),
-            _ => return fail(literal.span(), "expected a number"),
+            _ => {
+                let report = error(codes::EXPRESSION, literal.span(), "expected a number");
+                let help = no_number(literal);
+                return Err(Box::new(help.into_iter().fold(report, Diagnostic::help)));
+            }
         };
         match self.pool.literal(&text) {
             Some(value) if suffix.is_empty() || suffix == "f64" => {
@@ -557,21 +561,39 @@ impl<N: Names> Evaluator<'_, N> {
         if array.elems.is_empty() {
             return mismatch(array.span(), "expected at least one entry".to_owned());
         }
-        let rows: Result<Vec<Vec<Expression>>> = array
-            .elems
-            .iter()
-            .map(|entry| match entry {
-                Expr::Array(row) => row.elems.iter().map(|entry| self.scalar(entry)).collect(),
-                _ => Ok(vec![self.scalar(entry)?]),
-            })
-            .collect();
-        let rows = rows?;
+        let rows = self
+            .rows(array)
+            .map_err(|report| of_one_row(array, report))?;
         let columns = rows[0].len();
         if columns == 0 || rows.iter().any(|row| row.len() != columns) {
             return mismatch(array.span(), "expected rows of equal length".to_owned());
         }
         let matrix = Matrix::new(rows.len(), columns, rows.concat());
         Ok(Value::Matrix(Product::of(Factor::Dense(matrix))))
+    }
+
+    /// The entries of an array by rows, of one entry each where they are no arrays themselves.
+    fn rows(&mut self, array: &syn::ExprArray) -> Result<Vec<Vec<Expression>>> {
+        let entries = array.elems.iter();
+        entries
+            .map(|entry| match entry {
+                Expr::Array(row) => row.elems.iter().map(|entry| self.scalar(entry)).collect(),
+                _ => Ok(vec![self.scalar(entry)?]),
+            })
+            .collect()
+    }
+}
+
+/// What to type for `[w]` with a vector `w`, which is meant as the row of a matrix.
+fn of_one_row(array: &syn::ExprArray, report: Box<Diagnostic>) -> Box<Diagnostic> {
+    match (array.elems.len(), array.elems.first()) {
+        (1, Some(name @ Expr::Path(_))) if report.code == codes::WRONG_DIMENSION => {
+            let row = format!("transpose({})", dump::expression(name));
+            Box::new(report.help(format!(
+                "or `{row}` in the place of the brackets, for a matrix of one row"
+            )))
+        }
+        _ => report,
     }
 }
 
@@ -638,5 +660,22 @@ fn member(field: &syn::ExprField) -> Result<Ident> {
                 report.help(format!("write `{base}[{}]`", number.index)),
             ))
         }
+    }
+}
+
+/// What to type for a literal that is no number.
+fn no_number(literal: &Lit) -> Option<String> {
+    match literal {
+        Lit::Bool(truth) => {
+            let number = if truth.value { "1.0" } else { "0.0" };
+            Some(format!(
+                "a value is a number: write `{number}`, and ask `> 0.5`"
+            ))
+        }
+        Lit::Str(_) => Some(
+            "a choice of words is a parameter of a component: `param kind: linear | cubic = linear;`"
+                .to_owned(),
+        ),
+        _ => None,
     }
 }

@@ -6,10 +6,10 @@ use proc_macro2::{Ident, Span};
 use syn::spanned::Spanned;
 
 use super::claims::Subject;
-use super::definitions::{Missing, by_component, end_excluded};
-use super::elsewhere;
+use super::definitions::{Missing, by_component, of_entries};
 use super::expressions::{Evaluator, Result, Step, Value};
 use super::laws::{Reader, words_of};
+use super::laws_elsewhere;
 use super::mentions::mentioned;
 use super::model::{Elaborated, Output, State, StateRate};
 use super::own::Own;
@@ -260,7 +260,7 @@ impl<'a> Builder<'a> {
         let entries = self.entries(&value, dimension, name);
         entries.map_err(|report| match value {
             Value::Scalar(_) => by_component(report, expression, dimension),
-            Value::Matrix(_) => end_excluded(report, expression, dimension),
+            Value::Matrix(_) => of_entries(report, expression, dimension),
         })
     }
 
@@ -296,13 +296,16 @@ impl<'a> Builder<'a> {
             let known = words.iter().map(|word| (*word).to_owned());
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
             let (kind, word, value) = (element.kind, &field.name, field.value.as_ref());
-            let here = elsewhere::law(kind, word, value);
-            let here = here.or_else(|| elsewhere::start(kind, word, value));
-            let here = here.or_else(|| elsewhere::other_source(element, word, value));
-            let report = match here.or_else(|| elsewhere::effort_at_start(element, word, value)) {
-                Some(help) => report.help(help),
-                None => report.did_you_mean(&field.name.to_string(), &words),
-            };
+            let here = laws_elsewhere::law(kind, word, value);
+            let here = here.or_else(|| laws_elsewhere::start(kind, word, value));
+            let here = here.or_else(|| laws_elsewhere::other_source(element, word, value));
+            let here = here.or_else(|| laws_elsewhere::stroke(word));
+            let here = here.or_else(|| laws_elsewhere::preloaded(element, word, value));
+            let report =
+                match here.or_else(|| laws_elsewhere::effort_at_start(element, word, value)) {
+                    Some(help) => report.help(help),
+                    None => report.did_you_mean(&field.name.to_string(), &words),
+                };
             self.tell(
                 scope,
                 report.help(format!("its words are {}", listing(known))),
@@ -315,9 +318,10 @@ impl<'a> Builder<'a> {
             let words = words_of(element.kind);
             let found = || element.fields.iter().map(|field| &field.name);
             let mut laws = law_words(element.kind).iter();
-            let is_other = found().any(|it| elsewhere::law(element.kind, it, None).is_some());
+            let is_other = found().any(|it| laws_elsewhere::law(element.kind, it, None).is_some());
             let is_other = is_other
-                || found().any(|it| elsewhere::is_law(it) && !words.iter().any(|word| it == word));
+                || found()
+                    .any(|it| laws_elsewhere::is_law(it) && !words.iter().any(|word| it == word));
             if is_other || laws.any(|law| is_misspelt(law, found(), &words)) {
                 self.missing = Some(Missing::Broken);
             }
@@ -484,7 +488,7 @@ impl<'a> Builder<'a> {
     /// Hands over.
     pub(super) fn finish(mut self, model: &ast::Model) -> Elaborated {
         let rings = self.rings();
-        let in_time = self.in_time();
+        let moved = self.moved();
         Elaborated {
             documentation: model.documentation.clone(),
             visibility: model.visibility.clone(),
@@ -499,7 +503,7 @@ impl<'a> Builder<'a> {
             assumptions: self.assumptions,
             rings,
             moving_inputs: self.moving_inputs,
-            in_time,
+            moved,
         }
     }
 }

@@ -7,12 +7,11 @@ use syn::spanned::Spanned;
 
 use super::elsewhere;
 use super::expressions::{Evaluator, Names, Result, Value, fail, no_plain_name, whole_vector};
-use super::signals;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Product};
-use crate::syntax::dump;
 use crate::syntax::words::FUNCTIONS;
+use crate::syntax::{dump, signals};
 
 impl<N: Names> Evaluator<'_, N> {
     pub(super) fn call(&mut self, call: &syn::ExprCall) -> Result<Value> {

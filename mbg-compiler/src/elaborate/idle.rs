@@ -10,9 +10,9 @@ use super::scope::{Entity, GRAVITY};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{ElementKind, JunctionId, JunctionKind, instance_of};
-use crate::syntax::ast::{Component, Instance, Statement};
+use crate::syntax::ast::{ChainNode, Component, Instance, Statement};
 use crate::syntax::dump;
-use crate::syntax::words::alternatives;
+use crate::syntax::words::{alternatives, is_two_port};
 
 /// A warning for a component that came without a bond, all of which stand in its `if`s.
 pub(super) fn without_bonds(instance: &Instance, component: &Component) -> Option<Diagnostic> {
@@ -36,14 +36,15 @@ impl Builder<'_> {
     /// Warns of all but [`without_bonds`], once everything is read that has an effect.
     pub(super) fn warn_of_idle(&mut self) {
         let mut warnings: Vec<Diagnostic> = self.weightless().into_iter().collect();
-        let still = self.held_frames();
+        let mut still = self.held_frames();
+        self.carry_stillness(&mut still);
         for (inner, frames) in &self.frames {
             let [frame] = &frames[..] else { continue };
             // A component of the user's may be used on what moves, too.
             if let Some((scope, instance)) = self.called.get(inner)
                 && instance_of(&self.path(*scope, &instance.name)).is_none()
                 && still.contains(&frame.place.0)
-                && is_passive(frame.component)
+                && self.is_passive(frame.component)
             {
                 let at = dump::reference(&instance.connections[0]);
                 let name = &instance.name;
@@ -106,19 +107,61 @@ impl Builder<'_> {
         let held = held.map(|(id, _)| JunctionId(id));
         held.filter(|_| !asked).collect()
     }
-}
 
-/// Whether a component of the library has elements alone, none of which moves by itself.
-fn is_passive(component: &Component) -> bool {
-    let mut open: Vec<&Statement> = component.statements.iter().collect();
-    while let Some(statement) = open.pop() {
-        match statement {
-            Statement::Instance(_) | Statement::Integral(_) | Statement::Attitude(_) => {
-                return false;
+    /// Adds the frames that stand at a fixed place of one that does not move.
+    fn carry_stillness(&mut self, still: &mut BTreeSet<JunctionId>) {
+        let pairs = self.frames.iter().filter_map(|(inner, frames)| {
+            let [a, b] = &frames[..] else { return None };
+            let is_rigid = self.is_made_of(a.component, &is_two_port);
+            is_rigid.then_some((*inner, a.place.0, b.place.0))
+        });
+        let pairs: Vec<_> = pairs.collect();
+        let fixed = pairs
+            .into_iter()
+            .filter(|(inner, ..)| !self.is_given_what_moves(*inner));
+        let fixed: Vec<_> = fixed.collect();
+        loop {
+            let known = still.len();
+            for (_, a, b) in &fixed {
+                if still.contains(a) || still.contains(b) {
+                    still.extend([*a, *b]);
+                }
             }
-            Statement::Junction(it) if it.coordinate => return false,
-            _ => open.extend(statement.inside()),
+            if still.len() == known {
+                return;
+            }
         }
     }
-    component.library
+
+    /// Whether a component of the library has elements alone, none of which moves by itself.
+    fn is_passive(&self, component: &Component) -> bool {
+        self.is_made_of(component, &|_| true)
+    }
+
+    /// Whether a component of the library has such elements alone, also in those that it is made of, and no state besides.
+    fn is_made_of(&self, component: &Component, element: &dyn Fn(ElementKind) -> bool) -> bool {
+        let mut open: Vec<&Statement> = component.statements.iter().collect();
+        while let Some(statement) = open.pop() {
+            let is_one = match statement {
+                Statement::Integral(_) | Statement::Attitude(_) => false,
+                Statement::Instance(it) => {
+                    let inner = self.components.get(&it.component.to_string());
+                    inner.is_some_and(|inner| self.is_made_of(inner, element))
+                }
+                Statement::Junction(it) => {
+                    !it.coordinate && it.elements.iter().all(|it| element(it.kind))
+                }
+                Statement::Chain(chain) => chain.nodes.iter().all(|node| match node {
+                    ChainNode::Element(it) => element(it.kind),
+                    ChainNode::Reference(_) => true,
+                }),
+                _ => true,
+            };
+            if !is_one {
+                return false;
+            }
+            open.extend(statement.inside());
+        }
+        component.library
+    }
 }

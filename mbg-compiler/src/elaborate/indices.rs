@@ -6,7 +6,7 @@ use syn::spanned::Spanned;
 use syn::{Expr, RangeLimits, Token};
 
 use super::advice;
-use super::expressions::{Evaluator, Index, Names, Result, Step, Value, fail, mismatch};
+use super::expressions::{Evaluator, Index, Names, Result, Step, Value, fail};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::Product;
@@ -155,7 +155,10 @@ impl<N: Names> Evaluator<'_, N> {
             .and_then(|index| entries.get(index))
         {
             Some(entry) => Ok(Value::Scalar(*entry)),
-            None => mismatch(span, format!("component {index} of {shape} does not exist")),
+            None => {
+                let message = format!("component {index} of {shape} does not exist");
+                Err(from_zero(span, message, index, entries.len()))
+            }
         }
     }
 
@@ -169,7 +172,8 @@ impl<N: Names> Evaluator<'_, N> {
             }
             _ => {
                 let shape = Value::Matrix(product.clone()).shape();
-                mismatch(span, format!("row {index} of {shape} does not exist"))
+                let message = format!("row {index} of {shape} does not exist");
+                Err(from_zero(span, message, index, matrix.rows))
             }
         }
     }
@@ -204,10 +208,13 @@ impl<N: Names> Evaluator<'_, N> {
         let (Some(start), Some(end), RangeLimits::HalfOpen(_)) =
             (&range.start, &range.end, &range.limits)
         else {
-            return fail(
+            let report = error(
+                codes::EXPRESSION,
                 span,
                 "expected a range such as `1..3`, which excludes its end",
             );
+            let help = self.with_both_ends(range);
+            return Err(Box::new(help.into_iter().fold(report, Diagnostic::help)));
         };
         let (start, end) = (self.names.whole(start)?, self.names.whole(end)?);
         let shape = value.shape();
@@ -216,12 +223,33 @@ impl<N: Names> Evaluator<'_, N> {
             (Ok(first), Ok(last)) if first < last && last <= entries.len() => {
                 Ok(Value::column(entries[first..last].to_vec()))
             }
-            _ => mismatch(
-                span,
-                format!("components {start}..{end} of {shape} do not exist"),
-            ),
+            _ => {
+                let message = format!("components {start}..{end} of {shape} do not exist");
+                let last = end.saturating_sub(1);
+                Err(from_zero(span, message, last, entries.len()))
+            }
         }
     }
+
+    /// `[1..4]` for `[1..=3]`.
+    fn with_both_ends(&self, range: &syn::ExprRange) -> Option<String> {
+        let start = self.names.whole(range.start.as_deref()?).ok()?;
+        let end = self.names.whole(range.end.as_deref()?).ok()?;
+        Some(format!("write `[{start}..{}]`", end.checked_add(1)?))
+    }
+}
+
+/// What is picked out of so many by a number that none of them has: the last is often asked for by how many there are.
+fn from_zero(span: Span, message: String, index: i64, count: usize) -> Box<Diagnostic> {
+    let report = error(codes::WRONG_DIMENSION, span, message);
+    let is_counted_from_one = count > 1 && usize::try_from(index) == Ok(count);
+    Box::new(match is_counted_from_one {
+        true => report.help(format!(
+            "they are counted from 0: the last is `[{}]`",
+            count - 1
+        )),
+        false => report,
+    })
 }
 
 /// A path with two indices behind one name, `c[1][2].v`.

@@ -1,5 +1,7 @@
 //! Components in use.
 
+use std::ops::Range;
+
 use proc_macro2::Ident;
 
 use super::calls::by_ports;
@@ -8,8 +10,8 @@ use super::driven;
 use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
+use super::kinds;
 use super::scope::{Entity, Scope};
-use super::signals;
 use super::tools;
 use super::unused::without_effect;
 use super::{Builder, beside};
@@ -17,7 +19,10 @@ use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
 use crate::syntax::words::{alternatives, is_misspelt};
-use crate::syntax::{ast, dump, library};
+use crate::syntax::{ast, dump, library, signals};
+
+/// What the names of components for frames in a plane begin with.
+const PLANAR: &str = "Planar";
 
 impl<'a> Builder<'a> {
     /// Puts a component in place.
@@ -93,6 +98,7 @@ impl<'a> Builder<'a> {
             let entity = match given {
                 Some((End::Junction(id, range), size))
                     if size == port.dimension
+                        && !is_half(component, &range, &self.graph.junctions[id.0])
                         && (!is_counted || port.takes(self.graph.junctions[id.0].kind)) =>
                 {
                     self.at_frame(inner, component, port, (id, range.clone()));
@@ -103,7 +109,7 @@ impl<'a> Builder<'a> {
                     let mut report =
                         self.misfit(scope, (instance, component), (port, reference), given);
                     // All of them fit in another order, which is told once.
-                    if let Some(call) = &ordered {
+                    if let Some(call) = ordered.as_ref().filter(|_| component.ports.len() > 1) {
                         report.helps = vec![call.clone()];
                     }
                     if ordered.is_none() || !is_told {
@@ -128,6 +134,9 @@ impl<'a> Builder<'a> {
     ) -> Diagnostic {
         match end {
             End::OnePort(id) => self.no_junction(scope, reference, id),
+            End::Junction(id, range) if is_half(component, &range, &self.graph.junctions[id.0]) => {
+                half_of_frame(port, component, reference)
+            }
             End::Junction(id, _) if size == port.dimension => {
                 wrong_kind(port, &instance.name, reference, &self.graph.junctions[id.0])
             }
@@ -137,11 +146,25 @@ impl<'a> Builder<'a> {
             }
             _ => {
                 let report = wrong_size(port, reference, size);
-                match counterpart(&component.name.to_string(), size) {
+                let whole = self.whole(scope, reference, port.dimension);
+                match whole.or_else(|| counterpart(&component.name.to_string(), size)) {
                     Some(help) => report.help(help),
                     None => report,
                 }
             }
+        }
+    }
+
+    /// What to type for a part of a junction of which all has the dimension of a port.
+    fn whole(&self, scope: usize, reference: &ast::Reference, dimension: usize) -> Option<String> {
+        let mut whole = reference.clone();
+        whole.path.last_mut()?.selection.take()?;
+        match self.end_of(scope, &whole) {
+            Ok(Some((End::Junction(..), size))) if size == dimension => {
+                let whole = dump::reference(&whole);
+                Some(format!("write `{whole}`: the port takes all of it"))
+            }
+            _ => None,
         }
     }
 
@@ -180,42 +203,7 @@ impl<'a> Builder<'a> {
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
         for argument in &instance.arguments {
             if !names.iter().any(|known| argument.name == known) {
-                let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
-                let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
-                if let Some(vector) = tools::vector(&argument.name, &instance.arguments, &names) {
-                    if let Some(written) = vector {
-                        self.tell(scope, report.help(format!("write `{written}`")));
-                    }
-                    continue;
-                }
-                if let Some(help) = beside::told(instance, argument, &names) {
-                    self.tell(scope, report.help(help));
-                    continue;
-                }
-                if let Some(here) = tools::parameter(&argument.name, &names) {
-                    let value = argument.value.as_ref();
-                    let is_start = here.starts_with("initial");
-                    let by_rate = driven::by_rate(instance, component)
-                        .filter(|_| is_start && self.moves_by_itself(scope, value));
-                    let help = by_rate.unwrap_or_else(|| {
-                        format!("write `{here}: {}`", elsewhere::value_text(value))
-                    });
-                    self.tell(scope, report.help(help));
-                    continue;
-                }
-                let way = tools::by_ratio(instance, argument)
-                    .or_else(|| tools::at_point(instance, argument));
-                if let Some(way) = way {
-                    self.tell(scope, report.help(way));
-                    continue;
-                }
-                let longer = ending_in(&argument.name.to_string(), &names);
-                let report = match longer.is_empty() {
-                    true => report.did_you_mean(&argument.name.to_string(), &names),
-                    false => report.help(format!("write {}", alternatives(&longer))),
-                };
-                let help = format!("its parameters are {}", listing(known.clone()));
-                self.tell(scope, report.help(help));
+                self.unknown_argument(scope, (instance, component), argument, &names);
             }
         }
         for choice in component.choices() {
@@ -238,7 +226,11 @@ impl<'a> Builder<'a> {
                     self.definition(inner, name, shape, (inner, default))
                 }
                 (None, None) => {
-                    self.missing_argument(scope, (instance, component), name, "…");
+                    let value = self
+                        .coordinate(scope, instance)
+                        .filter(|_| name == "displacement");
+                    let value = value.unwrap_or_else(|| "…".to_owned());
+                    self.missing_argument(scope, (instance, component), name, &value);
                     Entity::Opaque
                 }
             };
@@ -247,6 +239,71 @@ impl<'a> Builder<'a> {
             }
             self.name(inner, name, value);
         }
+    }
+
+    /// Reports an argument that is no parameter of the component, with what to type in its place.
+    fn unknown_argument(
+        &mut self,
+        scope: usize,
+        (instance, component): (&ast::Instance, &ast::Component),
+        argument: &ast::Field,
+        names: &[&str],
+    ) {
+        let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
+        let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
+        if let Some(vector) = tools::vector(&argument.name, &instance.arguments, names) {
+            if let Some(written) = vector {
+                self.tell(scope, report.help(format!("write `{written}`")));
+            }
+            return;
+        }
+        let here = beside::told(instance, argument, names)
+            .or_else(|| self.parameter_here(scope, (instance, component), argument, names))
+            .or_else(|| tools::by_ratio(instance, argument))
+            .or_else(|| tools::at_point(instance, argument));
+        if let Some(help) = here {
+            return self.tell(scope, report.help(help));
+        }
+        let longer = ending_in(&argument.name.to_string(), names);
+        let report = match longer.is_empty() {
+            true => report.did_you_mean(&argument.name.to_string(), names),
+            false => report.help(format!("write {}", alternatives(&longer))),
+        };
+        let known = names.iter().map(|name| (*name).to_owned());
+        let help = format!("its parameters are {}", listing(known));
+        self.tell(scope, report.help(help));
+    }
+
+    /// What to type for a parameter that has another name elsewhere; a motion is none for the start.
+    fn parameter_here(
+        &self,
+        scope: usize,
+        (instance, component): (&ast::Instance, &ast::Component),
+        argument: &ast::Field,
+        names: &[&str],
+    ) -> Option<String> {
+        let here = tools::parameter(&argument.name, names)?;
+        let value = argument.value.as_ref();
+        let is_start = here.starts_with("initial");
+        let by_rate = driven::by_rate(instance, component)
+            .filter(|_| is_start && self.moves_by_itself(scope, value));
+        let written = || format!("write `{here}: {}`", elsewhere::value_text(value));
+        Some(by_rate.unwrap_or_else(written))
+    }
+
+    /// The angle or travel of the joint whose rate an instance is given.
+    fn coordinate(&self, scope: usize, instance: &ast::Instance) -> Option<String> {
+        let [given] = &instance.connections[..] else {
+            return None;
+        };
+        let text = dump::reference(given);
+        let (joint, _) = text.rsplit_once('.').filter(|(_, last)| *last == "rate")?;
+        let Some(Entity::Instance(inner)) = self.scopes.find(scope, joint) else {
+            return None;
+        };
+        let (_, called) = self.called.get(inner)?;
+        let travel = beside::travel(called)?;
+        Some(format!("{joint}.{travel}"))
     }
 
     /// Reports a parameter without a value, unless a word that is not known was meant to be its name, or stands for all of them.
@@ -272,6 +329,7 @@ impl<'a> Builder<'a> {
         };
         if is_misspelt(&name_text, arguments.clone(), &known)
             || arguments.clone().any(is_meant)
+            || name_text == "inertia" && arguments.clone().any(beside::is_moment)
             || arguments.any(is_shortened)
             || instance.arguments.iter().any(is_ratio)
         {
@@ -319,7 +377,8 @@ impl<'a> Builder<'a> {
             None => here.to_owned(),
         };
         let value = instance.name.to_string();
-        let elements = tools::as_element(instance)
+        let elements = kinds::as_junction(instance)
+            .or_else(|| kinds::as_element(instance))
             .or_else(|| tools::elements(instance, end))
             .or_else(|| signals::block(&name.to_string(), &value));
         let mut report = match (beside::meant(instance), elements) {
@@ -394,6 +453,33 @@ fn wrong_size(port: &ast::Port, reference: &ast::Reference, size: usize) -> Diag
     error(codes::WRONG_DIMENSION, reference.span, message)
 }
 
+/// Whether a component of the library for frames in a plane is given the angular velocity or the velocity of a frame in space.
+fn is_half(component: &ast::Component, range: &Range<usize>, junction: &Junction) -> bool {
+    let half = IN_SPACE / 2;
+    component.library
+        && component.name.to_string().starts_with(PLANAR)
+        && junction.dimension == IN_SPACE
+        && (*range == (0..half) || *range == (half..IN_SPACE))
+}
+
+/// Such a half, which has as many components as a frame in a plane.
+fn half_of_frame(
+    port: &ast::Port,
+    component: &ast::Component,
+    reference: &ast::Reference,
+) -> Diagnostic {
+    let text = dump::reference(reference);
+    let message = format!(
+        "port `{}` takes a frame in a plane, and `{text}` is one half of a frame in space",
+        port.name
+    );
+    let report = error(codes::WRONG_DIMENSION, reference.span, message);
+    match counterpart(&component.name.to_string(), IN_SPACE) {
+        Some(help) => report.help(format!("{help}, and give it all of that frame")),
+        None => report,
+    }
+}
+
 /// What to type for a component whose frames are those of the other space.
 fn counterpart(name: &str, size: usize) -> Option<String> {
     let space = if size == IN_PLANE { "a plane" } else { "space" };
@@ -403,9 +489,9 @@ fn counterpart(name: &str, size: usize) -> Option<String> {
 
 /// The component of the library that is in space what another is in a plane, or the other way round.
 fn in_frames(name: &str, size: usize) -> Option<String> {
-    let other = match (name.strip_prefix("Planar"), size) {
+    let other = match (name.strip_prefix(PLANAR), size) {
         (Some(other), IN_SPACE) => other.to_owned(),
-        (None, IN_PLANE) => format!("Planar{name}"),
+        (None, IN_PLANE) => format!("{PLANAR}{name}"),
         _ => return None,
     };
     library::names()

@@ -6,6 +6,7 @@ use proc_macro2::Span;
 use syn::Expr;
 use syn::spanned::Spanned;
 
+use super::definitions::{as_matrix, off_diagonal};
 use super::expressions::{Evaluator, Result, Value};
 use super::frames::part_of_frame;
 use super::model::{Assumption, Condition, Place, Quantity};
@@ -184,12 +185,15 @@ impl Reader<'_, '_, '_> {
             return Vec::new();
         };
         let (size, rows) = (self.own.dimension, vector.rows());
+        if vector.columns() > 1 {
+            return Vec::from_iter(off_diagonal(value, size));
+        }
         let Some((End::Junction(id, range), _)) = beside(self.lookup.graph, self.own.element)
         else {
             return Vec::new();
         };
         let junction = &self.lookup.graph.junctions[id.0];
-        if is_inside || vector.columns() > 1 || range.len() < junction.dimension {
+        if is_inside || range.len() < junction.dimension {
             return Vec::new();
         }
         let mut helps = Vec::from_iter(part_of_frame(&junction.name, size, rows));
@@ -249,18 +253,19 @@ impl Reader<'_, '_, '_> {
                 Ok(product.to_matrix(self.pool))
             }
             found => {
-                let message = format!(
-                    "expected a number or {} {size}×{size} matrix, found {}",
-                    article(&size.to_string()),
-                    found.shape()
-                );
+                let article = article(&size.to_string());
+                let matrix = match size {
+                    1 => String::new(),
+                    _ => format!(" or {article} {size}×{size} matrix"),
+                };
+                let message = format!("expected a number{matrix}, found {}", found.shape());
                 let report = error(codes::WRONG_DIMENSION, value.span(), message);
                 let vector = found.entries(self.pool);
-                Err(Box::new(if vector.is_some_and(|it| it.len() == size) {
-                    report.help("write `diag(…)` for a matrix with these on its diagonal")
-                } else {
-                    report
-                }))
+                let is_diagonal = vector.is_some_and(|it| it.len() == size);
+                let on_diagonal = "write `diag(…)` for a matrix with these on its diagonal";
+                let help = is_diagonal.then(|| on_diagonal.to_owned());
+                let help = help.or_else(|| as_matrix(value, size));
+                Err(Box::new(help.into_iter().fold(report, Diagnostic::help)))
             }
         }
     }

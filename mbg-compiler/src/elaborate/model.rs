@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Span};
 use syn::{Attribute, Visibility};
 
 use super::rings::Ring;
-use crate::diagnostics::{Diagnostic, listing};
+use crate::diagnostics::Diagnostic;
 use crate::graph::{BondGraph, ElementId, JunctionId};
 use crate::symbolic::{Expression, Symbol};
 
@@ -39,9 +39,9 @@ pub struct Elaborated {
     pub rings: Vec<Ring>,
     /// What is told of geometry that inputs move, by input.
     pub moving_inputs: BTreeMap<usize, Diagnostic>,
-    /// Parameters of components in use that are given something that changes with time, with what is said of them, by the path
-    /// of the component.
-    pub in_time: BTreeMap<String, Vec<[String; 2]>>,
+    /// What is said of components in use that are given what moves where something that stays is wanted, by their paths: notes and
+    /// a help.
+    pub moved: BTreeMap<String, (Vec<String>, String)>,
 }
 
 impl Elaborated {
@@ -59,29 +59,16 @@ impl Elaborated {
         }
     }
 
-    /// Notes and a help for a displacement in a component that is given something which changes with time.
+    /// Notes and a help for a displacement in a component that is given what moves.
     #[must_use]
-    pub fn given_in_time(&self, displacement: &str) -> Option<(Vec<String>, String)> {
+    pub fn given_what_moves(&self, displacement: &str) -> Option<&(Vec<String>, String)> {
         let is_around = |component: &str| {
             let inside = displacement.strip_prefix(component);
             inside.is_some_and(|inside| inside.starts_with('.'))
         };
-        let mut in_time = self.in_time.iter();
-        let (component, parameters) = in_time.find(|(component, _)| is_around(component))?;
-        let names = listing(parameters.iter().map(|[name, _]| name.clone()));
-        let (change, stay) = match parameters.len() {
-            1 => ("changes", "a value that stays"),
-            _ => ("change", "values that stay"),
-        };
-        let rate =
-            format!("{names} of `{component}` {change} with time, and no flow knows that rate");
-        let said = parameters.iter().filter(|[_, told]| !told.is_empty());
-        let said = said.map(|[name, told]| format!("`{name}`: {told}"));
-        let help = format!(
-            "give {names} {stay}: what moves is a junction with a flow, such as a frame behind a joint whose rate is given, \
-             `Sf drive {{ flow: … }} -> joint.rate;`"
-        );
-        Some(([rate].into_iter().chain(said).collect(), help))
+        let mut moved = self.moved.iter();
+        let (_, told) = moved.find(|(component, _)| is_around(component))?;
+        Some(told)
     }
 }
 

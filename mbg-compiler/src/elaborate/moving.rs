@@ -11,15 +11,16 @@ use syn::Expr;
 use super::Builder;
 use super::blame::text;
 use super::definitions::Progress;
+use super::elsewhere::value_text;
 use super::expressions::Value;
-use super::frames::{Frame, IN_SPACE};
+use super::frames::{Frame, IN_PLANE, IN_SPACE};
 use super::model::StateRate;
 use super::scope::Entity;
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{error, listing};
 use crate::graph::{Element, ElementId, ElementKind, End, JunctionId};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Expression, Symbol};
+use crate::symbolic::{Expression, Rate, Symbol};
 use crate::syntax::ast::Instance;
 use crate::syntax::dump;
 
@@ -153,25 +154,84 @@ impl<'a> Builder<'a> {
         found
     }
 
-    /// What components of the library are given that changes with time, but for displacements, which do, and for what is given
-    /// with its rate.
-    pub(super) fn in_time(&mut self) -> BTreeMap<String, Vec<[String; 2]>> {
-        let mut found: BTreeMap<String, Vec<[String; 2]>> = BTreeMap::new();
-        for (inner, instance) in self.called_by_user() {
-            let names = instance.arguments.iter().map(|argument| &argument.name);
-            for name in names.filter(|name| *name != "displacement") {
-                let name = name.to_string();
-                let given = self.given_entries(inner, &name);
-                let rate = format!("{name}_rate");
-                let has_rate = self.scopes[inner].names.contains_key(&rate);
-                if !has_rate && symbols(self.pool, &given).contains(&Symbol::Time) {
-                    let path = self.scopes[inner].prefix.trim_end_matches('.');
-                    let told = self.documentation(inner, &name);
-                    found.entry(path.to_owned()).or_default().push([name, told]);
-                }
+    /// What is said of components of the library that are given what moves where something that stays is wanted.
+    pub(super) fn moved(&mut self) -> BTreeMap<String, (Vec<String>, String)> {
+        let called = self.called_by_user().into_iter();
+        let told = called.filter_map(|(inner, instance)| {
+            let path = self.scopes[inner].prefix.trim_end_matches('.').to_owned();
+            let in_time = self.in_time(inner, instance);
+            let told = match in_time.is_empty() {
+                true => self
+                    .over_travel(inner, instance)
+                    .or_else(|| not_there(instance))?,
+                false => told_in_time(&path, &in_time),
+            };
+            Some((path, told))
+        });
+        told.collect()
+    }
+
+    /// Whether a component in use is given anything that is no number or parameter.
+    pub(super) fn is_given_what_moves(&mut self, inner: usize) -> bool {
+        let Some((_, instance)) = self.called.get(&inner) else {
+            return true;
+        };
+        let names = instance.arguments.iter().map(|it| it.name.to_string());
+        let names: Vec<String> = names.collect();
+        names.into_iter().any(|name| {
+            let given = self.given_entries(inner, &name);
+            given.iter().any(|it| self.pool.rate(*it) == Rate::Varying)
+        })
+    }
+
+    /// What a component is given that changes with time, but for displacements, which do, and for what is given with its rate; and
+    /// what is said of it.
+    fn in_time(&mut self, inner: usize, instance: &Instance) -> Vec<[String; 2]> {
+        let mut found = Vec::new();
+        let names = instance.arguments.iter().map(|argument| &argument.name);
+        for name in names.filter(|name| *name != "displacement") {
+            let name = name.to_string();
+            let given = self.given_entries(inner, &name);
+            let rate = format!("{name}_rate");
+            let has_rate = self.scopes[inner].names.contains_key(&rate);
+            let mut read = symbols(self.pool, &given).into_iter();
+            if !has_rate && read.any(|it| matches!(it, Symbol::Time | Symbol::Input(_))) {
+                let told = self.documentation(inner, &name);
+                found.push([name, told]);
             }
         }
         found
+    }
+
+    /// What is said of a contact whose ground is another one at each place.
+    fn over_travel(&mut self, inner: usize, instance: &Instance) -> Option<(Vec<String>, String)> {
+        let velocity = match instance.component.to_string().as_str() {
+            "Contact" => IN_SPACE / 2..IN_SPACE,
+            "PlanarContact" => 1..IN_PLANE,
+            _ => return None,
+        };
+        let grounds = ["height", "normal"].into_iter();
+        let mut over = grounds.filter(|name| {
+            let given = self.given_entries(inner, name);
+            let mut read = symbols(self.pool, &given).into_iter();
+            read.any(|it| matches!(it, Symbol::State(_)))
+        });
+        let (ground, name) = (over.next()?, &instance.name);
+        let note = format!(
+            "`{ground}` of `{name}` changes with where the body is, and the ground of a contact is one plane"
+        );
+        let frame = instance.connections.first().map(dump::reference)?;
+        let slopes = match velocity.len() {
+            2 => "[[slope, -1.0]]",
+            _ => "[[slope_x, slope_y, -1.0]] * orientation_at",
+        };
+        let (start, end) = (velocity.start, velocity.end);
+        let help = format!(
+            "a ground that is no plane is a stop below the point: `1 {name}_approach; {frame}[{start}..{end}] -> MTF {name}_down \
+             {{ flow: {slopes} }} -> {name}_approach; {name}: Stop {{ displacement: ground - height_at, upper: 0.0, stiffness: … }} \
+             ({name}_approach);` with the height of the ground there, its slope, and the height of the point"
+        );
+        Some((vec![note], help))
     }
 
     /// What is said of a parameter of a component in use.
@@ -332,4 +392,41 @@ impl<'a> Builder<'a> {
             ),
         ]
     }
+}
+
+/// What is said of parameters of a component that change with time.
+fn told_in_time(component: &str, parameters: &[[String; 2]]) -> (Vec<String>, String) {
+    let names = listing(parameters.iter().map(|[name, _]| name.clone()));
+    let (change, stay) = match parameters.len() {
+        1 => ("changes", "a value that stays"),
+        _ => ("change", "values that stay"),
+    };
+    let rate = format!("{names} of `{component}` {change} with time, and no flow knows that rate");
+    let said = parameters.iter().filter(|[_, told]| !told.is_empty());
+    let said = said.map(|[name, told]| format!("`{name}`: {told}"));
+    let help = format!(
+        "give {names} {stay}: what moves is a junction with a flow, such as a frame behind a joint whose rate is given, \
+         `Sf drive {{ flow: … }} -> joint.rate;`"
+    );
+    ([rate].into_iter().chain(said).collect(), help)
+}
+
+/// What is said of a contact whose point is not where its frame is.
+fn not_there(instance: &Instance) -> Option<(Vec<String>, String)> {
+    let position = instance
+        .arguments
+        .iter()
+        .find(|it| it.name == "position_at")?;
+    let component = instance.component.to_string();
+    if !["Contact", "PlanarContact"].contains(&component.as_str()) {
+        return None;
+    }
+    let frame = instance.connections.first().map(dump::reference)?;
+    let value = value_text(position.value.as_ref());
+    let note = format!("`{value}` does not move as `{frame}` does");
+    let help = format!(
+        "leave `position_at` out where joints lead to `{frame}` from a frame that is held: they tell it; else give the integral of \
+         its velocity in axes of the world"
+    );
+    Some((vec![note], help))
 }

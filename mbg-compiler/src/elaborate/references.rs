@@ -11,10 +11,15 @@ use super::indices::component_index;
 use super::scope::Entity;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
-use crate::graph::{End, JunctionKind};
+use crate::graph::{End, JunctionKind, declaration};
 use crate::syntax::ast::{Reference, Segment, Selection};
 use crate::syntax::dump;
 use crate::syntax::words::nearest;
+
+/// What other tools call a frame that stands still, or a node without potential.
+const GROUNDS: [&str; 9] = [
+    "world", "ground", "earth", "base", "fixed", "origin", "inertial", "gnd", "wall",
+];
 
 impl Builder<'_> {
     /// What a reference stands for, and its dimension; none if that is broken, which is told.
@@ -87,6 +92,13 @@ impl Builder<'_> {
                     Entity::Instance(inner) => self.junctions_in(*inner),
                     _ => Vec::new(),
                 };
+                if entity.is_value() {
+                    return Err(Box::new(report.help(format!(
+                        "a value is no bond, and comes from a source: `Se {0}_source {{ effort: {text} }}` or \
+                         `Sf {0}_source {{ flow: {text} }}` in its place",
+                        reference.path[0].name
+                    ))));
+                }
                 if junctions.is_empty() {
                     return Err(Box::new(report));
                 }
@@ -164,11 +176,17 @@ impl Builder<'_> {
         }
         let help = self.scopes.later(scope, &steps);
         let help = help.or_else(|| self.scopes.in_loop(scope, &steps));
+        let help = help.or_else(|| self.scopes.meant_inside(scope, &steps));
+        let help = help.or_else(|| self.scopes.in_component(scope, &steps));
         if let Some(help) = help.or_else(|| self.junctions_inside(scope, &steps)) {
             return Box::new(report.help(help));
         }
         let last = reference.path.last().map(|last| last.name.to_string());
-        let report = report.did_you_mean(&last.unwrap_or_default(), &known);
+        let last = last.unwrap_or_default();
+        if let Some(help) = self.standing(scope, &last, &known) {
+            return Box::new(report.help(help));
+        }
+        let report = report.did_you_mean(&last, &known);
         let junctions: Vec<String> = known
             .iter()
             .filter(|name| matches!(self.scopes.find(scope, name), Some(Entity::Junction(..))))
@@ -179,6 +197,29 @@ impl Builder<'_> {
         } else {
             report
         })
+    }
+
+    /// What to declare for a ground that other tools have without being told, as large as the other junctions are.
+    fn standing(&self, scope: usize, name: &str, known: &[&str]) -> Option<String> {
+        let is_ground = GROUNDS.contains(&name.to_lowercase().as_str());
+        let junctions = known
+            .iter()
+            .filter_map(|it| match self.scopes.find(scope, it) {
+                Some(Entity::Junction(id, _)) => Some(&self.graph.junctions[id.0]),
+                _ => None,
+            });
+        let largest = junctions.max_by_key(|it| it.dimension);
+        let largest = largest.filter(|_| is_ground)?;
+        let (source, law) = match largest.kind {
+            JunctionKind::One => ("Sf", "flow"),
+            JunctionKind::Zero => ("Se", "effort"),
+        };
+        let junction = declaration(largest.kind, name, largest.dimension);
+        let fixed = declaration(largest.kind, &format!("{name}_fixed"), largest.dimension);
+        let (_, fixed) = fixed.split_once(' ')?;
+        Some(format!(
+            "what stands still is declared: `{junction}; {source} {fixed} {{ {law}: 0.0 }} -> {name};`"
+        ))
     }
 
     /// `hub[k]` for `hub.k`, where `k` is a whole number.
@@ -232,9 +273,14 @@ fn pick(
             range.len()
         ),
     };
-    Err(Box::new(error(
-        codes::WRONG_DIMENSION,
-        reference.span,
-        message,
-    )))
+    let report = error(codes::WRONG_DIMENSION, reference.span, message);
+    let end = i64::try_from(range.len()).unwrap_or(i64::MAX);
+    let is_counted_from_one = range.len() > 1 && picked.contains(&end);
+    Err(Box::new(match is_counted_from_one {
+        true => report.help(format!(
+            "they are counted from 0: the last is `{junction}[{}]`",
+            range.len() - 1
+        )),
+        false => report,
+    }))
 }

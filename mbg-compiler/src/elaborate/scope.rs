@@ -14,7 +14,7 @@ use super::model::{Assumption, Parameter, Place, Quantity, Signals};
 use super::own::{OWN, Own, OwnPath, compared};
 use super::turns::Turns;
 use crate::codes;
-use crate::diagnostics::error;
+use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{BondGraph, ElementId, ElementKind, JunctionId, JunctionKind};
 use crate::symbolic::{Expression, Factor, Matrix, Pool, Product, Rate, Symbol};
 use crate::syntax::words::is_two_port;
@@ -393,20 +393,28 @@ impl Lookup<'_, '_> {
                     "`{name}` is a loop; read what is inside an iteration, `{name}[{start}].…`"
                 ),
             ),
-            Entity::Element(id) => fail(name.span(), self.is_element(*id, name)),
+            Entity::Element(id) => Err(self.is_element(*id, name)),
             _ => fail(name.span(), format!("`{name}` has no value here")),
         }
     }
 
     /// What to write where an element stands in the place of a value.
-    fn is_element(&self, id: ElementId, name: &Ident) -> String {
-        let known = match self.graph.elements[id.0].kind {
-            ElementKind::I => format!("write `{name}.p`, `.e` or `.f`"),
-            ElementKind::C => format!("write `{name}.q`, `.e` or `.f`"),
-            kind if is_two_port(kind) => TWO_PORT_VARIABLE.to_owned(),
-            _ => format!("write `{name}.e` or `.f`"),
+    fn is_element(&self, id: ElementId, name: &Ident) -> Box<Diagnostic> {
+        let (known, coefficient) = match self.graph.elements[id.0].kind {
+            ElementKind::I => (format!("write `{name}.p`, `.e` or `.f`"), Some("inertia")),
+            ElementKind::C => (format!("write `{name}.q`, `.e` or `.f`"), Some("stiffness")),
+            ElementKind::R => (format!("write `{name}.e` or `.f`"), Some("resistance")),
+            kind if is_two_port(kind) => (TWO_PORT_VARIABLE.to_owned(), None),
+            _ => (format!("write `{name}.e` or `.f`"), None),
         };
-        format!("`{name}` is an element; {known}")
+        let message = format!("`{name}` is an element; {known}");
+        let report = error(codes::EXPRESSION, name.span(), message);
+        let help = coefficient.map(|word| {
+            format!(
+                "for its {word} give that a name: `param {name}_{word} = …;` and `{word}: {name}_{word}`"
+            )
+        });
+        Box::new(help.into_iter().fold(report, Diagnostic::help))
     }
 
     /// Whether a name is declared as something with a value.
@@ -451,6 +459,20 @@ impl Lookup<'_, '_> {
         }
     }
 
+    /// What differs from bond to bond of a junction.
+    fn not_common<T>(
+        &self,
+        id: JunctionId,
+        name: &Ident,
+        junction: &str,
+        variable: &str,
+    ) -> Result<T> {
+        let message = format!("{junction} has no common {variable}; read it at an element");
+        let report = error(codes::EXPRESSION, name.span(), message);
+        let help = self.of_elements(id, name);
+        Err(Box::new(help.into_iter().fold(report, Diagnostic::help)))
+    }
+
     fn junction_variable(
         &mut self,
         pool: &mut Pool,
@@ -471,14 +493,8 @@ impl Lookup<'_, '_> {
                 Place::Junction(id),
                 range,
             ))),
-            ("e", JunctionKind::One) => Some(fail(
-                name.span(),
-                "a 1-junction has no common effort; read it at an element",
-            )),
-            ("f", JunctionKind::Zero) => Some(fail(
-                name.span(),
-                "a 0-junction has no common flow; read it at an element",
-            )),
+            ("e", JunctionKind::One) => Some(self.not_common(id, name, "a 1-junction", "effort")),
+            ("f", JunctionKind::Zero) => Some(self.not_common(id, name, "a 0-junction", "flow")),
             (_, kind) => {
                 let known = match kind {
                     JunctionKind::Zero => "`e`",

@@ -7,8 +7,8 @@ use syn::Expr;
 
 use super::elsewhere::bare;
 use super::frames::{IN_PLANE, IN_SPACE};
-use crate::graph::{ElementKind, JunctionKind};
-use crate::syntax::words::{ELEMENTS as KINDS, is_two_port, near, nearest};
+use crate::graph::JunctionKind;
+use crate::syntax::words::{near, nearest};
 use crate::syntax::{ast, dump, library};
 
 /// What components are called elsewhere, without regard to capitals, underscores and the word joint, and in the library.
@@ -621,28 +621,6 @@ pub(super) fn along_an_axis(number: &Expr) -> String {
 }
 
 const LETTERS: [&str; 3] = ["x", "y", "z"];
-
-/// What to type for an element that is called as a component is.
-pub(super) fn as_element(instance: &ast::Instance) -> Option<String> {
-    let mut kinds = KINDS.iter();
-    let (spelling, kind) = kinds.find(|(spelling, _)| instance.component == spelling)?;
-    let words = instance.arguments.iter().map(|it| match &it.value {
-        Some(value) => format!("{}: {}", it.name, dump::expression(value)),
-        None => it.name.to_string(),
-    });
-    let words = words.collect::<Vec<_>>().join(", ");
-    let words = if words.is_empty() { "…" } else { &words };
-    let element = format!("{spelling} {} {{ {words} }}", instance.name);
-    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
-    let written = match (&ends[..], kind) {
-        ([from, to], _) if is_two_port(*kind) => format!("{from} -> {element} -> {to};"),
-        _ if is_two_port(*kind) => format!("… -> {element} -> …;"),
-        ([at], ElementKind::Se | ElementKind::Sf) => format!("{element} -> {at};"),
-        ([at], _) => format!("{at} -> {element};"),
-        _ => format!("… -> {element};"),
-    };
-    Some(format!("`{spelling}` is an element: write `{written}`"))
-}
 
 /// What to type for a load that is given the point where it acts.
 pub(super) fn at_point(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {

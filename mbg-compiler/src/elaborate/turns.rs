@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use syn::{BinOp, Expr};
 
-use super::advice;
+use super::advice::{self, text};
 use super::constants::plain_name;
 use super::elsewhere;
 use super::expressions::{Index, Result, Step};
@@ -13,6 +13,7 @@ use super::scope::{Entity, Scopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::syntax::dump;
+use crate::syntax::words::nearest;
 
 /// A loop, as its names are looked for from outside.
 #[derive(Debug)]
@@ -31,6 +32,46 @@ pub(super) struct Turns {
 const LABELS: [&str; 3] = ["cells", "inner", "innermost"];
 
 impl Scopes {
+    /// The name in an iteration of a loop, or the loop, that was probably meant in a path.
+    pub(super) fn meant_inside(&self, scope: usize, path: &[Step]) -> Option<String> {
+        let (first, behind) = path.split_first()?;
+        let next = behind.first()?;
+        let found = first.name.to_string();
+        match self.find(scope, &found) {
+            Some(Entity::Loop(start, scopes)) => {
+                let inside = nth(*start, scopes, first.index.as_ref()?.number)?;
+                let names: Vec<&str> = self[inside].names.keys().map(String::as_str).collect();
+                let near = nearest(&next.name.to_string(), &names)?;
+                Some(format!("did you mean `{}.{near}`?", text(&path[..1])))
+            }
+            Some(_) => None,
+            None => {
+                let near = nearest(&found, &self.visible(scope))?;
+                Some(format!("did you mean `{near}`?"))
+            }
+        }
+    }
+
+    /// What to write for a path whose first name is declared in a component in use alone.
+    pub(super) fn in_component(&self, scope: usize, path: &[Step]) -> Option<String> {
+        let first = path.first()?.name.to_string();
+        if self.find(scope, &first).is_some() {
+            return None;
+        }
+        let mut instances = self[scope].names.iter();
+        let (name, _) = instances.find(|(_, entity)| match entity {
+            Entity::Instance(inner) => {
+                let found = self[*inner].names.get(&first);
+                self[*inner].library.is_none() && found.is_some()
+            }
+            _ => false,
+        })?;
+        Some(format!(
+            "it is declared in a component: write `{name}.{}`",
+            text(path)
+        ))
+    }
+
     /// The scope of one iteration of a loop, which is read from another scope.
     pub(super) fn iteration(
         &self,

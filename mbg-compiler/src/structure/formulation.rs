@@ -89,7 +89,7 @@ mod tests {
             elaborate::elaborate(model, &components, &mut pool, &mut diagnostics).unwrap();
         let network = network::Network::of(&elaborated.graph, &mut pool);
         let scalars = equations::form(&elaborated, &network, &mut pool);
-        let lost = select(&elaborated, &scalars, &pool, &mut diagnostics).unwrap();
+        let lost = select(&elaborated, &scalars, &mut pool, &mut diagnostics).unwrap();
         let reduction =
             reduce(&mut elaborated, scalars, &lost, &mut pool, &mut diagnostics).unwrap();
         (reduction.scalars, pool)

@@ -16,6 +16,7 @@ mod floating;
 mod formulation;
 mod hinges;
 mod inertia;
+mod inverse;
 mod levels;
 mod linear;
 pub mod matching;

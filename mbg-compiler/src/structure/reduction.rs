@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::inverse::{Inverse, inverse, inverse_in, is_definite};
 use super::levels;
 use super::linear::Linear;
 use super::matching;
@@ -18,13 +19,11 @@ use super::selection::{Lost, Selection};
 use crate::causality::report::alternatives;
 use crate::codes;
 use crate::diagnostics::{Diagnostics, error};
-use crate::elaborate::{Condition, Elaborated, State, StateRate, Variable};
+use crate::elaborate::{Elaborated, State, StateRate, Variable};
 use crate::equations::{Equation, Independent, Inertia, Owner, Scalars, Turn, linearise};
 use crate::graph::{ElementId, ElementKind, Law};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{
-    Differentiator, Expression, Matrix, Pool, Rate, Substitution, Symbol, linear_part,
-};
+use crate::symbolic::{Differentiator, Expression, Pool, Rate, Substitution, Symbol};
 
 /// What replaces the lost states.
 pub struct Reduction {
@@ -119,12 +118,6 @@ fn cancel(pool: &mut Pool, equation: &mut Equation, other: &Equation, unknown: u
     equation.constant = pool.subtract(equation.constant, product);
 }
 
-/// A storage's linear law `p = J (y − y₀)`.
-struct Inverse {
-    matrix: Matrix,
-    offset: Vec<Expression>,
-}
-
 struct Reducer<'a> {
     scalars: Scalars,
     pool: &'a mut Pool,
@@ -148,7 +141,10 @@ impl Reducer<'_> {
         let elements: BTreeSet<ElementId> = lost.iter().map(|lost| lost.element).collect();
         let mut inverses = BTreeMap::new();
         for id in elements {
-            if let Some(inverse) = self.inverse(model, id) {
+            let own = lost.iter().filter(|lost| lost.element == id);
+            let components: Vec<usize> = own.clone().map(|lost| lost.component).collect();
+            let whole = inverse(model, self.pool, id);
+            if let Some(inverse) = whole.or_else(|| inverse_in(model, self.pool, id, &components)) {
                 inverses.insert(id, inverse);
                 continue;
             }
@@ -158,7 +154,6 @@ impl Reducer<'_> {
                 element.name
             );
             let span = model.graph.origins.span(element.origin);
-            let own = lost.iter().filter(|lost| lost.element == id);
             let causes: BTreeSet<ElementId> = own
                 .flat_map(|lost| &lost.causes)
                 .filter_map(|cause| match cause {
@@ -167,7 +162,7 @@ impl Reducer<'_> {
                 })
                 .collect();
             let mut others = causes.iter();
-            let linear = others.any(|other| self.inverse(model, *other).is_some());
+            let linear = others.any(|other| inverse(model, self.pool, *other).is_some());
             let linear = linear.then(|| {
                 "write `#[derivative]` before another of the storages alone, whose law is linear, so that this one stays \
                  a state"
@@ -179,16 +174,6 @@ impl Reducer<'_> {
             diagnostics.report(report);
         }
         inverses
-    }
-
-    fn inverse(&mut self, model: &Elaborated, id: ElementId) -> Option<Inverse> {
-        let Law::Storage(storage) = &model.graph.elements[id.0].law else {
-            return None;
-        };
-        let own: Vec<Symbol> = storage.states.clone().map(Symbol::State).collect();
-        let (matrix, offset) = linear_part(self.pool, &storage.coenergy, &own)?;
-        let matrix = matrix.inverse(self.pool)?;
-        Some(Inverse { matrix, offset })
     }
 
     /// The unknown that a storage states, its co-energy variable.
@@ -302,7 +287,14 @@ impl Reducer<'_> {
             .scalars
             .equations
             .iter()
-            .map(|equation| equation.terms.keys().copied().collect())
+            .map(|equation| {
+                equation
+                    .terms
+                    .keys()
+                    .chain(&equation.signals)
+                    .copied()
+                    .collect()
+            })
             .collect();
         let unknown_of = matching::of_all_equations(&incidence, self.scalars.unknowns)?;
         let mut containing = vec![Vec::new(); self.scalars.unknowns];
@@ -644,7 +636,7 @@ impl Reducer<'_> {
     }
 
     /// Efforts that follow from the states alone and divide by nothing that varies, each after those from which it
-    /// follows. Others, such as the moment between concentric hinges, whose axes may come to lie in one plane, are
+    /// follows; an effort that its law gives by iteration is among them. Others, such as the moment between concentric hinges, whose axes may come to lie in one plane, are
     /// eliminated with the rates that they belong to: so what is divided by are the inertias of the mechanism. Where
     /// loops are closed, all that follow from the states are known: what is left there has pivots of its own.
     fn known_beforehand(
@@ -665,8 +657,9 @@ impl Reducer<'_> {
         loop {
             let is_ready = |(unknown, equation): &&(usize, &Equation)| {
                 let mut others = equation.terms.keys().chain(&equation.signals);
+                let divisor = equation.terms.get(unknown);
                 open.contains(unknown)
-                    && self.pool.rate(equation.terms[unknown]) != Rate::Varying
+                    && divisor.is_none_or(|it| self.pool.rate(*it) != Rate::Varying)
                     && others.all(|other| other == unknown || !open.contains(other))
             };
             let ready: Vec<usize> = efforts.iter().filter(is_ready).map(|it| it.0).collect();
@@ -706,7 +699,7 @@ impl Reducer<'_> {
             let inertia = match state.rate {
                 _ if !definite => Inertia::Unknown,
                 StateRate::Unknown(_) => self.moved(model, lost, turns, number, level),
-                StateRate::Storage(id, _) => match self.inverse(model, id) {
+                StateRate::Storage(id, _) => match inverse(model, self.pool, id) {
                     Some(inverse) if is_definite(model, &inverse.matrix, self.pool) => Inertia::Own,
                     _ => Inertia::Unknown,
                 },
@@ -749,26 +742,4 @@ impl Reducer<'_> {
             }
         }
     }
-}
-
-/// Whether a law is positive definite for all parameters that `new` accepts: its leading principal minors are positive
-/// constants, or assumed positive.
-fn is_definite(model: &Elaborated, matrix: &Matrix, pool: &mut Pool) -> bool {
-    let assumed = |expression: Expression| {
-        model
-            .assumptions
-            .iter()
-            .any(|known| known.expression == expression && known.condition == Condition::Positive)
-    };
-    (1..=matrix.rows).all(|size| {
-        let minor = if matrix.is_diagonal() {
-            matrix.at(size - 1, size - 1)
-        } else {
-            matrix.leading(size).determinant(pool)
-        };
-        match pool.constant_value(minor) {
-            Some(value) => value > 0.0,
-            None => assumed(minor),
-        }
-    })
 }

@@ -1,5 +1,6 @@
 //! Which storages are states when not all of them can be.
 //!
+//! A law that is not linear counts with its slopes, so that what it gives by iteration is not taken to be imposed.
 //! Rows are taken in order of priority (structure and resistors, sources, storages as declared, marked storages) and
 //! reduced by those before them, over the prime field. By the greedy theorem for linear matroids the rows that vanish
 //! are the fewest, and each is a combination of earlier rows, which names its causes. Where storages depend on each
@@ -16,7 +17,8 @@ use crate::elaborate::{Elaborated, Ring};
 use crate::entries::merged;
 use crate::equations::{Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, JunctionId, Law};
-use crate::symbolic::{Evaluation, Expression, Pool, Symbol, field};
+use crate::symbolic::substitute::symbols;
+use crate::symbolic::{Differentiator, Evaluation, Expression, Pool, Symbol, field};
 
 /// What is a state, and what is not.
 pub struct Selection {
@@ -45,25 +47,27 @@ pub struct Lost {
 pub fn select(
     model: &Elaborated,
     scalars: &Scalars,
-    pool: &Pool,
+    pool: &mut Pool,
     diagnostics: &mut Diagnostics,
 ) -> Option<Selection> {
-    let mut first = Selector::new(model, scalars, pool);
-    let mut order: Vec<usize> = (0..scalars.equations.len()).collect();
-    let priority = |row: usize| first.priority(scalars.equations[row].owner);
+    let equations = tangent(scalars, pool);
+    let (equations, pool) = (&equations[..], &*pool);
+    let mut first = Selector::new(model, equations, pool);
+    let mut order: Vec<usize> = (0..equations.len()).collect();
+    let priority = |row: usize| first.priority(equations[row].owner);
     order.sort_by_key(|row| (priority(*row), *row));
     let (storages, others): (Vec<usize>, Vec<usize>) = order
         .into_iter()
         .partition(|row| priority(*row) >= STORAGES);
     for row in others {
-        first.take(&scalars.equations[row], row, false);
+        first.take(&equations[row], row, false);
     }
     let second = first.clone();
     for row in &storages {
-        first.take(&scalars.equations[*row], *row, false);
+        first.take(&equations[*row], *row, false);
     }
     match first.report(diagnostics) {
-        Verdict::Accepted => Some(again(scalars, &storages, &first, second)),
+        Verdict::Accepted => Some(again((scalars, equations), &storages, &first, second)),
         Verdict::Refused => None,
         Verdict::Undetermined => {
             mesh::report(model, scalars, pool, diagnostics);
@@ -84,7 +88,7 @@ enum Verdict {
 
 /// The second choice, among the storages that take part in a dependence; the rows of all else are taken.
 fn again(
-    scalars: &Scalars,
+    (scalars, equations): (&Scalars, &[Equation]),
     storages: &[usize],
     first: &Selector,
     mut second: Selector,
@@ -111,17 +115,13 @@ fn again(
     });
     let (involved, free): (Vec<usize>, Vec<usize>) = storages
         .iter()
-        .partition(|row| is_involved(scalars.equations[**row].owner));
+        .partition(|row| is_involved(equations[**row].owner));
     for row in free {
-        second.take(&scalars.equations[row], row, false);
+        second.take(&equations[row], row, false);
     }
     let mut candidates: Vec<(&Equation, usize)> =
         coordinates.iter().map(|row| (row, usize::MAX)).collect();
-    candidates.extend(
-        involved
-            .into_iter()
-            .map(|row| (&scalars.equations[row], row)),
-    );
+    candidates.extend(involved.into_iter().map(|row| (&equations[row], row)));
     let mut postponed = Vec::new();
     for (equation, row) in candidates {
         if !second.take(equation, row, true) {
@@ -142,6 +142,30 @@ fn again(
             .collect(),
         idle: idle.collect(),
     }
+}
+
+/// The equations with the slopes of what enters them nonlinearly as further coefficients.
+fn tangent(scalars: &Scalars, pool: &mut Pool) -> Vec<Equation> {
+    let mut equations = scalars.equations.clone();
+    for equation in equations.iter_mut().filter(|it| !it.signals.is_empty()) {
+        let mut left = equation.constant;
+        for (unknown, coefficient) in &equation.terms {
+            let own = pool.symbol(Symbol::Unknown(*unknown));
+            let product = pool.multiply(*coefficient, own);
+            left = pool.add(left, product);
+        }
+        for symbol in symbols(pool, &[left]) {
+            let Symbol::Signal(number) = symbol else {
+                continue;
+            };
+            let (unknown, reversed) = scalars.signals[number];
+            let slope = Differentiator::new(symbol).derivative(pool, left);
+            let term = equation.terms.entry(unknown).or_insert(Expression::ZERO);
+            *term = pool.add(*term, slope.flipped(reversed));
+        }
+        equation.terms.retain(|_, term| *term != Expression::ZERO);
+    }
+    equations
 }
 
 /// The row `flow = state` of a coordinate; its constant is not needed here.
@@ -182,13 +206,13 @@ struct Selector<'a> {
 }
 
 impl<'a> Selector<'a> {
-    fn new(model: &'a Elaborated, scalars: &Scalars, pool: &'a Pool) -> Self {
+    fn new(model: &'a Elaborated, equations: &[Equation], pool: &'a Pool) -> Self {
         Self {
             model,
             pool,
             exact: Echelon::default(),
             nominal: NominalEchelon::default(),
-            nominal_values: nominal_values(model, scalars, pool),
+            nominal_values: nominal_values(model, equations, pool),
             lost: Vec::new(),
             sources: Vec::new(),
             coordinates: BTreeSet::new(),
@@ -419,7 +443,7 @@ fn is_cause(model: &Elaborated, id: ElementId) -> bool {
 }
 
 /// Coefficients by node at the nominal state: initial values, default parameters, inputs zero.
-fn nominal_values(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> Rc<[f64]> {
+fn nominal_values(model: &Elaborated, equations: &[Equation], pool: &Pool) -> Rc<[f64]> {
     let parameter = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => model.parameters[index].default,
         _ => 0.0,
@@ -436,7 +460,7 @@ fn nominal_values(model: &Elaborated, scalars: &Scalars, pool: &Pool) -> Rc<[f64
     };
     let mut evaluation = Evaluation::new(&symbol);
     let mut values = vec![f64::NAN; pool.len()];
-    let coefficients = scalars.equations.iter();
+    let coefficients = equations.iter();
     let coefficients = coefficients.flat_map(|equation| equation.terms.values());
     for coefficient in coefficients.chain([&Expression::ONE]) {
         values[coefficient.node()] = evaluation.value(pool, coefficient.magnitude());

@@ -352,6 +352,7 @@ pub enum ChainNode {
 }
 
 /// `rel`, `rel.x`, `rel[0]`, `rel[1..3]`, `arm.rel`, `links[k-1].rel[0]`.
+#[derive(Clone)]
 pub struct Reference {
     /// The dotted path, never empty; a last `x`, `y` or `z` may mean a component, which elaboration decides.
     pub path: Vec<Segment>,
@@ -360,6 +361,7 @@ pub struct Reference {
 }
 
 /// A name in a path, with what stands in brackets after it: the turn of a loop, or components of a junction.
+#[derive(Clone)]
 pub struct Segment {
     /// The name.
     pub name: Ident,
@@ -368,6 +370,7 @@ pub struct Segment {
 }
 
 /// `[0]` or `[1..3]`, of whole numbers that elaboration evaluates.
+#[derive(Clone)]
 pub struct Selection {
     /// The only one, or the first.
     pub start: Expr,

@@ -10,12 +10,15 @@ use super::cursor::{Cursor, Parsed};
 use super::elements::{element, fields, kind, no_element};
 use super::expressions::{bounds, expression};
 use super::recovery::{Sink, finish};
-use super::{dump, elsewhere, library, slips, words};
+use super::{dump, elsewhere, library, signals, slips, words};
 use crate::codes;
 use crate::diagnostics::Diagnostic;
 
 /// What may stand at either end of an arrow.
 const NODE: &str = "a junction, a port or an element";
+
+/// What to type for `a ->| b`, with the bar of a causal stroke.
+const STROKES: &str = "strokes are found while compiling: a bond is written `a -> b`";
 
 /// Reads `a -> R x { … } -> b;`, given the attributes before it.
 pub(super) fn chain(
@@ -28,6 +31,9 @@ pub(super) fn chain(
     let mut arrows = Vec::new();
     while let Some(arrow) = cursor.take_arrow() {
         arrows.push(arrow);
+        if cursor.punct(0, '|') {
+            return Err(Box::new((*cursor.expected(NODE)).help(STROKES)));
+        }
         let derivative = Attributes::read(cursor, sink)?.derivative;
         if let Some(help) = component_between(cursor, nodes.last()) {
             let wanted = format!("{NODE} after `->`");
@@ -63,7 +69,8 @@ fn node(
     what: &str,
     sink: &mut Sink<'_>,
 ) -> Parsed<ChainNode> {
-    let named = cursor.ident(1).is_some() || cursor.group(1, Delimiter::Brace).is_some();
+    let behind = usize::from(cursor.punct(1, ':'));
+    let named = cursor.ident(1 + behind).is_some() || cursor.group(1, Delimiter::Brace).is_some();
     if let Some(kind) = kind(cursor, 0)
         && named
     {
@@ -149,13 +156,13 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
     let wanted = format!("`->` after {}", cursor.previous());
     let found = cursor.found();
     let error = match found.as_str() {
+        "`|`" => (*cursor.expected(&wanted)).help(STROKES),
         "`=>`" | "`-`" => (*cursor.expected(&wanted)).help("a bond is written `a -> b`"),
         "`<-`" | "`<`" => (*cursor.expected(&wanted))
             .help("a bond points where its power is positive: write `b -> a`"),
         "`=`" => match named(cursor, node) {
             Some(help) => (*cursor.expected("`:` after the name of the instance")).help(help),
-            None => (*cursor.expected(&wanted))
-                .help("a value has a word before its name: `param x = …;` or `output x = …;`"),
+            None => (*cursor.expected(&wanted)).help(assigned(node)),
         },
         "`{`" | "`(`" => match node {
             Some(ChainNode::Reference(reference)) => {
@@ -181,6 +188,19 @@ fn slipped(cursor: &Cursor, node: Option<&ChainNode>) -> Option<Box<Diagnostic>>
         _ => return None,
     };
     Some(Box::new(error))
+}
+
+/// What to type for a value that is given to what stands here.
+fn assigned(node: Option<&ChainNode>) -> String {
+    match node {
+        Some(ChainNode::Reference(reference)) if reference.path.len() > 1 => {
+            let last = &reference.path[reference.path.len() - 1].name;
+            format!(
+                "what is given to an element or an instance stands in its braces: `{{ …, {last}: … }}`"
+            )
+        }
+        _ => "a value has a word before its name: `param x = …;` or `output x = …;`".to_owned(),
+    }
 }
 
 /// What to type for `name = Component { … } (a, b);`; a component differs from a function by its capital.
@@ -286,13 +306,18 @@ pub(super) fn instance(
             "`(`"
         };
         let mut error = *cursor.expected(&format!("{wanted} after {}", cursor.previous()));
-        error = if words::element(&component.to_string()).is_some() {
+        let block = signals::block(&component.to_string(), &name.to_string());
+        error = if let Some(block) = block {
+            error.help(block)
+        } else if words::element(&component.to_string()).is_some() {
             error.help(format!(
                 "an element is written `{component} {name} {{ … }}`, without a colon"
             ))
         } else {
+            let (name, component) = (name.to_string(), component.to_string());
+            let written = slips::statement(&name, &component, braces.as_ref(), "a, b");
             error.help(format!(
-                "the junctions for its ports stand in parentheses: `{name}: {component} (a, b);`"
+                "the junctions for its ports stand in parentheses: `{written}`"
             ))
         };
         return Err(Box::new(error));

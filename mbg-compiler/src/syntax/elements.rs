@@ -32,7 +32,8 @@ pub(super) fn element(
     let name = cursor.name(&format!("the name of the element after `{spelling}`"));
     let name = name.map_err(|report| {
         let help = slips::without_colon(cursor, spelling);
-        with_help(report, help.or_else(|| slips::size_first(cursor, spelling)))
+        let help = help.or_else(|| slips::size_first(cursor, spelling));
+        with_help(report, help.or_else(|| slips::unnamed(cursor, spelling)))
     })?;
     let dimension = cursor.dimension()?;
     let Some(group) = cursor.take_group(Delimiter::Brace) else {

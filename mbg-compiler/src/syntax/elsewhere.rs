@@ -5,6 +5,7 @@ use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
 use super::cursor::Cursor;
 use super::dump;
 use super::slips::is_mark;
+use super::words;
 use crate::units::is_name_of_unit;
 
 /// Words that declare a value in other languages, and the words that do so here.
@@ -20,57 +21,112 @@ const DECLARING: &[(&str, &str)] = &[
 /// Words for types, which declarations do not name here.
 const TYPES: &[&str] = &["Real", "Integer", "float", "double", "f64"];
 
-/// What to type for an element of bond graphs that has another name here, or none.
+/// What elements are called in the parts of physics, and the kind that they are here.
+const PARTS: &[(&[&str], &str)] = &[
+    (
+        &["mass", "inertia", "inductor", "inductance", "coil", "l"],
+        "I",
+    ),
+    (
+        &["spring", "capacitor", "capacitance", "compliance", "tank"],
+        "C",
+    ),
+    (&["damper", "dashpot", "resistor", "resistance"], "R"),
+    (
+        &[
+            "f",
+            "force",
+            "torque",
+            "voltage",
+            "pressure",
+            "battery",
+            "effortsource",
+        ],
+        "Se",
+    ),
+    (&["velocity", "speed", "current", "flowsource"], "Sf"),
+    (&["transformer", "lever", "gear"], "TF"),
+    (&["gyrator"], "GY"),
+];
+
+/// What bond graphs call `R` and its like where another value tells the law.
+const MODULATED: &[(&str, &str)] = &[
+    ("mse", "Se"),
+    ("msf", "Sf"),
+    ("mi", "I"),
+    ("mc", "C"),
+    ("mr", "R"),
+];
+
+/// Elements of bond graphs that have no name here, and what is written for them.
+const WITHOUT_NAME: &[(&str, &str)] = &[
+    (
+        "de",
+        "what is measured is read, and needs no detector: `output name = node.e;` of a 0-junction `node`",
+    ),
+    (
+        "df",
+        "what is measured is read, and needs no detector: `output name = rod.f;` of a 1-junction `rod`",
+    ),
+    (
+        "ss",
+        "a source and what it measures are written apart: `Se name { effort: … }` and `output measured = name.f;`, or `Sf` and \
+         `name.e`",
+    ),
+    (
+        "rs",
+        "write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: \
+         `Sf entropy { flow: name.e * name.f / node.e }`",
+    ),
+    (
+        "ce",
+        "write `C name { effort: rt * ln(k * q), initial: … }`: the chemical potential of the amount `q`, with `rt` in `J/mol`",
+    ),
+    (
+        "re",
+        "a reaction takes both affinities: `forward -> name[0]; name[1] -> reverse;` of a junction `0 name[2]`, and \
+         `name -> R reaction[2] { flow: [rate, -rate] }` with `let rate = kappa * (exp(name.e[0] / rt) - exp(name.e[1] / rt));`",
+    ),
+    (
+        "ic",
+        "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`",
+    ),
+    (
+        "sw",
+        "a switch is `R name { conductance: if … { … } else { … } }`, or on the average an `MTF`",
+    ),
+];
+
+/// What to type for an element of bond graphs that has another name here, or none, without regard to capitals.
 pub(super) fn element(word: &str) -> Option<String> {
-    let modulated = |kind| format!("write `{kind}`: any law may be modulated by what it reads");
-    Some(match word {
-        "MSe" => modulated("Se"),
-        "MSf" => modulated("Sf"),
-        "MI" => modulated("I"),
-        "MC" => modulated("C"),
-        "MR" => modulated("R"),
-        "De" => {
-            "what is measured is read, and needs no detector: `output name = node.e;` of a 0-junction `node`"
-                .to_owned()
-        }
-        "Df" => {
-            "what is measured is read, and needs no detector: `output name = rod.f;` of a 1-junction `rod`"
-                .to_owned()
-        }
-        "SS" => {
-            "a source and what it measures are written apart: `Se name { effort: … }` and `output measured = name.f;`, or `Sf` and \
-             `name.e`"
-                .to_owned()
-        }
-        "RS" => {
-            "write `R name { … }`, and the entropy that it generates as a source of flow where the temperature `node.e` is: \
-             `Sf entropy { flow: name.e * name.f / node.e }`"
-                .to_owned()
-        }
-        "Ce" => {
-            "write `C name { effort: rt * ln(k * q), initial: … }`: the chemical potential of the amount `q`, with `rt` in `J/mol`"
-                .to_owned()
-        }
-        "Re" => {
-            "a reaction takes both affinities: `forward -> name[0]; name[1] -> reverse;` of a junction `0 name[2]`, and \
-             `name -> R reaction[2] { flow: [rate, -rate] }` with `let rate = kappa * (exp(name.e[0] / rt) - exp(name.e[1] / rt));`"
-                .to_owned()
-        }
-        "IC" => {
-            "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`"
-                .to_owned()
-        }
-        "L" => "write `I`: a coil is an inertia, `I name { inertia: … }` with its inductance".to_owned(),
-        "Sw" | "SW" => {
-            "a switch is `R name { conductance: if … { … } else { … } }`, or on the average an `MTF`".to_owned()
-        }
-        _ => return None,
-    })
+    let plain = word.to_lowercase().replace('_', "");
+    let mut modulated = MODULATED.iter();
+    if let Some((_, kind)) = modulated.find(|(other, _)| *other == plain) {
+        return Some(format!(
+            "write `{kind}`: any law may be modulated by what it reads"
+        ));
+    }
+    let mut without_name = WITHOUT_NAME.iter();
+    if let Some((_, help)) = without_name.find(|(other, _)| *other == plain) {
+        return Some((*help).to_owned());
+    }
+    if let Some(digit) = words::digit_in_words(word) {
+        return Some(format!(
+            "a junction is declared by its digit, in a statement of its own, `{digit} name;`, and its name stands in bonds"
+        ));
+    }
+    let mut parts = PARTS.iter();
+    let (_, kind) = parts.find(|(others, _)| others.contains(&plain.as_str()))?;
+    let law = words::law_words(words::element(kind)?).first()?;
+    Some(format!("write `{kind} name {{ {law}: … }}`"))
 }
 
 /// What to type for the statement that begins here, if another language has it.
 pub(super) fn statement(cursor: &Cursor) -> Option<String> {
     let word = cursor.ident(0)?.to_string();
+    if let Some(help) = rate(cursor) {
+        return Some(help);
+    }
     let arguments = || cursor.group(1, Delimiter::Parenthesis);
     match word.as_str() {
         "connect" => {
@@ -93,21 +149,6 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             "a bond is written without a word before it: `{};`",
             dump::tokens(until_end(cursor, 1))
         )),
-        "der" if cursor.ident(1).is_some() && cursor.punct(2, '=') => Some(format!(
-            "what has a rate is declared with it: `integral {};`",
-            dump::tokens(until_end(cursor, 1))
-        )),
-        "der" if cursor.punct(2, '=') => {
-            let of = dump::tokens(arguments()?.stream());
-            let name = match syn::parse_str::<Ident>(&of) {
-                Ok(_) => of,
-                Err(_) => "name".to_owned(),
-            };
-            let rate = dump::tokens(until_end(cursor, 3));
-            Some(format!(
-                "what has a rate is declared with it: `integral {name} = {rate};`"
-            ))
-        }
         "pseudo" | "coordinate" if cursor.junction_digit(1) => {
             let (digit, name) = (cursor.peek(1)?, cursor.ident(2)?);
             let size = cursor.group(3, Delimiter::Bracket);
@@ -122,15 +163,87 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             ))
         }
         "state" if cursor.ident(1).is_some() => state(cursor),
-        "initial" if cursor.ident(1).is_some() => Some(
-            "what storages begin with stands in their braces: `I body { inertia: …, initial_flow: … }`, `C spring { stiffness: …, \
-             initial: … }`"
-                .to_owned(),
-        ),
+        "initial" | "init" | "start" if cursor.ident(1).is_some() => Some(start(cursor)),
+        "reinit" if cursor.group(1, Delimiter::Parenthesis).is_some() => Some(EVENTS.to_owned()),
+        "end" if cursor.ident(1).is_some() => Some(format!(
+            "braces close what they open: leave `{};` out",
+            dump::tokens(until_end(cursor, 0))
+        )),
+        _ if SECTIONS.contains(&word.as_str()) && cursor.ident(1).is_some() => Some(format!(
+            "statements stand side by side, in no sections: leave `{word}` out"
+        )),
         _ => {
             let (_, here) = DECLARING.iter().find(|(other, _)| *other == word)?;
             declaration(cursor, here)
         }
+    }
+}
+
+/// What finds events.
+pub(super) const EVENTS: &str = "events are found while a model runs: `Integrator::until` stops where a guard goes through zero, and \
+                                 the next run starts from there";
+
+/// Words that begin sections of models in other languages.
+const SECTIONS: &[&str] = &[
+    "equation",
+    "equations",
+    "algorithm",
+    "variables",
+    "parameters",
+    "constants",
+    "code",
+    "dynamics",
+    "begin",
+];
+
+/// What to type for an equation of a rate: `der(x) = v;`, `der x = v;`, `dx/dt = v;`, `d(x)/dt = v;` or `x_dot = v;`.
+fn rate(cursor: &Cursor) -> Option<String> {
+    let word = cursor.ident(0)?.to_string();
+    let of = cursor.group(1, Delimiter::Parenthesis);
+    let is_by_time = |at: usize| {
+        cursor.punct(at, '/')
+            && cursor.ident(at + 1).is_some_and(|it| it == "dt")
+            && cursor.punct(at + 2, '=')
+    };
+    if DERIVATIVES.contains(&word.as_str()) && cursor.ident(1).is_some() && cursor.punct(2, '=') {
+        return Some(integral(&dump::tokens(until_end(cursor, 1))));
+    }
+    let (name, behind) = match (of, word.strip_prefix('d'), word.strip_suffix("_dot")) {
+        (Some(of), _, _) if DERIVATIVES.contains(&word.as_str()) && cursor.punct(2, '=') => {
+            (dump::tokens(of.stream()), 3)
+        }
+        (Some(of), Some(""), _) if is_by_time(2) => (dump::tokens(of.stream()), 5),
+        (None, Some(name), _) if is_by_time(1) => (name.to_owned(), 4),
+        (None, _, Some(name)) if cursor.punct(1, '=') => (name.to_owned(), 2),
+        _ => return None,
+    };
+    let name = match syn::parse_str::<Ident>(&name) {
+        Ok(_) => name,
+        Err(_) => "name".to_owned(),
+    };
+    let rate = dump::tokens(until_end(cursor, behind));
+    Some(integral(&format!("{name} = {rate}")))
+}
+
+/// Words for a derivative by time.
+const DERIVATIVES: &[&str] = &["der", "derivative", "ddt", "dot", "D"];
+
+fn integral(declared: &str) -> String {
+    format!("what has a rate is declared with it: `integral {declared};`")
+}
+
+/// What to type for `initial x = 1.0;`.
+fn start(cursor: &Cursor) -> String {
+    let storages = "what storages begin with stands in their braces: `I body { inertia: …, initial_flow: … }`, `C spring { stiffness: …, \
+                    initial: … }`";
+    match cursor.ident(1) {
+        Some(name) if cursor.punct(2, '=') => {
+            let value = dump::tokens(until_end(cursor, 3));
+            format!(
+                "{storages}; an integral is declared with it: `integral {name} = …, initial: {value};`"
+            )
+        }
+        _ => storages.to_owned(),
     }
 }
 

@@ -28,6 +28,7 @@ mod loops;
 mod raw;
 mod reads;
 mod recovery;
+pub(crate) mod signals;
 mod slips;
 mod statements;
 mod ternaries;

@@ -5,7 +5,7 @@ use syn::ExprArray;
 
 use super::ast::{Reference, Segment};
 use super::cursor::Cursor;
-use super::{dump, elements, library, words};
+use super::{dump, elements, elsewhere, library, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::units::without_unit;
@@ -56,6 +56,14 @@ pub(super) fn without_colon(cursor: &Cursor, kind: &str) -> Option<String> {
     Some(format!("write `{kind} {name}`, without the colon"))
 }
 
+/// What to type for `R { … }`, which lacks a name.
+pub(super) fn unnamed(cursor: &Cursor, kind: &str) -> Option<String> {
+    cursor.group(0, Delimiter::Brace)?;
+    Some(format!(
+        "each element has a name: write `{kind} name {{ … }}`"
+    ))
+}
+
 /// What to type for `R[2] valve { … }`, with the size behind the kind.
 pub(super) fn size_first(cursor: &Cursor, kind: &str) -> Option<String> {
     cursor.group(0, Delimiter::Bracket)?;
@@ -101,6 +109,11 @@ pub(super) fn no_element(cursor: &Cursor, junction: &Ident) -> Option<String> {
              {{ junction -> R name {{ … }}; }}`"
         ));
     }
+    let has_junctions = (2..4).any(|at| cursor.group(at, Delimiter::Parenthesis).is_some());
+    let is_part = cursor.ident(1).is_some() && !has_junctions;
+    if let Some(help) = elsewhere::element(&word.to_string()).filter(|_| is_part) {
+        return Some(help);
+    }
     if let Some(written) = instance(cursor, junction) {
         return Some(format!(
             "instances stand outside the junction's braces, each in a statement of its own: `{written}`"
@@ -139,16 +152,6 @@ fn is_component(cursor: &Cursor, word: &Ident) -> bool {
     match cursor.punct(1, ':') {
         true => words::element(&word.to_string()).is_none(),
         false => library::names().any(|known| word == known),
-    }
-}
-
-/// The digit of a junction by its name in words, as in `One v { … }` or `J1 v { … }`.
-pub(super) fn digit_in_words(word: &str) -> Option<char> {
-    let word = word.to_lowercase().replace('_', "");
-    match word.as_str() {
-        "one" | "onejunction" | "junction1" | "j1" => Some('1'),
-        "zero" | "zerojunction" | "junction0" | "j0" => Some('0'),
-        _ => None,
     }
 }
 

@@ -17,7 +17,7 @@ use super::expressions::{condition, expression};
 use super::loops::repetition;
 use super::recovery::{Sink, finish, synchronize};
 use super::units::unit;
-use super::{elsewhere, inclusions, slips, words};
+use super::{elsewhere, inclusions, library, signals, slips, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 
@@ -146,10 +146,13 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
         return Box::new(error.help(help));
     }
     if word == words::EVENT {
-        return Box::new(error.help(
-            "events are found while a model runs: `Integrator::until` stops where a guard goes through zero, and the next \
-             run starts from there",
-        ));
+        return Box::new(error.help(elsewhere::EVENTS));
+    }
+    let digit = words::digit_in_words(&word);
+    if digit.is_none()
+        && let Some(help) = part(cursor, &word)
+    {
+        return Box::new(error.help(help));
     }
     if let Some(near) = words::nearest(
         &word,
@@ -164,7 +167,7 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
             return Box::new(error.help(help));
         }
     }
-    if let (Some(digit), Some(name)) = (slips::digit_in_words(&word), cursor.ident(1)) {
+    if let (Some(digit), Some(name)) = (digit, cursor.ident(1)) {
         return Box::new(error.help(format!(
             "a junction begins with its digit: `{digit} {name}`"
         )));
@@ -180,6 +183,32 @@ fn no_statement(cursor: &Cursor) -> Box<Diagnostic> {
             .note("or is a junction `1 name[3] { … }`, a chain `a -> b;`, an instance `name: Component (a, b);`")
             .note("or a choice `if a == b { … } else { … }`"),
     )
+}
+
+/// What to type for `MSe push { … };`, an element of another name, for `Gain g { … };`, a block of a diagram, and for
+/// `Body arm { … };`, a component of the library, which stand as statements without a bond, a name before them or junctions.
+fn part(cursor: &Cursor, word: &str) -> Option<String> {
+    let name = cursor.ident(1)?.to_string();
+    let behind = cursor.group(2, Delimiter::Brace);
+    let behind = behind.or_else(|| cursor.group(2, Delimiter::Parenthesis));
+    if behind.is_none() && !cursor.punct(2, ';') {
+        return None;
+    }
+    let lower = word.to_lowercase();
+    if words::ELEMENTS
+        .iter()
+        .any(|(kind, _)| kind.to_lowercase() == lower)
+    {
+        return None;
+    }
+    let has_junctions = (2..4).any(|at| cursor.group(at, Delimiter::Parenthesis).is_some());
+    if library::names().any(|known| known == word) {
+        let braces = cursor.group(2, Delimiter::Brace);
+        let written = || slips::statement(&name, word, braces, "…");
+        return (!has_junctions).then(|| format!("an instance is written `{}`", written()));
+    }
+    let element = elsewhere::element(word).filter(|_| !has_junctions);
+    element.or_else(|| signals::block(word, &name))
 }
 
 /// The digit of a junction that has grown together with its name, as in `1body`.
@@ -380,9 +409,16 @@ fn named_value(
 /// What to type for `output mass.p;`, which lacks a name; what stands before the dot was read as one.
 fn nameless(cursor: &Cursor, word: &str, first: &Ident) -> Option<String> {
     let length = cursor.length_until(|it, at| it.punct(at, ';'));
-    let rest = dump::tokens(cursor.ahead(length).iter().cloned().collect());
+    let ahead = cursor.ahead(length);
+    let values = ahead.split(|token| slips::is_mark(token, ','));
+    let values = values.map(|value| dump::tokens(value.iter().cloned().collect()));
+    let declared = values.enumerate().map(|(place, value)| match place {
+        0 => format!("{word} name = {first}{value};"),
+        _ => format!("{word} name_{place} = {value};"),
+    });
+    let declared: Vec<String> = declared.collect();
     let is_read = cursor.punct(0, '.');
-    is_read.then(|| format!("a value has a name: `{word} name = {first}{rest};`"))
+    is_read.then(|| format!("a value has a name: `{}`", declared.join(" ")))
 }
 
 /// Reads the value of gravity and its `;`.
@@ -473,8 +509,12 @@ fn vector_size(cursor: &mut Cursor, word: &str, name: &Ident) -> Parsed<Option<u
         let report = *cursor.expected(&format!("`:` after `{name}`"));
         return Err(Box::new(report.help(help)));
     }
+    let by_comma = rows_and_columns(cursor).map(|sizes| of_matrix(word, name, sizes));
     let rows = cursor.dimension().map_err(|mut report| {
-        report.helps.splice(0..0, help);
+        match by_comma {
+            Some(help) => report.helps = vec![help],
+            None => drop(report.helps.splice(0..0, help)),
+        }
         report
     })?;
     let (Some(count), Some(_)) = (rows, cursor.group(0, Delimiter::Bracket)) else {
@@ -484,14 +524,33 @@ fn vector_size(cursor: &mut Cursor, word: &str, name: &Ident) -> Parsed<Option<u
     let Some(columns) = cursor.dimension()? else {
         return Ok(rows);
     };
-    let help = match word {
+    Err(Box::new(report.help(of_matrix(
+        word,
+        name,
+        [count, columns],
+    ))))
+}
+
+/// What to type for a matrix that is declared by its sizes.
+fn of_matrix(word: &str, name: &Ident, sizes: [usize; 2]) -> String {
+    match word {
         "let" => format!("a matrix is a value without a dimension: write `let {name} = [[…], …];`"),
         _ => format!(
             "`{word}` declares a number or a vector: write `{}`",
-            slips::by_rows(word, &name.to_string(), [count, columns])
+            slips::by_rows(word, &name.to_string(), sizes)
         ),
+    }
+}
+
+/// The sizes in `[3, 3]`.
+fn rows_and_columns(cursor: &Cursor) -> Option<[usize; 2]> {
+    let group = cursor.group(0, Delimiter::Bracket)?;
+    let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
+    let [rows, comma, columns] = &tokens[..] else {
+        return None;
     };
-    Err(Box::new(report.help(help)))
+    let size = |token: &TokenTree| token.to_string().parse().ok();
+    slips::is_mark(comma, ',').then_some([size(rows)?, size(columns)?])
 }
 
 /// Reads the `=` before a value.
@@ -520,10 +579,13 @@ fn trailing(
 ) -> Parsed<Option<Expr>> {
     let word = |cursor: &Cursor| cursor.ident(0).map(ToString::to_string).unwrap_or_default();
     if !cursor.take_punct(',') {
-        if word(cursor) != wanted || !cursor.punct(1, ':') {
+        if word(cursor) != wanted {
             return Ok(None);
         }
         let report = *cursor.expected(&format!("`,` after {}", cursor.previous()));
+        if !cursor.punct(1, ':') && !cursor.punct(1, '=') {
+            return Err(Box::new(report.help(format!("write `, {wanted}: …`"))));
+        }
         sink.report(Box::new(report.help(format!("write `, {wanted}: …`"))));
     }
     let word = word(cursor);
@@ -621,6 +683,11 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
             elements
         }
         None => {
+            if let Some(help) = several(cursor, kind.digit(), &name) {
+                return Err(Box::new(
+                    (*cursor.expected("`;` after the junction")).help(help),
+                ));
+            }
             let started = initial_flow.is_some();
             let words = [
                 ("[", dimension.is_some() || started),
@@ -642,6 +709,22 @@ fn junction(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Parsed<Junction> {
         initial_flow,
         elements,
     })
+}
+
+/// What to type for `1 a, b;`.
+fn several(cursor: &Cursor, digit: char, first: &Ident) -> Option<String> {
+    let length = cursor.length_until(|it, at| it.punct(at, ';'));
+    let mut names = cursor
+        .ahead(length)
+        .split(|token| slips::is_mark(token, ','));
+    let is_empty = names.next()?.is_empty();
+    let names = names.map(|name| match name {
+        [TokenTree::Ident(name)] => Some(format!(" {digit} {name};")),
+        _ => None,
+    });
+    let names = names.collect::<Option<Vec<_>>>()?.concat();
+    (is_empty && !names.is_empty())
+        .then(|| format!("each junction has a statement of its own: `{digit} {first};{names}`"))
 }
 
 /// Ends a junction without braces; with each word that may stand before the end comes whether it was read.

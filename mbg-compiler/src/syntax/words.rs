@@ -143,6 +143,16 @@ pub(crate) fn is_two_port(kind: ElementKind) -> bool {
     )
 }
 
+/// The digit of a junction by its name in words, as in `One v { … }` or `J1 v { … }`.
+pub(crate) fn digit_in_words(word: &str) -> Option<char> {
+    let word = word.to_lowercase().replace('_', "");
+    match word.as_str() {
+        "one" | "onejunction" | "junction1" | "j1" | "spliteffort" => Some('1'),
+        "zero" | "zerojunction" | "junction0" | "j0" | "splitflow" => Some('0'),
+        _ => None,
+    }
+}
+
 /// The elements as errors list them.
 pub(super) fn element_listing() -> String {
     alternatives(&element_names())

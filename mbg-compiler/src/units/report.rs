@@ -24,6 +24,9 @@ const FACTOR: &str =
 /// Words of a compliance whose law multiplies or divides by what stands there.
 const COEFFICIENTS: [&str; 2] = ["compliance", "stiffness"];
 
+/// Words of elements of which one is the inverse of the other.
+const INVERSES: [[&str; 2]; 2] = [COEFFICIENTS, ["conductance", "resistance"]];
+
 /// Tells mistakes, each once.
 pub(super) struct Reporter<'a> {
     model: &'a Elaborated,
@@ -239,6 +242,7 @@ impl<'a> Reporter<'a> {
         advice: Option<String>,
     ) {
         let advice = advice.or_else(|| self.no_power(claim, units));
+        let advice = advice.or_else(|| self.inverse(claim, units));
         let help = match advice.or_else(|| self.bare_argument(claim)) {
             None if self.is_numeric(claim)
                 || units.iter().any(|unit| unit.is_pure())
@@ -251,6 +255,20 @@ impl<'a> Reporter<'a> {
         let (wanted, found) = self.both(units);
         let message = format!("{what} must be {wanted} here, and this is {found}");
         self.report(&claim.place, message, note, help);
+    }
+
+    /// What to type for a stiffness that is given as a compliance, or the like: one is the inverse of the other.
+    fn inverse(&self, claim: &Claim, [wanted, found]: [&Dimension; 2]) -> Option<String> {
+        let Subject::Word(_, word) = &claim.subject else {
+            return None;
+        };
+        let mut pairs = INVERSES.into_iter().flat_map(|[a, b]| [(a, b), (b, a)]);
+        let (_, other) = pairs.find(|(own, _)| own == word)?;
+        let (first, others) = claim.entries.split_first()?;
+        let is_one = others.iter().all(|entry| entry == first);
+        let is_inverse = wanted.times(found).is_pure() && !found.is_pure();
+        let value = expression_text(self.model, self.claims, self.pool, *first);
+        (is_one && is_inverse).then(|| format!("write `{other}: {value}`"))
     }
 
     /// What to type for the logarithm of a variable of the element itself, which becomes a pure number by it.

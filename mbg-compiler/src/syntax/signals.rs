@@ -87,7 +87,14 @@ const BLOCKS: &[(&[&str], &str)] = &[
             "voltagesensor",
             "forcesensor",
             "torquesensor",
+            "pressuresensor",
+            "anglesensor",
+            "positionsensor",
+            "effortsensor",
+            "flowsensor",
             "sensor",
+            "de",
+            "df",
         ],
         "`output @ = ….f;`, or `….e`: what a junction or an element has is read without a sensor",
     ),
@@ -102,7 +109,7 @@ const BLOCKS: &[(&[&str], &str)] = &[
 ];
 
 /// What to type for a block, whose value has this name.
-pub(super) fn block(block: &str, name: &str) -> Option<String> {
+pub(crate) fn block(block: &str, name: &str) -> Option<String> {
     let block = block.to_lowercase().replace('_', "");
     let mut blocks = BLOCKS.iter();
     let (_, text) = blocks.find(|(names, _)| names.contains(&block.as_str()))?;

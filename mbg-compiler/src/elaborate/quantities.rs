@@ -1,0 +1,289 @@
+//! What quantities are called in the parts of physics, and what is read for them here.
+
+use proc_macro2::{Ident, Span};
+
+use super::advice::text;
+use super::elsewhere;
+use super::expressions::{Names, Step};
+use super::frames::IN_SPACE;
+use super::scope::{Entity, Lookup};
+use crate::diagnostics::listing;
+use crate::graph::{ElementKind, JunctionId, JunctionKind};
+use crate::symbolic::Pool;
+
+/// The variables of bonds, and what they are called.
+const VARIABLES: &[(&str, &[&str])] = &[
+    (
+        "e",
+        &[
+            "effort",
+            "force",
+            "torque",
+            "moment",
+            "tau",
+            "voltage",
+            "tension",
+            "pressure",
+            "temperature",
+        ],
+    ),
+    (
+        "f",
+        &[
+            "flow",
+            "velocity",
+            "speed",
+            "rate",
+            "angular_velocity",
+            "omega",
+            "w",
+            "angle_rate",
+            "angular_rate",
+            "angular_speed",
+            "current",
+            "i",
+            "volume_flow",
+            "flow_rate",
+            "heat_flow",
+        ],
+    ),
+    (
+        "q",
+        &[
+            "displacement",
+            "position",
+            "angle",
+            "travel",
+            "phi",
+            "theta",
+            "charge",
+            "volume",
+            "extension",
+            "elongation",
+            "deflection",
+            "stretch",
+        ],
+    ),
+    (
+        "p",
+        &[
+            "momentum",
+            "angular_momentum",
+            "impulse",
+            "flux",
+            "flux_linkage",
+        ],
+    ),
+];
+
+/// What is called otherwise of a component in use, and what it has of that: the first that there is.
+const OF_INSTANCES: &[(&[&str], &[&str])] = &[
+    (
+        &["friction_force", "tangential_force", "rubbing_force"],
+        &["rubbing.contact.e", "rubbing.e"],
+    ),
+    (
+        &[
+            "normal_force",
+            "contact_force",
+            "reaction",
+            "reaction_force",
+            "fn",
+            "n",
+        ],
+        &["force"],
+    ),
+    (&["charge"], &["capacitor.q"]),
+    (&["u", "v"], &["voltage"]),
+    (&["penetration", "indentation", "compression"], &["depth"]),
+];
+
+/// The same for the variables of bonds.
+const BY_VARIABLE: &[(&str, &[&str])] = &[
+    ("f", &["rate.f", "current"]),
+    ("q", &["angle", "travel", "position_b"]),
+    ("e", &["force", "effort", "voltage"]),
+];
+
+/// Angular velocities of frames in space, which come before their velocities.
+const TURNING: [&str; 3] = ["angular_velocity", "omega", "w"];
+
+/// The variable of a bond that has this name in some part of physics, or its own.
+fn variable(word: &str) -> Option<&'static str> {
+    let mut variables = VARIABLES.iter();
+    let (variable, _) = variables.find(|(own, words)| *own == word || words.contains(&word))?;
+    Some(variable)
+}
+
+fn step(name: &str) -> Step {
+    Step {
+        name: Ident::new(name, Span::call_site()),
+        index: None,
+    }
+}
+
+impl Lookup<'_, '_> {
+    /// What to read for a quantity of a junction or an element, which is found after `count` steps.
+    pub(super) fn by_quantity(
+        &mut self,
+        pool: &mut Pool,
+        path: &[Step],
+        count: usize,
+    ) -> Option<String> {
+        let (front, rest) = path.split_at(count);
+        let [Step { name, index: None }] = rest else {
+            return None;
+        };
+        let word = name.to_string();
+        let of = |variable: &str| [front, &[step(variable)][..]].concat();
+        let owner = text(front);
+        match word.as_str() {
+            "power" => {
+                let [effort, flow] = ["e", "f"].map(of);
+                let has_both = self.has_value(pool, &effort) && self.has_value(pool, &flow);
+                return has_both.then(|| format!("write `{owner}.e * {owner}.f`"));
+            }
+            "energy" => return Some(self.energy(pool, front)),
+            "acceleration" => {
+                let flow = syn::parse_str(&format!("{owner}.f")).ok()?;
+                return elsewhere::instead("der", &[flow]);
+            }
+            _ => {}
+        }
+        if let Some(part) = self.of_frame(front, &word) {
+            return Some(part);
+        }
+        let variable = self.variable_at(front, &word)?;
+        let renamed = of(variable);
+        match self.has_value(pool, &renamed) {
+            true => Some(format!("write `{}`", text(&renamed))),
+            false if variable == word => None,
+            false => self.advice_on(pool, &renamed),
+        }
+    }
+
+    /// The variable that a word stands for: `v` is a velocity or a voltage, whichever is common to the bonds of a junction.
+    fn variable_at(&self, front: &[Step], word: &str) -> Option<&'static str> {
+        if word != "v" {
+            return variable(word);
+        }
+        match self.scopes.follow(self.scope, front) {
+            Ok(Some((Entity::Junction(id, _), _))) => Some(match self.graph.junctions[id.0].kind {
+                JunctionKind::One => "f",
+                JunctionKind::Zero => "e",
+            }),
+            _ => None,
+        }
+    }
+
+    fn has_value(&mut self, pool: &mut Pool, path: &[Step]) -> bool {
+        matches!(self.value(pool, path), Some(Ok(_)))
+    }
+
+    /// What a storage holds; that of a model is no sum to be written.
+    fn energy(&mut self, pool: &mut Pool, front: &[Step]) -> String {
+        let owner = text(front);
+        let all = "`System::energy` gives what all storages hold";
+        let halves = [("q", "e"), ("p", "f")].into_iter().find(|(state, _)| {
+            let state = [front, &[step(state)][..]].concat();
+            self.has_value(pool, &state)
+        });
+        match halves {
+            Some((state, other)) => format!(
+                "where its law is linear write `0.5 * {owner}.{state} * {owner}.{other}`; {all}"
+            ),
+            None => all.to_owned(),
+        }
+    }
+
+    /// The part of the flow of a frame in space that is meant, or where it is.
+    fn of_frame(&self, front: &[Step], word: &str) -> Option<String> {
+        let Ok(Some((Entity::Junction(id, range), _))) = self.scopes.follow(self.scope, front)
+        else {
+            return None;
+        };
+        if range.len() != IN_SPACE {
+            return None;
+        }
+        let (owner, half) = (text(front), IN_SPACE / 2);
+        match word {
+            "velocity" | "speed" | "v" => Some(format!(
+                "write `{owner}.f[{half}..{IN_SPACE}]`, in axes of the frame"
+            )),
+            _ if TURNING.contains(&word) => Some(format!(
+                "write `{owner}.f[0..{half}]`, in axes of the frame"
+            )),
+            _ if variable(word) == Some("q") || word == "orientation" => {
+                let told = match word {
+                    "orientation" => "orientation_b",
+                    _ => "position_b",
+                };
+                let joint = self.told_by(*id, told)?;
+                Some(format!("what leads to it tells it: write `{joint}.{told}`"))
+            }
+            _ => None,
+        }
+    }
+
+    /// The component in use that leads to a junction and has such a value.
+    fn told_by(&self, junction: JunctionId, value: &str) -> Option<&str> {
+        let mut names = self.scopes[self.scope].names.iter();
+        let (name, _) = names.find(|(_, entity)| match entity {
+            Entity::Instance(inner) => {
+                let names = &self.scopes[*inner].names;
+                let leads =
+                    matches!(names.get("b"), Some(Entity::Junction(id, _)) if *id == junction);
+                leads && names.contains_key(value)
+            }
+            _ => false,
+        })?;
+        Some(name)
+    }
+
+    /// What to read of a component in use in the place of a name that it does not have.
+    pub(super) fn by_quantity_inside(
+        &mut self,
+        pool: &mut Pool,
+        front: &[Step],
+        word: &str,
+    ) -> Option<String> {
+        let mut of_instances = OF_INSTANCES.iter();
+        let plain = word.to_lowercase();
+        let named = of_instances.find(|(words, _)| words.contains(&plain.as_str()));
+        let by_variable = || {
+            let variable = variable(word)?;
+            let mut known = BY_VARIABLE.iter();
+            known
+                .find(|(own, _)| *own == variable)
+                .map(|(_, here)| here)
+        };
+        let here = named.map(|(_, here)| here).or_else(by_variable)?;
+        here.iter().find_map(|path| {
+            let inside = path.split('.').map(step);
+            let path: Vec<Step> = front.iter().cloned().chain(inside).collect();
+            self.has_value(pool, &path)
+                .then(|| format!("write `{}`", text(&path)))
+        })
+    }
+
+    /// What has a quantity whose name stands alone.
+    pub(super) fn of_what(&self, word: &str) -> Option<String> {
+        let variable = variable(word).filter(|variable| *variable != word)?;
+        let has = |entity: &Entity| match entity {
+            Entity::Junction(id, _) => match self.graph.junctions[id.0].kind {
+                JunctionKind::One => variable == "f",
+                JunctionKind::Zero => variable == "e",
+            },
+            Entity::Element(id) => match self.graph.elements[id.0].kind {
+                ElementKind::C => variable == "q" || variable == "e",
+                ElementKind::I => variable == "p",
+                _ => variable == "e",
+            },
+            _ => false,
+        };
+        let names = self.scopes.visible(self.scope).into_iter();
+        let known = names.filter(|name| self.scopes.find(self.scope, name).is_some_and(has));
+        let known: Vec<String> = known.map(|name| format!("{name}.{variable}")).collect();
+        (!known.is_empty()).then(|| format!("it is read at what has it: {}", listing(known)))
+    }
+}

@@ -6,6 +6,7 @@
 //! | see what models do | `docs/gallery.md` of the repository, a picture of each |
 //! | ask a model | [`System`], [`Meta`] |
 //! | run it | [`Integrator`]: [`Fixed`] steps or an [`Adaptive`] one, and a [`Method`]; or [`Auto`], which picks them; [`Input`] |
+//! | write what it does as CSV | `examples/log_to_csv.rs` of the repository |
 //! | stop it at an event, change its state and go on | [events](language#events), [`Integrator::until`] |
 //! | drive it by a recorded log | [`Sampled`] |
 //! | find where it rests, hovers or turns steadily | [`Trim`] |

@@ -27,6 +27,8 @@ use crate::{Convertible, Real, Trouble};
 /// A nonlinear algebraic loop is solved from zero, as at the start of a run: of several solutions it may find another one than
 /// a run has found.
 ///
+/// Where a law jumps nothing tells of it: next to rest the matrices are those without dry friction by `sign(f)`, though it would hold.
+///
 /// [`Linearised::of`] takes four matrices of all states on the stack, 5 MB with 400 states: see [`Auto`](crate::Auto#stack).
 ///
 /// # Example

@@ -56,6 +56,8 @@ const APART: f64 = 1e-9;
 /// beyond the voltage at which a plate is pulled in it is an error, [`Untrimmed::Apart`]. It is taken only where it is outputs, rates
 /// or fixed states that ask for it, and without them there is one with the differences of the guess. Where a contact does not touch,
 /// no slope tells of it: guess a state in which it does, such as that to which a run has fallen.
+/// Dry friction by `sign(f)` is zero at rest, where it would hold, so that what it alone holds is no point: a run finds where it comes
+/// to rest, and a law that rises within a width, such as `tanh(f / width)`, has such points.
 ///
 /// # Example
 ///

@@ -126,7 +126,7 @@ impl<T: Real, const M: usize> Input<T, M> for Constant<T, M> {
 }
 
 /// A constant for `start ≤ t < end`, zero before and after. Runs refuse one that ends before it starts, or whose times are not
-/// numbers.
+/// numbers or not the same in all lanes.
 ///
 /// # Example
 ///
@@ -160,7 +160,9 @@ impl<T: Real, const M: usize> Input<T, M> for Pulse<T, M> {
 
     fn next_jump(&self, t: T) -> Option<T> {
         let [start, end] = [self.start, self.end].map(seen);
-        if start.is_nan() || end.is_nan() || end < start {
+        // A time that is not a number is none that all lanes share.
+        let is_shared = |time: T, first: f64| time.find(|lane| lane != first).is_none();
+        if !is_shared(self.start, start) || !is_shared(self.end, end) || end < start {
             // What is not a number is no jump; runs refuse it.
             Some(T::from_f64(f64::NAN))
         } else if !less(self.start, self.end) {
@@ -309,6 +311,30 @@ fn zero<T: Real, const M: usize>() -> SVector<T, M> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Runs end a step at a jump for all lanes at once.
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn pulse_at_times_of_its_own_in_each_lane_is_refused() {
+        use crate::lanes::{Lanes, f64x4};
+
+        let shared = f64x4::from_f64(1.0);
+        let apart = f64x4::from_lanes(|lane| 2.0 + lane as f64);
+        let first_jump = |start, end| {
+            let amplitude = SVector::from([shared]);
+            Pulse {
+                amplitude,
+                start,
+                end,
+            }
+            .next_jump(f64x4::from_f64(0.0))
+        };
+        let is_refused = |jump: Option<f64x4>| jump.is_some_and(|it| it.lane(0).is_nan());
+        assert!(is_refused(first_jump(shared, apart)));
+        assert!(is_refused(first_jump(-apart, shared)));
+        let for_ever = f64x4::from_f64(f64::INFINITY);
+        assert_eq!(first_jump(shared, for_ever), Some(shared));
+    }
 
     #[test]
     fn pulse_holds_from_its_start_up_to_its_end() {

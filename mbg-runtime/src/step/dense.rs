@@ -209,6 +209,17 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
         self.memory
     }
 
+    /// The state at a time that is the end of the step, but for its slopes: the end of a step follows a jump up to which it goes, and
+    /// the time need not.
+    pub(super) fn at_end(&mut self, time: T) -> SVector<T, N> {
+        let end = self.span.end;
+        if !T::HAS_SLOPES || time == end {
+            return self.state;
+        }
+        let apart = self.at(time) - self.at(end);
+        self.state + apart
+    }
+
     /// The state at a time of the step, interpolated with [`Method::DENSE_ORDER`](super::Method::DENSE_ORDER); outside
     /// of the step an extrapolation.
     ///

@@ -405,12 +405,11 @@ where
             && !less(step.end(), *time)
         {
             let known = (step.memory(), step.surfaces);
-            if less(*time, step.end()) {
-                let x = step.at(*time);
-                observer(*time, &x, known);
-            } else {
-                observer(*time, step.state(), known);
-            }
+            let x = match less(*time, step.end()) {
+                true => step.at(*time),
+                false => step.at_end(*time),
+            };
+            observer(*time, &x, known);
             rest = others;
         }
         ControlFlow::Continue(())

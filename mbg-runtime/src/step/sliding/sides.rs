@@ -37,19 +37,11 @@ pub(super) struct Sides<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Sides<T, N> {
-    /// What is left of a state by rounding alone, which the motion does not leave, is nothing: methods that iterate go by how large a
-    /// state is.
     pub(super) fn derivative(&self) -> SVector<T, N> {
-        let (mut derivative, mut sizes) = (self.base, self.base.map(Real::magnitude));
-        for (jump, part) in self.jumps.iter().zip(&self.parts) {
-            let shares = jump.map(|jump| *part * jump);
-            derivative += shares;
-            sizes += shares.map(Real::magnitude);
-        }
-        derivative.zip_map(&sizes, |sum, size| {
-            let is_rounding = sum.magnitude() <= PLACES * T::EPSILON * size;
-            let left = if is_rounding { seen(sum) } else { 0.0 };
-            sum - T::from_f64(left)
+        SVector::from_fn(|row, _| {
+            let shares = self.jumps.iter().zip(&self.parts);
+            let shares = shares.map(|(jump, part)| *part * jump[row]);
+            summed(core::iter::once(self.base[row]).chain(shares))
         })
     }
 
@@ -272,6 +264,25 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             slower,
             parts,
         }
+    }
+}
+
+/// A sum of terms. What rounding alone has left of it is nothing, since the motion does not leave that: methods that iterate go by how
+/// large a state is, and those that control their steps by how large its slopes are.
+fn summed<T: Real>(terms: impl Iterator<Item = T> + Clone) -> T {
+    let zero = T::from_f64(0.0);
+    let sum = terms.clone().fold(zero, |sum, term| sum + term);
+    let is_rounding = |of: &dyn Fn(T) -> f64| {
+        let size = terms.clone().fold(0.0, |size, term| size + of(term).abs());
+        of(sum).abs() <= PLACES * T::EPSILON * size
+    };
+    if !is_rounding(&|number| number.magnitude()) {
+        return sum;
+    }
+    let mut directions = (0..).take_while(|direction| sum.slope_along(*direction).is_some());
+    match directions.all(|it| is_rounding(&|number| number.slope_along(it).unwrap_or(0.0))) {
+        true => zero,
+        false => sum - T::from_f64(seen(sum)),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Laws that jump where an input goes through a threshold, alone or beside the time.
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Radau9, Real, Rk4, Smooth,
-    System, Tsit5, mbg,
+    Adaptive, Auto, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pulse, Radau9, Real, Rk4,
+    Smooth, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -28,6 +28,15 @@ mbg! {
         integral early = if mod(t, 1.0 + 0.3 * way) < 0.2 { 1.0 } else { 0.0 };
         integral wave = if sin(3.0 * t + way) > 0.2 { 1.0 } else { 0.0 };
         output all = late + left + counted + early + wave;
+    }
+}
+
+mbg! {
+    /// A mass that is pushed, and drags.
+    model Pushed {
+        input push;
+        1 way { I mass { inertia: 2.0 } R drag { resistance: 1.0 } Se force { effort: push } }
+        output speed = way.f;
     }
 }
 
@@ -129,6 +138,40 @@ fn times_at_which_an_input_switches_have_their_slopes() {
         // One, two and three thirds are passed, each at its third by the rate.
         close(found[2], 2.0 / 0.16, solver);
     });
+}
+
+/// Steps of a grid that ends at a jump move with it, and times at which they end do not.
+#[test]
+fn what_comes_before_a_jump_has_no_slope_of_its_time() {
+    let model = Pushed::<Dual<f64>>::new(PushedParameters::default()).unwrap();
+    let push = Pulse {
+        amplitude: SVector::from([Dual::constant(3.0)]),
+        start: Dual::constant(0.0),
+        end: Dual::variable(1.0),
+    };
+    // Behind it the force of 3 N lasts as much longer.
+    let expected = [0.0, 0.0, 3.0 * f64::exp(-0.25)];
+    macro_rules! by {
+        ($($solver:expr),*) => { $({
+            let mut slopes = Vec::new();
+            let (start, times) = (model.initial_state(), [0.5, 1.0, 1.5].map(Dual::constant));
+            $solver
+                .sample(&model, &push, Dual::constant(0.0), start, &times, |_, x| slopes.push(x[0].slope))
+                .unwrap();
+            for (slope, expected) in slopes.iter().zip(expected) {
+                let error = slope - expected;
+                assert!(error.abs() < 1e-7, "{}: {error:e}", stringify!($solver));
+            }
+        })* };
+    }
+    by!(
+        Fixed::new(Rk4, 0.01),
+        Fixed::new(Gauss6::default(), 0.01),
+        Adaptive::new(Tsit5, 1e-9, 1e-9),
+        Adaptive::new(Dop853, 1e-9, 1e-9),
+        Adaptive::new(Radau9, 1e-9, 1e-9),
+        Auto::new(1e-9, 1e-9)
+    );
 }
 
 #[test]

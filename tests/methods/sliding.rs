@@ -150,6 +150,17 @@ mbg! {
         between -> C spring { stiffness: 1.0 };
     }
 
+    /// A motor whose bearing rubs, from rest.
+    model Motor {
+        param coulomb = 0.1;
+        param constant = 0.05;
+        1 wire { Se supply { effort: 6.0 } R winding { resistance: 1.2 } I coil { inertia: 2e-3 } }
+        1 shaft { I rotor { inertia: 1e-4 } R bearing { effort: 1e-5 * f + coulomb * sign(f) } }
+        wire -> GY machine { effort: constant } -> shaft;
+        integral angle = shaft.f;
+        output turned = angle;
+    }
+
     /// Blocks, each on a floor of its own.
     model Row {
         blocks: for k in 0..12 {
@@ -622,6 +633,33 @@ fn slopes_are_those_of_where_it_holds() {
 }
 
 /// An event at the time at which the mass is torn loose, as the friction is at its bound.
+/// What rounding leaves of slopes of what holds is none by which steps are measured.
+#[test]
+fn slopes_of_a_motor_that_is_held_at_first_take_few_steps() {
+    fn angle<T: Real>(coulomb: T, end: f64) -> (T, u64) {
+        let parameters = MotorParameters {
+            coulomb,
+            ..Default::default()
+        };
+        let model = Motor::new(parameters).unwrap();
+        let solver = Adaptive::new(Dop853, 1e-10, 1e-12);
+        let (_, outputs, statistics) = last(&model, &Constant(SVector::from([])), end, &solver);
+        (outputs[0], statistics.steps + statistics.rejected)
+    }
+    for (coulomb, end) in [(0.3, 0.1), (0.1, 0.02)] {
+        let (found, tried) = angle(Dual::variable(coulomb), end);
+        let apart = 1e-5;
+        let [less, more] = [coulomb - apart, coulomb + apart].map(|it| angle(it, end).0);
+        let expected = (more - less) / (2.0 * apart);
+        let error = (found.slope - expected).abs();
+        assert!(
+            error < 1e-6 * expected.abs() + 1e-12,
+            "{coulomb}: {error:e} of {expected:e}"
+        );
+        assert!(tried < 300, "{coulomb}: {tried}");
+    }
+}
+
 #[test]
 fn events_are_found_where_a_motion_stays() {
     let model = Block::new(BlockParameters { friction: 2.0 }).unwrap();

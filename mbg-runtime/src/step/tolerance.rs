@@ -148,12 +148,17 @@ impl<const N: usize> Measure<N> {
     ///
     /// They belong to one motion beside the other, of which the size is the largest of its components, both in units of the
     /// tolerances: one that goes through zero need not be more exact there. Slopes that are not finite do not count, nor those
-    /// that are next to none.
+    /// that are next to none beside the values, such as what asking beside a threshold leaves of what stays there.
     fn weigh_slopes<T: Real, const K: usize>(&mut self, part: f64, ends: [&SVector<T, N>; K]) {
         let Self { factors, slopes } = self;
+        let states = || ends.iter().flat_map(|end| end.iter().zip(&*factors));
+        let values = states().fold(0.0, |most: f64, (x, factor)| {
+            most.max(factor * x.magnitude())
+        });
+        let none = T::EPSILON * Real::sqrt(T::EPSILON) * values;
         for (direction, weight) in slopes.iter_mut().enumerate() {
             let mut largest = 0.0;
-            for (x, factor) in ends.iter().flat_map(|end| end.iter().zip(&*factors)) {
+            for (x, factor) in states() {
                 let slope = factor * x.slope_along(direction).unwrap_or(0.0);
                 // A NaN stays.
                 if slope > largest || slope.is_nan() {
@@ -161,11 +166,8 @@ impl<const N: usize> Measure<N> {
                 }
             }
             let error = part * largest;
-            *weight = if error > f64::MIN_POSITIVE / f64::EPSILON {
-                1.0 / error
-            } else {
-                0.0
-            };
+            let is_some = largest > none && error > f64::MIN_POSITIVE / f64::EPSILON;
+            *weight = if is_some { 1.0 / error } else { 0.0 };
         }
     }
 

@@ -143,7 +143,8 @@ impl Builder<'_> {
         let mut open: Vec<&Statement> = component.statements.iter().collect();
         while let Some(statement) = open.pop() {
             let is_one = match statement {
-                Statement::Integral(_) | Statement::Attitude(_) => false,
+                // What is closed is held in part alone.
+                Statement::Integral(_) | Statement::Attitude(_) | Statement::Closure(_) => false,
                 Statement::Instance(it) => {
                     let inner = self.components.get(&it.component.to_string());
                     inner.is_some_and(|inner| self.is_made_of(inner, element))

@@ -636,9 +636,10 @@ impl Reducer<'_> {
     }
 
     /// Efforts that follow from the states alone and divide by nothing that varies, each after those from which it
-    /// follows; an effort that its law gives by iteration is among them. Others, such as the moment between concentric hinges, whose axes may come to lie in one plane, are
-    /// eliminated with the rates that they belong to: so what is divided by are the inertias of the mechanism. Where
-    /// loops are closed, all that follow from the states are known: what is left there has pivots of its own.
+    /// follows; one that its law gives by iteration is among them. Others, such as the moment between concentric hinges,
+    /// whose axes may come to lie in one plane, are eliminated with the rates that they belong to: so what is divided by
+    /// are the inertias of the mechanism. Where loops are closed, all that follow from the states are known: what is left
+    /// there has pivots of its own.
     fn known_beforehand(
         &self,
         matched: &BTreeMap<usize, usize>,

@@ -94,6 +94,11 @@ pub struct Turn {
 }
 
 impl Equation {
+    /// All unknowns that enter, linearly or not.
+    pub fn unknowns(&self) -> impl Iterator<Item = usize> {
+        self.terms.keys().chain(&self.signals).copied()
+    }
+
     /// Replaces symbols in its numbers, but where that would divide by zero.
     pub fn replace(&mut self, substitution: &mut Substitution, pool: &mut Pool) {
         let numbers = self.terms.values_mut().chain([&mut self.constant]);

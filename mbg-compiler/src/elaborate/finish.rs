@@ -295,17 +295,11 @@ impl<'a> Builder<'a> {
             let message = format!("`{:?}` does not know `{}`", element.kind, field.name);
             let known = words.iter().map(|word| (*word).to_owned());
             let report = error(codes::UNKNOWN_FIELD, field.name.span(), message);
-            let (kind, word, value) = (element.kind, &field.name, field.value.as_ref());
-            let here = laws_elsewhere::law(kind, word, value);
-            let here = here.or_else(|| laws_elsewhere::start(kind, word, value));
-            let here = here.or_else(|| laws_elsewhere::other_source(element, word, value));
-            let here = here.or_else(|| laws_elsewhere::stroke(word));
-            let here = here.or_else(|| laws_elsewhere::preloaded(element, word, value));
-            let report =
-                match here.or_else(|| laws_elsewhere::effort_at_start(element, word, value)) {
-                    Some(help) => report.help(help),
-                    None => report.did_you_mean(&field.name.to_string(), &words),
-                };
+            let (word, value) = (&field.name, field.value.as_ref());
+            let report = match laws_elsewhere::told(element, word, value) {
+                Some(help) => report.help(help),
+                None => report.did_you_mean(&word.to_string(), &words),
+            };
             self.tell(
                 scope,
                 report.help(format!("its words are {}", listing(known))),

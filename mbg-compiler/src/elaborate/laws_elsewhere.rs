@@ -108,6 +108,16 @@ const EFFORTS: &[&str] = &[
 /// What the number of a transformer or gyrator is called.
 const RATIOS: &[&str] = &["ratio", "modulus", "gain", "n", "m", "r"];
 
+/// What to type for a word that an element does not have.
+pub(super) fn told(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
+    law(element.kind, word, value)
+        .or_else(|| start(element.kind, word, value))
+        .or_else(|| other_source(element, word, value))
+        .or_else(|| stroke(word))
+        .or_else(|| preloaded(element, word, value))
+        .or_else(|| effort_at_start(element, word, value))
+}
+
 /// What to type for the law of an element that stands behind a word of another name.
 pub(super) fn law(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
     if let Some(law) = converter_law(kind) {
@@ -123,11 +133,7 @@ pub(super) fn is_law(word: &Ident) -> bool {
 }
 
 /// What to type for a source that is given what the other kind gives.
-pub(super) fn other_source(
-    element: &Element,
-    word: &Ident,
-    value: Option<&Expr>,
-) -> Option<String> {
+fn other_source(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
     let (other, what) = match element.kind {
         ElementKind::Se if word == "flow" => ("Sf", "flow"),
         ElementKind::Sf if word == "effort" => ("Se", "effort"),
@@ -140,14 +146,14 @@ pub(super) fn other_source(
 }
 
 /// What to type for the causality of an element, which is not chosen here.
-pub(super) fn stroke(word: &Ident) -> Option<String> {
+fn stroke(word: &Ident) -> Option<String> {
     (word == "causality").then(|| {
         "strokes are found while compiling; `#[derivative]` before a storage lets it follow from others".to_owned()
     })
 }
 
 /// What to type for the start of a storage that stands behind a word of another name.
-pub(super) fn start(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
+fn start(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
     here(STARTS, kind, word, value)
 }
 
@@ -164,11 +170,7 @@ fn here(
 }
 
 /// What to type for a compliance that is given its effort at the start in the place of its state.
-pub(super) fn effort_at_start(
-    element: &Element,
-    word: &Ident,
-    value: Option<&Expr>,
-) -> Option<String> {
+fn effort_at_start(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
     let is_effort = EFFORTS.iter().any(|effort| word == effort);
     let value = value.filter(|_| is_effort && element.kind == ElementKind::C)?;
     let law = |word: &str| {
@@ -198,7 +200,7 @@ const RESTS: &[&str] = &[
 ];
 
 /// What to type for a spring that is given where it is without load, or its load at zero.
-pub(super) fn preloaded(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
+fn preloaded(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
     let text = match word {
         _ if RESTS.iter().any(|rest| word == rest) => "k * (q - x)",
         _ if word == "preload" => "x + k * q",

@@ -135,13 +135,8 @@ pub fn solve(
         .equations
         .iter()
         .map(|equation| {
-            equation
-                .terms
-                .keys()
-                .chain(&equation.signals)
-                .copied()
-                .chain(own_multiplier(equation))
-                .collect()
+            let unknowns = equation.unknowns();
+            unknowns.chain(own_multiplier(equation)).collect()
         })
         .collect();
     // A law is turned round by iteration only where it must be.

@@ -287,20 +287,13 @@ impl Reducer<'_> {
             .scalars
             .equations
             .iter()
-            .map(|equation| {
-                equation
-                    .terms
-                    .keys()
-                    .chain(&equation.signals)
-                    .copied()
-                    .collect()
-            })
+            .map(|equation| equation.unknowns().collect())
             .collect();
         let unknown_of = matching::of_all_equations(&incidence, self.scalars.unknowns)?;
         let mut containing = vec![Vec::new(); self.scalars.unknowns];
         for (row, equation) in self.scalars.equations.iter().enumerate() {
-            for unknown in equation.terms.keys().chain(&equation.signals) {
-                containing[*unknown].push(row);
+            for unknown in equation.unknowns() {
+                containing[unknown].push(row);
             }
         }
         let mut determined = vec![false; self.scalars.unknowns];
@@ -425,7 +418,7 @@ impl Reducer<'_> {
         while let Some(unknown) = open.pop() {
             if needed.insert(unknown) {
                 let equation = &self.scalars.equations[*matched.get(&unknown)?];
-                open.extend(equation.terms.keys().chain(&equation.signals));
+                open.extend(equation.unknowns());
             }
         }
         Some(())
@@ -657,11 +650,11 @@ impl Reducer<'_> {
         let mut known = BTreeSet::new();
         loop {
             let is_ready = |(unknown, equation): &&(usize, &Equation)| {
-                let mut others = equation.terms.keys().chain(&equation.signals);
+                let mut others = equation.unknowns();
                 let divisor = equation.terms.get(unknown);
                 open.contains(unknown)
                     && divisor.is_none_or(|it| self.pool.rate(*it) != Rate::Varying)
-                    && others.all(|other| other == unknown || !open.contains(other))
+                    && others.all(|other| other == *unknown || !open.contains(&other))
             };
             let ready: Vec<usize> = efforts.iter().filter(is_ready).map(|it| it.0).collect();
             if ready.is_empty() {

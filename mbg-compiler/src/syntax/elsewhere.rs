@@ -89,7 +89,8 @@ const WITHOUT_NAME: &[(&str, &str)] = &[
     ),
     (
         "ic",
-        "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with `effort: 1.0`",
+        "write `C name { energy: … }` on a junction with a component for each port; a port of a momentum lies behind a `GY` with \
+         `effort: 1.0`",
     ),
     (
         "sw",

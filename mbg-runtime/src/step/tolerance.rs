@@ -155,6 +155,8 @@ impl<const N: usize> Measure<N> {
         let values = states().fold(0.0, |most: f64, (x, factor)| {
             most.max(factor * x.magnitude())
         });
+        // Small enough for parameters that are larger than states by all that precision tells apart, and large enough for what
+        // is left of states that stay.
         let none = T::EPSILON * Real::sqrt(T::EPSILON) * values;
         for (direction, weight) in slopes.iter_mut().enumerate() {
             let mut largest = 0.0;

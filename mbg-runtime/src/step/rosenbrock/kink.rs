@@ -13,7 +13,7 @@ use crate::{Input, Real, System};
 
 /// Newton's method is given up after so many sweeps.
 const SWEEPS: u32 = 8;
-/// A state is found when a sweep moves it by so small a part of what states have been.
+/// A state is found when a sweep moves it by so small a part of what states have been and become.
 const FOUND: f64 = 1e-6;
 /// What a sweep leaves of the equations is less than this part of what it found.
 const SHRINKS: f64 = 0.5;

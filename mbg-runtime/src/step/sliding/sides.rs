@@ -37,6 +37,7 @@ pub(super) struct Sides<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Sides<T, N> {
+    /// That of the mean.
     pub(super) fn derivative(&self) -> SVector<T, N> {
         SVector::from_fn(|row, _| {
             let shares = self.jumps.iter().zip(&self.parts);

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use mbg_runtime::{
-    Adaptive, Direction, Dop853, Dual, Integrator, Radau5, Radau9, Rk4, Rodas4, Rodas5P, System,
-    Tsit5, Verner9, mbg,
+    Adaptive, Direction, Dop853, Dual, Fixed, Integrator, Radau5, Radau9, Rk4, Rodas4, Rodas5P,
+    System, Tsit5, Verner9, mbg,
 };
 use nalgebra::SVector;
 
@@ -232,6 +232,63 @@ fn a_ball_begins_to_roll() {
     }
 }
 
+/// By the rolling resistance, at `0.02 g / (1 + 0.24 / (4 0.3²))` on the level; on a slope below it it stays where it stops.
+#[test]
+fn a_wheel_rolls_to_rest() {
+    let wheel = |slope, speed| Wheel::new(WheelParameters { slope, speed }).unwrap();
+    let by_all = |model: &Wheel<f64>, end, expected: [f64; 2]| {
+        macro_rules! ends {
+            ($($method:expr),*) => {[$({
+                let mut last = model.initial_state();
+                $method.integrate(model, &(), 0.0, end, last, |step| last = *step.state()).unwrap();
+                shot(model, &last)
+            }),*]};
+        }
+        for shown in ends!(
+            Adaptive::new(Dop853, 1e-9, 1e-11),
+            Adaptive::new(Radau9, 1e-9, 1e-11),
+            Adaptive::new(Rodas5P, 1e-9, 1e-11),
+            Fixed::new(Radau5, 1e-2),
+            Fixed::new(Rk4, 5e-4)
+        ) {
+            let error = (shown - SVector::from(expected)).norm();
+            assert!(error < 1e-7, "{shown} instead of {expected:?}");
+        }
+    };
+    let (speed, taken) = (1.5, 0.02 * 9.81 * 0.6);
+    let [before, behind] = [10.0, 15.0];
+    assert!(before < speed / taken && speed / taken < behind);
+    let (level, way) = (
+        wheel(0.0, speed),
+        speed * before - 0.5 * taken * before * before,
+    );
+    by_all(&level, before, [way, speed - taken * before]);
+    by_all(&level, behind, [0.5 * speed * speed / taken, 0.0]);
+    by_all(&wheel(0.019, 0.0), 2.0, [0.0, 0.0]);
+    let down = 9.81 * 0.6 * (f64::sin(0.03) - 0.02 * f64::cos(0.03));
+    by_all(&wheel(0.03, 0.0), 2.0, [2.0 * down, 2.0 * down]);
+}
+
+/// Straight on, wherever it rolls to, but for what it creeps.
+#[test]
+fn a_ball_rolls_to_rest() {
+    let friction_speed = 1e-4;
+    let model = Bowl::new(BowlParameters {
+        friction_speed,
+        ..Default::default()
+    })
+    .unwrap();
+    let mut last = model.initial_state();
+    Adaptive::new(Radau5, 1e-9, 1e-11)
+        .integrate(&model, &(), 0.0, 8.0, last, |step| last = *step.state())
+        .unwrap();
+    let shown = shot(&model, &last);
+    let way = 0.5 * 1.5 * 1.5 / (0.05 * 9.81 / 1.4);
+    near(shown[0], 0.8 * way, 1e-3);
+    near(shown[1], 0.6 * way, 1e-3);
+    assert!(shown.fixed_rows::<3>(3).norm() < 1e-6, "{shown}");
+}
+
 #[test]
 fn a_plane_has_the_contact_of_space() {
     let flat = Disc::new(DiscParameters::default()).unwrap();
@@ -255,6 +312,7 @@ fn energies_balance_and_jacobians_are_right() {
         Dropped, DroppedParameters;
         Block, BlockParameters;
         Ball, BallParameters;
+        Bowl, BowlParameters;
         Disc, DiscParameters;
         DiscInSpace, DiscInSpaceParameters;
         Leg, LegParameters;

@@ -36,7 +36,9 @@ const JOINTS: [&str; 13] = [
      cut: Cut {} (ground, tip);",
     "joint: Prismatic { axis: 2, initial: 0.1 } (ground, tip);
      end: Stop { displacement: joint.travel, upper: 0.2, stiffness: 50.0 } (joint.rate);
-     floor: Contact { stiffness: 50.0, dissipation: 0.3, friction: 0.5, friction_speed: 0.1, radius: 0.2 } (tip);",
+     floor: Contact {
+        stiffness: 50.0, dissipation: 0.3, friction: 0.5, friction_speed: 0.1, rolling_resistance: 0.1, radius: 0.2
+     } (tip);",
 ];
 
 /// Joints between angular velocities.
@@ -59,7 +61,9 @@ const PLANAR: [&str; 5] = [
      cut: PlanarCut { position_b: [1.0, 0.0] } (tip, ground);",
     "slide: PlanarPrismatic { direction: 0.3, initial: 0.1 } (ground, tip);
      mass: PlanarPointMass { mass: 0.5 } (tip);
-     floor: PlanarContact { stiffness: 50.0, friction: 0.5, friction_speed: 0.1, radius: 0.2 } (tip);",
+     floor: PlanarContact {
+        stiffness: 50.0, friction: 0.5, friction_speed: 0.1, rolling_resistance: 0.1, radius: 0.2
+     } (tip);",
 ];
 
 /// Models of other domains, laws of every function, and a component in a file.

@@ -30,21 +30,23 @@ pub struct Course<'a, T> {
 
 impl<T: Real> Course<'_, T> {
     /// How many thresholds the argument goes over in so much time, those twice that it may go over and back: where it turns, those on
-    /// this side of where its tangents at both points meet.
+    /// this side of where its tangents at both points meet. Of several lanes what it is in that which goes over most.
     #[must_use]
     #[inline]
     pub fn passed(&self, lasting: T) -> u32 {
-        let [from, to] = [self.from, self.to].map(|point| point.map(seen));
-        let farthest = farthest(seen(lasting), from, to);
-        let counts = self.thresholds.iter().map(|threshold| {
-            let places = [from[0], farthest, to[0]];
-            let [first, turning, last] = places.map(|place| self.below(place, *threshold));
-            let both = first
-                .abs_diff(turning)
-                .saturating_add(turning.abs_diff(last));
-            u32::try_from(both).unwrap_or(u32::MAX)
+        let counts = self.lanes().map(|it| {
+            let farthest = farthest(seen(lasting), it.from, it.to);
+            let counts = self.thresholds_in(it.number).map(|threshold| {
+                let places = [it.from[0], farthest, it.to[0]];
+                let [first, turning, last] = places.map(|place| self.below(place, threshold));
+                let both = first
+                    .abs_diff(turning)
+                    .saturating_add(turning.abs_diff(last));
+                u32::try_from(both).unwrap_or(u32::MAX)
+            });
+            counts.fold(0, u32::saturating_add)
         });
-        counts.fold(0, u32::saturating_add)
+        counts.fold(0, u32::max)
     }
 
     /// How long behind the first point the first threshold is that lies between the values at both, or at the first, if any does, in
@@ -84,54 +86,85 @@ impl<T: Real> Course<'_, T> {
 
     /// Whether the argument stays on its sides of all thresholds at which choices change, at the second point and for so much time on its
     /// way from the first as its rates tell, which leads somewhat farther; and begins no nearer beside one than it goes, where stages
-    /// between both points may be astray.
+    /// between both points may be astray; in all lanes.
     #[inline]
     pub(crate) fn is_clear(&self, lasting: T) -> bool {
-        let ([from, rate], [to, later]) = (self.from.map(seen), self.to.map(seen));
         let lasting = FARTHER * seen(lasting);
-        let ends = [
-            to,
-            from + rate * lasting,
-            from + 0.5 * (rate + later) * lasting,
-            // The same way back.
-            from - (to - from),
-        ];
-        let clear = |threshold: &T| {
-            let side = self.below(from, *threshold);
-            let beyond = from - seen(*threshold);
-            // Written so that what is no number is not clear.
-            let is_beside = match self.repeats {
-                true => side as f64 != beyond,
-                false => beyond.abs() > 0.0,
-            };
-            is_beside
-                && beyond.is_finite()
-                && ends.iter().all(|end| self.below(*end, *threshold) == side)
+        let is_clear = |it: Lane| {
+            let ([from, rate], [to, later]) = (it.from, it.to);
+            let ends = [
+                to,
+                from + rate * lasting,
+                from + 0.5 * (rate + later) * lasting,
+                // The same way back.
+                from - (to - from),
+            ];
+            self.thresholds_in(it.number).all(|threshold| {
+                let side = self.below(from, threshold);
+                let beyond = from - threshold;
+                // Written so that what is no number is not clear.
+                let is_beside = match self.repeats {
+                    true => side as f64 != beyond,
+                    false => beyond.abs() > 0.0,
+                };
+                is_beside
+                    && beyond.is_finite()
+                    && ends.iter().all(|end| self.below(*end, threshold) == side)
+            })
         };
-        !self.is_choice || self.thresholds.iter().all(clear)
+        !self.is_choice || self.lanes().all(is_clear)
     }
 
     /// Whether the first point is beside a threshold at which choices change, nearer than a part of the way that the argument goes, or
-    /// was to go in so much time.
+    /// was to go in so much time; in any lane.
     pub(crate) fn begins_beside(&self, lasting: T) -> bool {
-        let ([from, rate], to) = (self.from.map(seen), seen(self.to[0]));
-        let way = (rate * seen(lasting)).abs().max((to - from).abs());
-        let is_beside = |threshold: &T| {
-            let beyond = from - seen(*threshold);
+        self.lanes().any(|it| self.is_beside(&it, seen(lasting)))
+    }
+
+    fn is_beside(&self, it: &Lane, lasting: f64) -> bool {
+        let ([from, rate], [to, _]) = (it.from, it.to);
+        let way = (rate * lasting).abs().max((to - from).abs());
+        let is_beside = |threshold: f64| {
+            let beyond = from - threshold;
             let turns = match self.repeats {
                 true => whole_below(beyond + 0.5) as f64,
                 false => 0.0,
             };
             (beyond - turns).abs() <= BESIDE * way
         };
-        self.is_choice && self.thresholds.iter().any(is_beside)
+        self.is_choice && self.thresholds_in(it.number).any(is_beside)
     }
 
-    /// Whether the argument hardly moves from beside a threshold in so much time, though it was to, and goes on to.
+    /// Whether the argument hardly moves from beside a threshold in so much time, though it was to, and goes on to; in any lane.
     pub(crate) fn is_held(&self, lasting: T) -> bool {
-        let ([from, rate], [to, later]) = (self.from.map(seen), self.to.map(seen));
-        let moved = (to - from) / seen(lasting);
-        moved.abs() < HELD * rate.abs() && later / rate > FAST && self.begins_beside(lasting)
+        let lasting = seen(lasting);
+        self.lanes().any(|it| {
+            let ([from, rate], [to, later]) = (it.from, it.to);
+            let moved = (to - from) / lasting;
+            moved.abs() < HELD * rate.abs() && later / rate > FAST && self.is_beside(&it, lasting)
+        })
+    }
+
+    /// Whether the argument has gone to a threshold, or over it, in any lane, behind which it does not go on as its rate tells.
+    pub(crate) fn is_led_back(&self) -> bool {
+        let is_led_back = |it: Lane| {
+            let [from, to] = [it.from[0], it.to[0]];
+            let goes_on = (to - from) * it.to[1] > 0.0;
+            self.thresholds_in(it.number)
+                .any(|threshold| self.between(from - threshold, to - threshold).is_some())
+                && !goes_on
+        };
+        self.is_choice && self.lanes().any(is_led_back)
+    }
+
+    /// Whether the argument misses more than a part of the way that it should have gone in so much time by its rates at both points, in
+    /// any lane.
+    pub(crate) fn is_astray(&self, lasting: T, least: f64) -> bool {
+        self.lanes().any(|it| {
+            let ([from, rate], [to, later]) = (it.from, it.to);
+            let way = 0.5 * (rate + later) * seen(lasting);
+            ((to - from) - way).abs() > least * way.abs()
+        })
     }
 
     /// At how many whole turns behind a threshold an argument meets it that goes from one place to another, both beyond it.
@@ -210,10 +243,26 @@ impl<T: Real> Course<'_, T> {
         threshold + T::from_f64(turns as f64)
     }
 
+    /// How it goes in each lane.
+    #[inline]
+    fn lanes(&self) -> impl Iterator<Item = Lane> {
+        let ends = [self.from, self.to];
+        (0..).map_while(move |number| {
+            lane(ends[0][0], number)?;
+            let [from, to] = ends.map(|end| end.map(|it| lane(it, number).unwrap_or(f64::NAN)));
+            Some(Lane { number, from, to })
+        })
+    }
+
+    #[inline]
+    fn thresholds_in(&self, number: usize) -> impl Iterator<Item = f64> {
+        let thresholds = self.thresholds.iter();
+        thresholds.map(move |it| lane(*it, number).unwrap_or(f64::NAN))
+    }
+
     /// How often a threshold lies below an argument.
     #[inline]
-    fn below(&self, argument: f64, threshold: T) -> i64 {
-        let threshold = seen(threshold);
+    fn below(&self, argument: f64, threshold: f64) -> i64 {
         match self.repeats {
             true => whole_below(argument - threshold),
             false => i64::from(threshold < argument),
@@ -221,7 +270,15 @@ impl<T: Real> Course<'_, T> {
     }
 }
 
+/// One lane of an argument: its value and rate at both points.
+struct Lane {
+    number: usize,
+    from: [f64; 2],
+    to: [f64; 2],
+}
+
 /// A lane by its number.
+#[inline]
 pub(crate) fn lane<T: Real>(number: T, place: usize) -> Option<f64> {
     let asked = Cell::new(0);
     number.find(|_| asked.replace(asked.get() + 1) == place)
@@ -377,5 +434,34 @@ mod tests {
                 slope: 4.0
             })
         );
+    }
+
+    /// The last lane goes over the threshold, begins beside it, or is led back.
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn all_lanes_are_looked_at() {
+        use crate::lanes::f64x4;
+
+        let last = |usual: f64, last| f64x4::from([usual, usual, usual, last]);
+        let thresholds = [f64x4::from_f64(1.0)];
+        let course = |from: [f64; 2], to: [f64; 2]| Course {
+            from: [last(0.5, from[0]), last(0.125, from[1])],
+            to: [last(0.625, to[0]), last(0.125, to[1])],
+            thresholds: &thresholds,
+            repeats: false,
+            is_choice: true,
+        };
+        let lasting = f64x4::from_f64(1.0);
+        let away = course([0.5, 0.125], [0.625, 0.125]);
+        assert!(away.is_clear(lasting) && away.passed(lasting) == 0);
+        assert!(!away.begins_beside(lasting) && !away.is_astray(lasting, 0.1));
+        assert!(!away.is_led_back());
+        let over = course([0.75, 0.5], [1.25, 0.5]);
+        assert!(!over.is_clear(lasting) && over.passed(lasting) == 1);
+        assert!(!over.is_astray(lasting, 0.1) && !over.is_led_back());
+        let back = course([0.75, 0.5], [1.25, -0.5]);
+        assert!(back.is_astray(lasting, 0.1) && back.is_led_back());
+        assert!(course([1.0, 0.5], [1.25, 0.5]).begins_beside(lasting));
+        assert!(course([1.0, 0.5], [1.0, 0.5]).is_held(lasting));
     }
 }

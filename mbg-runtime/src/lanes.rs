@@ -7,6 +7,11 @@
 //! are needed and the gain is half as large. With the feature `dispatch` the module `batch` chooses them when the program
 //! runs.
 //!
+//! Lanes of a run share its times and steps. A step ends where a law jumps in any lane, or an input does, so that each is as exact as
+//! alone; an [`Adaptive`](crate::Adaptive) run keeps its tolerance in all of them. What stays at a threshold, as dry friction by
+//! `sign(f)` does that holds, is run alone, or rises within a width: see [`Fixed`](crate::Fixed).
+//! [`until`](crate::Integrator::until) ends at the event of the first lane.
+//!
 //! A batch is a slice of states of lanes: of each state variable the numbers of some runs lie side by side.
 //! `nalgebra` has no zero of such lanes: `SVector::repeat(f64x4::from_f64(0.0))` is a vector of them.
 //!

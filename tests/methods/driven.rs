@@ -1,8 +1,8 @@
 //! Laws that jump where an input goes through a threshold, alone or beside the time.
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pulse, Radau9, Real, Rk4,
-    Smooth, System, Tsit5, mbg,
+    Adaptive, Auto, Constant, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pulse, Radau9, Real,
+    Rk4, Smooth, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -140,24 +140,22 @@ fn times_at_which_an_input_switches_have_their_slopes() {
     });
 }
 
-/// Steps of a grid that ends at a jump move with it, and times at which they end do not.
-#[test]
-fn what_comes_before_a_jump_has_no_slope_of_its_time() {
+/// The slopes of what is pushed, in runs from a time by methods of all kinds.
+fn assert_slopes<const K: usize>(
+    push: &impl Input<Dual<f64>, 1>,
+    begin: Dual<f64>,
+    times: [f64; K],
+    expected: [f64; K],
+) {
     let model = Pushed::<Dual<f64>>::new(PushedParameters::default()).unwrap();
-    let push = Pulse {
-        amplitude: SVector::from([Dual::constant(3.0)]),
-        start: Dual::constant(0.0),
-        end: Dual::variable(1.0),
-    };
-    // Behind it the force of 3 N lasts as much longer.
-    let expected = [0.0, 0.0, 3.0 * f64::exp(-0.25)];
+    let times = times.map(Dual::constant);
     macro_rules! by {
         ($($solver:expr),*) => { $({
-            let mut slopes = Vec::new();
-            let (start, times) = (model.initial_state(), [0.5, 1.0, 1.5].map(Dual::constant));
+            let (mut slopes, start) = (Vec::new(), model.initial_state());
             $solver
-                .sample(&model, &push, Dual::constant(0.0), start, &times, |_, x| slopes.push(x[0].slope))
+                .sample(&model, push, begin, start, &times, |_, x| slopes.push(x[0].slope))
                 .unwrap();
+            assert_eq!(slopes.len(), K);
             for (slope, expected) in slopes.iter().zip(expected) {
                 let error = slope - expected;
                 assert!(error.abs() < 1e-7, "{}: {error:e}", stringify!($solver));
@@ -172,6 +170,27 @@ fn what_comes_before_a_jump_has_no_slope_of_its_time() {
         Adaptive::new(Radau9, 1e-9, 1e-9),
         Auto::new(1e-9, 1e-9)
     );
+}
+
+/// Steps of a grid that ends at a jump move with it, and times at which they end do not.
+#[test]
+fn what_comes_before_a_jump_has_no_slope_of_its_time() {
+    let push = Pulse {
+        amplitude: SVector::from([Dual::constant(3.0)]),
+        start: Dual::constant(0.0),
+        end: Dual::variable(1.0),
+    };
+    // Behind it the force of 3 N lasts as much longer.
+    let expected = [0.0, 0.0, 3.0 * f64::exp(-0.25)];
+    assert_slopes(&push, Dual::constant(0.0), [0.5, 1.0, 1.5], expected);
+}
+
+/// At the time at which a run starts that begins later there is less than there was at its start.
+#[test]
+fn samples_at_a_start_that_moves_have_its_slope() {
+    let push = Constant(SVector::from([Dual::constant(3.0)]));
+    let expected = [0.0, 0.0, 0.5].map(|t: f64| -3.0 * f64::exp(-0.5 * t));
+    assert_slopes(&push, Dual::variable(0.0), [0.0, 0.0, 0.5], expected);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Slopes of runs over thresholds at which a law jumps.
 
-use mbg_runtime::lanes::f64x4;
+use mbg_runtime::lanes::{Lanes, f32x8, f64x4};
 use mbg_runtime::{
     Adaptive, Auto, Direction, Dop853, Dual, Fixed, Gauss6, ImplicitMidpoint, Integrator, Pirk8,
     Radau5, Radau9, Real, Rk4, Rodas4, Rodas5P, Ros2, System, Tsit5, mbg,
@@ -328,5 +328,84 @@ fn lanes_have_the_slopes_of_each_alone() {
             let error = (value - alone.value).abs().max((slope - alone.slope).abs());
             assert!(error < 1e-6, "{lane}: {value} {slope} {alone:?}");
         }
+    }
+}
+
+/// The end of falls from different places in lanes, at constant steps: each ends its own one at the jump, the last never comes there.
+fn assert_falls_in_lanes<L: Lanes>(solver: &impl Integrator<2>, bound: f64) {
+    let (starts, end) = ([1.0, 0.8, 1.3, 7.0], 2.0);
+    let model = Valley::new(ValleyParameters::default()).unwrap();
+    let start = |lane: usize| starts[lane % starts.len()];
+    let falls = L::from_lanes(|lane| L::Lane::from_f64(start(lane)));
+    let zero = L::from_f64(0.0);
+    let found = last(
+        solver,
+        &model,
+        &(),
+        SVector::from([zero, falls]),
+        (zero, end),
+    );
+    for lane in 0..L::COUNT {
+        let fallen = f64::min(f64::sqrt(2.0 * start(lane)), end);
+        let since = end - fallen;
+        let way = start(lane) - 0.5 * fallen * fallen;
+        let expected = [2.0 * since - fallen, way - fallen * since + since * since];
+        for (found, expected) in found.iter().zip(expected) {
+            let error = (found.lane(lane) - L::Lane::from_f64(expected)).magnitude();
+            assert!(error < bound, "{lane}: {found:?} {expected}");
+        }
+    }
+}
+
+#[test]
+fn lanes_end_their_constant_steps_at_all_jumps() {
+    macro_rules! all {
+        ($($method:expr),*) => {
+            $(
+                assert_falls_in_lanes::<f64x4>(&Fixed::new($method, 0.07), 1e-12);
+                assert_falls_in_lanes::<f32x8>(&Fixed::new($method, 0.07), 1e-5);
+            )*
+        };
+    }
+    all!(
+        Rk4,
+        Tsit5,
+        Dop853,
+        Pirk8,
+        Gauss6::default(),
+        ImplicitMidpoint::default(),
+        Radau5,
+        Radau9,
+        Rodas4,
+        Rodas5P
+    );
+}
+
+/// Friction holds in some lanes and slips in others: those go to and fro, by the impulse of a step, in a few parts of it.
+#[test]
+fn lanes_that_hold_do_not_hold_up_others() {
+    let (step, end) = (1e-3, 9.0);
+    let frictions = [0.9, 0.2, 0.5, 0.05];
+    let solver = Fixed::new(Rk4, step);
+    let friction = f64x4::from(frictions);
+    let model = Rubbing::new(RubbingParameters { friction }).unwrap();
+    let input = mbg_runtime::Smooth(|t: f64x4| SVector::from([Real::sin(t)]));
+    let [zero, end_in_lanes] = [0.0, end].map(f64x4::from_f64);
+    let (start, mut lanes) = (model.initial_state(), model.initial_state());
+    let statistics = solver
+        .integrate(&model, &input, zero, end_in_lanes, start, |step| {
+            lanes = *step.state()
+        })
+        .unwrap();
+    assert!(
+        statistics.steps as f64 <= 10.0 * end / step,
+        "{statistics:?}"
+    );
+    for (lane, friction) in frictions.into_iter().enumerate() {
+        let model = Rubbing::new(RubbingParameters { friction }).unwrap();
+        let input = mbg_runtime::Smooth(|t: f64| SVector::from([t.sin()]));
+        let alone = last(&solver, &model, &input, model.initial_state(), (0.0, end));
+        let apart = (lanes.map(|it| it.lane(lane)) - alone).amax();
+        assert!(apart < 2.0 * friction * step, "{lane}: {apart}");
     }
 }

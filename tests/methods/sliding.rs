@@ -2,7 +2,7 @@
 
 use mbg_runtime::{
     Adaptive, Auto, Constant, Direction, Dop853, Dual, Fixed, Gauss6, Input, Integrator, Pirk8,
-    Pulse, Radau9, Real, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
+    Pulse, Radau9, Real, Rk4, Rodas5P, Ros2, Sampled, Smooth, Statistics, System, Tsit5, mbg,
 };
 use nalgebra::SVector;
 
@@ -40,6 +40,18 @@ mbg! {
         lower -> between; between -> upper; between -> slip;
         output contact: N = contact.e;
         output floor: N = floor.e;
+    }
+
+    /// A load that a brake holds.
+    model Braked {
+        input force: N;
+        1 motion {
+            I load { inertia: 2.0 }
+            R brake { effort: 5.0 * sign(f) }
+            Se push { effort: force }
+        }
+        output speed: m/s = motion.f;
+        output brake: N = brake.e;
     }
 
     /// A mass that a switched force takes along a reference, against a spring that is not linear.
@@ -500,6 +512,34 @@ fn a_block_on_a_belt_sticks_and_slips() {
             );
         }
     }
+}
+
+/// Outputs are asked on both sides of rest, and are those at rest.
+#[test]
+fn what_holds_has_no_speed_at_all() {
+    fn assert_held<T: Real>(solver: &impl Integrator<1>) {
+        let model = Braked::<T>::new(BrakedParameters::default()).unwrap();
+        let force = |t: T| T::from_f64(4.0) * (t + T::from_f64(0.3)).sin();
+        let input = Smooth(|t: T| SVector::from([force(t)]));
+        let times = [0.0, 0.4, 1.0, 1.7, 3.0].map(T::from_f64);
+        let (start, rest) = (times[0], model.initial_state());
+        let mut count = 0;
+        let note = |t: T, x: &SVector<T, 1>, y: &SVector<T, 2>| {
+            count += 1;
+            let speeds = [x[0], y[0]].map(|it| it.magnitude());
+            assert_eq!(speeds, [0.0; 2], "{t:?}");
+            let apart = (y[1] - force(t)).magnitude();
+            assert!(apart < 16.0 * T::EPSILON, "{t:?}: {apart:e}");
+        };
+        solver
+            .sample_outputs(&model, &input, start, rest, &times, note)
+            .unwrap();
+        assert_eq!(count, times.len());
+    }
+    assert_held::<f64>(&NINE);
+    assert_held::<f32>(&Adaptive::new(Dop853, 1e-4, 1e-5));
+    assert_held::<f64>(&Fixed::new(Rk4, 0.01));
+    assert_held::<Dual<f64>>(&Fixed::new(Radau9, 0.01));
 }
 
 /// The knee holds: the whole is one pendulum, whose motion has an integral.

@@ -4,6 +4,7 @@ mod sampled;
 
 use nalgebra::SVector;
 
+use crate::__private::next_of;
 use crate::step::{less, seen};
 use crate::{Dual, Real};
 
@@ -125,8 +126,8 @@ impl<T: Real, const M: usize> Input<T, M> for Constant<T, M> {
     }
 }
 
-/// A constant for `start ≤ t < end`, zero before and after. Runs refuse one that ends before it starts, or whose times are not
-/// numbers or not the same in all lanes.
+/// A constant for `start ≤ t < end`, zero before and after; lanes may have times of their own. Runs refuse one that ends before it
+/// starts, or whose times are not numbers.
 ///
 /// # Example
 ///
@@ -151,29 +152,23 @@ pub struct Pulse<T, const M: usize> {
 
 impl<T: Real, const M: usize> Input<T, M> for Pulse<T, M> {
     fn value(&self, _t: T, since: T) -> SVector<T, M> {
-        if less(since, self.start) || !less(since, self.end) {
-            zero()
-        } else {
-            self.amplitude
-        }
+        let zero = T::from_f64(0.0);
+        self.amplitude.map(|it| {
+            let before_end = since.select_less(self.end, it, zero);
+            since.select_less(self.start, zero, before_end)
+        })
     }
 
     fn next_jump(&self, t: T) -> Option<T> {
-        let [start, end] = [self.start, self.end].map(seen);
-        // A time that is not a number is none that all lanes share.
-        let is_shared = |time: T, first: f64| time.find(|lane| lane != first).is_none();
-        if !is_shared(self.start, start) || !is_shared(self.end, end) || end < start {
+        let times = [self.start, self.end];
+        let is_no_number = |time: T| time.find(f64::is_nan).is_some();
+        if times.into_iter().any(is_no_number) || less(self.end, self.start) {
             // What is not a number is no jump; runs refuse it.
-            Some(T::from_f64(f64::NAN))
-        } else if !less(self.start, self.end) {
-            None
-        } else if less(t, self.start) {
-            Some(self.start)
-        } else if less(t, self.end) {
-            Some(self.end)
-        } else {
-            None
+            return Some(T::from_f64(f64::NAN));
         }
+        let never = T::from_f64(f64::INFINITY);
+        let jumps = times.map(|time| self.start.select_less(self.end, time, never));
+        next_of(t, &jumps, &[])
     }
 
     fn rate(&self, _t: T, _since: T, _ahead: T) -> SVector<T, M> {
@@ -312,28 +307,45 @@ fn zero<T: Real, const M: usize>() -> SVector<T, M> {
 mod tests {
     use super::*;
 
-    /// Runs end a step at a jump for all lanes at once.
+    /// Each lane is pushed at its own time, and all end their steps there.
     #[cfg(feature = "lanes")]
     #[test]
-    fn pulse_at_times_of_its_own_in_each_lane_is_refused() {
+    fn pulse_has_times_of_its_own_in_each_lane() {
         use crate::lanes::{Lanes, f64x4};
 
-        let shared = f64x4::from_f64(1.0);
-        let apart = f64x4::from_lanes(|lane| 2.0 + lane as f64);
-        let first_jump = |start, end| {
-            let amplitude = SVector::from([shared]);
-            Pulse {
-                amplitude,
-                start,
-                end,
-            }
-            .next_jump(f64x4::from_f64(0.0))
+        let times = [[1.0, 3.0], [1.5, 2.0], [2.5, 2.5], [0.5, f64::INFINITY]];
+        let [start, end] = [0, 1].map(|place| f64x4::from_lanes(|lane| times[lane][place]));
+        let amplitude = SVector::from([f64x4::from([1.0, 2.0, 3.0, 4.0])]);
+        let pulse = Pulse {
+            amplitude,
+            start,
+            end,
         };
-        let is_refused = |jump: Option<f64x4>| jump.is_some_and(|it| it.lane(0).is_nan());
-        assert!(is_refused(first_jump(shared, apart)));
-        assert!(is_refused(first_jump(-apart, shared)));
-        let for_ever = f64x4::from_f64(f64::INFINITY);
-        assert_eq!(first_jump(shared, for_ever), Some(shared));
+        for t in [0.0, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 9.0] {
+            let found = pulse.at(f64x4::from_f64(t))[0];
+            for (lane, [start, end]) in times.into_iter().enumerate() {
+                let amplitude = SVector::from([amplitude[0].lane(lane)]);
+                let alone = Pulse {
+                    amplitude,
+                    start,
+                    end,
+                };
+                assert_eq!(found.lane(lane), alone.at(t)[0], "{t} {lane}");
+            }
+        }
+        let mut jumps = std::vec::Vec::new();
+        let mut t = f64x4::from_f64(0.0);
+        while let Some(jump) = pulse.next_jump(t) {
+            jumps.push(jump.lane(3));
+            t = jump;
+        }
+        assert_eq!(jumps, [0.5, 1.0, 1.5, 2.0, 3.0]);
+        // In one lane it ends before it starts, or has no time.
+        for wrong in [0.25, f64::NAN] {
+            let end = f64x4::from([3.0, wrong, 3.0, 3.0]);
+            let jump = Pulse { end, ..pulse }.next_jump(f64x4::from_f64(9.0));
+            assert!(jump.is_some_and(|it| it.lane(0).is_nan()));
+        }
     }
 
     #[test]

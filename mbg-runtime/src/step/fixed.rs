@@ -35,8 +35,9 @@ use crate::{Input, Real, System};
 /// there and another one begins, up to the end of the step of the grid: no stage is beyond the jump, and the method keeps its order.
 /// Where the motion leads back from both sides it stays, as told of [`Adaptive`](super::Adaptive): friction holds. Along one threshold
 /// a step takes about three times the evaluations. Within a step of the grid it is begun anew 64 times at most, so that a loop with a
-/// clock of its own knows the longest time of a tick: each is a run of one step, from zero to `h`. Lanes share their steps and go over
-/// jumps, and so does [`Rk4::step`]; there a law is to rise within a width.
+/// clock of its own knows the longest time of a tick: each is a run of one step, from zero to `h`. Lanes share their steps, which end
+/// where a law jumps in any of them; one in which the motion stays goes over the threshold to and fro, by an error of the order of the
+/// step, and what an output says there is that of one side. [`Rk4::step`] goes over all jumps. There a law is to rise within a width.
 ///
 /// ```
 /// use mbg_runtime::{Constant, Fixed, Integrator, Rk4, System, mbg};
@@ -365,6 +366,42 @@ mod tests {
             "{times:?}"
         );
         assert_eq!((times[3], times[6], times[8]), (0.25, 0.5, 0.7));
+    }
+
+    /// ẍ + x = 1 within the pulse and 0 outside, from (1, 0), by a run and by steps to the beat of a clock.
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn pulses_at_times_of_their_own_in_each_lane_are_met() {
+        use crate::lanes::{Lanes, f64x4};
+
+        let (h, ticks) = (0.01, 300);
+        let times = [[0.5, 2.0], [1.0, 1.5], [-1.0, 0.25], [2.5, f64::INFINITY]];
+        let [start, end] = [0, 1].map(|place| f64x4::from_lanes(|lane| times[lane][place]));
+        let amplitude = SVector::from([f64x4::from_f64(1.0)]);
+        let pulse = Pulse {
+            amplitude,
+            start,
+            end,
+        };
+        let time = |tick: i32| f64::from(tick) * h;
+        let (run, _) = last(f64x4::from_f64(h), f64x4::from_f64(time(ticks)), &pulse);
+        let mut ticked = SVector::from([1.0, 0.0].map(f64x4::from_f64));
+        for t in (0..ticks).map(|tick| f64x4::from_f64(time(tick))) {
+            let h = f64x4::from_f64(h);
+            ticked = Rk4::step(&Oscillator, t, &ticked, &pulse.at(t), h, &mut ());
+        }
+        for (lane, [start, end]) in times.into_iter().enumerate() {
+            let since = |begin: f64| (time(ticks) - f64::max(begin, 0.0)).max(0.0);
+            let [pushed, left] = [start, end].map(since);
+            let expected = [
+                time(ticks).cos() + left.cos() - pushed.cos(),
+                pushed.sin() - left.sin() - time(ticks).sin(),
+            ];
+            for found in [run, ticked] {
+                let error = (found.map(|it| it.lane(lane)) - SVector::from(expected)).amax();
+                assert!(error < 1e-8, "{lane}: {error:e}");
+            }
+        }
     }
 
     #[test]

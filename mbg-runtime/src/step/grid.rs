@@ -47,9 +47,9 @@ impl<T: Real> Grid<T> {
     }
 
     /// When the step of the grid ends that a time is in.
-    pub(super) fn end_of_step(&mut self, t: T) -> f64 {
+    pub(super) fn end_of_step(&mut self, t: T) -> T {
         self.find(t);
-        seen(self.last)
+        self.last
     }
 
     /// The step from a time on, to the end of that of the grid or to a time before that; none at the end.

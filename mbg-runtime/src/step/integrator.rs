@@ -394,8 +394,10 @@ where
     let mut rest = times;
     let may_stay = S::HAS_COURSES && times.first().is_some_and(|it| !less(t0, *it));
     let surfaces = may_stay.then(|| problem.at_start((t0, x))).flatten();
+    // Of a time that is the start but for its slopes the first step tells.
+    let is_start = |time: T| !less(t0, time) && (!T::HAS_SLOPES || time == t0 || !less(t0, last));
     while let [time, others @ ..] = rest
-        && !less(t0, *time)
+        && is_start(*time)
     {
         observer(*time, &x, (problem.memory, surfaces));
         rest = others;

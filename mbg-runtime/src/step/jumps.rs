@@ -378,11 +378,14 @@ where
         [before, behind]
     }
 
-    /// Whether the derivative differs between two places next to each other.
+    /// Whether the derivative differs between two places next to each other, in any lane.
     fn jumps(&mut self, before: &Place<T, N>, behind: &Place<T, N>) -> bool {
         let [a, b] = [before, behind].map(|(time, state)| self.slope(*time, state));
-        let part = least_jump::<T>();
+        let part = T::from_f64(least_jump::<T>());
         let mut pairs = a.iter().zip(&b);
-        pairs.any(|(a, b)| (*b - *a).magnitude() > part * (a.magnitude() + b.magnitude()))
+        pairs.any(|(a, b)| {
+            let more = (*b - *a).abs() - part * (a.abs() + b.abs());
+            more.find(|it| it > 0.0).is_some()
+        })
     }
 }

@@ -12,10 +12,10 @@ use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
 use super::method::{Method, Start, Stepper};
 use super::over::{Place, straight};
 use super::problem::Problem;
-use super::slide::{Ends, Walk, Walked};
+use super::slide::{Ends, Walk, Walked, WhereALaneStays};
 use super::thresholds::Point;
-use super::{Cause, Stopped, check_result, seen};
-use crate::course::{FARTHER, lane};
+use super::{Cause, Stopped, check_result, less, seen};
+use crate::course::{FARTHER, lane, sooner};
 use crate::{Input, Real, System};
 
 /// A method along its grid.
@@ -60,17 +60,63 @@ impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, 
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        // Lanes share their steps.
-        self.looks = S::HAS_COURSES && lane(here.0, 1).is_none();
-        if S::HAS_COURSES && self.looks {
-            return walk_over_jumps(self, problem, (here, end), ends, observer);
+        if !S::HAS_COURSES {
+            return self.over(problem, (here, end), observer);
         }
+        if lane(here.0, 1).is_some() {
+            return self.walk_in_lanes(problem, (here, end), observer);
+        }
+        self.looks = true;
+        walk_over_jumps(self, problem, (here, end), ends, observer)
+    }
+}
+
+impl<Scheme: Method, T: Real> OnGrid<'_, Scheme, T> {
+    /// Runs to the end of the piece, not on the lookout for jumps.
+    fn over<S, I, const N: usize, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        place_and_end: (Place<T, N>, T),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Walked<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        self.looks = false;
         Ok(
-            match self.to(problem, (here, end), f64::NEG_INFINITY, observer)? {
+            match self.to(problem, place_and_end, f64::NEG_INFINITY, observer)? {
                 Ran::To(x) => Walked::Ended(x),
                 _ => Walked::Left,
             },
         )
+    }
+
+    /// Lanes share their steps, which end where a law jumps in any of them. Where one of them stays they do not go along the threshold,
+    /// but over it up to the end of the step of the grid: it is led back in the next one.
+    fn walk_in_lanes<S, I, const N: usize, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        (mut here, end): (Place<T, N>, T),
+        observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Walked<T, N>, Stopped>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        loop {
+            self.looks = true;
+            let way = (here, end);
+            let walked = walk_over_jumps(self, problem, way, WhereALaneStays, observer)?;
+            let Walked::Stays(place, _) = walked else {
+                return Ok(walked);
+            };
+            let until = sooner(end, self.grid.end_of_step(place.0));
+            match self.over(problem, (place, until), observer)? {
+                Walked::Ended(x) if less(until, end) => here = (until, x),
+                walked => return Ok(walked),
+            }
+        }
     }
 }
 
@@ -172,7 +218,7 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
     }
 
     fn watched(&mut self, t: T) -> f64 {
-        let end = self.grid.end_of_step(t);
+        let end = seen(self.grid.end_of_step(t));
         match often(&mut self.asked, end) {
             true => end,
             false => f64::NEG_INFINITY,
@@ -310,10 +356,8 @@ where
     problem.memory = memory;
     let (mut is_led_back, mut number) = (false, 0);
     problem.courses(&first, &last, |course, lasting| {
-        let ([from, rate], [to, later]) = (course.from.map(seen), course.to.map(seen));
-        let way = 0.5 * (rate + later) * seen(lasting);
-        let is_astray = ((to - from) - way).abs() > least * way.abs();
-        is_led_back |= is_astray && is_open(number) && !course.is_clear(lasting);
+        is_led_back |=
+            course.is_astray(lasting, least) && is_open(number) && !course.is_clear(lasting);
         number += 1;
     });
     is_led_back

@@ -163,6 +163,38 @@ where
     }
 }
 
+/// At those at which the motion of a lane stays: none of them is told, since others go on.
+#[derive(Clone, Copy)]
+pub(super) struct WhereALaneStays;
+
+impl<T, S, I, const N: usize, const M: usize, const P: usize> Ends<T, S, I, N, M, P>
+    for WhereALaneStays
+where
+    T: Real,
+    S: System<T, N, M, P>,
+    I: Input<T, M> + ?Sized,
+{
+    fn between(
+        self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        [from, to]: [&Point<T, N>; 2],
+    ) -> Option<Surfaces<T>> {
+        let mut is_led_back = false;
+        problem.courses(from, to, |course, _| is_led_back |= course.is_led_back());
+        is_led_back.then_some(Surfaces::NONE)
+    }
+
+    fn rest(
+        self,
+        _problem: &mut Problem<'_, T, S, I, N, M, P>,
+        _here: &Point<T, N>,
+        _way: (f64, T, &Tolerance<N>),
+        _observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
+    ) -> Result<Option<Walked<T, N>>, Stopped> {
+        Ok(None)
+    }
+}
+
 /// Where a run goes on behind a threshold, with when the next may be met, if it does.
 type Beyond<T, const N: usize> = ControlFlow<Walked<T, N>, (Point<T, N>, f64)>;
 

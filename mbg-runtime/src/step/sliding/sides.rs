@@ -270,7 +270,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
 
 /// A sum of terms. What rounding alone has left of it is nothing, since the motion does not leave that: methods that iterate go by how
 /// large a state is, and those that control their steps by how large its slopes are.
-fn summed<T: Real>(terms: impl Iterator<Item = T> + Clone) -> T {
+pub(super) fn summed<T: Real>(terms: impl Iterator<Item = T> + Clone) -> T {
     let zero = T::from_f64(0.0);
     let sum = terms.clone().fold(zero, |sum, term| sum + term);
     let is_rounding = |of: &dyn Fn(T) -> f64| {

@@ -1,6 +1,7 @@
 //! Networks of bodies that rub at each other and at the ground, at random.
 
 use mbg_runtime::mbg;
+use nalgebra::SVector;
 
 use super::several::by_all;
 
@@ -171,5 +172,38 @@ fn what_rubs_in_a_network_holds_where_it_can() {
                 .fold(0.0_f64, |most, error| most.max(error.abs()));
             assert!(error < 1e-11, "{name}: {errors:?} in {network:?}");
         }
+    }
+}
+
+/// The second body comes to rest fast, and is almost torn loose as soon as it rests: it would go on only slowly.
+#[test]
+fn what_is_almost_torn_loose_holds_where_it_comes_to_rest() {
+    let network = Rubbing {
+        masses: [
+            1.917_882_181_761_946_7,
+            1.549_019_348_111_686_3,
+            1.001_763_950_495_090_4,
+        ],
+        speeds: [0.781_663_268_574_989_4, -0.803_900_549_428_932_9, 0.0],
+        forces: [
+            -0.722_391_617_332_118_8,
+            -0.261_666_805_521_045_4,
+            3.830_844_067_977_485,
+        ],
+        most: [
+            0.670_063_133_569_239_7,
+            0.941_523_882_327_476_7,
+            0.0,
+            1.859_316_145_455_19,
+            1.354_108_181_753_719_5,
+            0.0,
+        ],
+    };
+    let expected = network.speeds(2.0);
+    for (name, _, speeds) in by_all(&network.model(), 2.0, 1e-8, 0.1) {
+        assert!(
+            (speeds - SVector::from(expected)).norm() < 1e-11,
+            "{name}: {speeds}"
+        );
     }
 }

@@ -267,21 +267,36 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let aside = self.aside(x);
         let moment = MOMENT * T::EPSILON * at.time.magnitude().max(whole);
         let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
-        let (gradients, slope) = (self.gradients.get(), slope.map(seen));
-        let (mut span, mut least) = (Span::of_nothing(), [0.0; MOST]);
-        for (place, least) in least.iter_mut().enumerate().take(self.surfaces.count()) {
-            let (mut alone, mut rate) = (1.0, seen(rates[place]));
-            if let Some(unit) = unit(&gradients[place])
+        let gradients = self.gradients.get();
+        let (mut span, mut is_near) = (Span::of_nothing(), [false; MOST]);
+        for (place, is_near) in is_near.iter_mut().enumerate().take(self.surfaces.count()) {
+            let (mut alone, mut beside) = (1.0, SVector::zeros());
+            let (unit, distance) = (unit(&gradients[place]), seen(distances[place]));
+            if let Some(unit) = unit
                 && let Some(rest) = span.add::<T>(&unit)
             {
                 // What is almost led along others moves states far where it is moved a little.
                 alone = rest.norm();
-                rate -= gradients[place].map(seen).norm() * (unit - rest).dot(&slope);
+                beside = gradients[place].map(seen).norm() * (unit - rest);
             }
             let near = (NEAR / T::SINGULAR * alone).max(1.0) * seen(aside[place]);
-            *least = near + moment * rate.abs();
+            let reaches = |rate: T, slope: &SVector<T, N>| {
+                let rate = seen(rate) - beside.dot(&slope.map(seen));
+                distance.abs() < near + moment * rate.abs()
+            };
+            *is_near = reaches(rates[place], &slope)
+                || unit.is_some_and(|unit| {
+                    // As fast as on the other side: what comes there fast may be almost held on this one.
+                    let way = 2.0 * distance / gradients[place].map(seen).norm();
+                    let there = x - unit.map(|by| T::from_f64(way * by));
+                    let slope =
+                        (self.system).derivative(at.time, &there, &at.input, &mut { *memory });
+                    self.evaluations.set(self.evaluations.get() + 1);
+                    let [[_, rates], _] = self.told(at, [(&there, &slope); 2], memory);
+                    reaches(rates[place], &slope)
+                });
         }
-        self.only(|place| seen(distances[*place]).abs() < least[*place])
+        self.only(|place| is_near[*place])
     }
 
     /// Takes in other thresholds that are as near: laws jump there, too, where these are asked.

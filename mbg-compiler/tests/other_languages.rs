@@ -726,7 +726,7 @@ fn remainders_and_whole_parts_have_their_functions() {
         ("ceil(r)", "-floor(-r)"),
         ("round(r)", "floor(r + 0.5)"),
         ("trunc(r + n)", "(sign(r + n) * floor(abs(r + n)))"),
-        ("fmod(r, 2.0)", "mod(r, 2.0)"),
+        ("fmod(r, 2.0)", "(sign(r) * mod(abs(r), 2.0))"),
         ("r.rem_euclid(2.0 * n)", "mod(r, 2.0 * n)"),
         ("modulo(r, 2.0)", "mod(r, 2.0)"),
         ("max(r, n, 2.0 * t)", "max(r, max(n, 2.0 * t))"),

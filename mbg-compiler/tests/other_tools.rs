@@ -81,7 +81,7 @@ fn parts_of_drivelines_are_told_by_their_names_here() {
     assert_eq!(ratio.matches("[MBG").count(), 1, "{ratio}");
     assert_eq!(
         typed(&axle("g: IdealGear (a, c);")),
-        ["a -> TF g { flow: … } -> c;"]
+        ["a -> TF g { flow: 1 / … } -> c;"]
     );
 }
 

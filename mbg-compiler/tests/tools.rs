@@ -229,7 +229,7 @@ fn what_is_made_of_elements_is_told_with_them() {
         (
             0,
             "u: VoltageSource { V: 5.0 } (p, n); zero: Ground (n);",
-            "1 u_between { Se u { effort: … } } n -> u_between; u_between -> p; Se zero { effort: 0.0 } -> n;",
+            "1 u_between { Se u { effort: 5.0 } } n -> u_between; u_between -> p; Se zero { effort: 0.0 } -> n;",
         ),
         (
             0,
@@ -239,13 +239,13 @@ fn what_is_made_of_elements_is_told_with_them() {
         (
             1,
             "m: Mass { m: 1.0 } (v);",
-            "#[derivative] I m { inertia: … } -> v;",
+            "#[derivative] I m { inertia: 1.0 } -> v;",
         ),
         (1, "f: Force (v);", "Se f { effort: … } -> v;"),
         (
             1,
             "s: Spring { c: 1.0 } (v, w);",
-            "0 s_between { C s { stiffness: … } } v -> s_between; s_between -> w;",
+            "0 s_between { C s { stiffness: 1.0 } } v -> s_between; s_between -> w;",
         ),
         (
             1,
@@ -268,7 +268,7 @@ fn what_is_made_of_elements_is_told_with_them() {
     assert_eq!(typed(&world), ["Sf still[6] { flow: 0.0 } -> ground;"]);
     insta::assert_snapshot!(told(&shafts("m: Mass { m: 1.0 } (v);")), @"
     2:4 component `Mass` is not declared [MBG0203]
-      help: here it is written `I m { inertia: … } -> v;`
+      help: here it is written `I m { inertia: 1.0 } -> v;`
     ");
 }
 

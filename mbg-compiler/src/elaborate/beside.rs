@@ -1,6 +1,7 @@
 //! What other tools give their contacts and joints, and what stands beside these or has another law here.
 
 use proc_macro2::Ident;
+use syn::Expr;
 
 use super::elsewhere::value_text;
 use super::frames::{IN_PLANE, IN_SPACE};
@@ -39,6 +40,8 @@ const HOLDS: [&str; 2] = ["at_rest", "stiction"];
 
 /// Moments of inertia about axes of a frame.
 const MOMENTS: [[&str; 2]; 3] = [["ixx", "i_11"], ["iyy", "i_22"], ["izz", "i_33"]];
+/// What the effort of plates is the product of.
+const OF_CAPACITY: [&str; 4] = ["fn_max", "cgeo", "mue_pos", "mue"];
 /// Words for what a body begins with.
 const STARTS: [&str; 6] = [
     "initial_velocity",
@@ -80,7 +83,45 @@ pub(super) fn told(
         .or_else(|| stop(instance, argument))
         .or_else(|| holds(instance, argument))
         .or_else(|| moments(instance, argument, names))
+        .or_else(|| capacity(instance, argument, names))
+        .or_else(|| way_in_plane(instance, argument))
         .or_else(|| start_of_body(instance, argument))
+}
+
+/// Whether a word is a factor of the effort of plates.
+pub(super) fn is_factor_of_capacity(word: &Ident) -> bool {
+    is_one_of(word, &OF_CAPACITY)
+}
+
+/// The effort of plates by its factors.
+fn capacity(instance: &ast::Instance, argument: &ast::Field, names: &[&str]) -> Option<String> {
+    if !is_factor_of_capacity(&argument.name) || !names.contains(&"capacity") {
+        return None;
+    }
+    let given = OF_CAPACITY.iter().filter_map(|word| {
+        let mut arguments = instance.arguments.iter();
+        let factor = arguments.find(|it| it.name == word)?;
+        Some(value_text(factor.value.as_ref()))
+    });
+    let product = given.collect::<Vec<_>>().join(" * ");
+    Some(format!(
+        "the effort while it slips is one number: write `capacity: {product}`"
+    ))
+}
+
+/// The way of a slide in a plane, which is told by its angle.
+fn way_in_plane(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
+    let is_axis = argument.name == "axis" || argument.name == "n";
+    if instance.component != "PlanarPrismatic" || !is_axis {
+        return None;
+    }
+    Some(match &argument.value {
+        Some(Expr::Array(entries)) if entries.elems.len() == 2 => {
+            let [x, y] = [0, 1].map(|place| dump::expression(&entries.elems[place]));
+            format!("write `direction: atan2({y}, {x})`")
+        }
+        _ => "write `direction: …` with the angle of the slide from x".to_owned(),
+    })
 }
 
 /// Whether a word is a moment of inertia, which a tensor has on its diagonal.

@@ -286,6 +286,11 @@ fn direction(value: &Expr) -> Option<[f64; 3]> {
     }
 }
 
+/// What to type for an axis that is told by a letter or a vector.
+pub(super) fn axis(name: &str, value: &Expr) -> Option<String> {
+    along(name, &dump::expression(value), direction(value)?, true)
+}
+
 /// What to type for an axis along a direction; `tilts` where a tilt may turn it.
 fn along(name: &str, value: &str, direction: [f64; 3], tilts: bool) -> Option<String> {
     let parts = [0, 1, 2].into_iter().filter(|axis| direction[*axis] != 0.0);

@@ -44,8 +44,21 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("trunc", &["x"], "(sign(x) * floor(abs(x)))"),
     ("frac", &["x"], "fraction(x)"),
     ("fract", &["x"], "fraction(x)"),
-    ("fmod", &["x", "y"], "mod(x, y)"),
-    ("rem", &["x", "y"], "mod(x, y)"),
+    // Of the sign of `x` elsewhere, where `mod` is of that of `y`.
+    ("fmod", &["x", "y"], "(sign(x) * mod(abs(x), y))"),
+    ("rem", &["x", "y"], "(sign(x) * mod(abs(x), y))"),
+    ("div", &["x", "y"], "(sign(x / y) * floor(abs(x / y)))"),
+    ("integer", &["x"], "floor(x)"),
+    ("sqr", &["x"], "powi(x, 2)"),
+    ("cbrt", &["x"], "(sign(x) * pow(abs(x), 1.0 / 3.0))"),
+    ("noEvent", &["x"], "x"),
+    ("smooth", &["order", "x"], "x"),
+    ("homotopy", &["x", "simplified"], "x"),
+    (
+        "semiLinear",
+        &["x", "a", "b"],
+        "(a * max(x, 0.0) + b * min(x, 0.0))",
+    ),
     ("rem_euclid", &["x", "y"], "mod(x, y)"),
     ("modulo", &["x", "y"], "mod(x, y)"),
     ("sinh", &["x"], "((exp(x) - exp(-x)) / 2)"),
@@ -195,7 +208,8 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         }
         ("step" | "heaviside" | "Heaviside", [since]) => return Some(step(since)),
         ("step" | "heaviside" | "Heaviside", [time, at]) => return Some(step_at(time, at)),
-        ("delay", [value, by]) => return Some(delay(value, by)),
+        ("delay" | "tdelay", [value, by]) => return Some(delay(value, by)),
+        ("delay", [value, by, _longest]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
         // Both orders are written elsewhere.
         ("interp1", [_, Expr::Array(_), Expr::Array(_)]) => return instead("interp", arguments),
@@ -317,6 +331,8 @@ fn step(since: &Expr) -> String {
             let places = vec![("a", &*binary.left), ("b", &*binary.right)];
             ("(if a < b { 0.0 } else { 1.0 })", places)
         }
+        // Of a number alone, it is that of the time.
+        since if number(since).is_some() => ("(if t < a { 0.0 } else { 1.0 })", vec![("a", since)]),
         since => ("(if a < 0.0 { 0.0 } else { 1.0 })", vec![("a", since)]),
     };
     or_from_outside(&filled(text, &places))

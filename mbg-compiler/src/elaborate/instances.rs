@@ -11,10 +11,11 @@ use super::elsewhere;
 use super::frames::{IN_PLANE, IN_SPACE, LeftOut};
 use super::idle::without_bonds;
 use super::kinds;
+use super::parts_elsewhere;
 use super::scope::{Entity, Scope};
 use super::tools;
 use super::unused::without_effect;
-use super::{Builder, beside};
+use super::{Builder, beside, blame};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
@@ -287,7 +288,11 @@ impl<'a> Builder<'a> {
         let is_start = here.starts_with("initial");
         let by_rate = driven::by_rate(instance, component)
             .filter(|_| is_start && self.moves_by_itself(scope, value));
-        let written = || format!("write `{here}: {}`", elsewhere::value_text(value));
+        let axis = value
+            .filter(|_| here == "axis")
+            .and_then(|value| blame::axis(here, value));
+        let written =
+            || axis.unwrap_or_else(|| format!("write `{here}: {}`", elsewhere::value_text(value)));
         Some(by_rate.unwrap_or_else(written))
     }
 
@@ -330,6 +335,7 @@ impl<'a> Builder<'a> {
         if is_misspelt(&name_text, arguments.clone(), &known)
             || arguments.clone().any(is_meant)
             || name_text == "inertia" && arguments.clone().any(beside::is_moment)
+            || name_text == "capacity" && arguments.clone().any(beside::is_factor_of_capacity)
             || arguments.any(is_shortened)
             || instance.arguments.iter().any(is_ratio)
         {
@@ -379,7 +385,7 @@ impl<'a> Builder<'a> {
         let value = instance.name.to_string();
         let elements = kinds::as_junction(instance)
             .or_else(|| kinds::as_element(instance))
-            .or_else(|| tools::elements(instance, end))
+            .or_else(|| parts_elsewhere::elements(instance, end))
             .or_else(|| signals::block(&name.to_string(), &value));
         let mut report = match (beside::meant(instance), elements) {
             (Some(here), _) => {

@@ -113,6 +113,8 @@ pub(super) fn told(element: &Element, word: &Ident, value: Option<&Expr>) -> Opt
     law(element.kind, word, value)
         .or_else(|| start(element.kind, word, value))
         .or_else(|| other_source(element, word, value))
+        .or_else(|| of_way(element.kind, word, value))
+        .or_else(|| turned_round(element.kind, word))
         .or_else(|| stroke(word))
         .or_else(|| preloaded(element, word, value))
         .or_else(|| effort_at_start(element, word, value))
@@ -143,6 +145,41 @@ fn other_source(element: &Element, word: &Ident, value: Option<&Expr>) -> Option
     Some(format!(
         "a source of {what} is written `{other} {name} {{ {what}: {value} }}`"
     ))
+}
+
+/// What to type for a source of flow that is given what has this flow as its rate.
+fn of_way(kind: ElementKind, word: &Ident, value: Option<&Expr>) -> Option<String> {
+    let is_way = ["position", "displacement", "travel", "angle", "phi"]
+        .iter()
+        .any(|way| word == way);
+    if kind != ElementKind::Sf || !is_way {
+        return None;
+    }
+    let value = value_text(value);
+    Some(format!(
+        "a source of flow gives the rate: write `flow: …` with the rate of `{value}`; of an input that is \
+         `input rate; integral {word} = rate;` and `flow: rate`"
+    ))
+}
+
+/// What to type for the law of a storage that gives its state by its flow or its effort.
+fn turned_round(kind: ElementKind, word: &Ident) -> Option<String> {
+    let (words, law, state, number): (&[&str], _, _, _) = match kind {
+        ElementKind::I => (
+            &["momentum", "flux", "linkage", "flux_linkage", "psi", "p"],
+            "flow",
+            "p",
+            "inertia",
+        ),
+        ElementKind::C => (&["charge", "volume", "q"], "effort", "q", "compliance"),
+        _ => return None,
+    };
+    words.iter().any(|known| word == known).then(|| {
+        format!(
+            "the law stands the other way round, by the state: write `{number}: …` of a number, `{law}: …` in `{state}`, or of \
+             points `{law}: interpolate({state}, [{word}, …], [{law}, …])`"
+        )
+    })
 }
 
 /// What to type for the causality of an element, which is not chosen here.

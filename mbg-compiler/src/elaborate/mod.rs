@@ -38,6 +38,7 @@ mod model;
 mod moving;
 mod orientation;
 mod own;
+mod parts_elsewhere;
 mod quantities;
 mod rays;
 mod references;

@@ -7,7 +7,6 @@ use syn::Expr;
 
 use super::elsewhere::bare;
 use super::frames::{IN_PLANE, IN_SPACE};
-use crate::graph::JunctionKind;
 use crate::syntax::words::{near, nearest};
 use crate::syntax::{ast, dump, library};
 
@@ -44,7 +43,26 @@ const COMPONENTS: &[(&[&str], &str)] = &[
         ],
         "Load",
     ),
-    (&["rope", "cable", "tether", "string"], "LineForce"),
+    (
+        &[
+            "rope",
+            "cable",
+            "tether",
+            "string",
+            "lineforcewithmass",
+            "lineforcewithtwomasses",
+        ],
+        "LineForce",
+    ),
+    (
+        &[
+            "sphericalspherical",
+            "universalspherical",
+            "sphericalconstraint",
+        ],
+        "Rod",
+    ),
+    (&["revoluteplanarloopconstraint", "loopjoint"], "Cut"),
     (
         &[
             "endstop",
@@ -86,6 +104,10 @@ const COMPONENTS: &[(&[&str], &str)] = &[
             "winch",
             "wheel",
             "rollingwheel",
+            "idealrollingwheel",
+            "idealgearr2t",
+            "wheelandaxle",
+            "beltpulley",
         ],
         "Rack",
     ),
@@ -135,7 +157,24 @@ const COMPONENTS: &[(&[&str], &str)] = &[
         ],
         "Planetary",
     ),
-    (&["hydrauliccylinder"], "Cylinder"),
+    (
+        &[
+            "hydrauliccylinder",
+            "doubleactingcylinder",
+            "doubleactinghydrauliccylinder",
+        ],
+        "Cylinder",
+    ),
+    (
+        &[
+            "hydraulicmotor",
+            "hydraulicpump",
+            "fixeddisplacementpump",
+            "variabledisplacementpump",
+            "fixeddisplacementmotor",
+        ],
+        "Pump",
+    ),
     (&["valve"], "Orifice"),
     (&["heatcapacitor", "thermalmass"], "HeatCapacity"),
     (
@@ -152,145 +191,6 @@ const COMPONENTS: &[(&[&str], &str)] = &[
         "HeatSource",
     ),
 ];
-
-/// Where the elements of a component of another tool stand.
-#[derive(Clone, Copy, PartialEq)]
-enum Stand {
-    /// At one junction.
-    At,
-    /// Between two junctions, on what they differ by.
-    Between,
-    /// At the third of its junctions, by what the first two differ by.
-    Across,
-    /// In a bond from the first of its junctions to the second.
-    Through,
-}
-
-/// Components of other tools that are elements here: what stands still has none of its own.
-const ELEMENTS: &[(&[&str], Stand, &[Part])] = &[
-    (
-        &[
-            "voltagesource",
-            "constantvoltage",
-            "signalvoltage",
-            "battery",
-            "force",
-            "torque",
-            "forcesource",
-            "torquesource",
-            "idealforcesource",
-            "idealtorquesource",
-        ],
-        Stand::Between,
-        &[("Se", "source", "effort: …")],
-    ),
-    (
-        &["pressuresource", "fixedpressure", "effortsource"],
-        Stand::At,
-        &[("Se", "source", "effort: …")],
-    ),
-    (
-        &[
-            "currentsource",
-            "constantcurrent",
-            "signalcurrent",
-            "flowsource",
-        ],
-        Stand::Between,
-        &[("Sf", "source", "flow: …")],
-    ),
-    (
-        &[
-            "speed",
-            "speedsource",
-            "velocitysource",
-            "angularvelocitysource",
-        ],
-        Stand::At,
-        &[("Sf", "source", "flow: …")],
-    ),
-    (
-        &["opamp", "operationalamplifier", "idealopamp"],
-        Stand::Across,
-        &[("Se", "amplifier", "effort: …")],
-    ),
-    (
-        &["gyrator", "idealgyrator"],
-        Stand::Through,
-        &[("GY", "gyrator", "effort: …")],
-    ),
-    (
-        &["lever", "idealgear", "simplegear"],
-        Stand::Through,
-        &[("TF", "lever", "flow: …")],
-    ),
-    (
-        &[
-            "switch",
-            "idealswitch",
-            "idealopeningswitch",
-            "mosfet",
-            "igbt",
-        ],
-        Stand::Between,
-        &[(
-            "R",
-            "switch",
-            "resistance: if closed > 0.5 { 1e-3 } else { 1e6 }",
-        )],
-    ),
-    (
-        &["tank", "reservoir", "vessel"],
-        Stand::At,
-        &[("C", "tank", "compliance: …")],
-    ),
-    (
-        &["mass", "inertia", "rotationalinertia"],
-        Stand::At,
-        &[("I", "mass", "inertia: …")],
-    ),
-    (
-        &[
-            "spring",
-            "translationalspring",
-            "rotationalspring",
-            "torsionspring",
-        ],
-        Stand::Between,
-        &[("C", "spring", "stiffness: …")],
-    ),
-    (
-        &[
-            "damper",
-            "dashpot",
-            "translationaldamper",
-            "rotationaldamper",
-        ],
-        Stand::Between,
-        &[("R", "damper", "resistance: …")],
-    ),
-    (
-        &["springdamper", "springanddamper"],
-        Stand::Between,
-        &[
-            ("C", "spring", "stiffness: …"),
-            ("R", "damper", "resistance: …"),
-        ],
-    ),
-    (
-        &[
-            "ground",
-            "world",
-            "electricalreference",
-            "mechanicalreference",
-        ],
-        Stand::At,
-        &[],
-    ),
-];
-
-/// Kind, name and law of an element, which bears the name of the instance where it is alone.
-type Part = (&'static str, &'static str, &'static str);
 
 /// What the parameters of components are called elsewhere, without regard to capitals, and here: the first that the
 /// component has.
@@ -316,8 +216,15 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
     ),
     (&["r"], &["resistance", "radius", "by", "offset"]),
     (&["c"], &["capacitance", "capacity", "stiffness"]),
-    (&["l"], &["inductance"]),
-    (&["g"], &["conductance"]),
+    (&["l", "la"], &["inductance"]),
+    (&["ra", "rw"], &["resistance"]),
+    (&["ids", "is"], &["saturation"]),
+    (&["vt"], &["thermal"]),
+    (&["av"], &["area"]),
+    (&["cd"], &["discharge"]),
+    (&["rho"], &["density"]),
+    (&["rodlength"], &["length"]),
+    (&["g", "gc", "ga"], &["conductance"]),
     (
         &[
             "k",
@@ -360,16 +267,21 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
         &["friction_speed", "speed"],
     ),
     (
-        &["coulomb", "coulomb_friction", "dynamic_friction"],
+        &[
+            "coulomb",
+            "f_coulomb",
+            "coulomb_friction",
+            "dynamic_friction",
+        ],
         &["sliding"],
     ),
     (&["static_friction", "stiction"], &["breakaway"]),
     (
-        &["min", "minimum", "lower_limit", "lower_bound"],
+        &["min", "minimum", "lower_limit", "lower_bound", "smin"],
         &["lower"],
     ),
     (
-        &["max", "maximum", "upper_limit", "upper_bound"],
+        &["max", "maximum", "upper_limit", "upper_bound", "smax"],
         &["upper"],
     ),
     (&["n"], &["axis", "ratio", "exponent"]),
@@ -385,6 +297,8 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
             "w0",
             "initial_rates",
             "w_start",
+            "w_a",
+            "w",
             "rate",
         ],
         &["initial_rate", "initial_rates", "initial_turning"],
@@ -396,6 +310,8 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
             "initial_vel",
             "initial_speed",
             "v_start",
+            "v_0",
+            "v",
             "velocity",
             "vel",
             "speed",
@@ -415,7 +331,9 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
             "initial_travel",
             "initial_displacement",
             "s_start",
+            "s",
             "r_start",
+            "r_0",
             "position",
             "pos",
             "x0",
@@ -427,6 +345,8 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
             "initial_angle",
         ],
     ),
+    // A slide in a plane has an angle of its own.
+    (&["angle"], &["direction"]),
     (
         &[
             "initial_angle",
@@ -443,7 +363,12 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
             "i_start",
             "t_start",
             "angle",
+            "angles",
+            "phi",
             "q0",
+            "v",
+            "i",
+            "t",
         ],
         &["initial", "initial_angle", "initial_travel"],
     ),
@@ -455,6 +380,7 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
             "natural_length",
             "free_length",
             "length",
+            "s_unstretched",
             "target",
             "setpoint",
             "equilibrium",
@@ -486,6 +412,7 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
     ),
     (&["play", "backlash", "lash", "clearance", "b"], &["gap"]),
     (&["q_flow", "heat_flow"], &["power"]),
+    (&["d"], &["displacement"]),
 ];
 
 /// The component of the library that has this name elsewhere.
@@ -539,7 +466,7 @@ fn words_of(name: &str) -> Vec<String> {
 }
 
 /// A name without what tools write differently.
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
     let name = name.to_lowercase().replace('_', "");
     let bare = name.strip_suffix("joint");
     bare.unwrap_or(&name).to_owned()
@@ -657,38 +584,6 @@ pub(super) fn at_point(instance: &ast::Instance, argument: &ast::Field) -> Optio
     })
 }
 
-/// What to type for an instance of a component of another tool that is made of elements here; `end` is the first junction
-/// that it was given, by its kind and dimension.
-pub(super) fn elements(
-    instance: &ast::Instance,
-    end: Option<(JunctionKind, usize)>,
-) -> Option<String> {
-    let component = plain(&instance.component.to_string());
-    let mut known = ELEMENTS.iter();
-    let (_, stand, parts) = known.find(|(names, ..)| names.contains(&component.as_str()))?;
-    let (kind, dimension) = end.unwrap_or((JunctionKind::One, 1));
-    let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
-    let name = instance.name.to_string();
-    let at = ends.first().map_or("…", String::as_str);
-    let text = match (stand, &ends[..], parts) {
-        (_, _, []) => at_junction(&[still(kind)], &name, at, dimension),
-        (Stand::At, _, [("I", ..)]) if dimension > 1 => of_frame(&name, at, dimension),
-        (Stand::Across, [plus, minus, out], _) => {
-            format!("Se {name} {{ effort: 1e5 * ({plus}.e - {minus}.e) }} -> {out};")
-        }
-        (Stand::Across, ..) => return None,
-        (Stand::Through, [from, to], [part]) => {
-            let element = element(*part, &name, "");
-            format!("{from} -> {element} -> {to};")
-        }
-        (Stand::Through, ..) => format!("… -> {} -> …;", element(parts[0], &name, "")),
-        (Stand::Between, [_, _], _) if dimension > 1 => return None,
-        (Stand::Between, [a, b], _) => between(parts, &name, (kind, [a, b])),
-        _ => at_junction(parts, &name, at, dimension),
-    };
-    Some(format!("here it is written `{text}`"))
-}
-
 /// What to type for a gear that is given its ratio in the place of its radii.
 pub(super) fn by_ratio(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
     let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
@@ -703,64 +598,4 @@ pub(super) fn by_ratio(instance: &ast::Instance, argument: &ast::Field) -> Optio
         "a ratio alone is a transformer: `{from} -> TF {} {{ flow: 1 / {ratio} }} -> {to};`",
         instance.name
     ))
-}
-
-/// What holds a flow or an effort at zero.
-fn still(kind: JunctionKind) -> Part {
-    match kind {
-        JunctionKind::One => ("Sf", "still", "flow: 0.0"),
-        JunctionKind::Zero => ("Se", "zero", "effort: 0.0"),
-    }
-}
-
-fn at_junction(parts: &[Part], name: &str, at: &str, dimension: usize) -> String {
-    let size = match dimension {
-        1 => String::new(),
-        size => format!("[{size}]"),
-    };
-    let bonds = parts.iter().map(|part| {
-        format!(
-            "{} -> {at};",
-            element(*part, &named(parts, name, *part), &size)
-        )
-    });
-    bonds.collect::<Vec<_>>().join(" ")
-}
-
-fn of_frame(name: &str, at: &str, dimension: usize) -> String {
-    let component = match dimension {
-        IN_PLANE => "PlanarBody",
-        _ => "Body",
-    };
-    format!("{name}: {component} {{ mass: …, inertia: … }} ({at});")
-}
-
-/// Elements on what two junctions differ by: on the flow between those with common flows, all elements of one flow, and
-/// on the effort between those with common efforts.
-fn between(parts: &[Part], name: &str, (kind, [a, b]): (JunctionKind, [&str; 2])) -> String {
-    let elements = parts
-        .iter()
-        .map(|part| element(*part, &named(parts, name, *part), ""));
-    let elements = elements.collect::<Vec<_>>().join(" ");
-    let middle = format!("{name}_between");
-    // A source of effort raises it from the second of its nodes to the first.
-    let is_raised = kind == JunctionKind::Zero && parts[0].0 == "Se";
-    let (a, b) = if is_raised { (b, a) } else { (a, b) };
-    let bonds = format!("{a} -> {middle}; {middle} -> {b};");
-    match (kind, parts.len()) {
-        (JunctionKind::Zero, _) => format!("1 {middle} {{ {elements} }} {bonds}"),
-        (JunctionKind::One, 1) => format!("0 {middle} {{ {elements} }} {bonds}"),
-        (JunctionKind::One, _) => {
-            format!("0 {middle}; 1 {name} {{ {elements} }} {bonds} {middle} -> {name};")
-        }
-    }
-}
-
-fn named(parts: &[Part], name: &str, (_, own, _): Part) -> String {
-    let is_alone = parts.len() == 1;
-    if is_alone { name } else { own }.to_owned()
-}
-
-fn element((kind, _, law): Part, name: &str, size: &str) -> String {
-    format!("{kind} {name}{size} {{ {law} }}")
 }

@@ -194,6 +194,8 @@ const SECTIONS: &[&str] = &[
     "constants",
     "code",
     "dynamics",
+    "protected",
+    "public",
     "begin",
 ];
 

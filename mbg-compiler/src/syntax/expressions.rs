@@ -37,6 +37,9 @@ pub(super) fn range(cursor: &mut Cursor, what: &str) -> Parsed<(Expr, Expr)> {
                 false => 0,
             };
             let behind = cursor.ahead(end).get(1..).unwrap_or_default();
+            // `1:10 loop`, as Modelica has it.
+            let is_loop = |token: &TokenTree| token.to_string() == "loop";
+            let behind = behind.split(is_loop).next().unwrap_or_default();
             // With a step, as in `1:2:9`, there is no such range.
             if behind.is_empty() || behind.iter().any(|it| slips::is_mark(it, ':')) {
                 return Err(Box::new(report));

@@ -595,6 +595,8 @@ fn trailing(
             error = error.help(format!("did you mean `{wanted}`?"));
         } else if wanted == "initial" && elsewhere::is_limit(&word) {
             error = error.help(elsewhere::LIMITED);
+        } else if word == "start" || word == "init" {
+            error = error.help(format!("write `{wanted}: …`"));
         }
         return Err(Box::new(error));
     }

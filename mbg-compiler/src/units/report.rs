@@ -215,6 +215,8 @@ impl<'a> Reporter<'a> {
                 .then_some("an angle is declared in `rad`");
             report.helps.extend(angle.map(str::to_owned));
             report = report.help(FACTOR);
+        } else if units[0].is_pure() {
+            report = report.help(FACTOR);
         }
         self.tell(&claim.place, report);
     }

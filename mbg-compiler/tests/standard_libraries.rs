@@ -20,12 +20,12 @@ fn model(statements: &str) -> String {
 fn components_are_told_as_what_they_are_made_of() {
     for (part, written) in [
         (
-            "z: IdealGear { ratio: 10.0 } (v, x);",
-            "v -> TF z { flow: 1 / 10.0 } -> x;",
-        ),
-        (
             "z: LeadScrew { lead: 0.1 } (v, x);",
             "v -> TF z { flow: 0.1 / 6.283185307179586 } -> x;",
+        ),
+        (
+            "z: IdealGear { ratio: 10.0 + 2.0 } (v, x);",
+            "v -> TF z { flow: 1 / (10.0 + 2.0) } -> x;",
         ),
         ("z: Inertia { J: 3.0 } (x);", "I z { inertia: 3.0 } -> x;"),
         ("z: Rotor1D { J: 3.0 } (x);", "I z { inertia: 3.0 } -> x;"),
@@ -203,7 +203,7 @@ fn parameters_are_told_as_they_are_taken() {
         let whole = kept.map_or_else(|| here.to_owned(), |(kept, _)| format!("{kept}, {here}"));
         assert_eq!(told(&text(&whole)), "");
     }
-    let clutch = "z: Clutch { fn_max: 100.0, mue_pos: 0.5, cgeo: 2.0 } (v, w);";
+    let clutch = "z: Clutch { fn_max: 100.0, mue_pos: 0.5 - 0.1, cgeo: 2.0 } (v, w);";
     let diagnostics = diagnose(&model(clutch));
     let helps: Vec<_> = diagnostics
         .list()
@@ -216,7 +216,7 @@ fn parameters_are_told_as_they_are_taken() {
         "each word once, and no value is missed: {helps:?}"
     );
     let capacity = helps[0].split('`').nth(1).unwrap();
-    assert_eq!(capacity, "capacity: 100.0 * 2.0 * 0.5");
+    assert_eq!(capacity, "capacity: 100.0 * 2.0 * (0.5 - 0.1)");
     assert_eq!(
         told(&model(&format!("z: Clutch {{ {capacity} }} (v, w);"))),
         ""

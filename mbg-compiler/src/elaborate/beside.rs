@@ -3,7 +3,7 @@
 use proc_macro2::Ident;
 use syn::Expr;
 
-use super::elsewhere::value_text;
+use super::elsewhere::{filled, value_text};
 use super::frames::{IN_PLANE, IN_SPACE};
 use super::tools::{component, parameter};
 use crate::syntax::{ast, dump};
@@ -98,12 +98,16 @@ fn capacity(instance: &ast::Instance, argument: &ast::Field, names: &[&str]) -> 
     if !is_factor_of_capacity(&argument.name) || !names.contains(&"capacity") {
         return None;
     }
-    let given = OF_CAPACITY.iter().filter_map(|word| {
+    let factors = OF_CAPACITY.iter().filter_map(|word| {
         let mut arguments = instance.arguments.iter();
-        let factor = arguments.find(|it| it.name == word)?;
-        Some(value_text(factor.value.as_ref()))
+        Some((*word, arguments.find(|it| it.name == word)?))
     });
-    let product = given.collect::<Vec<_>>().join(" * ");
+    let factors: Vec<(&str, &ast::Field)> = factors.collect();
+    let words: Vec<&str> = factors.iter().map(|(word, _)| *word).collect();
+    let given = factors
+        .iter()
+        .filter_map(|(word, it)| Some((*word, it.value.as_ref()?)));
+    let product = filled(&words.join(" * "), &given.collect::<Vec<_>>());
     Some(format!(
         "the effort while it slips is one number: write `capacity: {product}`"
     ))

@@ -2,7 +2,7 @@
 
 use syn::Expr;
 
-use super::elsewhere::bare;
+use super::elsewhere::filled;
 use super::frames::IN_PLANE;
 use super::tools::plain;
 use crate::graph::JunctionKind;
@@ -41,12 +41,11 @@ const ELEMENTS: &[(&[&str], Stand, &[Law])] = &[
         &[("Se", "source", "effort: EFFORT")],
     ),
     (
-        &["constantforce", "constanttorque", "torquestep", "forcestep"],
-        Stand::At,
-        &[("Se", "source", "effort: EFFORT")],
-    ),
-    (
         &[
+            "constantforce",
+            "constanttorque",
+            "torquestep",
+            "forcestep",
             "pressuresource",
             "fixedpressure",
             "effortsource",
@@ -428,26 +427,23 @@ fn circuit(instance: &ast::Instance, text: &str) -> String {
 
 /// An element with the arguments of an instance in its law.
 fn given(instance: &ast::Instance, (kind, name, law): &Law) -> Part {
-    let law = GIVEN.iter().fold((*law).to_owned(), |law, (place, names)| {
+    let places = GIVEN.iter().filter_map(|(place, names)| {
         let mut arguments = instance.arguments.iter();
         let argument = arguments.find(|it| {
             let name = it.name.to_string().to_lowercase();
             names.contains(&name.as_str())
-        });
-        let value = argument.and_then(|argument| argument.value.as_ref());
-        // What stands alone behind the word of the law needs no parentheses.
-        let is_alone = law.ends_with(&format!(": {place}"));
-        let text = value.map_or_else(
-            || "…".to_owned(),
-            |value| match bare(value) {
-                Expr::Binary(_) | Expr::Unary(_) if !is_alone => {
-                    format!("({})", dump::expression(value))
-                }
-                _ => dump::expression(value),
-            },
-        );
-        law.replace(place, &text)
+        })?;
+        Some((*place, argument.value.as_ref()?))
     });
+    let places: Vec<(&str, &Expr)> = places.collect();
+    let (word, value) = law.split_once(": ").unwrap_or_default();
+    let missing = GIVEN
+        .iter()
+        .filter(|(place, _)| places.iter().all(|(given, _)| given != place));
+    let value = missing.fold(filled(value, &places), |value, (place, _)| {
+        value.replace(place, "…")
+    });
+    let law = format!("{word}: {value}");
     Part { kind, name, law }
 }
 

@@ -272,12 +272,13 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         for (place, is_near) in is_near.iter_mut().enumerate().take(self.surfaces.count()) {
             let (mut alone, mut beside) = (1.0, SVector::zeros());
             let (unit, distance) = (unit(&gradients[place]), seen(distances[place]));
+            let size = gradients[place].map(seen).norm();
             if let Some(unit) = unit
                 && let Some(rest) = span.add::<T>(&unit)
             {
                 // What is almost led along others moves states far where it is moved a little.
                 alone = rest.norm();
-                beside = gradients[place].map(seen).norm() * (unit - rest);
+                beside = size * (unit - rest);
             }
             let near = (NEAR / T::SINGULAR * alone).max(1.0) * seen(aside[place]);
             let reaches = |rate: T, slope: &SVector<T, N>| {
@@ -287,7 +288,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             *is_near = reaches(rates[place], &slope)
                 || unit.is_some_and(|unit| {
                     // As fast as on the other side: what comes there fast may be almost held on this one.
-                    let way = 2.0 * distance / gradients[place].map(seen).norm();
+                    let way = 2.0 * distance / size;
                     let there = x - unit.map(|by| T::from_f64(way * by));
                     let slope =
                         (self.system).derivative(at.time, &there, &at.input, &mut { *memory });

@@ -301,7 +301,7 @@ fn farthest(lasting: f64, [a, rate_a]: [f64; 2], [b, rate_b]: [f64; 2]) -> f64 {
 }
 
 /// The largest whole number that is not above a number.
-fn whole_below(number: f64) -> i64 {
+pub(crate) fn whole_below(number: f64) -> i64 {
     let whole = number as i64;
     whole.saturating_sub(i64::from(whole as f64 > number))
 }

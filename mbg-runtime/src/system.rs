@@ -231,8 +231,12 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ) {
     }
 
-    /// Whether [`courses`](Self::courses) tells of any argument; `false` unless it is given, and then runs do not ask.
-    const HAS_COURSES: bool = false;
+    /// Of how many arguments [`courses`](Self::courses) tells, the same everywhere; 0 unless it is given, and then runs do not ask. At so
+    /// many thresholds a motion may stay at once, but for those beyond sixteen.
+    const COURSES: usize = 0;
+
+    /// Whether it tells of any, as [`COURSES`](Self::COURSES) has it.
+    const HAS_COURSES: bool = Self::COURSES > 0;
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero. One whose size is that of inertias is divided by the largest

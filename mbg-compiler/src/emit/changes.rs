@@ -67,7 +67,7 @@ fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let point = quote!((T, [#state; 2], [#input; 2]));
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
-            const HAS_COURSES: ::core::primitive::bool = true;
+            const COURSES: ::core::primitive::usize = #groups;
             fn courses(
                 &self, from: #point, to: #point, memory: &mut #memory,
                 mut each: impl ::core::ops::FnMut(mbg_runtime::Course<'_, T>),

@@ -9,7 +9,7 @@ use super::event::Direction;
 use super::method::Span;
 use super::over::Place;
 use super::problem::Problem;
-use super::sliding::Sliding;
+use super::sliding::{Sliding, for_surfaces};
 use super::surfaces::{Surfaces, is_later};
 use super::thresholds::Point;
 use super::tolerance::Tolerance;
@@ -255,7 +255,11 @@ where
         );
         let known = (&mut memory, &mut self.statistics.evaluations);
         let measure = tolerance.around(&here.state);
-        let Some(rest) = Sliding::rest(model, times, here, (near, &measure), known) else {
+        let near = (near, &measure);
+        let rest = for_surfaces!(S::COURSES, K => {
+            Sliding::<_, _, _, N, K>::rest(model, times, here, near, known)
+        });
+        let Some(rest) = rest else {
             return Ok(None);
         };
         let until = here.time + T::from_f64(rest.ahead);
@@ -285,7 +289,9 @@ where
         let times = (self.since, self.inside, self.whole);
         let place = (here.time, &mut x);
         let known = (&mut memory, &mut self.statistics.evaluations);
-        Sliding::settled(model, times, place, *surfaces, known).is_some()
+        for_surfaces!(S::COURSES, K => {
+            Sliding::<_, _, _, N, K>::settled(model, times, place, *surfaces, known).is_some()
+        })
     }
 }
 
@@ -350,7 +356,11 @@ pub(super) trait Walk<T: Real, const N: usize> {
             if S::HAS_COURSES
                 && let Some(surfaces) = surfaces
             {
-                match self.slide(problem, (here, end), (surfaces, &mut settled), observer)? {
+                let known = (surfaces, &mut settled);
+                let slid = for_surfaces!(S::COURSES, K => {
+                    self.slide::<S, I, M, P, K>(problem, (here, end), known, observer)
+                });
+                match slid? {
                     ControlFlow::Continue(place) => here = place,
                     ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
                 }
@@ -369,7 +379,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
     /// Goes on from a place next to thresholds that the motion may not leave, along these, until it leaves all or is at the end.
     // Not side by side on the stack with the run that has come there.
     #[inline(never)]
-    fn slide<S, I, const M: usize, const P: usize>(
+    fn slide<S, I, const M: usize, const P: usize, const K: usize>(
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (mut here, end): (Place<T, N>, T),
@@ -387,7 +397,8 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let mut memory = problem.memory;
             let (t, x) = (here.0, &mut here.1);
             let known = (&mut memory, &mut problem.statistics.evaluations);
-            let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, known) else {
+            let settled = Sliding::<_, _, _, N, K>::settled(model, times, (t, x), surfaces, known);
+            let Some(sliding) = settled else {
                 break;
             };
             let asked = core::mem::replace(&mut surfaces, sliding.all());

@@ -2,7 +2,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::super::surfaces::MOST;
 use super::Each;
 use crate::solve::Regular;
 
@@ -41,11 +40,11 @@ impl Choice {
 /// all rates are zero, or lead where the part is. That is a linear complementarity problem with bounds, whose solution is the only one
 /// if what surfaces make different are losses (a P-matrix); of those that violate it the first one changes (Murty, *Linear
 /// Complementarity, Linear and Nonlinear Programming*, Heldermann 1988, §4.2; with bounds on both sides by the same induction).
-pub(super) fn chosen(
-    (first, faster): (&Each<f64>, &SMatrix<f64, MOST, MOST>),
+pub(super) fn chosen<const K: usize>(
+    (first, faster): (&Each<f64, K>, &SMatrix<f64, K, K>),
     known: &[Option<Choice>],
-) -> Option<Each<Choice>> {
-    let mut choices = [Choice::Stays(0.5); MOST];
+) -> Option<Each<Choice, K>> {
+    let mut choices = [Choice::Stays(0.5); K];
     for (choice, known) in choices.iter_mut().zip(known) {
         *choice = known.unwrap_or(*choice);
     }
@@ -59,7 +58,7 @@ pub(super) fn chosen(
     for _ in 0..TURNS {
         let stays = |place: usize| is_open(place) && matches!(choices[place], Choice::Stays(_));
         let matrix =
-            SMatrix::<f64, MOST, MOST>::from_fn(|row, column| match stays(row) && stays(column) {
+            SMatrix::<f64, K, K>::from_fn(|row, column| match stays(row) && stays(column) {
                 true => slower(row, column),
                 false => f64::from(u8::from(row == column)),
             });
@@ -71,7 +70,7 @@ pub(super) fn chosen(
                 .sum();
             first[row] / own(row) + 0.5 * EVEN - by_others
         };
-        let right = SVector::<f64, MOST>::from_fn(|row, _| match stays(row) {
+        let right = SVector::<f64, K>::from_fn(|row, _| match stays(row) {
             true => open(row),
             false => 0.0,
         });
@@ -99,7 +98,7 @@ pub(super) fn chosen(
         match change {
             Some((place, there)) => choices[place] = there,
             None => {
-                let staying: Each<bool> = core::array::from_fn(stays);
+                let staying: Each<bool, K> = core::array::from_fn(stays);
                 for (place, choice) in choices.iter_mut().enumerate() {
                     if staying[place] {
                         *choice = Choice::Stays(parts[place]);
@@ -116,11 +115,14 @@ pub(super) fn chosen(
 mod tests {
     use super::*;
 
+    /// More than there are.
+    const K: usize = 4;
+
     /// Masses of 1 kg, forces on them, and what rubs: the speeds of each, and the most it takes.
     fn rubbing(
         forces: &[f64],
         pairs: &[(usize, Option<usize>, f64)],
-    ) -> (Each<f64>, SMatrix<f64, MOST, MOST>) {
+    ) -> (Each<f64, K>, SMatrix<f64, K, K>) {
         let along = |pair: &(usize, Option<usize>, f64), mass: usize| -> f64 {
             f64::from(u8::from(pair.0 == mass)) - f64::from(u8::from(pair.1 == Some(mass)))
         };
@@ -129,7 +131,7 @@ mod tests {
                 .map(|mass| along(a, mass) * along(b, mass))
                 .sum::<f64>()
         };
-        let (mut first, mut faster) = ([0.0; MOST], SMatrix::zeros());
+        let (mut first, mut faster) = ([0.0; K], SMatrix::zeros());
         for (row, pair) in pairs.iter().enumerate() {
             first[row] = (0..forces.len())
                 .map(|mass| along(pair, mass) * forces[mass])
@@ -142,9 +144,9 @@ mod tests {
         (first, faster)
     }
 
-    fn of(forces: &[f64], pairs: &[(usize, Option<usize>, f64)]) -> Each<Choice> {
+    fn of(forces: &[f64], pairs: &[(usize, Option<usize>, f64)]) -> Each<Choice, K> {
         let (first, faster) = rubbing(forces, pairs);
-        chosen((&first, &faster), &[None; MOST][..pairs.len()]).unwrap()
+        chosen((&first, &faster), &[None; K][..pairs.len()]).unwrap()
     }
 
     #[test]

@@ -1,42 +1,48 @@
 //! A line beside a state that crosses each surface once.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::super::seen;
-use super::super::surfaces::MOST;
 use super::sides::Factors;
 use super::{Each, Moment, Sliding};
+use crate::course::whole_below;
 use crate::{Real, System};
 
 /// How far beside a threshold laws are asked, in units of the rounding of its argument.
 pub(super) const ASIDE: f64 = 64.0;
 /// Surfaces are gone across at paces of their own, so that those that depend on them are not met where they are.
 const PACE: f64 = 0.618_033_988_749_894_9;
-/// So many times as long a line may be, for surfaces that it meets next to each other; where it is longer than so, others are tried.
+/// So many times as long a line may be, for surfaces that it meets next to each other.
 const LONGEST: f64 = 1024.0;
-const LONG: f64 = 8.0;
-/// So many lines are tried.
-const LINES: usize = 8;
 
-/// States before and behind each surface, in the order in which a line meets these.
-pub(super) struct Line<T, const N: usize> {
-    pub(super) states: [SVector<T, N>; 1 + MOST],
-    /// The place of the surface behind each state but the last.
-    pub(super) order: [usize; MOST],
+/// States on a line that crosses surfaces.
+pub(super) struct Line<T, const N: usize, const K: usize> {
+    /// That before all of them.
+    pub(super) start: SVector<T, N>,
+    /// Those behind each, in the order in which it meets these.
+    pub(super) behind: Each<SVector<T, N>, K>,
+    /// The place of the surface that is met so.
+    pub(super) order: Each<usize, K>,
     /// In which direction each is crossed.
-    pub(super) forward: Each<f64>,
+    pub(super) forward: Each<f64, K>,
     /// How far it goes, in units of what is surely beside a surface.
     pub(super) reach: f64,
 }
 
-impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
+/// Where a state is beyond surfaces.
+pub(super) struct Beyond<T, const K: usize> {
+    pub(super) distances: Each<T, K>,
+    /// How fast it goes across each free surface that is moved across another.
+    pub(super) rates: Factors<T, K>,
+}
+
+impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I, N, K> {
     /// How far from each surface its argument is surely beyond it.
-    pub(super) fn aside(&self, x: &SVector<T, N>) -> Each<T> {
-        let mut aside = [T::from_f64(T::EPSILON * T::EPSILON); MOST];
-        let gradients = self.gradients.get();
-        for ((aside, surface), gradient) in
-            aside.iter_mut().zip(self.surfaces.iter()).zip(&gradients)
-        {
+    pub(super) fn aside(&self, x: &SVector<T, N>) -> Each<T, K> {
+        let mut aside = [T::from_f64(T::EPSILON * T::EPSILON); K];
+        let places = self.surfaces.iter().zip(&self.gradients);
+        for (aside, (surface, gradient)) in aside.iter_mut().zip(places) {
+            let gradient = gradient.get();
             let terms = gradient
                 .iter()
                 .zip(x)
@@ -48,16 +54,21 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     }
 
     /// The same of a state that is moved by such distances first, as far as numbers tell of these.
-    pub(super) fn aside_behind(&self, x: &SVector<T, N>, distances: &Each<T>) -> Each<T> {
-        let gradients = self.gradients.get();
-        let sizes: Each<f64> =
-            core::array::from_fn(|place| gradients[place].map(|by| by.magnitude()).norm());
+    pub(super) fn aside_behind(&self, x: &SVector<T, N>, distances: &Each<T, K>) -> Each<T, K> {
+        let mut sizes = [0.0; K];
+        for (size, gradient) in sizes
+            .iter_mut()
+            .zip(self.gradients.iter())
+            .take(self.surfaces.count())
+        {
+            *size = gradient.get().map(|by| by.magnitude()).norm();
+        }
         let ways = (0..self.free).map(|place| seen(distances[place]).abs() / sizes[place]);
         let way = ASIDE * T::EPSILON * ways.fold(0.0, f64::max);
         let aside = self.aside(x);
         // What is at it by others is to be crossed with it.
         let (twins, likes) = &self.twins;
-        let mut farther = [0.0_f64; MOST];
+        let mut farther = [0.0_f64; K];
         for like in likes.iter().take(twins.count()) {
             farther[like.leader] = farther[like.leader].max(like.apart);
         }
@@ -66,34 +77,33 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         })
     }
 
-    /// How arguments of the free surfaces go across these, with the distances from all.
-    pub(super) fn distances<const M: usize, const P: usize>(
+    /// How far a state is from all surfaces, and how it is moved across those that are free.
+    #[inline(always)]
+    pub(super) fn beyond<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,
         x: &SVector<T, N>,
         memory: &S::Memory,
-    ) -> (Each<T>, Factors<T>)
+    ) -> Beyond<T, K>
     where
         S: System<T, N, M, P>,
     {
         let rest = SVector::from_element(T::from_f64(0.0));
-        let mut distances = [T::from_f64(0.0); MOST];
-        let mut rates = SMatrix::from_element(T::from_f64(0.0));
-        for (own, across) in self.across.get().iter().take(self.free).enumerate() {
-            let [[_, at_rest], [there, faster]] = self.told(at, [(x, &rest), (x, across)], memory);
+        let mut distances = [T::from_f64(0.0); K];
+        let rates = Factors::of(self.free, |own| {
+            let across = self.across[own].get();
+            let [[_, at_rest], [there, faster]] = self.told(at, [(x, &rest), (x, &across)], memory);
             distances = there;
-            for other in 0..self.free {
-                rates[(other, own)] = faster[other] - at_rest[other];
-            }
-        }
-        (distances, Factors::of(&rates, self.free))
+            core::array::from_fn(|other| faster[other] - at_rest[other])
+        });
+        Beyond { distances, rates }
     }
 
     /// A state moved across the free surfaces.
-    pub(super) fn moved(&self, x: &SVector<T, N>, ways: Each<T>) -> SVector<T, N> {
+    pub(super) fn moved(&self, x: &SVector<T, N>, ways: Each<T, K>) -> SVector<T, N> {
         let mut moved = *x;
-        for (across, way) in self.across.get().iter().zip(&ways).take(self.free) {
-            moved += across.map(|across| *way * across);
+        for (across, way) in self.across.iter().zip(&ways).take(self.free) {
+            moved += across.get().map(|across| *way * across);
         }
         moved
     }
@@ -108,7 +118,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     where
         S: System<T, N, M, P>,
     {
-        let (distances, rates) = self.distances(at, x, memory);
+        let Beyond { distances, rates } = &self.beyond(at, x, memory);
         self.moved(x, rates.solve(distances.map(|it| -it)))
     }
 
@@ -118,37 +128,25 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         at: &Moment<T, M>,
         (x, factor): (&SVector<T, N>, f64),
         memory: &S::Memory,
-    ) -> Line<T, N>
+    ) -> Line<T, N, K>
     where
         S: System<T, N, M, P>,
     {
         let (count, free) = (self.surfaces.count(), self.free);
-        let (distances, moves) = self.distances(at, x, memory);
-        let aside = self.aside_behind(x, &distances);
+        let Beyond { distances, rates } = &self.beyond(at, x, memory);
+        let aside = self.aside_behind(x, distances);
         let aside = aside.map(|aside| T::from_f64(factor) * aside);
-        let state = |paces: &Each<f64>, along: f64| {
+        let state = |paces: &Each<f64, K>, along: f64| {
             let ways = core::array::from_fn(|place| {
                 let beyond = T::from_f64(paces[place] * (along - place as f64)) * aside[place];
                 beyond - distances[place]
             });
-            self.moved(x, moves.solve(ways))
+            self.moved(x, rates.solve(ways))
         };
-        let mut way = Way::along(1);
+        let mut way = Way::across();
         if count > free {
             let ends = [-0.5, free as f64 - 0.5];
-            let met = |way| self.met(way, ends, (at, &aside), state, memory);
-            way = met(way);
-            for turns in 2..=LINES {
-                if way.longer < LONG {
-                    break;
-                }
-                let other = met(Way::along(turns));
-                way = if other.longer < way.longer {
-                    other
-                } else {
-                    way
-                };
-            }
+            way = self.met(way, ends, (at, &aside), state, memory);
             let longer = way.longer.min(LONGEST);
             way.paces = way.paces.map(|pace| longer * pace);
             // Far from where others are met rounding leads astray.
@@ -158,25 +156,30 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
             way = self.met(way, [first, last], (at, &aside), state, memory);
         }
         let crossings = way.crossings;
-        let mut order: [usize; MOST] = core::array::from_fn(|place| place);
+        let mut order = core::array::from_fn(|place| place);
         order[..count].sort_unstable_by(|a, b| crossings[*a].total_cmp(&crossings[*b]));
-        let (mut states, mut reach) = ([*x; 1 + MOST], 0.0_f64);
-        for (place, there) in states.iter_mut().take(1 + count).enumerate() {
-            let before = place.checked_sub(1).map(|before| crossings[order[before]]);
-            let behind = (place < count).then(|| crossings[order[place]]);
-            let along = match (before, behind) {
-                (Some(before), Some(behind)) => 0.5 * (before + behind),
-                (Some(before), None) => before + 0.5,
-                (None, Some(behind)) => behind - 0.5,
-                (None, None) => 0.0,
+        let mut reach = 0.0_f64;
+        let mut before = |place: usize| {
+            let crossing = |place: usize| crossings[order[place]];
+            let along = match (place > 0, place < count) {
+                (true, true) => 0.5 * (crossing(place - 1) + crossing(place)),
+                (true, false) => crossing(place - 1) + 0.5,
+                (false, true) => crossing(place) - 0.5,
+                (false, false) => 0.0,
             };
-            *there = state(&way.paces, along);
             for (place, pace) in way.paces.iter().enumerate().take(free) {
                 reach = reach.max(pace * (along - place as f64).abs());
             }
+            state(&way.paces, along)
+        };
+        let start = before(0);
+        let mut behind = [start; K];
+        for (place, behind) in behind.iter_mut().enumerate().take(count) {
+            *behind = before(1 + place);
         }
         Line {
-            states,
+            start,
+            behind,
             order,
             forward: way.forward,
             reach,
@@ -187,12 +190,12 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     /// each two as far away as need be.
     fn met<const M: usize, const P: usize>(
         &self,
-        mut way: Way,
+        mut way: Way<K>,
         ends: [f64; 2],
-        (at, aside): (&Moment<T, M>, &Each<T>),
-        state: impl Fn(&Each<f64>, f64) -> SVector<T, N>,
+        (at, aside): (&Moment<T, M>, &Each<T, K>),
+        state: impl Fn(&Each<f64, K>, f64) -> SVector<T, N>,
         memory: &S::Memory,
-    ) -> Way
+    ) -> Way<K>
     where
         S: System<T, N, M, P>,
     {
@@ -200,7 +203,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         let rest = SVector::from_element(T::from_f64(0.0));
         let [first, last] = ends.map(|along| state(&way.paces, along));
         let told = self.told(at, [(&first, &rest), (&last, &rest)], memory);
-        let mut rates: Each<f64> =
+        let mut rates: Each<f64, K> =
             core::array::from_fn(|place| way.paces[place] * seen(aside[place]));
         for place in free..count {
             let [from, to] = told.map(|it| seen(it[0][place]));
@@ -221,24 +224,27 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
 }
 
 /// How a line goes across surfaces.
-struct Way {
+struct Way<const K: usize> {
     /// How fast across each free surface.
-    paces: Each<f64>,
+    paces: Each<f64, K>,
     /// Where it meets each: a free one at the number of its place.
-    crossings: Each<f64>,
-    forward: Each<f64>,
+    crossings: Each<f64, K>,
+    forward: Each<f64, K>,
     longer: f64,
 }
 
-impl Way {
-    /// One of several, by the golden ratio so many times.
-    fn along(turns: usize) -> Self {
+impl<const K: usize> Way<K> {
+    /// By the golden ratio.
+    fn across() -> Self {
         let place = |place: usize| place as f64;
-        let pace = |place: usize| 2.0 + 2.0 * ((PACE * (turns * place) as f64) % 1.0);
+        let pace = |place: usize| {
+            let along = PACE * place as f64;
+            2.0 + 2.0 * (along - whole_below(along) as f64)
+        };
         Self {
             paces: core::array::from_fn(pace),
             crossings: core::array::from_fn(place),
-            forward: [1.0; MOST],
+            forward: [1.0; K],
             longer: 1.0,
         }
     }

@@ -11,7 +11,7 @@ use core::cell::Cell;
 use nalgebra::SVector;
 
 use super::seen;
-use super::surfaces::{MOST, Surfaces};
+use super::surfaces::Surfaces;
 use crate::{Course, Input, Real, System};
 
 /// The part of a run, and of a step, over which an input is taken to be smooth.
@@ -19,9 +19,9 @@ const SHORT: f64 = 1.0 / 4096.0;
 const PART: f64 = 0.25;
 
 /// One for each surface.
-type Each<V> = [V; MOST];
+type Each<V, const K: usize> = [V; K];
 /// Surfaces on which a motion is by others, and how each is like another one.
-type Along<T> = (Surfaces<T>, Each<Like>);
+type Along<T, const K: usize> = (Surfaces<T>, Each<Like, K>);
 
 /// How a surface is another one, but for a factor.
 #[derive(Clone, Copy)]
@@ -42,6 +42,29 @@ impl Like {
     };
 }
 
+/// Calls what is written for so many surfaces at once as a model has arguments, but for those beyond [`MOST`]: of what a model does not
+/// have no room is kept. There is a call for each number, of which a model has its own.
+macro_rules! for_surfaces {
+    ($count:expr, $surfaces:ident => $call:expr) => {
+        $crate::step::sliding::for_surfaces!(
+            $count, $surfaces => $call, 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15
+        )
+    };
+    ($count:expr, $surfaces:ident => $call:expr, $($some:literal)*) => {
+        match $count {
+            $($some => {
+                const $surfaces: usize = $some;
+                $call
+            })*
+            _ => {
+                const $surfaces: usize = $crate::step::surfaces::MOST;
+                $call
+            }
+        }
+    };
+}
+pub(super) use for_surfaces;
+
 /// The laws of a model whose motion stays at thresholds of them: friction that holds, a relay that goes on and off without end.
 ///
 /// On both sides the motion leads to the threshold. Along it goes that mean of both which does not leave it (Filippov,
@@ -49,7 +72,7 @@ impl Like {
 /// found from what each alone makes different (Utkin, *Sliding Modes in Control and Optimization*, Springer 1992, §2). What each makes
 /// different is asked along a line beside the state that crosses one after the other, at which of them the motion stays is
 /// chosen of all at once, and settling there puts the state on these and beside the others.
-pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
+pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize, const K: usize> {
     system: &'a S,
     input: &'a I,
     since: T,
@@ -61,15 +84,15 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize> {
     pub(super) surfaces: Surfaces<T>,
     free: usize,
     /// Which part of the mean is above each of the latter: what others have goes by that.
-    shares: Each<T>,
+    shares: Each<T, K>,
     /// Others whose argument is one of these but for a factor, and how far from each it may be by rounding.
-    twins: Along<T>,
+    twins: Along<T, K>,
     /// How states change that go across each free surface, at a rate of one, and along the others, where the motion has come to.
-    across: Cell<Each<SVector<T, N>>>,
+    across: Each<Cell<SVector<T, N>>, K>,
     /// The same where it was last asked whether the motion stays.
-    beyond: Cell<Each<SVector<T, N>>>,
+    beyond: Each<Cell<SVector<T, N>>, K>,
     /// How the argument of each changes with the states, where the motion has come to.
-    gradients: Cell<Each<SVector<T, N>>>,
+    gradients: Each<Cell<SVector<T, N>>, K>,
     /// How often the model was evaluated, but for once in each evaluation of these laws.
     pub(super) evaluations: Cell<u64>,
 }
@@ -81,7 +104,7 @@ struct Moment<T, const M: usize> {
     rate: SVector<T, M>,
 }
 
-impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
+impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S, I, N, K> {
     /// Of laws of a piece between such times, in a run so long.
     fn of(
         (system, input): (&'a S, &'a I),
@@ -89,7 +112,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         surfaces: Surfaces<T>,
     ) -> Self {
         let zero = T::from_f64(0.0);
-        let none = [SVector::from_element(zero); MOST];
+        let none = || core::array::from_fn(|_| Cell::new(SVector::from_element(zero)));
         Self {
             system,
             input,
@@ -98,17 +121,17 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             ahead: Cell::new(whole * SHORT),
             surfaces,
             free: 0,
-            shares: [zero; MOST],
-            twins: (Surfaces::NONE, [Like::NOTHING; MOST]),
-            across: Cell::new(none),
-            beyond: Cell::new(none),
-            gradients: Cell::new(none),
+            shares: [zero; K],
+            twins: (Surfaces::NONE, [Like::NOTHING; K]),
+            across: none(),
+            beyond: none(),
+            gradients: none(),
             evaluations: Cell::new(0),
         }
     }
 
     /// Whether an argument is at its threshold because it is one of the others, next to such states.
-    fn is_twin(&self, number: usize, course: &Course<'_, T>, asides: &[Each<T>; 2]) -> bool {
+    fn is_twin(&self, number: usize, course: &Course<'_, T>, asides: &[Each<T, K>; 2]) -> bool {
         let (twins, likes) = &self.twins;
         twins.of(number).is_some_and(|(place, level)| {
             let Like {
@@ -168,7 +191,14 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     /// Minds how long a step was that is over, and how surfaces are gone across at its end: on the way they may turn along that.
     pub(super) fn heed(&self, length: f64) {
         self.ahead.set(PART * length);
-        self.across.set(self.beyond.get());
+        self.go_across(self.beyond.iter().take(self.free).map(Cell::get));
+    }
+
+    /// Minds how free surfaces are gone across.
+    fn go_across(&self, ways: impl Iterator<Item = SVector<T, N>>) {
+        for (across, way) in self.across.iter().zip(ways) {
+            across.set(way);
+        }
     }
 
     /// How far the motion is from leaving a surface, as a part of what the laws differ by there; not positive where it leaves one.
@@ -190,13 +220,23 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         if !sides.leads_back.iter().take(self.free).all(|it| *it) {
             return zero;
         }
-        self.beyond.set(sides.across(self.free));
+        for (beyond, way) in self.beyond.iter().zip(sides.across(self.free)) {
+            beyond.set(way);
+        }
         least + late
     }
 }
 
 /// The outputs of a model next to thresholds at which its motion stays.
-pub(super) fn output_along<T, S, I, const N: usize, const M: usize, const P: usize>(
+pub(super) fn output_along<
+    T,
+    S,
+    I,
+    const N: usize,
+    const M: usize,
+    const P: usize,
+    const K: usize,
+>(
     (system, input): (&S, &I),
     (t, whole): (T, f64),
     x: &SVector<T, N>,
@@ -210,7 +250,7 @@ where
     let (mut x, u) = (*x, input.at(t));
     let times = (t, (t, t), whole);
     let known = (&mut *memory, &mut 0);
-    match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
+    match Sliding::<_, _, _, N, K>::settled((system, input), times, (t, &mut x), surfaces, known) {
         Some(sliding) => sliding.output(t, &x, &u, memory),
         None => system.output(t, &x, &u, memory),
     }

@@ -3,11 +3,11 @@
 use nalgebra::SVector;
 
 use super::super::seen;
-use super::super::surfaces::{MOST, Surface, Surfaces, is_between};
+use super::super::surfaces::{Surface, Surfaces};
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
 use super::choice::Choice;
-use super::line::ASIDE;
+use super::line::{ASIDE, Beyond};
 use super::sides::{Sides, shortest};
 use super::{Each, Like, Moment, Sliding};
 use crate::{Input, Real, System};
@@ -49,8 +49,8 @@ pub(in super::super) struct Rest<T, const N: usize> {
 enum Aside {
     /// It stays on it.
     On,
-    /// Nothing leads back to it: it goes on over it, at this rate.
-    Passed(f64),
+    /// Nothing leads back to it: it goes on over it.
+    Passed,
     /// To this side, below or above, at this rate.
     Left(f64, f64),
 }
@@ -64,7 +64,7 @@ enum Found {
     Nothing,
 }
 
-impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
+impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S, I, N, K> {
     /// The laws along those of some surfaces, next to a state, which the motion does not leave; with the state put on these and
     /// beside the others, on the side to which it goes. None where it leaves all. Counts evaluations of the model.
     pub(in super::super) fn settled<const M: usize, const P: usize>(
@@ -83,7 +83,6 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let start = *x;
         let near = sliding.near((&at, whole), x, memory);
         sliding.arrange(near, (&at, x), memory);
-        sliding.take_in((&at, whole), x, memory);
         let all = sliding.all();
         match sliding.search((&at, x), (&mut *memory, &mut *evaluations)) {
             Found::Stays => return Some(sliding),
@@ -189,7 +188,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                 };
                 *evaluations += self.evaluations.take();
                 // As a motion comes there: what it would be late by changes its slopes along this way.
-                self.across.set(sides.across(self.free));
+                self.go_across(sides.across(self.free));
                 *x = self.onto(at, x, memory);
                 return Found::Stays;
             }
@@ -210,7 +209,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     fn left<const M: usize, const P: usize>(
         &self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
-        asides: &Each<Aside>,
+        asides: &Each<Aside, K>,
         memory: &S::Memory,
     ) -> Found
     where
@@ -241,9 +240,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     {
         let reach = self.line(at, (x, 1.0), memory).reach;
         let rest = self.all().without(&Surfaces::one(passed));
-        let mut asides = [Aside::On; MOST];
+        let mut asides = [Aside::On; K];
         if let Some((place, _)) = self.surfaces.of(passed.course) {
-            asides[place] = Aside::Passed(0.0);
+            asides[place] = Aside::Passed;
         }
         *x = self.put_aside((at, x), (&asides, reach), memory);
         self.arrange(rest, (at, x), memory);
@@ -267,8 +266,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let aside = self.aside(x);
         let moment = MOMENT * T::EPSILON * at.time.magnitude().max(whole);
         let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
-        let gradients = self.gradients.get();
-        let (mut span, mut is_near) = (Span::of_nothing(), [false; MOST]);
+        let gradients = self.gradients();
+        let (mut span, mut is_near) = (Span::<N, K>::of_nothing(), [false; K]);
         for (place, is_near) in is_near.iter_mut().enumerate().take(self.surfaces.count()) {
             let (mut alone, mut beside) = (1.0, SVector::zeros());
             let (unit, distance) = (unit(&gradients[place]), seen(distances[place]));
@@ -300,44 +299,6 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         self.only(|place| is_near[*place])
     }
 
-    /// Takes in other thresholds that are as near: laws jump there, too, where these are asked.
-    fn take_in<const M: usize, const P: usize>(
-        &mut self,
-        (at, whole): (&Moment<T, M>, f64),
-        x: &SVector<T, N>,
-        memory: &S::Memory,
-    ) where
-        S: System<T, N, M, P>,
-        I: Input<T, M>,
-    {
-        while self.free > 0 {
-            let all = self.all();
-            let line = self.line(at, (x, BESIDE), memory);
-            let rest = SVector::from_element(T::from_f64(0.0));
-            let ends = [&line.states[0], &line.states[self.surfaces.count()]];
-            let [from, to] = ends.map(|x| (at.time, [x, &rest], [&at.input, &at.rate]));
-            let (mut number, mut met) = (0, all);
-            self.system.courses(from, to, &mut { *memory }, |course| {
-                for threshold in course.thresholds {
-                    let level = course.level(*threshold);
-                    if course.is_choice && is_between(&course, level) {
-                        met.add(Surface {
-                            course: number,
-                            level,
-                        });
-                    }
-                }
-                number += 1;
-            });
-            self.surfaces = met;
-            let met = self.near((at, whole), x, memory);
-            self.arrange(met, (at, x), memory);
-            if met.count() <= all.count() {
-                return;
-            }
-        }
-    }
-
     /// Puts surfaces in the order in which they are minded: those that are free first, the first of them first.
     fn arrange<const M: usize, const P: usize>(
         &mut self,
@@ -350,10 +311,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     {
         self.surfaces = surfaces;
         self.look(at, x, memory);
-        let gradients = self.gradients.get();
-        let (mut span, mut units) = (Span::of_nothing(), [SVector::zeros(); MOST]);
+        let gradients = self.gradients();
+        let (mut span, mut units) = (Span::<N, K>::of_nothing(), [SVector::zeros(); K]);
         let (mut free, mut bound, mut twins) = (Surfaces::NONE, Surfaces::NONE, Surfaces::NONE);
-        let mut likes = [Like::NOTHING; MOST];
+        let mut likes = [Like::NOTHING; K];
         for (place, surface) in surfaces.iter().enumerate() {
             let Some(unit) = unit(&gradients[place]) else {
                 // No state leads there.
@@ -386,32 +347,32 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
         self.twins = (twins, likes);
         self.look(at, x, memory);
-        self.across.set(shortest(&self.gradients.get(), self.free));
+        self.go_across(shortest::<_, _, K>(&self.gradients()[..self.free]));
     }
 
     /// How the motion is at each surface, and how it goes on there.
     fn choices<const M: usize, const P: usize>(
         &self,
-        (sides, wide): (&Sides<T, N>, &Sides<T, N>),
+        (sides, wide): (&Sides<T, N, K>, &Sides<T, N, K>),
         (at, x): (&Moment<T, M>, &SVector<T, N>),
         memory: &S::Memory,
-    ) -> Option<(Each<Choice>, Each<Aside>)>
+    ) -> Option<(Each<Choice, K>, Each<Aside, K>)>
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
         let count = self.surfaces.count();
-        let distances = self.distances(at, x, memory).0;
+        let distances = self.beyond(at, x, memory).distances;
         // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it. At rest all
         // that it makes different is as small as how far beside it is.
-        let mut known = [None; MOST];
+        let mut known = [None; K];
         for place in 0..count {
             let jumps = sides.leads_back[place] && !wide.bends(sides, place, WIDE);
             known[place] = (!jumps).then(|| sides.to_side(place, seen(distances[place])));
         }
         let choices = sides.chosen(&known[..count])?;
-        let units = self.gradients.get().map(|gradient| unit(&gradient));
-        let mut span = Span::of_nothing();
+        let units = self.gradients().map(|gradient| unit(&gradient));
+        let mut span = Span::<N, K>::of_nothing();
         for (unit, choice) in units.iter().zip(&choices).take(count) {
             if let (Some(unit), Choice::Stays(_)) = (unit, choice) {
                 span.add::<T>(unit);
@@ -423,7 +384,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             let rate = sides.rate(place, &choices[..count]);
             match known.get(place) {
                 _ if stays => Aside::On,
-                Some(Some(_)) => Aside::Passed(rate),
+                Some(Some(_)) => Aside::Passed,
                 _ => Aside::Left(sides.side(place, choices[place]), rate),
             }
         });
@@ -443,7 +404,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     /// The same order but that those are free whose parts are farthest from having been used up.
     fn free_first<const M: usize, const P: usize>(
         &mut self,
-        above: &Each<f64>,
+        above: &Each<f64, K>,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
         memory: &S::Memory,
     ) where
@@ -452,7 +413,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
     {
         let before = self.surfaces;
         let count = before.count();
-        let mut order: [usize; MOST] = core::array::from_fn(|place| place);
+        let mut order: [usize; K] = core::array::from_fn(|place| place);
         let left = |place: usize| above[place].min(1.0 - above[place]);
         order[..count].sort_unstable_by(|a, b| left(*b).total_cmp(&left(*a)));
         let mut sorted = Surfaces::NONE;
@@ -469,12 +430,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         }
     }
 
-    /// The state surely beside what the motion does not stay at, if it is not farther away: that it has yet to come to. What is
-    /// passed is in the way where the motion stays at another one, as laws are asked a little off it.
+    /// The state surely beside what the motion leaves, if it is not farther away: that it has yet to come to.
     fn put_aside<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
-        (asides, reach): (&Each<Aside>, f64),
+        (asides, reach): (&Each<Aside, K>, f64),
         memory: &S::Memory,
     ) -> SVector<T, N>
     where
@@ -486,56 +446,40 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
         let on = self.only(|place| matches!(asides[*place], Aside::On));
         let left = self.only(|place| matches!(asides[*place], Aside::Left(..)));
         self.arrange(on.with(&left).with(&before), (at, x), memory);
-        let mut sorted = [Aside::On; MOST];
+        let mut sorted = [Aside::On; K];
         for (aside, surface) in sorted.iter_mut().zip(self.surfaces.iter()) {
             if let Some((place, _)) = before.of(surface.course) {
                 *aside = asides[place];
             }
         }
-        let (distances, moves) = self.distances(at, x, memory);
-        let aside = self.aside_behind(x, &distances);
-        let (gradients, mut span) = (self.gradients.get(), Span::of_nothing());
-        let least: Each<T> = core::array::from_fn(|place| {
+        let Beyond { distances, rates } = &self.beyond(at, x, memory);
+        let aside = self.aside_behind(x, distances);
+        let (gradients, mut span) = (self.gradients(), Span::<N, K>::of_nothing());
+        let least: Each<T, K> = core::array::from_fn(|place| {
             let unit = unit(&gradients[place]).filter(|_| place < self.free);
             let rest = unit.and_then(|unit| span.add::<T>(&unit));
             let alone = rest.map_or(1.0, |rest| rest.norm());
             T::from_f64(BESIDE * reach * alone) * aside[place]
         });
-        let stays = sorted
-            .iter()
-            .take(self.free)
-            .any(|aside| matches!(aside, Aside::On));
-        let side = |place: usize| match sorted[place] {
-            Aside::Left(side, _) => side,
-            // Where it goes it does not come to it at once again.
-            Aside::Passed(rate) if stays => {
-                let mut ways = [rate, seen(distances[place])].into_iter();
-                ways.find(|way| *way != 0.0).map_or(0.0, f64::signum)
-            }
-            _ => 0.0,
-        };
         let soon = PLACES * T::EPSILON * at.time.magnitude();
-        let ways: Each<T> = core::array::from_fn(|place| {
-            if matches!(sorted[place], Aside::On) {
-                // What is put on it later is not to move the others any more.
-                return -distances[place];
-            }
-            let (side, way) = (T::from_f64(side(place)), distances[place]);
-            let (beyond, least) = (side * way, least[place]);
-            // It is not farther away than numbers tell, or times.
-            let is_near = match sorted[place] {
-                Aside::Left(_, rate) if seen(beyond) < 0.0 => {
-                    -seen(beyond) < seen(least).max(soon * rate.abs())
+        let ways: Each<T, K> = core::array::from_fn(|place| match sorted[place] {
+            // What is put on it later is not to move the others any more.
+            Aside::On => -distances[place],
+            Aside::Left(side, rate) => {
+                let (beyond, near) = (side * seen(distances[place]), seen(least[place]));
+                // It is not farther away than numbers tell, or times.
+                let is_near = match beyond < 0.0 {
+                    true => -beyond < near.max(soon * rate.abs()),
+                    false => beyond < near,
+                };
+                match is_near {
+                    true => T::from_f64(side) * least[place] - distances[place],
+                    false => T::from_f64(0.0),
                 }
-                Aside::Passed(_) => seen(beyond).abs() < seen(least),
-                _ => seen(beyond) < seen(least),
-            };
-            match is_near {
-                true => side * (least - beyond),
-                false => T::from_f64(0.0),
             }
+            Aside::Passed => T::from_f64(0.0),
         });
-        let mut moved = self.moved(x, moves.solve(ways));
+        let mut moved = self.moved(x, rates.solve(ways));
         if self.free < self.surfaces.count() {
             let rest = SVector::from_element(T::from_f64(0.0));
             let [[there, _], _] = self.told(at, [(&moved, &rest); 2], memory);
@@ -554,7 +498,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
                     Aside::Left(_, rate) => T::from_f64(time * rate) - distances[place],
                     _ => ways[place],
                 });
-                moved = self.moved(x, moves.solve(ways));
+                moved = self.moved(x, rates.solve(ways));
             }
         }
         match moved.iter().all(|it| it.magnitude().is_finite()) {
@@ -565,15 +509,15 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
 }
 
 /// What gradients make together.
-struct Span<const N: usize> {
-    basis: [SVector<f64, N>; MOST],
+struct Span<const N: usize, const K: usize> {
+    basis: [SVector<f64, N>; K],
     count: usize,
 }
 
-impl<const N: usize> Span<N> {
+impl<const N: usize, const K: usize> Span<N, K> {
     fn of_nothing() -> Self {
         Self {
-            basis: [SVector::zeros(); MOST],
+            basis: [SVector::zeros(); K],
             count: 0,
         }
     }

@@ -4,7 +4,6 @@ use nalgebra::{SMatrix, SVector};
 
 use super::super::jumps::least_jump;
 use super::super::seen;
-use super::super::surfaces::MOST;
 use super::choice::{Choice, chosen};
 use super::line::Line;
 use super::{Each, Moment, Sliding};
@@ -19,43 +18,49 @@ const BENT: f64 = 0.125;
 const PLACES: f64 = 8.0;
 
 /// What a model says on the sides of surfaces, along a line that crosses each.
-pub(super) struct Sides<T, const N: usize> {
-    line: Line<T, N>,
+pub(super) struct Sides<T, const N: usize, const K: usize> {
+    /// How many surfaces there are.
+    count: usize,
+    line: Line<T, N, K>,
     /// The derivative before all, and how much more it is behind each.
     base: SVector<T, N>,
-    pub(super) jumps: Each<SVector<T, N>>,
+    pub(super) jumps: Each<SVector<T, N>, K>,
     /// How fast the argument of each goes before all, and how much faster behind each.
-    first: Each<T>,
-    faster: SMatrix<T, MOST, MOST>,
+    first: Each<T, K>,
+    faster: Each<Each<T, K>, K>,
     /// The same of those that are free.
-    pub(super) rates: Factors<T>,
+    pub(super) rates: Factors<T, K>,
     /// Whether its own argument goes slower ahead of each, and by how much.
-    pub(super) leads_back: Each<bool>,
-    slower: Each<f64>,
+    pub(super) leads_back: Each<bool, K>,
+    slower: Each<f64, K>,
     /// Which part of the mean is behind each.
-    pub(super) parts: Each<T>,
+    pub(super) parts: Each<T, K>,
 }
 
-impl<T: Real, const N: usize> Sides<T, N> {
+impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     /// That of the mean.
     pub(super) fn derivative(&self) -> SVector<T, N> {
         SVector::from_fn(|row, _| {
-            let shares = self.jumps.iter().zip(&self.parts);
+            let shares = self.jumps.iter().zip(&self.parts).take(self.count);
             let shares = shares.map(|(jump, part)| *part * jump[row]);
             summed(core::iter::once(self.base[row]).chain(shares))
         })
     }
 
-    /// The mean of what there is on the sides of so many surfaces.
+    /// The mean of what there is on the sides.
     pub(super) fn mean<const R: usize, const C: usize>(
         &self,
-        count: usize,
         mut of: impl FnMut(&SVector<T, N>) -> SMatrix<T, R, C>,
     ) -> SMatrix<T, R, C> {
-        let [start, behind @ ..] = &self.line.states;
+        let Line {
+            start,
+            behind,
+            order,
+            ..
+        } = &self.line;
         let mut before = of(start);
         let mut mean = before;
-        for (state, place) in behind.iter().zip(&self.line.order).take(count) {
+        for (state, place) in behind.iter().zip(order).take(self.count) {
             let there = of(state);
             mean += (there - before).map(|jump| self.parts[*place] * jump);
             before = there;
@@ -75,11 +80,10 @@ impl<T: Real, const N: usize> Sides<T, N> {
     }
 
     /// How the motion is at each of so many surfaces, where some are not open.
-    pub(super) fn chosen(&self, known: &[Option<Choice>]) -> Option<Each<Choice>> {
+    pub(super) fn chosen(&self, known: &[Option<Choice>]) -> Option<Each<Choice, K>> {
         let forward = &self.line.forward;
         let first = core::array::from_fn(|row| forward[row] * seen(self.first[row]));
-        let faster =
-            SMatrix::from_fn(|row, column| forward[row] * seen(self.faster[(row, column)]));
+        let faster = SMatrix::from_fn(|row, column| forward[row] * seen(self.faster[column][row]));
         chosen((&first, &faster), known)
     }
 
@@ -117,38 +121,28 @@ impl<T: Real, const N: usize> Sides<T, N> {
     /// How fast the argument of a surface goes in the mean of these.
     pub(super) fn rate(&self, place: usize, choices: &[Choice]) -> f64 {
         let parts = choices.iter().enumerate();
-        let faster = parts.map(|(other, choice)| seen(self.faster[(place, other)]) * choice.part());
+        let faster = parts.map(|(other, choice)| seen(self.faster[other][place]) * choice.part());
         seen(self.first[place]) + faster.sum::<f64>()
     }
 
-    /// How states change that go across each surface alone.
-    pub(super) fn across(&self, count: usize) -> Each<SVector<T, N>> {
-        let zero = T::from_f64(0.0);
-        core::array::from_fn(|own| {
-            let mut right = [zero; MOST];
-            right[own] = T::from_f64(if own < count { 1.0 } else { 0.0 });
-            let parts = self.rates.solve(right);
-            let mut across = SVector::from_element(zero);
-            for (jump, part) in self.jumps.iter().zip(&parts) {
-                across += jump.map(|jump| *part * jump);
-            }
-            across
-        })
+    /// How states change that go across each of the first surfaces, which are free, alone.
+    pub(super) fn across(&self, free: usize) -> impl Iterator<Item = SVector<T, N>> {
+        (0..free).map(move |own| self.rates.dual(own, &self.jumps[..free]))
     }
 }
 
-impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
+impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I, N, K> {
     /// The arguments of all surfaces, beyond these, and how fast they change, at two states that change so.
     pub(super) fn told<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,
         places: [(&SVector<T, N>, &SVector<T, N>); 2],
         memory: &S::Memory,
-    ) -> [[Each<T>; 2]; 2]
+    ) -> [[Each<T, K>; 2]; 2]
     where
         S: System<T, N, M, P>,
     {
-        let mut told = [[[T::from_f64(0.0); MOST]; 2]; 2];
+        let mut told = [[[T::from_f64(0.0); K]; 2]; 2];
         let (mut number, mut memory) = (0, *memory);
         let [from, to] = places.map(|(x, slope)| (at.time, [x, slope], [&at.input, &at.rate]));
         self.system.courses(from, to, &mut memory, |course| {
@@ -162,7 +156,12 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         told
     }
 
-    /// How the argument of each surface changes with each state here.
+    /// How the argument of each surface changes with each state, where the motion has come to.
+    pub(super) fn gradients(&self) -> Each<SVector<T, N>, K> {
+        core::array::from_fn(|place| self.gradients[place].get())
+    }
+
+    /// Asks that here.
     pub(super) fn look<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,
@@ -171,14 +170,16 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     ) where
         S: System<T, N, M, P>,
     {
-        let mut gradients = self.gradients.get();
+        let mut gradients = self.gradients();
         for state in 0..N {
             let rates = self.by_state(state, (at, x), memory);
             for (gradient, rate) in gradients.iter_mut().zip(&rates) {
                 gradient[state] = *rate;
             }
         }
-        self.gradients.set(gradients);
+        for (known, gradient) in self.gradients.iter().zip(gradients) {
+            known.set(gradient);
+        }
     }
 
     /// How the argument of each surface changes with a state.
@@ -187,7 +188,7 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         state: usize,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
         memory: &S::Memory,
-    ) -> SVector<T, MOST>
+    ) -> SVector<T, K>
     where
         S: System<T, N, M, P>,
     {
@@ -199,72 +200,69 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
     }
 
     /// What the model says on the sides of the surfaces, so many times as far from these as need be.
-    // Of all that asks for it there is one copy: it is much code, and none that a run waits for.
+    // Of all that asks for it there is one copy: it is much code.
     #[inline(never)]
     pub(super) fn sides<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,
-        (x, factor): (&SVector<T, N>, f64),
+        place: (&SVector<T, N>, f64),
         memory: &mut S::Memory,
-    ) -> Sides<T, N>
+    ) -> Sides<T, N, K>
     where
         S: System<T, N, M, P>,
     {
         let zero = T::from_f64(0.0);
         let (count, free) = (self.surfaces.count(), self.free);
-        let line = self.line(at, (x, factor), memory);
-        let base = (self.system).derivative(at.time, &line.states[0], &at.input, memory);
-        let mut slope = base;
-        let mut jumps = [SVector::from_element(zero); MOST];
-        let mut first = [zero; MOST];
-        let mut faster = SMatrix::from_element(zero);
-        let (mut leads_back, mut slower) = ([false; MOST], [0.0; MOST]);
+        let line = self.line(at, place, memory);
+        let base = (self.system).derivative(at.time, &line.start, &at.input, memory);
+        let mut sides = Sides {
+            count,
+            line,
+            base,
+            jumps: [SVector::from_element(zero); K],
+            first: [zero; K],
+            faster: [[zero; K]; K],
+            rates: Factors::One(zero),
+            leads_back: [false; K],
+            slower: [0.0; K],
+            parts: self.shares,
+        };
+        let (mut before, mut slope) = (&sides.line.start, base);
         let jump = least_jump::<T>();
-        let gradients = self.gradients.get();
-        for (number, own) in line.order.iter().copied().enumerate().take(count) {
-            let [before, behind] = [&line.states[number], &line.states[1 + number]];
+        let way = sides.line.order.iter().zip(&sides.line.behind);
+        for (number, (own, behind)) in way.enumerate().take(count) {
+            let own = *own;
             let next = (self.system).derivative(at.time, behind, &at.input, memory);
-            let [[_, rates], [_, rates_behind]] =
-                self.told(at, [(before, &slope), (behind, &next)], memory);
+            let places = [(before, &slope), (behind, &next)];
+            let [[_, rates], [_, rates_behind]] = self.told(at, places, memory);
             if number == 0 {
-                first = rates;
+                sides.first = rates;
             }
-            jumps[own] = next - slope;
-            for other in 0..count {
-                faster[(other, own)] = rates_behind[other] - rates[other];
-            }
-            let terms = gradients[own].iter().zip(slope.iter().zip(&next));
+            sides.jumps[own] = next - slope;
+            let faster: Each<T, K> =
+                core::array::from_fn(|other| rates_behind[other] - rates[other]);
+            sides.slower[own] = -sides.line.forward[own] * seen(faster[own]);
+            sides.faster[own] = faster;
+            let gradient = self.gradients[own].get();
+            let terms = gradient.iter().zip(slope.iter().zip(&next));
             let size = terms.fold(0.0, |size, (by, (a, b))| {
                 size + by.magnitude() * (a.magnitude() + b.magnitude())
             });
-            slower[own] = -line.forward[own] * seen(faster[(own, own)]);
-            leads_back[own] = slower[own] > jump * size;
-            slope = next;
+            sides.leads_back[own] = sides.slower[own] > jump * size;
+            (before, slope) = (behind, next);
         }
         self.evaluations
             .set(self.evaluations.get() + 1 + count as u64);
-        let rates = Factors::of(&faster, free);
-        let mut shares = self.shares;
-        for place in (free..count).filter(|place| line.forward[*place] < 0.0) {
-            shares[place] = T::from_f64(1.0) - shares[place];
+        sides.rates = Factors::of(free, |own| sides.faster[own]);
+        for place in (free..count).filter(|place| sides.line.forward[*place] < 0.0) {
+            sides.parts[place] = T::from_f64(1.0) - sides.parts[place];
         }
         let right = core::array::from_fn(|row| {
-            let bound = (free..count).map(|place| shares[place] * faster[(row, place)]);
-            bound.fold(-first[row], |rate, by| rate - by)
+            let bound = (free..count).map(|place| sides.parts[place] * sides.faster[place][row]);
+            bound.fold(-sides.first[row], |rate, by| rate - by)
         });
-        let mut parts = rates.solve(right);
-        parts[free..].copy_from_slice(&shares[free..]);
-        Sides {
-            line,
-            base,
-            jumps,
-            first,
-            faster,
-            rates,
-            leads_back,
-            slower,
-            parts,
-        }
+        sides.parts[..free].copy_from_slice(&sides.rates.solve(right)[..free]);
+        sides
     }
 }
 
@@ -288,58 +286,71 @@ pub(super) fn summed<T: Real>(terms: impl Iterator<Item = T> + Clone) -> T {
 }
 
 /// The shortest ways across surfaces of these gradients, each along the others.
-pub(super) fn shortest<T: Real, const N: usize>(
-    gradients: &Each<SVector<T, N>>,
-    count: usize,
-) -> Each<SVector<T, N>> {
+pub(super) fn shortest<T: Real, const N: usize, const K: usize>(
+    gradients: &[SVector<T, N>],
+) -> impl Iterator<Item = SVector<T, N>> {
     let zero = T::from_f64(0.0);
-    let products = SMatrix::from_fn(|row: usize, column: usize| {
-        let pairs = gradients[row].iter().zip(&gradients[column]);
-        pairs.fold(zero, |sum, (a, b)| a.multiply_add(*b, sum))
-    });
-    let products = Factors::of(&products, count);
-    core::array::from_fn(|own| {
-        let mut right = [zero; MOST];
-        right[own] = T::from_f64(if own < count { 1.0 } else { 0.0 });
-        let parts = products.solve(right);
-        let mut way = SVector::from_element(zero);
-        for (gradient, part) in gradients.iter().zip(&parts) {
-            way += gradient.map(|by| *part * by);
+    let factors = Factors::<T, K>::of(gradients.len(), |column| {
+        let mut products = [zero; K];
+        for (product, gradient) in products.iter_mut().zip(gradients) {
+            let pairs = gradient.iter().zip(&gradients[column]);
+            *product = pairs.fold(zero, |sum, (a, b)| a.multiply_add(*b, sum));
         }
-        way
-    })
+        products
+    });
+    (0..gradients.len()).map(move |own| factors.dual(own, gradients))
 }
 
 /// Factors of a matrix with a row for each surface, which are few most of the time.
-pub(super) enum Factors<T> {
+pub(super) enum Factors<T, const K: usize> {
     One(T),
     Few(Regular<T, FEW>),
-    All(Regular<T, MOST>),
+    All(Regular<T, K>),
 }
 
-impl<T: Real> Factors<T> {
-    /// Of the first rows and columns.
-    pub(super) fn of(matrix: &SMatrix<T, MOST, MOST>, count: usize) -> Self {
+impl<T: Real, const K: usize> Factors<T, K> {
+    /// Of so many rows and columns.
+    pub(super) fn of(count: usize, mut column: impl FnMut(usize) -> Each<T, K>) -> Self {
         match count {
-            1 => Self::One(match matrix[(0, 0)].magnitude() {
-                // Where nothing jumps any more there is no mean.
-                0.0 => T::from_f64(0.0),
-                _ => T::from_f64(1.0) / matrix[(0, 0)],
-            }),
-            ..=FEW => Self::Few(Regular::new(part(matrix, count))),
-            _ => Self::All(Regular::new(part(matrix, count))),
+            1 => {
+                let alone = column(0)[0];
+                Self::One(match alone.magnitude() {
+                    // Where nothing jumps any more there is no mean.
+                    0.0 => T::from_f64(0.0),
+                    _ => T::from_f64(1.0) / alone,
+                })
+            }
+            ..=FEW => Self::Few(Regular::new(square(count, column))),
+            _ => Self::All(Regular::new(square(count, column))),
         }
     }
 
-    pub(super) fn solve(&self, mut right: Each<T>) -> Each<T> {
+    /// The sum of vectors, one for each row, by a column of the inverse.
+    fn dual<const N: usize>(&self, column: usize, vectors: &[SVector<T, N>]) -> SVector<T, N> {
+        let zero = T::from_f64(0.0);
+        let mut right = [zero; K];
+        right[column] = T::from_f64(1.0);
+        let parts = self.solve(right);
+        let terms = vectors.iter().zip(&parts);
+        terms.fold(SVector::from_element(zero), |sum, (vector, part)| {
+            sum + vector.map(|it| *part * it)
+        })
+    }
+
+    pub(super) fn solve(&self, mut right: Each<T, K>) -> Each<T, K> {
         match self {
             Self::One(reciprocal) => {
                 right[0] = *reciprocal * right[0];
                 right
             }
             Self::Few(factors) => {
-                let few = factors.solution(&SVector::from_fn(|row, _| right[row]));
-                right[..FEW].copy_from_slice(few.as_slice());
+                let mut few = SVector::<T, FEW>::from_element(T::from_f64(0.0));
+                for (few, right) in few.iter_mut().zip(&right) {
+                    *few = *right;
+                }
+                for (right, few) in right.iter_mut().zip(&factors.solution(&few)) {
+                    *right = *few;
+                }
                 right
             }
             Self::All(factors) => factors.solution(&SVector::from(right)).into(),
@@ -347,13 +358,17 @@ impl<T: Real> Factors<T> {
     }
 }
 
-/// The first rows and columns of a matrix, in one that leaves all others as they are.
-fn part<T: Real, const K: usize>(
-    matrix: &SMatrix<T, MOST, MOST>,
+/// A matrix of so many rows and columns, in one that leaves all others as they are.
+fn square<T: Real, const K: usize, const R: usize>(
     count: usize,
-) -> SMatrix<T, K, K> {
-    SMatrix::from_fn(|row, column| match row.max(column) < count {
-        true => matrix[(row, column)],
-        false => T::from_f64(if row == column { 1.0 } else { 0.0 }),
-    })
+    mut column: impl FnMut(usize) -> Each<T, K>,
+) -> SMatrix<T, R, R> {
+    let mut matrix = SMatrix::from_fn(|row, own| T::from_f64(if row == own { 1.0 } else { 0.0 }));
+    for own in 0..count {
+        let there = column(own);
+        for (row, by) in there.into_iter().enumerate().take(count) {
+            matrix[(row, own)] = by;
+        }
+    }
+    matrix
 }

@@ -3,14 +3,13 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::method::along;
-use super::super::surfaces::MOST;
 use super::sides::summed;
 use super::{Each, Moment, Sliding};
 use crate::input::quotient;
 use crate::{Course, Input, Meta, Power, Real, System, Trouble};
 
-impl<T, S, I, const N: usize, const M: usize, const P: usize> System<T, N, M, P>
-    for Sliding<'_, T, S, I, N>
+impl<T, S, I, const N: usize, const M: usize, const P: usize, const K: usize> System<T, N, M, P>
+    for Sliding<'_, T, S, I, N, K>
 where
     T: Real,
     S: System<T, N, M, P>,
@@ -19,7 +18,7 @@ where
     const META: &'static Meta = S::META;
     const AUTONOMOUS: bool = S::AUTONOMOUS;
     const SEEKS_CHANGES: bool = S::SEEKS_CHANGES;
-    const HAS_COURSES: bool = true;
+    const COURSES: usize = S::COURSES;
     const HAS_ATTITUDES: bool = S::HAS_ATTITUDES;
 
     type Memory = S::Memory;
@@ -57,9 +56,7 @@ where
         let at = self.moment(t, *u);
         let mut beside = |factor| {
             let sides = self.sides(&at, (x, factor), memory);
-            sides.mean(self.surfaces.count(), |x| {
-                self.system.output(t, x, u, memory)
-            })
+            sides.mean(|x| self.system.output(t, x, u, memory))
         };
         // What goes on steadily over a threshold is off by how far beside it is asked, twice as far by twice as much.
         let [near, far] = [1.0, 2.0].map(&mut beside);
@@ -80,19 +77,14 @@ where
             |slope, memory| self.turning(t, (x, slope), memory),
         );
         // The model is asked on the surfaces, wherever beside them the state is.
-        for (across, gradient) in self
-            .across
-            .get()
-            .iter()
-            .zip(&self.gradients.get())
-            .take(self.free)
-        {
+        let surfaces = self.across.iter().zip(&self.gradients).take(self.free);
+        for (across, gradient) in surfaces.map(|(across, by)| (across.get(), by.get())) {
             let zero = SVector::from_element(T::from_f64(0.0));
-            let columns = jacobian.column_iter().zip(across);
+            let columns = jacobian.column_iter().zip(&across);
             let change = columns.fold(zero, |sum: SVector<T, N>, (column, way)| {
                 sum.zip_map(&column, |sum, column| way.multiply_add(column, sum))
             });
-            for (mut column, by) in jacobian.column_iter_mut().zip(gradient) {
+            for (mut column, by) in jacobian.column_iter_mut().zip(&gradient) {
                 column.zip_apply(&change, |column, change| *column -= *by * change);
             }
         }
@@ -110,7 +102,7 @@ where
             (t, x, u),
             memory,
             |x, memory| self.system.jacobian_input(t, x, u, memory),
-            |_, _| [SVector::from_element(T::from_f64(0.0)); MOST],
+            |_, _| [SVector::from_element(T::from_f64(0.0)); K],
         )
     }
 
@@ -234,7 +226,7 @@ where
     }
 }
 
-impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
+impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I, N, K> {
     /// A Jacobian along the surfaces, from those on their sides: what would lead away from a surface, which turns so under a motion with
     /// this slope, is taken up by its part of the mean.
     fn along<const M: usize, const P: usize, const C: usize>(
@@ -242,18 +234,17 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         (t, x, u): (T, &SVector<T, N>, &SVector<T, M>),
         memory: &mut S::Memory,
         mut of: impl FnMut(&SVector<T, N>, &mut S::Memory) -> SMatrix<T, N, C>,
-        turning: impl FnOnce(&SVector<T, N>, &S::Memory) -> Each<SVector<T, C>>,
+        turning: impl FnOnce(&SVector<T, N>, &S::Memory) -> Each<SVector<T, C>, K>,
     ) -> SMatrix<T, N, C>
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let count = self.surfaces.count();
         let sides = self.sides(&self.moment(t, *u), (x, 1.0), memory);
-        let mut jacobian = sides.mean(count, |x| of(x, memory));
-        let (gradients, turning) = (self.gradients.get(), turning(&sides.derivative(), memory));
+        let mut jacobian = sides.mean(|x| of(x, memory));
+        let (gradients, turning) = (self.gradients(), turning(&sides.derivative(), memory));
         for (place, mut column) in jacobian.column_iter_mut().enumerate() {
-            let mut away = [T::from_f64(0.0); MOST];
+            let mut away = [T::from_f64(0.0); K];
             let turning = gradients.iter().zip(&turning).take(self.free);
             for (away, (gradient, turning)) in away.iter_mut().zip(turning) {
                 let pairs = gradient.iter().zip(column.iter());
@@ -274,12 +265,12 @@ impl<T: Real, S, I: ?Sized, const N: usize> Sliding<'_, T, S, I, N> {
         t: T,
         (x, slope): (&SVector<T, N>, &SVector<T, N>),
         memory: &S::Memory,
-    ) -> Each<SVector<T, N>>
+    ) -> Each<SVector<T, N>, K>
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let mut turning = [SVector::from_element(T::from_f64(0.0)); MOST];
+        let mut turning = [SVector::from_element(T::from_f64(0.0)); K];
         let by_state = |state: usize, time: T| {
             let (way, at) = (
                 time - t,

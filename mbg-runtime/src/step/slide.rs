@@ -255,7 +255,7 @@ where
         );
         let known = (&mut memory, &mut self.statistics.evaluations);
         let measure = tolerance.around(&here.state);
-        let near = (near, &measure);
+        let near = (&near, &measure);
         let rest = for_surfaces!(S::COURSES, K => {
             Sliding::<_, _, _, N, K>::rest(model, times, here, near, known)
         });
@@ -290,7 +290,8 @@ where
         let place = (here.time, &mut x);
         let known = (&mut memory, &mut self.statistics.evaluations);
         for_surfaces!(S::COURSES, K => {
-            Sliding::<_, _, _, N, K>::settled(model, times, place, *surfaces, known).is_some()
+            let surfaces = Surfaces::<T, K>::NONE.with(surfaces);
+            Sliding::settled(model, times, place, surfaces, known).is_some()
         })
     }
 }
@@ -383,13 +384,14 @@ pub(super) trait Walk<T: Real, const N: usize> {
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (mut here, end): (Place<T, N>, T),
-        (mut surfaces, settled): (Surfaces<T>, &mut Settled<T>),
+        (surfaces, settled): (Surfaces<T>, &mut Settled<T>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Place<T, N>>, Stopped>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
+        let mut surfaces = Surfaces::<T, K>::NONE.with(&surfaces);
         while less(here.0, end) {
             settled.again(here.0)?;
             let model = (problem.system, problem.input);
@@ -397,8 +399,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let mut memory = problem.memory;
             let (t, x) = (here.0, &mut here.1);
             let known = (&mut memory, &mut problem.statistics.evaluations);
-            let settled = Sliding::<_, _, _, N, K>::settled(model, times, (t, x), surfaces, known);
-            let Some(sliding) = settled else {
+            let Some(sliding) = Sliding::settled(model, times, (t, x), surfaces, known) else {
                 break;
             };
             let asked = core::mem::replace(&mut surfaces, sliding.all());
@@ -407,7 +408,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let holds = |(t, x): Place<T, N>, memory| less(T::from_f64(0.0), hold(t, &x, memory));
             if !holds(here, memory) {
                 problem.statistics.evaluations += sliding.evaluations.get();
-                surfaces = surfaces.with(&problem.at_start(here).unwrap_or(Surfaces::NONE));
+                surfaces = surfaces.with(&problem.at_start(here).unwrap_or(Surfaces::<_>::NONE));
                 continue;
             }
             let (mut along, mut left) = (problem.of(&sliding), None);
@@ -422,7 +423,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     step.cut(time, there);
                     left = Some((time, there));
                 }
-                step.surfaces = Some(surfaces);
+                step.surfaces = Some(Surfaces::NONE.with(&surfaces));
                 let goes_on = observer(step);
                 sliding.heed(seen(step.end() - step.start()));
                 match goes_on {
@@ -449,7 +450,8 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     }
                 }
                 (Walked::Left, Some(place)) => {
-                    surfaces = surfaces.with(&problem.at_start(place).unwrap_or(Surfaces::NONE));
+                    surfaces =
+                        surfaces.with(&problem.at_start(place).unwrap_or(Surfaces::<_>::NONE));
                     here = place;
                 }
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),

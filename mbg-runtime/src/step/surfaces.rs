@@ -21,14 +21,14 @@ pub(super) struct Surface<T> {
     pub(super) level: T,
 }
 
-/// Thresholds at which a motion stays, each of an argument of its own.
+/// Thresholds at which a motion stays, each of an argument of its own, with room for so many.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Surfaces<T> {
-    list: [Option<Surface<T>>; MOST],
+pub(super) struct Surfaces<T, const K: usize = MOST> {
+    list: [Option<Surface<T>>; K],
 }
 
-impl<T: Real> Surfaces<T> {
-    pub(super) const NONE: Self = Self { list: [None; MOST] };
+impl<T: Real, const K: usize> Surfaces<T, K> {
+    pub(super) const NONE: Self = Self { list: [None; K] };
 
     pub(super) fn one(surface: Surface<T>) -> Self {
         let mut one = Self::NONE;
@@ -60,13 +60,13 @@ impl<T: Real> Surfaces<T> {
     }
 
     /// These and others.
-    pub(super) fn with(mut self, others: &Self) -> Self {
+    pub(super) fn with<const J: usize>(mut self, others: &Surfaces<T, J>) -> Self {
         others.iter().for_each(|other| self.add(*other));
         self
     }
 
     /// These without others.
-    pub(super) fn without(&self, others: &Self) -> Self {
+    pub(super) fn without<const J: usize>(&self, others: &Surfaces<T, J>) -> Self {
         let mut without = Self::NONE;
         let left = self.iter().filter(|it| others.of(it.course).is_none());
         left.for_each(|it| without.add(*it));
@@ -175,7 +175,7 @@ mod tests {
             level: course as f64,
         };
         let of = |courses: &[usize]| {
-            let mut surfaces = Surfaces::NONE;
+            let mut surfaces = Surfaces::<_>::NONE;
             courses
                 .iter()
                 .for_each(|course| surfaces.add(surface(*course)));

@@ -21,7 +21,7 @@ const PART: f64 = 0.25;
 /// One for each surface.
 type Each<V, const K: usize> = [V; K];
 /// Surfaces on which a motion is by others, and how each is like another one.
-type Along<T, const K: usize> = (Surfaces<T>, Each<Like, K>);
+type Along<T, const K: usize> = (Surfaces<T, K>, Each<Like, K>);
 
 /// How a surface is another one, but for a factor.
 #[derive(Clone, Copy)]
@@ -81,7 +81,7 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize, const K: usize> {
     /// For how long the input is smooth, about.
     ahead: Cell<f64>,
     /// First those that are free: no argument of these is told by others. Behind them those whose arguments are, at places of their own.
-    pub(super) surfaces: Surfaces<T>,
+    pub(super) surfaces: Surfaces<T, K>,
     free: usize,
     /// Which part of the mean is above each of the latter: what others have goes by that.
     shares: Each<T, K>,
@@ -109,7 +109,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     fn of(
         (system, input): (&'a S, &'a I),
         (since, inside, whole): (T, (T, T), f64),
-        surfaces: Surfaces<T>,
+        surfaces: Surfaces<T, K>,
     ) -> Self {
         let zero = T::from_f64(0.0);
         let none = || core::array::from_fn(|_| Cell::new(SVector::from_element(zero)));
@@ -147,7 +147,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     }
 
     /// All at which the motion stays.
-    pub(super) fn all(&self) -> Surfaces<T> {
+    pub(super) fn all(&self) -> Surfaces<T, K> {
         self.surfaces.with(&self.twins.0)
     }
 
@@ -250,7 +250,8 @@ where
     let (mut x, u) = (*x, input.at(t));
     let times = (t, (t, t), whole);
     let known = (&mut *memory, &mut 0);
-    match Sliding::<_, _, _, N, K>::settled((system, input), times, (t, &mut x), surfaces, known) {
+    let surfaces = Surfaces::<T, K>::NONE.with(&surfaces);
+    match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
         Some(sliding) => sliding.output(t, &x, &u, memory),
         None => system.output(t, &x, &u, memory),
     }

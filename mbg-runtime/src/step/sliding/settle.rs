@@ -71,7 +71,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         (system, input): (&'a S, &'a I),
         (since, inside, whole): (T, (T, T), f64),
         (t, x): (T, &mut SVector<T, N>),
-        surfaces: Surfaces<T>,
+        surfaces: Surfaces<T, K>,
         (memory, evaluations): (&mut S::Memory, &mut u64),
     ) -> Option<Self>
     where
@@ -118,7 +118,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         model: (&'a S, &'a I),
         times: (T, (T, T), f64),
         here: &Point<T, N>,
-        (surfaces, measure): (Surfaces<T>, &Measure<N>),
+        (surfaces, measure): (&Surfaces<T>, &Measure<N>),
         (memory, evaluations): (&mut S::Memory, &mut u64),
     ) -> Option<Rest<T, N>>
     where
@@ -127,7 +127,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     {
         let x = &here.state;
         let is_near = |there: &SVector<T, N>| measure.norm(&(there - x)) <= HELD_UP;
-        let mut sliding = Self::of(model, times, surfaces);
+        let mut sliding = Self::of(model, times, Surfaces::NONE);
         let at = sliding.on_piece(here.time);
         let mut near = Surfaces::NONE;
         let mut ahead = 0.0_f64;
@@ -151,7 +151,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let state = sliding.landed(here.time, x, memory);
         (is_root && is_near(&state)).then(|| Rest {
             state,
-            surfaces: sliding.all(),
+            surfaces: Surfaces::NONE.with(&sliding.all()),
             ahead: SLOWER * ahead,
         })
     }
@@ -239,7 +239,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         I: Input<T, M>,
     {
         let reach = self.line(at, (x, 1.0), memory).reach;
-        let rest = self.all().without(&Surfaces::one(passed));
+        let rest = self.all().without(&Surfaces::<T, K>::one(passed));
         let mut asides = [Aside::On; K];
         if let Some((place, _)) = self.surfaces.of(passed.course) {
             asides[place] = Aside::Passed;
@@ -255,7 +255,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         (at, whole): (&Moment<T, M>, f64),
         x: &SVector<T, N>,
         memory: &S::Memory,
-    ) -> Surfaces<T>
+    ) -> Surfaces<T, K>
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
@@ -302,7 +302,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     /// Puts surfaces in the order in which they are minded: those that are free first, the first of them first.
     fn arrange<const M: usize, const P: usize>(
         &mut self,
-        surfaces: Surfaces<T>,
+        surfaces: Surfaces<T, K>,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
         memory: &S::Memory,
     ) where
@@ -313,7 +313,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         self.look(at, x, memory);
         let gradients = self.gradients();
         let (mut span, mut units) = (Span::<N, K>::of_nothing(), [SVector::zeros(); K]);
-        let (mut free, mut bound, mut twins) = (Surfaces::NONE, Surfaces::NONE, Surfaces::NONE);
+        let [mut free, mut bound, mut twins] = [Surfaces::NONE; 3];
         let mut likes = [Like::NOTHING; K];
         for (place, surface) in surfaces.iter().enumerate() {
             let Some(unit) = unit(&gradients[place]) else {
@@ -392,7 +392,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     }
 
     /// With those alone at which the motion stays.
-    fn only(&self, stays: impl Fn(&usize) -> bool) -> Surfaces<T> {
+    fn only(&self, stays: impl Fn(&usize) -> bool) -> Surfaces<T, K> {
         let mut only = self.twins.0;
         let staying = self.surfaces.iter().enumerate();
         for (_, surface) in staying.filter(|(place, _)| stays(place)) {

@@ -235,6 +235,10 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// many thresholds a motion may stay at once, but for those beyond sixteen.
     const COURSES: usize = 0;
 
+    /// Whether one of these arguments goes as an input does. If none does, runs do not work out how fast inputs change, and give zeros
+    /// in the place of that.
+    const COURSES_FOLLOW_INPUTS: bool = true;
+
     /// Whether it tells of any, as [`COURSES`](Self::COURSES) has it.
     const HAS_COURSES: bool = Self::COURSES > 0;
 

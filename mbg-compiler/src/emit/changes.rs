@@ -7,6 +7,7 @@ use super::routine::{Setting, lines};
 use super::system::{body, memory};
 use crate::changes::Kind;
 use crate::compile::{Compiled, Routines};
+use crate::symbolic::Symbol;
 
 /// All of them that a model has.
 pub(super) fn changes(compiled: &Compiled) -> TokenStream {
@@ -35,11 +36,22 @@ fn next_change(compiled: &Compiled) -> Option<TokenStream> {
 fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let [states, inputs] = [compiled.states.len(), compiled.model.inputs.len()];
     let [n, m, both] = [states, inputs, states + inputs].map(Literal::usize_suffixed);
-    let joined = (inputs > 0)
-        .then(|| quote!(let slopes: [T; #both] = mbg_runtime::__private::joined(slopes, rates);));
+    let routine = &compiled.program.routines[Routines::THRESHOLDS];
+    let mut rates = (states..states + inputs).map(Symbol::Slope);
+    let (follow, joined) = match rates.any(|rate| routine.reads(rate)) {
+        true => (
+            None,
+            Some(quote!(let slopes: [T; #both] = mbg_runtime::__private::joined(slopes, rates);)),
+        ),
+        false => (
+            Some(quote!(
+                const COURSES_FOLLOW_INPUTS: ::core::primitive::bool = false;
+            )),
+            None,
+        ),
+    };
     let memory = memory(compiled);
     let groups = Literal::usize_suffixed(compiled.thresholds.len());
-    let routine = &compiled.program.routines[Routines::THRESHOLDS];
     let (steps, results) = lines(compiled, routine, Setting::Method);
     let mut rest = &results[..];
     let mut arguments = Vec::new();
@@ -68,6 +80,7 @@ fn courses(compiled: &Compiled) -> Option<TokenStream> {
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
             const COURSES: ::core::primitive::usize = #groups;
+            #follow
             fn courses(
                 &self, from: #point, to: #point, memory: &mut #memory,
                 mut each: impl ::core::ops::FnMut(mbg_runtime::Course<'_, T>),

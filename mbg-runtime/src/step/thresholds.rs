@@ -150,9 +150,9 @@ where
         );
     }
 
-    /// How fast the input changes, which is smooth over so much time, or a small part of the run.
+    /// How fast the input changes, which is smooth over so much time, or a small part of the run; if any argument goes by that.
     fn input_rate(&self, time: T, lasting: T) -> SVector<T, M> {
-        if M == 0 || self.input.is_constant_between_jumps() {
+        if M == 0 || !S::COURSES_FOLLOW_INPUTS || self.input.is_constant_between_jumps() {
             return SVector::from_element(T::from_f64(0.0));
         }
         let ahead = seen(lasting).max(SHORT * self.whole);

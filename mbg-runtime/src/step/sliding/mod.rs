@@ -97,7 +97,7 @@ pub(super) struct Sliding<'a, T, S, I: ?Sized, const N: usize, const K: usize> {
     pub(super) evaluations: Cell<u64>,
 }
 
-/// A time with the input, and how fast that changes.
+/// A time with the input, and how fast that changes, if arguments go by that.
 struct Moment<T, const M: usize> {
     time: T,
     input: SVector<T, M>,
@@ -166,8 +166,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     }
 
     /// The nearest time on the present piece.
-    fn on_piece<const M: usize>(&self, t: T) -> Moment<T, M>
+    fn on_piece<const M: usize, const P: usize>(&self, t: T) -> Moment<T, M>
     where
+        S: System<T, N, M, P>,
         I: Input<T, M>,
     {
         let time = t.max(self.inside.0).min(self.inside.1);
@@ -175,11 +176,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     }
 
     /// A time with this input.
-    fn moment<const M: usize>(&self, time: T, input: SVector<T, M>) -> Moment<T, M>
+    fn moment<const M: usize, const P: usize>(&self, time: T, input: SVector<T, M>) -> Moment<T, M>
     where
+        S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let rate = if self.input.is_constant_between_jumps() {
+        let rate = if !S::COURSES_FOLLOW_INPUTS || self.input.is_constant_between_jumps() {
             SVector::from_element(T::from_f64(0.0))
         } else {
             let ahead = T::from_f64(self.ahead.get());

@@ -19,6 +19,7 @@ where
     const AUTONOMOUS: bool = S::AUTONOMOUS;
     const SEEKS_CHANGES: bool = S::SEEKS_CHANGES;
     const COURSES: usize = S::COURSES;
+    const COURSES_FOLLOW_INPUTS: bool = S::COURSES_FOLLOW_INPUTS;
     const HAS_ATTITUDES: bool = S::HAS_ATTITUDES;
 
     type Memory = S::Memory;

@@ -32,11 +32,28 @@ mbg! {
     }
 }
 
+mbg! {
+    /// The same motor with dry friction.
+    model Rubbing {
+        param inertia: kg*m^2 = 1e-3;
+        param stiffness: N*m/rad = 5.0;
+        param friction: N*m = 0.05;
+        input torque: N*m;
+        1 shaft {
+            I rotor { inertia: inertia }
+            C spring { stiffness: stiffness }
+            R bearing { effort: friction * sign(f) }
+            Se drive { effort: torque }
+        }
+        output angle: rad = spring.q;
+    }
+}
+
 type State = SVector<f32, 2>;
 
 /// Runs over a millisecond, and until the spring is at rest.
 #[inline(never)]
-fn run(model: &Motor<f32>, x: State, solver: impl Integrator<2>) -> State {
+fn run(model: &impl System<f32, 2, 1, 1>, x: State, solver: impl Integrator<2>) -> State {
     let input = Constant(black_box(SVector::from([0.1])));
     let mut last = x;
     let ran = solver.integrate(model, &input, 0.0, 1e-3, x, |step| last = *step.state());
@@ -70,6 +87,10 @@ extern "C" fn start() -> ! {
         ImplicitMidpoint::default()
     );
     x = run(&model, x, Auto::new(1e-4, 1e-5));
+    let Ok(model) = Rubbing::<f32>::new(RubbingParameters::default()) else {
+        machine::exit(false);
+    };
+    x = run(&model, x, Fixed::new(Rk4, 1e-4));
     black_box(x);
     machine::exit(true)
 }

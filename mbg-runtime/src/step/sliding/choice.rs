@@ -41,20 +41,21 @@ impl Choice {
 /// if what surfaces make different are losses (a P-matrix); of those that violate it the first one changes (Murty, *Linear
 /// Complementarity, Linear and Nonlinear Programming*, Heldermann 1988, §4.2; with bounds on both sides by the same induction).
 pub(super) fn chosen<const K: usize>(
-    (first, faster): (&Each<f64, K>, &SMatrix<f64, K, K>),
-    known: &[Option<Choice>],
+    (first, faster): (&Each<f64, K>, &Each<Each<f64, K>, K>),
+    count: usize,
+    known: &Each<Option<Choice>, K>,
 ) -> Option<Each<Choice, K>> {
-    let mut choices = [Choice::Stays(0.5); K];
-    for (choice, known) in choices.iter_mut().zip(known) {
+    let mut choices = Each::all(Choice::Stays(0.5));
+    for (choice, known) in choices.iter_mut().zip(known).take(count) {
         *choice = known.unwrap_or(*choice);
     }
     // By how much slower each is behind itself.
-    let own = |row: usize| -faster[(row, row)];
+    let own = |row: usize| -faster[row][row];
     let slower = |row: usize, column: usize| {
         let even = if row == column { EVEN } else { 0.0 };
-        even - faster[(row, column)] / own(row)
+        even - faster[column][row] / own(row)
     };
-    let is_open = |place: usize| known.get(place).is_some_and(Option::is_none);
+    let is_open = |place: usize| place < count && known[place].is_none();
     for _ in 0..TURNS {
         let stays = |place: usize| is_open(place) && matches!(choices[place], Choice::Stays(_));
         let matrix =
@@ -64,7 +65,7 @@ pub(super) fn chosen<const K: usize>(
             });
         // How fast each still goes ahead with the parts of those that do not stay, beside what slows it.
         let open = |row: usize| {
-            let others = (0..known.len()).filter(|other| !stays(*other));
+            let others = (0..count).filter(|other| !stays(*other));
             let by_others: f64 = others
                 .map(|other| slower(row, other) * choices[other].part())
                 .sum();
@@ -74,16 +75,17 @@ pub(super) fn chosen<const K: usize>(
             true => open(row),
             false => 0.0,
         });
-        let parts = Regular::new(matrix).solution(&right);
+        let solution = Regular::new(matrix).solution(&right);
+        let parts = Each::<f64, K>::of(|place| solution[place]);
         if parts.iter().any(|part| !part.is_finite()) {
             return None;
         }
         let rate = |row: usize| {
-            let staying = (0..known.len()).filter(|other| stays(*other));
+            let staying = (0..count).filter(|other| stays(*other));
             let by_those: f64 = staying.map(|other| slower(row, other) * parts[other]).sum();
             open(row) - by_those
         };
-        let change = (0..known.len())
+        let change = (0..count)
             .filter(|place| is_open(*place))
             .find_map(|place| {
                 let there = match choices[place] {
@@ -98,7 +100,7 @@ pub(super) fn chosen<const K: usize>(
         match change {
             Some((place, there)) => choices[place] = there,
             None => {
-                let staying: Each<bool, K> = core::array::from_fn(stays);
+                let staying: Each<bool, K> = Each::of(stays);
                 for (place, choice) in choices.iter_mut().enumerate() {
                     if staying[place] {
                         *choice = Choice::Stays(parts[place]);

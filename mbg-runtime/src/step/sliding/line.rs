@@ -39,7 +39,7 @@ pub(super) struct Beyond<T, const K: usize> {
 impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I, N, K> {
     /// How far from each surface its argument is surely beyond it.
     pub(super) fn aside(&self, x: &SVector<T, N>) -> Each<T, K> {
-        let mut aside = [T::from_f64(T::EPSILON * T::EPSILON); K];
+        let mut aside = Each::all(T::from_f64(T::EPSILON * T::EPSILON));
         let places = self.surfaces.iter().zip(&self.gradients);
         for (aside, (surface, gradient)) in aside.iter_mut().zip(places) {
             let gradient = gradient.get();
@@ -55,7 +55,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
 
     /// The same of a state that is moved by such distances first, as far as numbers tell of these.
     pub(super) fn aside_behind(&self, x: &SVector<T, N>, distances: &Each<T, K>) -> Each<T, K> {
-        let mut sizes = [0.0; K];
+        let mut sizes = Each::<f64, K>::all(0.0);
         for (size, gradient) in sizes
             .iter_mut()
             .zip(self.gradients.iter())
@@ -68,11 +68,11 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let aside = self.aside(x);
         // What is at it by others is to be crossed with it.
         let (twins, likes) = &self.twins;
-        let mut farther = [0.0_f64; K];
+        let mut farther = Each::<f64, K>::all(0.0);
         for like in likes.iter().take(twins.count()) {
             farther[like.leader] = farther[like.leader].max(like.apart);
         }
-        core::array::from_fn(|place| {
+        Each::of(|place| {
             aside[place] * T::from_f64(1.0 + farther[place]) + T::from_f64(way * sizes[place])
         })
     }
@@ -89,12 +89,12 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         S: System<T, N, M, P>,
     {
         let rest = SVector::from_element(T::from_f64(0.0));
-        let mut distances = [T::from_f64(0.0); K];
+        let mut distances = Each::all(T::from_f64(0.0));
         let rates = Factors::of(self.free, |own| {
             let across = self.across[own].get();
             let [[_, at_rest], [there, faster]] = self.told(at, [(x, &rest), (x, &across)], memory);
             distances = there;
-            core::array::from_fn(|other| faster[other] - at_rest[other])
+            Each::of(|other| faster[other] - at_rest[other])
         });
         Beyond { distances, rates }
     }
@@ -137,7 +137,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let aside = self.aside_behind(x, distances);
         let aside = aside.map(|aside| T::from_f64(factor) * aside);
         let state = |paces: &Each<f64, K>, along: f64| {
-            let ways = core::array::from_fn(|place| {
+            let ways = Each::of(|place| {
                 let beyond = T::from_f64(paces[place] * (along - place as f64)) * aside[place];
                 beyond - distances[place]
             });
@@ -150,14 +150,13 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             let longer = way.longer.min(LONGEST);
             way.paces = way.paces.map(|pace| longer * pace);
             // Far from where others are met rounding leads astray.
-            let met = way.crossings[..count].iter();
+            let met = way.crossings.iter().take(count);
             let first = met.clone().copied().fold(ends[0], f64::min);
             let last = met.copied().fold(ends[1], f64::max);
             way = self.met(way, [first, last], (at, &aside), state, memory);
         }
         let crossings = way.crossings;
-        let mut order = core::array::from_fn(|place| place);
-        order[..count].sort_unstable_by(|a, b| crossings[*a].total_cmp(&crossings[*b]));
+        let order = Each::by(count, |place| crossings[place]);
         let mut reach = 0.0_f64;
         let mut before = |place: usize| {
             let crossing = |place: usize| crossings[order[place]];
@@ -173,7 +172,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             state(&way.paces, along)
         };
         let start = before(0);
-        let mut behind = [start; K];
+        let mut behind = Each::all(start);
         for (place, behind) in behind.iter_mut().enumerate().take(count) {
             *behind = before(1 + place);
         }
@@ -203,8 +202,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let rest = SVector::from_element(T::from_f64(0.0));
         let [first, last] = ends.map(|along| state(&way.paces, along));
         let told = self.told(at, [(&first, &rest), (&last, &rest)], memory);
-        let mut rates: Each<f64, K> =
-            core::array::from_fn(|place| way.paces[place] * seen(aside[place]));
+        let mut rates: Each<f64, K> = Each::of(|place| way.paces[place] * seen(aside[place]));
         for place in free..count {
             let [from, to] = told.map(|it| seen(it[0][place]));
             rates[place] = (to - from) / (ends[1] - ends[0]);
@@ -242,9 +240,9 @@ impl<const K: usize> Way<K> {
             2.0 + 2.0 * (along - whole_below(along) as f64)
         };
         Self {
-            paces: core::array::from_fn(pace),
-            crossings: core::array::from_fn(place),
-            forward: [1.0; K],
+            paces: Each::of(pace),
+            crossings: Each::of(place),
+            forward: Each::all(1.0),
             longer: 1.0,
         }
     }

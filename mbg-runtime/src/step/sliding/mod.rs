@@ -1,6 +1,7 @@
 //! The laws of a motion that stays where others jump.
 
 mod choice;
+mod each;
 mod line;
 mod settle;
 mod sides;
@@ -10,6 +11,8 @@ use core::cell::Cell;
 
 use nalgebra::SVector;
 
+use each::Each;
+
 use super::seen;
 use super::surfaces::Surfaces;
 use crate::{Course, Input, Real, System};
@@ -18,8 +21,6 @@ use crate::{Course, Input, Real, System};
 const SHORT: f64 = 1.0 / 4096.0;
 const PART: f64 = 0.25;
 
-/// One for each surface.
-type Each<V, const K: usize> = [V; K];
 /// Surfaces on which a motion is by others, and how each is like another one.
 type Along<T, const K: usize> = (Surfaces<T, K>, Each<Like, K>);
 
@@ -112,7 +113,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         surfaces: Surfaces<T, K>,
     ) -> Self {
         let zero = T::from_f64(0.0);
-        let none = || core::array::from_fn(|_| Cell::new(SVector::from_element(zero)));
+        let none = || Each::of(|_| Cell::new(SVector::from_element(zero)));
         Self {
             system,
             input,
@@ -121,8 +122,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             ahead: Cell::new(whole * SHORT),
             surfaces,
             free: 0,
-            shares: [zero; K],
-            twins: (Surfaces::NONE, [Like::NOTHING; K]),
+            shares: Each::all(zero),
+            twins: (Surfaces::NONE, Each::all(Like::NOTHING)),
             across: none(),
             beyond: none(),
             gradients: none(),

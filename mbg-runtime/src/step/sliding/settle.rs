@@ -181,7 +181,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 let above = |place: usize| sides.above(place, choices[place]);
                 let sides = match count > self.free {
                     true => {
-                        self.free_first(&core::array::from_fn(above), (at, x), memory);
+                        self.free_first(&Each::of(above), (at, x), memory);
                         self.sides(at, (x, 1.0), memory)
                     }
                     false => sides,
@@ -240,7 +240,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     {
         let reach = self.line(at, (x, 1.0), memory).reach;
         let rest = self.all().without(&Surfaces::<T, K>::one(passed));
-        let mut asides = [Aside::On; K];
+        let mut asides = Each::all(Aside::On);
         if let Some((place, _)) = self.surfaces.of(passed.course) {
             asides[place] = Aside::Passed;
         }
@@ -267,7 +267,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let moment = MOMENT * T::EPSILON * at.time.magnitude().max(whole);
         let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
         let gradients = self.gradients();
-        let (mut span, mut is_near) = (Span::<N, K>::of_nothing(), [false; K]);
+        let (mut span, mut is_near) = (Span::<N, K>::of_nothing(), Each::<_, K>::all(false));
         for (place, is_near) in is_near.iter_mut().enumerate().take(self.surfaces.count()) {
             let (mut alone, mut beside) = (1.0, SVector::zeros());
             let (unit, distance) = (unit(&gradients[place]), seen(distances[place]));
@@ -312,9 +312,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         self.surfaces = surfaces;
         self.look(at, x, memory);
         let gradients = self.gradients();
-        let (mut span, mut units) = (Span::<N, K>::of_nothing(), [SVector::zeros(); K]);
+        let (mut span, mut units) = (
+            Span::<N, K>::of_nothing(),
+            Each::<_, K>::all(SVector::zeros()),
+        );
         let [mut free, mut bound, mut twins] = [Surfaces::NONE; 3];
-        let mut likes = [Like::NOTHING; K];
+        let mut likes = Each::all(Like::NOTHING);
         for (place, surface) in surfaces.iter().enumerate() {
             let Some(unit) = unit(&gradients[place]) else {
                 // No state leads there.
@@ -323,7 +326,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             let differs =
                 |other: &SVector<f64, N>| (other - unit).norm().min((other + unit).norm());
             let leads = |other: &SVector<f64, N>| differs(other) < DEPENDENT * T::EPSILON;
-            if let Some(leader) = units[..place].iter().position(leads) {
+            if let Some(leader) = units.iter().take(place).position(leads) {
                 let size = |place: usize| gradients[place].map(seen).norm();
                 likes[twins.count()] = Like {
                     leader,
@@ -347,7 +350,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         }
         self.twins = (twins, likes);
         self.look(at, x, memory);
-        self.go_across(shortest::<_, _, K>(&self.gradients()[..self.free]));
+        self.go_across(shortest(&self.gradients(), self.free));
     }
 
     /// How the motion is at each surface, and how it goes on there.
@@ -365,12 +368,12 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let distances = self.beyond(at, x, memory).distances;
         // Where a law bends and does not jump, parts of a mean have no meaning, nor have those of others beside it. At rest all
         // that it makes different is as small as how far beside it is.
-        let mut known = [None; K];
+        let mut known = Each::all(None);
         for place in 0..count {
             let jumps = sides.leads_back[place] && !wide.bends(sides, place, WIDE);
             known[place] = (!jumps).then(|| sides.to_side(place, seen(distances[place])));
         }
-        let choices = sides.chosen(&known[..count])?;
+        let choices = sides.chosen(count, &known)?;
         let units = self.gradients().map(|gradient| unit(&gradient));
         let mut span = Span::<N, K>::of_nothing();
         for (unit, choice) in units.iter().zip(&choices).take(count) {
@@ -378,10 +381,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 span.add::<T>(unit);
             }
         }
-        let asides = core::array::from_fn(|place| {
+        let asides = Each::of(|place| {
             let stays = matches!(choices[place], Choice::Stays(_))
                 || units[place].is_some_and(|unit| span.has::<T>(&unit));
-            let rate = sides.rate(place, &choices[..count]);
+            let rate = sides.rate(place, choices.iter().take(count));
             match known.get(place) {
                 _ if stays => Aside::On,
                 Some(Some(_)) => Aside::Passed,
@@ -413,11 +416,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     {
         let before = self.surfaces;
         let count = before.count();
-        let mut order: [usize; K] = core::array::from_fn(|place| place);
-        let left = |place: usize| above[place].min(1.0 - above[place]);
-        order[..count].sort_unstable_by(|a, b| left(*b).total_cmp(&left(*a)));
+        let order = Each::<usize, K>::by(count, |place| -above[place].min(1.0 - above[place]));
         let mut sorted = Surfaces::NONE;
-        for place in &order[..count] {
+        for place in order.iter().take(count) {
             if let Some(surface) = before.iter().nth(*place) {
                 sorted.add(*surface);
             }
@@ -446,7 +447,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let on = self.only(|place| matches!(asides[*place], Aside::On));
         let left = self.only(|place| matches!(asides[*place], Aside::Left(..)));
         self.arrange(on.with(&left).with(&before), (at, x), memory);
-        let mut sorted = [Aside::On; K];
+        let mut sorted = Each::<_, K>::all(Aside::On);
         for (aside, surface) in sorted.iter_mut().zip(self.surfaces.iter()) {
             if let Some((place, _)) = before.of(surface.course) {
                 *aside = asides[place];
@@ -455,14 +456,14 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let Beyond { distances, rates } = &self.beyond(at, x, memory);
         let aside = self.aside_behind(x, distances);
         let (gradients, mut span) = (self.gradients(), Span::<N, K>::of_nothing());
-        let least: Each<T, K> = core::array::from_fn(|place| {
+        let least: Each<T, K> = Each::of(|place| {
             let unit = unit(&gradients[place]).filter(|_| place < self.free);
             let rest = unit.and_then(|unit| span.add::<T>(&unit));
             let alone = rest.map_or(1.0, |rest| rest.norm());
             T::from_f64(BESIDE * reach * alone) * aside[place]
         });
         let soon = PLACES * T::EPSILON * at.time.magnitude();
-        let ways: Each<T, K> = core::array::from_fn(|place| match sorted[place] {
+        let ways: Each<T, K> = Each::of(|place| match sorted[place] {
             // What is put on it later is not to move the others any more.
             Aside::On => -distances[place],
             Aside::Left(side, rate) => {
@@ -494,7 +495,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                     _ => 0.0,
                 });
                 let time = times.fold(0.0, f64::max);
-                let ways = core::array::from_fn(|place| match sorted[place] {
+                let ways = Each::of(|place| match sorted[place] {
                     Aside::Left(_, rate) => T::from_f64(time * rate) - distances[place],
                     _ => ways[place],
                 });
@@ -510,14 +511,14 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
 
 /// What gradients make together.
 struct Span<const N: usize, const K: usize> {
-    basis: [SVector<f64, N>; K],
+    basis: Each<SVector<f64, N>, K>,
     count: usize,
 }
 
 impl<const N: usize, const K: usize> Span<N, K> {
     fn of_nothing() -> Self {
         Self {
-            basis: [SVector::zeros(); K],
+            basis: Each::<_, K>::all(SVector::zeros()),
             count: 0,
         }
     }

@@ -80,11 +80,16 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     }
 
     /// How the motion is at each of so many surfaces, where some are not open.
-    pub(super) fn chosen(&self, known: &[Option<Choice>]) -> Option<Each<Choice, K>> {
+    pub(super) fn chosen(
+        &self,
+        count: usize,
+        known: &Each<Option<Choice>, K>,
+    ) -> Option<Each<Choice, K>> {
         let forward = &self.line.forward;
-        let first = core::array::from_fn(|row| forward[row] * seen(self.first[row]));
-        let faster = SMatrix::from_fn(|row, column| forward[row] * seen(self.faster[column][row]));
-        chosen((&first, &faster), known)
+        let first = Each::of(|row| forward[row] * seen(self.first[row]));
+        let faster =
+            Each::of(|column| Each::of(|row| forward[row] * seen(self.faster[column][row])));
+        chosen((&first, &faster), count, known)
     }
 
     /// How far beside surfaces others are to be, in units of what is surely beside one.
@@ -119,15 +124,15 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     }
 
     /// How fast the argument of a surface goes in the mean of these.
-    pub(super) fn rate(&self, place: usize, choices: &[Choice]) -> f64 {
-        let parts = choices.iter().enumerate();
+    pub(super) fn rate<'a>(&self, place: usize, choices: impl Iterator<Item = &'a Choice>) -> f64 {
+        let parts = choices.enumerate();
         let faster = parts.map(|(other, choice)| seen(self.faster[other][place]) * choice.part());
         seen(self.first[place]) + faster.sum::<f64>()
     }
 
     /// How states change that go across each of the first surfaces, which are free, alone.
     pub(super) fn across(&self, free: usize) -> impl Iterator<Item = SVector<T, N>> {
-        (0..free).map(move |own| self.rates.dual(own, &self.jumps[..free]))
+        (0..free).map(move |own| self.rates.dual(own, &self.jumps, free))
     }
 }
 
@@ -142,7 +147,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
     where
         S: System<T, N, M, P>,
     {
-        let mut told = [[[T::from_f64(0.0); K]; 2]; 2];
+        let mut told = [[Each::all(T::from_f64(0.0)); 2]; 2];
         let (mut number, mut memory) = (0, *memory);
         let [from, to] = places.map(|(x, slope)| (at.time, [x, slope], [&at.input, &at.rate]));
         self.system.courses(from, to, &mut memory, |course| {
@@ -158,7 +163,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
 
     /// How the argument of each surface changes with each state, where the motion has come to.
     pub(super) fn gradients(&self) -> Each<SVector<T, N>, K> {
-        core::array::from_fn(|place| self.gradients[place].get())
+        Each::of(|place| self.gradients[place].get())
     }
 
     /// Asks that here.
@@ -177,8 +182,8 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
                 gradient[state] = *rate;
             }
         }
-        for (known, gradient) in self.gradients.iter().zip(gradients) {
-            known.set(gradient);
+        for (known, gradient) in self.gradients.iter().zip(&gradients) {
+            known.set(*gradient);
         }
     }
 
@@ -196,7 +201,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let mut unit = rest;
         unit[state] = T::from_f64(1.0);
         let [[_, at_rest], [_, rates]] = self.told(at, [(x, &rest), (x, &unit)], memory);
-        SVector::from(rates) - SVector::from(at_rest)
+        SVector::from_fn(|place, _| rates[place] - at_rest[place])
     }
 
     /// What the model says on the sides of the surfaces, so many times as far from these as need be.
@@ -219,12 +224,12 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             count,
             line,
             base,
-            jumps: [SVector::from_element(zero); K],
-            first: [zero; K],
-            faster: [[zero; K]; K],
+            jumps: Each::all(SVector::from_element(zero)),
+            first: Each::all(zero),
+            faster: Each::all(Each::all(zero)),
             rates: Factors::One(zero),
-            leads_back: [false; K],
-            slower: [0.0; K],
+            leads_back: Each::all(false),
+            slower: Each::all(0.0),
             parts: self.shares,
         };
         let (mut before, mut slope) = (&sides.line.start, base);
@@ -239,8 +244,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
                 sides.first = rates;
             }
             sides.jumps[own] = next - slope;
-            let faster: Each<T, K> =
-                core::array::from_fn(|other| rates_behind[other] - rates[other]);
+            let faster: Each<T, K> = Each::of(|other| rates_behind[other] - rates[other]);
             sides.slower[own] = -sides.line.forward[own] * seen(faster[own]);
             sides.faster[own] = faster;
             let gradient = self.gradients[own].get();
@@ -257,11 +261,14 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         for place in (free..count).filter(|place| sides.line.forward[*place] < 0.0) {
             sides.parts[place] = T::from_f64(1.0) - sides.parts[place];
         }
-        let right = core::array::from_fn(|row| {
+        let right = Each::of(|row| {
             let bound = (free..count).map(|place| sides.parts[place] * sides.faster[place][row]);
             bound.fold(-sides.first[row], |rate, by| rate - by)
         });
-        sides.parts[..free].copy_from_slice(&sides.rates.solve(right)[..free]);
+        let parts = sides.rates.solve(right);
+        for (part, free) in sides.parts.iter_mut().zip(&parts).take(free) {
+            *part = *free;
+        }
         sides
     }
 }
@@ -287,18 +294,19 @@ pub(super) fn summed<T: Real>(terms: impl Iterator<Item = T> + Clone) -> T {
 
 /// The shortest ways across surfaces of these gradients, each along the others.
 pub(super) fn shortest<T: Real, const N: usize, const K: usize>(
-    gradients: &[SVector<T, N>],
+    gradients: &Each<SVector<T, N>, K>,
+    count: usize,
 ) -> impl Iterator<Item = SVector<T, N>> {
     let zero = T::from_f64(0.0);
-    let factors = Factors::<T, K>::of(gradients.len(), |column| {
-        let mut products = [zero; K];
-        for (product, gradient) in products.iter_mut().zip(gradients) {
+    let factors = Factors::of(count, |column| {
+        let mut products = Each::all(zero);
+        for (product, gradient) in products.iter_mut().zip(gradients).take(count) {
             let pairs = gradient.iter().zip(&gradients[column]);
             *product = pairs.fold(zero, |sum, (a, b)| a.multiply_add(*b, sum));
         }
         products
     });
-    (0..gradients.len()).map(move |own| factors.dual(own, gradients))
+    (0..count).map(move |own| factors.dual(own, gradients, count))
 }
 
 /// Factors of a matrix with a row for each surface, which are few most of the time.
@@ -325,13 +333,18 @@ impl<T: Real, const K: usize> Factors<T, K> {
         }
     }
 
-    /// The sum of vectors, one for each row, by a column of the inverse.
-    fn dual<const N: usize>(&self, column: usize, vectors: &[SVector<T, N>]) -> SVector<T, N> {
+    /// The sum of so many vectors, one for each row, by a column of the inverse.
+    fn dual<const N: usize>(
+        &self,
+        column: usize,
+        vectors: &Each<SVector<T, N>, K>,
+        count: usize,
+    ) -> SVector<T, N> {
         let zero = T::from_f64(0.0);
-        let mut right = [zero; K];
+        let mut right = Each::all(zero);
         right[column] = T::from_f64(1.0);
         let parts = self.solve(right);
-        let terms = vectors.iter().zip(&parts);
+        let terms = vectors.iter().zip(&parts).take(count);
         terms.fold(SVector::from_element(zero), |sum, (vector, part)| {
             sum + vector.map(|it| *part * it)
         })
@@ -353,7 +366,10 @@ impl<T: Real, const K: usize> Factors<T, K> {
                 }
                 right
             }
-            Self::All(factors) => factors.solution(&SVector::from(right)).into(),
+            Self::All(factors) => {
+                let all = factors.solution(&SVector::from_fn(|row, _| right[row]));
+                Each::of(|row| all[row])
+            }
         }
     }
 }
@@ -363,11 +379,11 @@ fn square<T: Real, const K: usize, const R: usize>(
     count: usize,
     mut column: impl FnMut(usize) -> Each<T, K>,
 ) -> SMatrix<T, R, R> {
-    let mut matrix = SMatrix::from_fn(|row, own| T::from_f64(if row == own { 1.0 } else { 0.0 }));
-    for own in 0..count {
-        let there = column(own);
-        for (row, by) in there.into_iter().enumerate().take(count) {
-            matrix[(row, own)] = by;
+    let mut matrix =
+        SMatrix::<T, R, R>::from_fn(|row, own| T::from_f64(if row == own { 1.0 } else { 0.0 }));
+    for (own, mut all) in matrix.column_iter_mut().enumerate().take(count) {
+        for (known, by) in all.iter_mut().zip(&column(own)).take(count) {
+            *known = *by;
         }
     }
     matrix

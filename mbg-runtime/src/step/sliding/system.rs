@@ -103,7 +103,7 @@ where
             (t, x, u),
             memory,
             |x, memory| self.system.jacobian_input(t, x, u, memory),
-            |_, _| [SVector::from_element(T::from_f64(0.0)); K],
+            |_, _| Each::all(SVector::from_element(T::from_f64(0.0))),
         )
     }
 
@@ -245,7 +245,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let mut jacobian = sides.mean(|x| of(x, memory));
         let (gradients, turning) = (self.gradients(), turning(&sides.derivative(), memory));
         for (place, mut column) in jacobian.column_iter_mut().enumerate() {
-            let mut away = [T::from_f64(0.0); K];
+            let mut away = Each::all(T::from_f64(0.0));
             let turning = gradients.iter().zip(&turning).take(self.free);
             for (away, (gradient, turning)) in away.iter_mut().zip(turning) {
                 let pairs = gradient.iter().zip(column.iter());
@@ -271,7 +271,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
-        let mut turning = [SVector::from_element(T::from_f64(0.0)); K];
+        let mut turning = Each::all(SVector::from_element(T::from_f64(0.0)));
         let by_state = |state: usize, time: T| {
             let (way, at) = (
                 time - t,

@@ -189,11 +189,6 @@ impl<const N: usize> Measure<N> {
         size
     }
 
-    /// Errors of each state that are as large as its tolerance.
-    pub(super) fn errors(&self) -> [f64; N] {
-        self.factors.map(|factor| 1.0 / factor)
-    }
-
     /// Root of the mean square of an error in units of the tolerances.
     #[inline]
     pub(super) fn norm<T: Real>(&self, error: &SVector<T, N>) -> f64 {

@@ -107,10 +107,6 @@ pub trait Tabulated<const S: usize>: Copy {
 const LOST: f64 = 0.25;
 /// The same for the parts of a step that was lost, which are to lead across the kink that is there.
 const NEAR: f64 = 0.03;
-/// A state that moves by no more than this part of what its slope was to lead to is to be slower by this part at the end: what slows
-/// down all the way goes farther.
-const HELD: f64 = 0.25;
-const FAST: f64 = 0.5;
 /// So small a part of the way is a law asked about that the Jacobian says to lead to where nothing goes on.
 const BESIDE: f64 = 1e-3;
 
@@ -134,42 +130,6 @@ impl<A: Tabulated<S>, T: Real, const N: usize, const S: usize> Stages<A, T, N, S
         let error = combination(const { &A::TABLEAU.error }, &self.stages);
         let error = self.sizes.before::<T>().norm(&error);
         error.is_nan() || error > if start.is_part { NEAR } else { LOST }
-    }
-
-    /// Whether a state hardly moves although it was to go farther than this, and goes on as fast at the end, also where the Jacobian says
-    /// that it would not: one that is far steeper than what follows, such as that of a root next to zero, makes all stages small.
-    fn gets_nowhere<Y, I, const M: usize, const P: usize>(
-        &self,
-        problem: &mut Problem<'_, T, Y, I, N, M, P>,
-        start: &Start<T, N>,
-        change: &SVector<T, N>,
-        far: &[f64; N],
-    ) -> bool
-    where
-        Y: System<T, N, M, P>,
-        I: Input<T, M> + ?Sized,
-    {
-        let way = |slope: T| (start.span.length * slope).magnitude();
-        let is_held = |state: usize| {
-            let expected = way(start.slope[state]);
-            expected > far[state] && change[state].magnitude() < HELD * expected
-        };
-        let is_fast = |state: usize, slope: &SVector<T, N>| {
-            way(slope[state]) > FAST * way(start.slope[state])
-        };
-        if !(0..N).any(is_held) {
-            return false;
-        }
-        let memory = problem.memory;
-        let (time, end) = (start.span.end, start.x + change);
-        let slope = problem.slope(time, &end);
-        let goes_on = |state: &usize| is_held(*state) && is_fast(*state, &slope);
-        let is_nowhere = (0..N).any(|state| goes_on(&state)) && {
-            let left = self.slope_ahead(problem, (time, &end), &slope);
-            (0..N).filter(goes_on).any(|state| is_fast(state, &left))
-        };
-        problem.memory = memory;
-        is_nowhere
     }
 
     /// The slope where a state is led to that goes so fast, by what it is a little ahead.
@@ -326,10 +286,10 @@ where
                 let error = combination(const { &A::TABLEAU.error }, &self.stages);
                 let measure = tolerance.between(x, &change);
                 let error = measure.norm(&error);
-                let gets_nowhere = error <= 1.0
-                    && (self.gets_nowhere(problem, start, &change, &measure.errors())
-                        || self.is_held(problem, start, &change));
-                if gets_nowhere { f64::INFINITY } else { error }
+                match error <= 1.0 && self.is_held(problem, start, &change) {
+                    true => f64::INFINITY,
+                    false => error,
+                }
             }
             None => match self.is_lost(start) || self.is_held(problem, start, &change) {
                 true => {

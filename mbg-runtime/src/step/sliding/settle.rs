@@ -332,7 +332,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize> Sliding<'a, T, S, I, N> {
             self.surfaces = met;
             let met = self.near((at, whole), x, memory);
             self.arrange(met, (at, x), memory);
-            if met.count() <= all.count() {
+            // One to which no state leads is taken out again.
+            if self.all().count() <= all.count() {
                 return;
             }
         }

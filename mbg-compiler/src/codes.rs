@@ -59,6 +59,7 @@ codes! {
     NO_BODY = "MBG0408", "an inertia that no body has";
     LOST_IMPULSE = "MBG0409", "a law of time that jumps, and which storages follow";
     UNKNOWN_MOTION = "MBG0410", "geometry that moves inertia, by a rate that no flow knows";
+    GROUND_ABOVE = "MBG0411", "a ground that is above what it holds";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

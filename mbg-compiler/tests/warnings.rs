@@ -592,6 +592,31 @@ fn a_loop_that_is_open_at_the_start_is_told() {
     ");
 }
 
+/// Aircraft and ships have z down, and the ground of a contact is below where z points up.
+#[test]
+fn grounds_above_what_falls_are_told() {
+    let scene = |gravity: &str, argument: &str| {
+        warned(&format!(
+            "model M {{ gravity [0.0, 0.0, {gravity}]; 1 ground[6]; 1 hull[6]; Sf still[6] {{ flow: 0.0 }} -> ground;
+             free: Free (ground, hull); body: Body {{ mass: 1.0, inertia: 1.0 }} (hull);
+             wheels: for k in 0..2 {{ gear: Contact {{ stiffness: 1e4{argument} }} (hull); }} }}"
+        ))
+    };
+    insta::assert_snapshot!(scene("9.81", ""), @"
+    3:38 `gravity` points away from the ground of `gear`, which is above it [MBG0411]
+      help: where the last axis points down write `normal: [0.0, 0.0, -1.0]`
+    ");
+    assert_eq!(scene("9.81", ", normal: [0.0, 0.0, -1.0]"), "");
+    assert_eq!(scene("-9.81", ""), "");
+    let planar = "model M { gravity [0.0, 9.81]; 1 hull[3]; integral way[2]: m = hull.f[1..3];
+                  body: PlanarBody { mass: 1.0, inertia: 1.0 } (hull);
+                  gear: PlanarContact { stiffness: 1e4, position_at: way } (hull); }";
+    insta::assert_snapshot!(warned(planar), @"
+    3:19 `gravity` points away from the ground of `gear`, which is above it [MBG0411]
+      help: where the last axis points down write `normal: [0.0, -1.0]`
+    ");
+}
+
 /// A contact acts on what moves; what stands still may stand at a way from what is held.
 #[test]
 fn contacts_on_what_stands_are_told() {

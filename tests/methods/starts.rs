@@ -1,7 +1,7 @@
 //! First steps: short runs, and runs that begin next to rest.
 
 use mbg_runtime::{
-    Adaptive, Auto, Dop853, Fixed, Gauss6, Integrator, Method, Radau5, Radau9, Real, Rodas4,
+    Adaptive, Auto, Dop853, Fixed, Gauss6, Integrator, Method, Radau5, Radau9, Real, Rk4, Rodas4,
     Rodas5P, Ros2, System, Tsit5, Variable, mbg,
 };
 use nalgebra::SVector;
@@ -164,4 +164,54 @@ fn sweeps_settle_where_states_are_rounding_alone() {
         assert_falls(Radau9, step);
     }
     assert_falls(Gauss6::default(), 1e-3);
+}
+
+mbg! {
+    /// A bob on a rope that is just taut swings away from rest along it.
+    pub(crate) model Taut {
+        1 ground[3];
+        Sf fixed[3] { flow: 0.0 } -> ground;
+        1 bob[3] { I mass { inertia: 2.0, initial_flow: [0.0, 0.0, 0.5] } }
+        integral x: m = bob.f.y, initial: 1.0;
+        integral y: m = bob.f.z;
+        rope: PlanarLineForce { kind: rope, stiffness: 100.0, rest: 1.0, damping: 20.0, position_b: [x, y] } (ground, bob);
+        output length: m = rope.length;
+    }
+}
+
+/// The damper of a slack rope is led by no state, and the run begins where it is beside one that is.
+#[test]
+fn a_rope_that_is_just_taut_tightens() {
+    fn length(solver: impl Integrator<5>) -> f64 {
+        let model = Taut::<f64>::new(TautParameters::default()).unwrap();
+        let mut last = model.initial_state();
+        solver
+            .integrate(&model, &(), 0.0, 1.0, last, |step| last = *step.state())
+            .unwrap();
+        model.output(1.0, &last, &SVector::zeros(), &mut ())[0]
+    }
+    // Along the rope, with the moment of momentum that stays.
+    let along = |[stretch, rate]: [f64; 2]| {
+        let tension = 100.0 * stretch + f64::max(20.0 * rate, -100.0 * stretch);
+        [rate, 0.25 / f64::powi(1.0 + stretch, 3) - tension / 2.0]
+    };
+    let mut rope = [0.0, 0.0];
+    let step = 1e-4;
+    for _ in 0..10_000 {
+        let beside = |slope: [f64; 2], part| [0, 1].map(|k| rope[k] + part * step * slope[k]);
+        let first = along(rope);
+        let second = along(beside(first, 0.5));
+        let third = along(beside(second, 0.5));
+        let fourth = along(beside(third, 1.0));
+        rope = [0, 1]
+            .map(|k| rope[k] + step / 6.0 * (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]));
+    }
+    let expected = 1.0 + rope[0];
+    for found in [
+        length(Fixed::new(Rk4, 1e-3)),
+        length(Adaptive::new(Dop853, 1e-10, 1e-10)),
+        length(Adaptive::new(Radau5, 1e-10, 1e-10)),
+    ] {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
 }

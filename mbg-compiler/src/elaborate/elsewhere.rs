@@ -135,9 +135,14 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("cross", &["a", "b"], "skew(a) * b"),
     ("dot", &["a", "b"], "(transpose(a) * b)"),
     ("norm", &["a"], "sqrt(transpose(a) * a)"),
+    ("length", &["a"], "sqrt(transpose(a) * a)"),
+    ("magnitude", &["a"], "sqrt(transpose(a) * a)"),
     ("to_radians", &["x"], "(0.017453292519943295 * x)"),
     ("radians", &["x"], "(0.017453292519943295 * x)"),
     ("deg2rad", &["x"], "(0.017453292519943295 * x)"),
+    ("to_degrees", &["x"], "(57.29577951308232 * x)"),
+    ("degrees", &["x"], "(57.29577951308232 * x)"),
+    ("rad2deg", &["x"], "(57.29577951308232 * x)"),
 ];
 
 /// A curve that is given by its points, `[[x, y], …]`, by its places and values.
@@ -162,6 +167,43 @@ pub(super) fn curve_of_points(arguments: &[Expr]) -> Option<String> {
     let [places, values] = columns.map(|column| column.join(", "));
     let x = dump::expression(x);
     Some(format!("interpolate({x}, [{places}], [{values}])"))
+}
+
+/// A map of two variables as a curve over one of curves over the other. What is looked up comes first or, as in MATLAB, last.
+pub(super) fn map(arguments: &[Expr]) -> Option<String> {
+    let [first, second, third, fourth, fifth] = arguments else {
+        return None;
+    };
+    let (over, along, values) = match first {
+        Expr::Array(_) => ([fifth, second], [fourth, first], third),
+        _ => ([first, third], [second, fourth], fifth),
+    };
+    let counts = [over[1], along[1], values].map(|it| match it {
+        Expr::Array(list) => Some(list.elems.len()),
+        _ => None,
+    });
+    // A row for each place of the other variable.
+    let is_turned = counts[2].is_some() && counts[0] != counts[2] && counts[1] == counts[2];
+    let (over, along) = if is_turned {
+        (along, over)
+    } else {
+        (over, along)
+    };
+    let [x, places, y, others] = [over[0], over[1], along[0], along[1]].map(dump::expression);
+    let row = |row: String| format!("interpolate({y}, {others}, {row})");
+    let rows: Vec<String> = match (values, counts[0]) {
+        (Expr::Array(rows), _) => rows.elems.iter().map(dump::expression).map(row).collect(),
+        (table, count) => {
+            let table = dump::expression(table);
+            let rows = (0..count.unwrap_or(1)).map(|number| row(format!("{table}[{number}]")));
+            let more = count.is_none().then(|| "…".to_owned());
+            rows.chain(more).collect()
+        }
+    };
+    let rows = rows.join(", ");
+    Some(format!(
+        "a map is a curve of curves: write `interpolate({x}, {places}, [{rows}])`"
+    ))
 }
 
 /// What stands behind a word, or a place for it.
@@ -211,6 +253,12 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         ("delay" | "tdelay", [value, by]) => return Some(delay(value, by)),
         ("delay", [value, by, _longest]) => return Some(delay(value, by)),
         ("energy" | "power", []) => return Some(of_system(word)),
+        (
+            "interp2" | "interp2d" | "interpolate2" | "interpolate2d" | "interpolate_2d"
+            | "lookup2" | "lookup2d" | "lookup_2d" | "table2d" | "map2d" | "CombiTable2D"
+            | "CombiTable2Ds",
+            [_, _, _, _, _],
+        ) => return map(arguments),
         // Both orders are written elsewhere.
         ("interp1", [_, Expr::Array(_), Expr::Array(_)]) => return instead("interp", arguments),
         ("vec" | "vec2" | "vec3" | "vector" | "array" | "Vector3", entries) => {

@@ -226,8 +226,9 @@ impl<N: Names> Evaluator<'_, N> {
 fn no_curve(name: &Ident, arguments: &[Expr]) -> Diagnostic {
     let message = "expected `interpolate(x, places, values)`";
     let report = error(codes::EXPRESSION, name.span(), message);
-    match elsewhere::curve_of_points(arguments) {
-        Some(written) => report.help(format!("write `{written}`")),
+    let points = elsewhere::curve_of_points(arguments).map(|it| format!("write `{it}`"));
+    match points.or_else(|| elsewhere::map(arguments)) {
+        Some(help) => report.help(help),
         None => report,
     }
 }

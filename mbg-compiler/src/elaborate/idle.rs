@@ -1,10 +1,13 @@
 //! Warnings of what changes nothing in the model at hand: components without an element, bodies and loads on what stands
-//! still, gravity without weight.
+//! still, gravity without weight, grounds above what falls.
 
 use std::collections::BTreeSet;
 
+use syn::Expr;
+
 use super::Builder;
-use super::definitions::Progress;
+use super::definitions::{Definition, Progress};
+use super::elsewhere::number;
 use super::model::{Place, Quantity};
 use super::scope::{Entity, GRAVITY};
 use crate::codes;
@@ -36,6 +39,7 @@ impl Builder<'_> {
     /// Warns of all but [`without_bonds`], once everything is read that has an effect.
     pub(super) fn warn_of_idle(&mut self) {
         let mut warnings: Vec<Diagnostic> = self.weightless().into_iter().collect();
+        warnings.extend(self.grounds_above());
         let mut still = self.held_frames();
         self.carry_stillness(&mut still);
         for (inner, frames) in &self.frames {
@@ -58,12 +62,47 @@ impl Builder<'_> {
             .for_each(|it| self.diagnostics.warn(it));
     }
 
+    /// The gravity of the scene.
+    fn free_fall(&self) -> Option<&Definition<'_>> {
+        match self.scopes[0].names.get(GRAVITY) {
+            Some(Entity::Definition(id)) => Some(&self.definitions[*id]),
+            _ => None,
+        }
+    }
+
+    /// Warnings of grounds without a normal where the last axis points down: they are above, and push down what falls.
+    fn grounds_above(&self) -> Vec<Diagnostic> {
+        let Some(Expr::Array(gravity)) = self.free_fall().map(|it| it.value) else {
+            return Vec::new();
+        };
+        if gravity.elems.last().and_then(number).unwrap_or(0.0) <= 0.0 {
+            return Vec::new();
+        }
+        let grounds = self.called.values().filter_map(|(_, instance)| {
+            let component = instance.component.to_string();
+            let normal = match component.as_str() {
+                "Contact" => "[0.0, 0.0, -1.0]",
+                "PlanarContact" => "[0.0, -1.0]",
+                _ => return None,
+            };
+            let is_given = instance.arguments.iter().any(|it| it.name == "normal");
+            let is_library = (self.components.get(&component)).is_some_and(|it| it.library);
+            (is_library && !is_given).then_some((instance, normal))
+        });
+        let warnings = grounds.map(|(Instance { name, .. }, normal)| {
+            let message =
+                format!("`gravity` points away from the ground of `{name}`, which is above it");
+            let report = error(codes::GROUND_ABOVE, name.span(), message);
+            report.help(format!(
+                "where the last axis points down write `normal: {normal}`"
+            ))
+        });
+        warnings.collect()
+    }
+
     /// A warning where nothing has read gravity.
     fn weightless(&self) -> Option<Diagnostic> {
-        let Some(Entity::Definition(id)) = self.scopes[0].names.get(GRAVITY) else {
-            return None;
-        };
-        let gravity = &self.definitions[*id];
+        let gravity = self.free_fall()?;
         if !matches!(gravity.progress, Progress::Unread) {
             return None;
         }

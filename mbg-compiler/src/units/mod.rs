@@ -367,7 +367,7 @@ impl Checker<'_> {
             Subject::Part => {}
             Subject::Argument(function) => {
                 let pure = [Dimension::pure()];
-                if let Some((_, found)) = self.first_other(&measures, &pure) {
+                if let Some((_, [_, found])) = self.first_other(&measures, &pure) {
                     let mistake = Mismatch::Argument(function, claim.entries[0], found);
                     self.reporter.mismatch(&claim.place, &mistake);
                 }
@@ -375,7 +375,7 @@ impl Checker<'_> {
             Subject::Declared(name, unit) => {
                 let wanted = names::dimension(unit).unwrap_or_default();
                 let found = self.first_other(&measures, &vec![wanted; measures.len()]);
-                if let Some((wanted, found)) = found {
+                if let Some((_, [wanted, found])) = found {
                     self.reporter.declared(claim, name, unit, [&wanted, &found]);
                 }
             }
@@ -417,25 +417,26 @@ impl Checker<'_> {
     }
 
     fn expect(&mut self, claim: &Claim, what: &str, wanted: &[Dimension], found: &[Measure]) {
-        if let Some((wanted, found)) = self.first_other(found, wanted) {
+        if let Some((_, [wanted, found])) = self.first_other(found, wanted) {
             self.reporter
                 .other(claim, what, [&wanted, &found], None, None);
         }
     }
 
-    /// Makes units what they must be: the first that cannot, with what it is.
+    /// Makes units what they must be: the place of the first that cannot, with what it must be and what it is.
     fn first_other(
         &mut self,
         found: &[Measure],
         wanted: &[Dimension],
-    ) -> Option<(Dimension, Dimension)> {
+    ) -> Option<(usize, [Dimension; 2])> {
         let unknowns = &mut self.inference.unknowns;
         let mut other = None;
-        for (found, wanted) in found.iter().zip(wanted) {
+        for (place, (found, wanted)) in found.iter().zip(wanted).enumerate() {
             if let Measure::Of(found) = found
                 && !unknowns.equate(found, wanted)
             {
-                other = other.or(Some((unknowns.reduce(wanted), unknowns.reduce(found))));
+                let units = [wanted, found].map(|unit| unknowns.reduce(unit));
+                other = other.or(Some((place, units)));
             }
         }
         other
@@ -444,7 +445,7 @@ impl Checker<'_> {
     /// What stands after a word must fit the effort and the flow at the element.
     fn word(&mut self, claim: &Claim, id: ElementId, word: &str, found: &[Measure]) {
         let known: Vec<Measure> = found.to_vec();
-        let (mut measures, mut wanted) = (Vec::new(), Vec::new());
+        let (mut measures, mut wanted, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for (position, measure) in known.into_iter().enumerate() {
             // A number stands for each component, whatever their units.
             if self.reporter.is_number(claim.entries[position]) {
@@ -455,6 +456,7 @@ impl Checker<'_> {
                 .ports
                 .wanted(&self.model.graph, id, word, place, found.len())
             {
+                places.push(place);
                 measures.push(measure.clone());
                 wanted.push(match self.otherwise.inverted.contains(&id) {
                     true => Dimension::pure().over(&unit),
@@ -462,11 +464,13 @@ impl Checker<'_> {
                 });
             }
         }
-        if let Some((wanted, found)) = self.first_other(&measures, &wanted) {
+        if let Some((first, [wanted, found])) = self.first_other(&measures, &wanted) {
+            let place = places[first];
             let name = &self.model.graph.elements[id.0].name;
             let argument = self.otherwise.suspect.argument();
-            let what = argument.unwrap_or_else(|| format!("`{word}` of `{name}`"));
-            let note = self.surroundings(id);
+            let entry = self.entry(claim, id, place);
+            let what = argument.unwrap_or_else(|| format!("`{word}{entry}` of `{name}`"));
+            let note = self.surroundings(id, place);
             let given = usize::from(self.model.graph.elements[id.0].kind == ElementKind::I);
             let given = &self.ports.inner[id.0][0][given];
             let is_given = word == "initial" && self.inference.unknowns.reduce(given) == found;
@@ -476,20 +480,36 @@ impl Checker<'_> {
         }
     }
 
-    /// The efforts and flows at an element, for people.
-    fn surroundings(&mut self, id: ElementId) -> String {
-        let mut side = |variables: &[[Dimension; 2]]| {
-            let units = variables[0].each_ref().map(|unit| {
+    /// Which entry of a law is meant, where an element has components of several units.
+    fn entry(&mut self, claim: &Claim, id: ElementId, (row, column): (usize, usize)) -> String {
+        let unknowns = &mut self.inference.unknowns;
+        let mut differs = |pairs: &[[Dimension; 2]]| {
+            let mut efforts = pairs.iter().map(|pair| unknowns.reduce(&pair[0]));
+            let first = efforts.next();
+            efforts.any(|effort| Some(effort) != first)
+        };
+        let is_mixed = differs(&self.ports.inner[id.0]) || differs(&self.ports.outer[id.0]);
+        match (is_mixed && claim.entries.len() > 1, claim.columns) {
+            (false, _) => String::new(),
+            (true, 1) => format!("[{row}]"),
+            (true, _) => format!("[{row}][{column}]"),
+        }
+    }
+
+    /// The efforts and flows at an element beside an entry of its law, for people.
+    fn surroundings(&mut self, id: ElementId, (row, column): (usize, usize)) -> String {
+        let mut side = |variables: &[[Dimension; 2]], component: usize| {
+            let units = variables[component].each_ref().map(|unit| {
                 let unit = self.inference.unknowns.reduce(unit);
                 report::unit_text(&unit)
             });
             format!("the effort is {} and the flow {}", units[0], units[1])
         };
-        let inner = side(&self.ports.inner[id.0]);
         if self.ports.outer[id.0].is_empty() {
-            return format!("{inner} there");
+            return format!("{} there", side(&self.ports.inner[id.0], row));
         }
-        let outer = side(&self.ports.outer[id.0]);
+        let inner = side(&self.ports.inner[id.0], column);
+        let outer = side(&self.ports.outer[id.0], row);
         format!("before it {inner}, after it {outer}")
     }
 }

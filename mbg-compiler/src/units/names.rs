@@ -83,6 +83,7 @@ const SCALED: &[(&str, f64, Factors)] = &[
     ("mph", 0.447_04, SPEED),
     ("kmh", 1.0 / 3.6, SPEED),
     ("kph", 1.0 / 3.6, SPEED),
+    ("kn", 1852.0 / 3600.0, SPEED),
     ("kt", 1852.0 / 3600.0, SPEED),
     ("knot", 1852.0 / 3600.0, SPEED),
     ("knots", 1852.0 / 3600.0, SPEED),

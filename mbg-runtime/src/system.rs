@@ -248,7 +248,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ///
     /// - a state is not finite (the derivative is not evaluated; where that is not finite, the state after the next step is not);
     /// - the normalised determinant of an inverted block is below the square root of the scalar's precision, so that the block is
-    /// too   near its singular set;
+    ///   too near its singular set;
     /// - the last solve of a nonlinear algebraic loop did not converge.
     ///
     /// Integrators ask once a step.

@@ -86,8 +86,8 @@ const APART: f64 = 1e-9;
 /// - Where more may be chosen than is asked for, as with an elevator and a canard for one moment, each correction is the one of
 ///   least norm, in units of what states and inputs do.
 /// - Corrections follow closed loops and attitudes ([`System::close`](crate::System::close)). A ring of joints without a `Cut` is
-/// no   such loop: each of its coordinates is moved by itself, and the ring may be open at the point that is found. Put a `Cut` in
-/// the   place of one of its joints, or make the distance of its ends an output that is wanted to be zero.
+///   no such loop: each of its coordinates is moved by itself, and the ring may be open at the point that is found. Put a `Cut` in
+///   the place of one of its joints, or make the distance of its ends an output that is wanted to be zero.
 /// - Where two states change alike whatever is done, such as the displacements of two springs at one junction, their difference
 ///   stays as it is in the guess, unless one of them is fixed, free or given a rate. No motion reaches a point with another
 ///   difference, such as one beyond the voltage at which a plate is pulled in: [`Untrimmed::Apart`]. It is taken only if outputs,

@@ -14,11 +14,11 @@ use crate::{Columns, Real};
 /// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
 /// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event. So have the times at which an
 /// input jumps, or a law by time, parameters and inputs, and those at which a law jumps because a state goes through a threshold: a
-/// step ends there. Where a motion stays at a threshold, as a block does that dry friction by [`sign`](Real::sign) holds, slopes are
-/// those of that motion. Slopes of slopes do not know how the motion bends at a threshold.
+/// step ends there. Where a motion stays at a threshold, as a block does that dry friction by [`sign`](Real::sign) holds, slopes
+/// are those of that motion. Slopes of slopes do not know how the motion bends at a threshold.
 ///
-/// [`Adaptive`](crate::Adaptive) steps are short enough for the slopes, too, also where the model rests. So a run on dual numbers may
-/// have more steps than one of the values alone.
+/// [`Adaptive`](crate::Adaptive) steps are short enough for the slopes, too, also where the model rests. So a run on dual numbers
+/// may have more steps than one of the values alone.
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope
 /// zero, and at a kink ([`Real::abs`] at zero, equal arguments of [`Real::min`]) the slope is that of one side.

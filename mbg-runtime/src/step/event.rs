@@ -24,9 +24,9 @@ impl<T: Real, const N: usize, Memory: Copy> Step<'_, T, N, Memory> {
     /// halved to where it may have come back. Both take at most 24 more evaluations. Crossings are missed that are closer to each
     /// other than some hundred thousandth of the step, and so are those of a guard that turns more than once in a part.
     ///
-    /// The time is found to the last bits by the Illinois method, and by bisection where that is slow or the guard stays zero, in at
-    /// most [`Step::SEARCH`] evaluations. Lanes share their time: the first decides. On [`Dual`](crate::Dual) numbers the time has the
-    /// slope of the zero, and so has the state there.
+    /// The time is found to the last bits by the Illinois method, and by bisection where that is slow or the guard stays zero, in
+    /// at most [`Step::SEARCH`] evaluations. Lanes share their time: the first decides. On [`Dual`](crate::Dual) numbers the time
+    /// has the slope of the zero, and so has the state there.
     ///
     /// Nothing is found if the guard is not a number before it goes through zero.
     #[must_use]

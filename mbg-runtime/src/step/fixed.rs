@@ -157,9 +157,10 @@ impl Rk4 {
     /// Runs from `t0` to `t1` in steps of `h`, as [`Fixed`] with [`Rk4`] does; `observer` is given the time and the state at the
     /// start and at the end of each step.
     ///
-    /// A loop with a clock of its own takes [`Rk4::step`]: in single precision, times that are summed up step by step drift away, and
-    /// after half an hour a millisecond is lost in their rounding. In the same way an angle that grows without bound loses digits,
-    /// and closed loops then gape: where the model reads only its sine and cosine, take whole turns off the state between two steps.
+    /// A loop with a clock of its own takes [`Rk4::step`]: in single precision, times that are summed up step by step drift away,
+    /// and after half an hour a millisecond is lost in their rounding. In the same way an angle that grows without bound loses
+    /// digits, and closed loops then gape: where the model reads only its sine and cosine, take whole turns off the state between
+    /// two steps.
     ///
     /// # Errors
     ///
@@ -204,11 +205,11 @@ impl Rk4 {
     }
 
     /// One step of length `h` from `t` with the input held at `u`, for loops that have their own clock, with the least code
-    /// and stack. For a model without attitudes and closed loops it gives the same bits as [`Fixed`] does over a time `t1 - t0` that
-    /// is `n · h` to the last bit, where [`FUSED`](crate::FUSED) does not hold.
+    /// and stack. For a model without attitudes and closed loops it gives the same bits as [`Fixed`] does over a time `t1 - t0`
+    /// that is `n · h` to the last bit, where [`FUSED`](crate::FUSED) does not hold.
     ///
-    /// Nothing is closed and nothing is checked: unless each step is followed by [`System::close`], attitudes drift from rotations and
-    /// closed loops open. Ask [`System::trouble`], which also tells of a state that is not finite.
+    /// Nothing is closed and nothing is checked: unless each step is followed by [`System::close`], attitudes drift from rotations
+    /// and closed loops open. Ask [`System::trouble`], which also tells of a state that is not finite.
     ///
     /// ```
     /// use mbg_runtime::{Rk4, System, Trouble};

@@ -1,4 +1,4 @@
-//! Error against work: every adaptive method on smooth and stiff problems.
+//! Error against work: two methods on smooth problems, four on stiff ones, and what `Auto` picks.
 //!
 //! `cargo run --release --example methods`
 

@@ -17,21 +17,21 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mbg-runtime/src/libr
 
 /// What stands before the components.
 const INTRODUCTION: &str = "\
-All components of the library, made of their files.
+All components of the library. This page is generated from their files.
 
-`hinge: Revolute { axis: 2 } (ground, arm);` calls one: values of parameters by name, then a junction for each port, in
-order, see [`language`](crate::language). `port 1 a` takes a 1-junction, whose flow is common, `port 0 a` a 0-junction,
-whose effort is, and `port a` either. A port without a number in brackets has one component; `[3]` is a frame in a plane,
-or what only turns, `[6]` a frame in space, see [`joints`](crate::joints).
+`hinge: Revolute { axis: 2 } (ground, arm);` makes an instance: values of parameters by name, then a junction for each port, in
+order, see [`language`](crate::language). `port 1 a` takes a 1-junction, whose bonds share one flow, `port 0 a` a 0-junction,
+whose bonds share one effort, and `port a` either. A port without a number in brackets has one component; `[3]` is a frame in a
+plane, or of a body that only turns, `[6]` a frame in space, see [`joints`](crate::joints).
 
 - *Parameters.* One without a default must be given. One without a unit takes any that fits, one without a number in
-  brackets any shape that fits. `gravity` is that of the scene. What ends in the name of a port, such as `gravity_a`, is
-  told by the joint that leads there.
+  brackets any shape that fits. `gravity` is that of the scene. One whose name ends in that of a port, such as `gravity_a`, is
+  by default what the joint that leads to this port hands on.
 - *Values* are read by the name of the instance, `hinge.angle`.
 - *Inside* are junctions, of which the flow is read if they are 1-junctions and the effort if they are 0-junctions,
   `hinge.rate.f`, `hinge.moment.e`; elements, `hinge.damper.e`; and instances, whose values and insides are read alike.
   What a loop repeats stands behind its label.
-- What a condition follows is there where it holds.
+- An entry with a condition after it exists only where the condition holds.
 ";
 
 #[test]

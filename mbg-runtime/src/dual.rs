@@ -13,11 +13,12 @@ use crate::{Columns, Real};
 /// component's slope to 1 and read the slopes of the result. It serves to check symbolic Jacobians, and gives
 /// derivatives of whole simulations with respect to a parameter or an initial value, through events too: the time and the
 /// state that [`Integrator::until`](crate::Integrator::until) finds have the slopes of the event. So have the times at which an
-/// input jumps, or a law by time, parameters and inputs, and at which a law jumps since a state goes through a threshold: a step
-/// ends there. Steps of [`Adaptive`](crate::Adaptive) length are short enough for the slopes, too, also where the model rests. So a
-/// run on dual numbers may have more steps than one of the values alone. Slopes of
-/// slopes do not know how the motion bends at such a threshold. Where a motion stays on one, as a block does that dry friction by
-/// [`sign`](Real::sign) holds, they are those of that.
+/// input jumps, or a law by time, parameters and inputs, and those at which a law jumps because a state goes through a threshold: a
+/// step ends there. Where a motion stays at a threshold, as a block does that dry friction by [`sign`](Real::sign) holds, slopes
+/// are those of that motion. Slopes of slopes do not know how the motion bends at a threshold.
+///
+/// [`Adaptive`](crate::Adaptive) steps are short enough for the slopes, too, also where the model rests. So a run on dual numbers
+/// may have more steps than one of the values alone.
 ///
 /// Choices follow the value alone: [`Real::find`] and [`Real::select_less`] look at `value`, [`Real::sign`] has slope
 /// zero, and at a kink ([`Real::abs`] at zero, equal arguments of [`Real::min`]) the slope is that of one side.
@@ -53,8 +54,8 @@ use crate::{Columns, Real};
 /// assert!((length.value - 2.0).abs() < 1e-15 && length.slope.abs() < 1e-15);
 /// ```
 ///
-/// With [`Columns`] of `T` for the slope a number carries its derivatives along several directions at once, which takes the
-/// functions of the value once for all of them.
+/// With [`Columns`] of `T` as the slope, a number carries its derivatives along several directions at once, and functions of the
+/// value are evaluated only once for all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dual<T, L = T> {
     /// The number.

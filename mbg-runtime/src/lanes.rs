@@ -1,19 +1,20 @@
 //! Several numbers in one scalar: a model built for `f64x4` runs four times at once.
 //!
-//! The types are those of the crate `wide`. Lanes may differ in states, inputs and parameters; each gives bit for bit what
+//! The types are those of the crate `wide`. Lanes may differ in states, inputs and parameters. Each lane gives, bit for bit, what
 //! the model gives for its numbers alone, whatever is in the others, nonlinear loops included. Where a mechanism is closed by
-//! iteration it is that but for rounding: all lanes go on until the last one is there. Which instructions are used is settled when the program is
-//! compiled: with `-C target-cpu=x86-64-v3` or `native` four `f64` or eight `f32` are one register, without such a flag two
-//! are needed and the gain is half as large. With the feature `dispatch` the module `batch` chooses them when the program
-//! runs.
+//! iteration this holds but for rounding, since all lanes iterate until the last one is done.
+//!
+//! The instructions are decided when the program is compiled: with `-C target-cpu=x86-64-v3` or `native` four `f64` or eight `f32`
+//! are one register; without such a flag two are needed, and the gain is half as large. With the feature `dispatch` the module
+//! `batch` chooses them when the program runs.
 //!
 //! Lanes of a run share its times and steps. A step ends where a law jumps in any lane, or an input does, so that each is as exact as
-//! alone; an [`Adaptive`](crate::Adaptive) run keeps its tolerance in all of them. What stays at a threshold, as dry friction by
-//! `sign(f)` does that holds, is run alone, or rises within a width: see [`Fixed`](crate::Fixed).
+//! alone; an [`Adaptive`](crate::Adaptive) run keeps its tolerance in all of them. A lane that stays at a threshold, as dry friction
+//! by `sign(f)` does that holds, holds up the others: run it alone, or let the law rise over a width, see [`Fixed`](crate::Fixed).
 //! [`until`](crate::Integrator::until) ends at the event of the first lane.
 //!
-//! A batch is a slice of states of lanes: of each state variable the numbers of some runs lie side by side.
-//! `nalgebra` has no zero of such lanes: `SVector::repeat(f64x4::from_f64(0.0))` is a vector of them.
+//! A batch is a slice of states whose scalars are lanes: each state variable holds the numbers of some runs side by side.
+//! `nalgebra` has no zero for lanes: `SVector::repeat(f64x4::from_f64(0.0))` is a vector of zeros.
 //!
 //! ```
 //! use mbg_runtime::lanes::{Lanes, f64x4, pack, unpack};

@@ -5,31 +5,34 @@ use nalgebra::{Complex, SMatrix, SVector};
 use crate::step::{Complex as Number, Element, Factors};
 use crate::{Convertible, Real, Trouble};
 
-/// A model next to a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
+/// A model linearised at a state: `δẋ = A δx + B δu`, `δy = C δx + D δu`.
 ///
-/// Poles are given by [`Linearised::poles`]; `complex_eigenvalues()` of `nalgebra` does not end on chains of integrators, such
-/// as those of what flies freely. The four numbers of an attitude count as states, and so do all coordinates of loops that
-/// multipliers close: some poles are no motion of such a model. Nor is a pole at zero that two displacements at one junction
-/// make, such as that of a spring beside a field of two ports: their difference stays what it was, whatever is done. No
-/// feedback moves such a pole, and an iteration of Riccati's equation over all states does not end. The rows of both are the
-/// same in `A` and in `B`: leave one state out, and add its columns of `A` and `C` to those of the other.
+/// [`Linearised::of`] gives it. Its poles are [`Linearised::poles`]; `complex_eigenvalues()` of `nalgebra` does not end on chains
+/// of integrators, such as those of a body in free flight.
 ///
-/// Filters and controllers that take rotations by three small angles in axes of the body multiply: with the columns
+/// Not every pole is a motion of the model. The four numbers of an attitude count as states, and so do all coordinates of loops
+/// that multipliers close. Two displacements at one junction, such as that of a spring beside a field of two ports, make a pole at
+/// zero, since their difference stays what it was, whatever is done. No feedback moves such a pole, and an iteration of Riccati's
+/// equation over all states does not end. The rows of both are the same in `A` and in `B`: leave one state out, and add its columns
+/// of `A` and `C` to those of the other.
+///
+/// Filters and controllers that represent rotations by three small angles in axes of the body multiply: with the columns
 /// `½ [-x, w, z, -y]`, `½ [-y, -z, w, x]` and `½ [-z, y, -x, w]` of a quaternion `[w, x, y, z]` as `E`, angles become a change `E δ`
 /// of the quaternion, `4 Eᵀ` takes such a change to angles, and `4 Eᵀ Φ E` has the first `E` after the sample and the second
 /// before it. Behind a correction [`System::close`](crate::System::close) makes the quaternion one of length one.
 ///
-/// `A` belongs to one state and time. Of a rotor that spins, with its body in axes that turn with it, or on a shaft that is not
-/// round, the states do not rest: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the
-/// rotor is round, write it in axes that do not turn; else take Floquet's multipliers over a turn, of which
-/// [`Linearised::held`] gives one part after the other, or [`Rk4::transition`](crate::Rk4::transition).
+/// `A` belongs to one state and time. The states of a spinning rotor do not rest if its body is described in axes that turn with
+/// it, or if its shaft is not round: there `A` is periodic in the angle, and its eigenvalues at one angle are no poles. Where the
+/// rotor is round, write it in axes that do not turn; else take Floquet's multipliers over a turn, by
+/// [`PeriodicTrim`](crate::PeriodicTrim) or as the product of [`Linearised::held`] or [`Rk4::transition`](crate::Rk4::transition)
+/// over short parts of it.
 ///
 /// A nonlinear algebraic loop is solved from zero, as at the start of a run: of several solutions it may find another one than
 /// a run has found.
 ///
-/// Where a law jumps nothing tells of it: next to rest the matrices are those without dry friction by `sign(f)`, though it would hold.
+/// Jumps of laws are not seen: at rest the matrices are those without dry friction by `sign(f)`, though it would hold.
 ///
-/// [`Linearised::of`] takes four matrices of all states on the stack, 5 MB with 400 states: see [`Auto`](crate::Auto#stack).
+/// [`Linearised::of`] takes several matrices of all states on the stack: see [`Auto`](crate::Auto#stack).
 ///
 /// # Example
 ///

@@ -1,4 +1,4 @@
-//! Motions that come back: rotors in forward flight, converters that switch, what swings by itself.
+//! Periodic motions: rotors in forward flight, converters that switch, what swings by itself.
 
 mod rounding;
 
@@ -39,22 +39,22 @@ const ASIDE: f64 = 1e-2;
 /// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
 
-/// A motion that is the same again after a period: a rotor in forward flight, a converter that switches, an engine, a balance wheel.
+/// Finds a periodic motion: a rotor in forward flight, a converter that switches, an engine, a balance wheel.
 ///
-/// Every state is to come back unless something else is said of it: the angle of a shaft [`grows`](PeriodicTrim::grows) by a turn,
-/// a position may be [`free`](PeriodicTrim::free). Each state at the start, and each input, which is constant, may be chosen unless
-/// it is [fixed](PeriodicTrim::fix). What is wanted of a mean is wanted of an integral: `integral lifted = rotor.lift;` in the model
-/// grows by the mean of the lift times the period. States and inputs go by their names, and several at once by what their names
-/// begin with.
+/// Every state is to come back after a period, unless told otherwise: the angle of a shaft [`grows`](PeriodicTrim::grows) by a
+/// turn, a position may be [`free`](PeriodicTrim::free). Each state at the start, and each input, which is constant, may be chosen
+/// unless it is [fixed](PeriodicTrim::fix). To ask for a mean, ask for the growth of an integral: `integral lifted = rotor.lift;`
+/// in the model grows by the mean of the lift times the period. States and inputs go by their names, and several at once by what
+/// their names begin with.
 ///
-/// Where nothing drives the motion, its period is found, too, and it begins where one state [is as in the
+/// Where nothing drives the motion, its period can be found, too; the motion then begins where one state [is as in the
 /// guess](PeriodicTrim::find_period).
 ///
-/// The motion is found by shooting: from a start it is followed for a period by the integrator that is given, and the start corrected
-/// by Newton's method with the derivatives of the end, which are those of the steps on [`Dual`] numbers; through jumps
-/// of laws by time and inputs, too. Corrections are damped until what is left falls; of those that are as good the one of least
-/// norm is taken, in units of what states and inputs do; states that change alike differ as in the guess, as with
-/// [`Trim`](crate::Trim). So the motion need not be one that others tend to. It is as exact as the integrator.
+/// The motion is found by shooting: the given integrator follows it from a start for a period, and Newton's method corrects the
+/// start with the derivatives of the end, which are those of the steps on [`Dual`] numbers, also through jumps of laws by time and
+/// inputs. Corrections are damped until the residual falls; of corrections that are as good, the one of least norm is taken, in
+/// units of what states and inputs do. States that change alike differ as in the guess, as with [`Trim`](crate::Trim). The motion
+/// need not be a stable one. It is as exact as the integrator.
 ///
 /// # Example
 ///
@@ -119,11 +119,11 @@ const TINY: f64 = 1e-9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A law may jump at a state, as dry friction and a relay do, and the motion may stay there for a while, as what friction holds does:
-/// nothing is left of how it came there, so that a motion which sticks and slips has a multiplier of zero.
+/// A law may jump at a state, as dry friction and a relay do, and the motion may stay there for a while, as a body does that
+/// friction holds. Then nothing is left of how it came there, so that a motion which sticks and slips has a multiplier of zero.
 ///
-/// Newton's method may end between two motions. Where others tend to the motion that is wanted, begin at the state to which a run
-/// of some periods comes.
+/// Newton's method may end between two motions. Where the wanted motion is stable, begin at the state to which a run of some
+/// periods comes.
 ///
 /// Where a motion goes through an event, such as the step of a walker, follow it by
 /// [`Integrator::until`](crate::Integrator::until) on [`Dual`] numbers, and solve for the start by its slopes.
@@ -140,7 +140,7 @@ pub struct PeriodicTrim<'a, S, A, const N: usize, const M: usize, const P: usize
     section: Option<usize>,
 }
 
-/// A motion that comes back: see [`PeriodicTrim`].
+/// A periodic motion: see [`PeriodicTrim`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle<const N: usize, const M: usize> {
     /// The state at its start.
@@ -149,8 +149,8 @@ pub struct Cycle<const N: usize, const M: usize> {
     pub input: SVector<f64, M>,
     /// The period, s.
     pub period: f64,
-    /// The monodromy matrix: how the state after a period changes with that at the start, of a start at which a law jumps with that
-    /// right behind. NaN for a motion that swings by itself and along which it does not lead.
+    /// The monodromy matrix: how the state after a period changes with that at the start, or with that right after it if a law
+    /// jumps there. NaN for a motion that swings by itself and along which it does not lead.
     pub monodromy: SMatrix<f64, N, N>,
 }
 

@@ -8,7 +8,11 @@ use crate::{Columns, Course, Loop, Memory, Meta, Real, Solver, Sparsity, Variabl
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
-/// `mbg!` implements it for every scalar that implements [`Real`]. A model written by hand may implement it too.
+/// `mbg!` implements it for every scalar that implements [`Real`]. A model written by hand may implement it, too: the methods that
+/// have a default say what holds "unless it is given".
+///
+/// To run a model, see [`Integrator`](crate::Integrator). To evaluate it directly, pass a time, a state, an input and a `memory`:
+/// `&mut ()` for a model without nonlinear algebraic loops, else `&mut Default::default()`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a system with this scalar and these sizes",
     note = "the sizes are the numbers of states, inputs and outputs, as the documentation of the generated type says"
@@ -19,19 +23,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// Where `∂f/∂x` can differ from zero; everywhere unless it is given.
     ///
-    /// Generated models give it, with a plan by which implicit methods eliminate where that is faster. Where a pivot is too
-    /// small beside its column they search for pivots in the whole matrix.
+    /// Generated models give it, together with a plan by which implicit methods eliminate where that is faster. Where a pivot is
+    /// too small beside its column, these search for pivots in the whole matrix instead.
     const SPARSITY: Option<&'static Sparsity> = None;
 
-    /// Whether time has an influence on the derivative by the input alone; `false` unless it is given.
+    /// Whether time influences the derivative only through the input; `false` unless it is given.
     ///
-    /// Generated models give it. Where it is `false`, [`Adaptive`](crate::Adaptive) looks for what its steps may miss.
+    /// Generated models give it. Where it is `false`, [`Adaptive`](crate::Adaptive) looks for pulses that its steps may miss.
     const AUTONOMOUS: bool = false;
 
-    /// Warm start and residual of bounded solves; `()` for a model without any.
+    /// Warm starts and residuals of the nonlinear algebraic loops; `()` for a model without any.
     type Memory: Memory;
 
-    /// One value per inverted block; an array.
+    /// One value per inverted block, as [`conditioning`](Self::conditioning) gives it; an array.
     type Conditioning: AsRef<[T]> + Copy;
 
     /// The state at the start, from the model's `initial:` values.
@@ -48,9 +52,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SVector<T, N>;
 
-    /// The same written to where it is wanted, every entry: a generated model writes each as soon as it is known, so that those
-    /// of a large one wait in no register. Unless it is given, it calls [`derivative`](Self::derivative). Who gives it marks
-    /// it `#[inline(always)]`, so that batches take the instructions of their caller.
+    /// [`derivative`](Self::derivative), written to `derivative`, every entry. A generated model writes each as soon as it is
+    /// known, so that those of a large one wait in no register. Unless it is given, it calls [`derivative`](Self::derivative). An
+    /// implementation should be marked `#[inline(always)]`, so that batches take the instructions of their caller.
     #[inline(always)]
     fn derivative_into(
         &self,
@@ -103,8 +107,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> SMatrix<T, N, N>;
 
-    /// [`derivative`](Self::derivative) and [`jacobian_state`](Self::jacobian_state) at once; a generated model works out
-    /// once what both need.
+    /// [`derivative`](Self::derivative) and [`jacobian_state`](Self::jacobian_state) at once; a generated model evaluates what
+    /// both need only once.
     #[must_use]
     fn derivative_and_jacobian(
         &self,
@@ -117,9 +121,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         (derivative, self.jacobian_state(t, x, u, memory))
     }
 
-    /// The same written to where it is wanted: nothing is copied, and a generated model writes each entry as soon as it is
-    /// known. Entries of the Jacobian that are zero in every state, those outside of [`SPARSITY`](Self::SPARSITY), may be
-    /// left as they are: begin with a matrix of zeros.
+    /// [`derivative_and_jacobian`](Self::derivative_and_jacobian), written to `derivative` and `jacobian` without a copy. Entries
+    /// of the Jacobian that are zero in every state, those outside of [`SPARSITY`](Self::SPARSITY), may be left as they are: begin
+    /// with a matrix of zeros.
     fn derivative_and_jacobian_into(
         &self,
         t: T,
@@ -162,7 +166,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         quotient(t, ahead, |t| self.derivative(t, x, u, memory))
     }
 
-    /// Energy stored in `I` and `C`, in joule when the model is in SI units; weights are sources, and no part of it: see
+    /// Energy stored in `I` and `C`, in joule if the model is in SI units. Weights are sources and no part of it, see
     /// [energy](crate::language#energy).
     #[must_use]
     fn energy(&self, t: T, x: &SVector<T, N>) -> T;
@@ -178,9 +182,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         memory: &mut Self::Memory,
     ) -> Power<T>;
 
-    /// The first time later than `t` at which a choice of the laws changes by time alone, such as that of `if t < 1.0 { … }` or
-    /// `if mod(t, 1e-3) < 3e-4 { … }`, or a curve over time has a point. Integrators end a step there, as at a jump of the input.
-    /// Of what comes again and again there is no first time: for `t` = −∞ it is any of those.
+    /// The first time later than `t` at which a choice in the laws changes by time alone, such as that of `if t < 1.0 { … }` or
+    /// `if mod(t, 1e-3) < 3e-4 { … }`, or at which a curve over time has a point. Integrators end a step there, as at a jump of the
+    /// input. Periodic changes have no first one: for `t` = −∞ it is any of them.
     #[must_use]
     fn next_change(&self, _t: T) -> Option<T> {
         None
@@ -190,10 +194,10 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// given.
     const SEEKS_CHANGES: bool = false;
 
-    /// The first time between two times, and at neither, at which a choice of the laws changes by time and inputs without a
-    /// [`next_change`](Self::next_change) that tells of it, such as where a sine of time meets a triangle, or `mod(t, period)` an
-    /// input: what is compared has changed its sign there, or what is counted has gone over a whole number. Two such times between
-    /// changes that are told are not found. Integrators end a step there.
+    /// The first time strictly between two times at which a choice in the laws changes by time and inputs without being told by
+    /// [`next_change`](Self::next_change), such as where a sine of time meets a triangle, or `mod(t, period)` an input. It is found
+    /// where the difference of what is compared has changed its sign, or what is counted has gone over a whole number; two such
+    /// times without a told change in between are missed. Integrators end a step there.
     #[must_use]
     fn change_between(&self, _from: T, _to: T, _input: impl Fn(T) -> SVector<T, M>) -> Option<T> {
         None
@@ -207,20 +211,19 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
         false
     }
 
-    /// Tells of each argument of choices in the laws how it goes between two points, each a time, a state with its derivative, and
-    /// an input with its own: that of `if q > 1.0 && q < 1.1 { … }` has two thresholds, that of a curve over `q` one at each of its
-    /// points.
+    /// Calls `each` for every argument of a choice in the laws, with its course between two points and its thresholds. Each point
+    /// is a time, a state with its derivative, and an input with its own. The argument of `if q > 1.0 && q < 1.1 { … }` has two
+    /// thresholds, that of a curve over `q` has one at each of its points.
     ///
-    /// [`Adaptive`](crate::Adaptive) looks into a step that passes any, of which its estimate of the error may be small by chance, and
-    /// between them where there are several, since something may be there that neither ends nor stages of the step meet.
-    /// Where an argument turns in between, as `x * x + y * y` does where a place is passed by, those count twice
-    /// that it may go over and back: those on this side of where its tangents at both points meet. On
-    /// [`Dual`](crate::Dual) numbers steps end at the thresholds at which a law jumps. A motion may stay at one whose argument has
-    /// its rate.
+    /// [`Adaptive`](crate::Adaptive) looks into a step that passes a threshold, since its estimate of the error may be small by
+    /// chance, and between thresholds where it passes several, since neither ends nor stages of the step may meet what is there.
+    /// Where an argument turns in between, as `x * x + y * y` does when a place is passed by, thresholds count twice that it may go
+    /// over and back: those on this side of where its tangents at both points meet. On [`Dual`](crate::Dual) numbers, steps end at
+    /// the thresholds at which a law jumps. A motion may stay at a threshold whose argument is told with its rate.
     ///
-    /// Generated models give it, for arguments that the state has a part in, or an input where a law jumps. Waves over time or one
-    /// state, such as `cos(q) > 0.9`, turn often, so half turns of their angles are told as well, with two thresholds each. None
-    /// unless it is given.
+    /// Generated models give it, for arguments in which states have a part, or inputs where a law jumps. Waves over time or one
+    /// state, such as `cos(q) > 0.9`, turn often, so half turns of their angles are told as well, with two thresholds each. It
+    /// tells of none unless it is given.
     #[inline]
     fn courses(
         &self,
@@ -249,12 +252,14 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     #[must_use]
     fn conditioning(&self, t: T, x: &SVector<T, N>, u: &SVector<T, M>) -> Self::Conditioning;
 
-    /// Why the last evaluation at this state must not be trusted, if there is a reason.
+    /// Why the last evaluation at this state must not be trusted, if there is a reason:
     ///
-    /// A state must be finite. Its derivative is not evaluated: where that is not finite, the state behind the next step is not
-    /// either. A block is too near its singular set when its normalised determinant is below the square root of the
-    /// scalar's precision. A nonlinear algebraic loop is in trouble when its last solve did not converge. Steppers ask
-    /// once a step.
+    /// - a state is not finite (the derivative is not evaluated; where that is not finite, the state after the next step is not);
+    /// - the normalised determinant of an inverted block is below the square root of the scalar's precision, so that the block is
+    ///   too near its singular set;
+    /// - the last solve of a nonlinear algebraic loop did not converge.
+    ///
+    /// Integrators ask once a step.
     #[must_use]
     fn trouble(
         &self,
@@ -300,11 +305,13 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// every attitude is a rotation: quaternions have length one, rotation matrices orthonormal rows.
     ///
     /// The correction of a loop is that of least norm in the states, by Gauss and Newton; that of an attitude is
-    /// [`orthonormal`](crate::attitude::orthonormal). States numbered in `fixed` stay as they are, so that consistent
-    /// initial values are found from a part of them, and so does an attitude of which one is fixed. Steppers ask at the
-    /// start and after each step, with nothing fixed. What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one
-    /// for which that is largest; a displacement counts as one at least, an angle being zero somewhere. Flows that cancel may leave
-    /// more, as near a dead centre: 16 times what rounding is seen to leave of them.
+    /// [`orthonormal`](crate::attitude::orthonormal). States whose indices are in `fixed` stay as they are, so that consistent
+    /// initial values are found from a part of them; an attitude stays of which one state is fixed. Integrators close at the
+    /// start and after each step, with nothing fixed.
+    ///
+    /// What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one for which that is largest; a displacement counts as
+    /// one at least, an angle being zero somewhere. Flows that cancel may leave more, as near a dead centre: 16 times what rounding
+    /// is seen to leave of them.
     ///
     /// # Errors
     ///

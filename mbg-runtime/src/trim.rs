@@ -37,27 +37,13 @@ const SAME: f64 = 8.0 * f64::EPSILON;
 /// What such states differ by may change by this part of them: by rounding, too.
 const APART: f64 = 1e-9;
 
-/// A state and an input at which rates and outputs have wanted values: an operating point, to rest at, to start from, and
-/// to linearise at.
+/// Finds an operating point: a state and an input at which rates and outputs have wanted values, to rest at, to start from, and to
+/// linearise at.
 ///
-/// Every rate is to be zero unless something else is said of it: a position in flight is [`free`](Trim::free) to change, and in a
+/// All rates are wanted to be zero, unless told otherwise: a position in flight is [`free`](Trim::free) to change, and in a
 /// steady turn a rate has a [value](Trim::rate). Every state and input may be chosen unless it is [fixed](Trim::fix). Each
-/// [`output`](Trim::output) with a wanted value fixes one of them. States, inputs and outputs go by their names, and several at
+/// [`output`](Trim::output) with a wanted value decides one of them. States, inputs and outputs go by their names, and several at
 /// once by what their names begin with: `"free.position"` is all of `free.position.x` to `.z`.
-///
-/// The point is found by the method of Gauss and Newton with the model's own Jacobians, damped until what is left of the conditions
-/// falls. Where more may be chosen than is asked, as with an elevator and a canard for one moment, each correction is the one of
-/// least norm in units of what states and inputs do. Corrections lead along closed loops and attitudes, on which the state stays
-/// ([`System::close`](crate::System::close)). A ring of joints without a `Cut` is no such loop: each of its coordinates is moved by
-/// itself, and the point that is found may be one where the ring is open. Put a `Cut` in the place of one of its joints, or let what
-/// is between its ends be an output that is zero. The guess decides which point is found of several: a pendulum may hang or stand.
-/// What two states differ by that change alike whatever is done, such as the displacements of two springs at one junction, stays as it
-/// is in the guess, unless one of them is fixed, free or given a rate. A point at which they differ otherwise is reached by no motion:
-/// beyond the voltage at which a plate is pulled in it is an error, [`Untrimmed::Apart`]. It is taken only where it is outputs, rates
-/// or fixed states that ask for it, and without them there is one with the differences of the guess. Where a contact does not touch,
-/// no slope tells of it: guess a state in which it does, such as that to which a run has fallen.
-/// Dry friction by `sign(f)` is zero at rest, where it would hold, so that what it alone holds is no point: a run finds where it comes
-/// to rest, and a law that rises within a width, such as `tanh(f / width)`, has such points.
 ///
 /// # Example
 ///
@@ -91,11 +77,30 @@ const APART: f64 = 1e-9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// # What comes back
+/// # Which point is found
 ///
-/// The conditions hold at one time. What is free to change, or has a rate, may have an influence on them, and a moment later they
-/// hold no more: blades of a rotor swing in forward flight, and with the angle of its shaft [`free`](Trim::free) a point is found
-/// at which they stand still, which is no flight. [`PeriodicTrim`](crate::PeriodicTrim) finds a motion that comes back after a turn.
+/// The point is found by the method of Gauss and Newton with the model's own Jacobians, damped until the residual of the conditions
+/// falls.
+///
+/// - Of several points, the guess decides which is found: a pendulum may hang or stand.
+/// - Where more may be chosen than is asked for, as with an elevator and a canard for one moment, each correction is the one of
+///   least norm, in units of what states and inputs do.
+/// - Corrections follow closed loops and attitudes ([`System::close`](crate::System::close)). A ring of joints without a `Cut` is
+///   no such loop: each of its coordinates is moved by itself, and the ring may be open at the point that is found. Put a `Cut` in
+///   the place of one of its joints, or make the distance of its ends an output that is wanted to be zero.
+/// - Where two states change alike whatever is done, such as the displacements of two springs at one junction, their difference
+///   stays as it is in the guess, unless one of them is fixed, free or given a rate. No motion reaches a point with another
+///   difference, such as one beyond the voltage at which a plate is pulled in: [`Untrimmed::Apart`]. It is taken only if outputs,
+///   rates or fixed states ask for it, while without them there is a point with the differences of the guess.
+/// - A contact that does not touch has no slope: guess a state in which it touches, such as that to which a run has fallen.
+/// - Dry friction by `sign(f)` counts as zero at rest, so that no point is found that friction alone holds. A run finds where it
+///   comes to rest, and a law that rises over a width, such as `tanh(f / width)`, has such points.
+///
+/// # Motions that are periodic
+///
+/// The conditions hold at one time. What is free to change, or has a rate, may influence them, and a moment later they hold no
+/// more: blades of a rotor swing in forward flight, and with the angle of its shaft [`free`](Trim::free) a point is found at which
+/// they stand still, which is no flight. [`PeriodicTrim`](crate::PeriodicTrim) finds a motion that comes back after a turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Trim<'a, S, const N: usize, const M: usize, const P: usize> {
     system: &'a S,
@@ -122,7 +127,7 @@ impl<'a, S, const N: usize, const M: usize, const P: usize> Trim<'a, S, N, M, P>
 where
     S: Convertible<f64, N, M, P>,
 {
-    /// From the model's initial state with inputs of zero, at time zero: every rate is to be zero, and everything may be chosen.
+    /// Guesses the model's initial state with inputs of zero, at time zero. Every rate is to be zero, and everything may be chosen.
     #[must_use]
     pub fn new(system: &'a S) -> Self {
         Self {
@@ -137,49 +142,49 @@ where
         }
     }
 
-    /// At another time.
+    /// Takes another time.
     #[must_use]
     pub const fn time(mut self, time: f64) -> Self {
         self.time = time;
         self
     }
 
-    /// From another state.
+    /// Guesses another state.
     #[must_use]
     pub fn state(mut self, state: &SVector<f64, N>) -> Self {
         self.start.state = *state;
         self
     }
 
-    /// From another input.
+    /// Guesses another input.
     #[must_use]
     pub fn input(mut self, input: &[f64; M]) -> Self {
         self.start.input = SVector::from(*input);
         self
     }
 
-    /// States or inputs that stay as they are in the guess.
+    /// Fixes states or inputs: they stay as they are in the guess.
     #[must_use]
     pub fn fix(mut self, name: &'static str) -> Self {
         self.selection.fix(S::META, name);
         self
     }
 
-    /// States whose rates do not matter, such as positions in flight.
+    /// Frees states: their rates do not matter, such as those of positions in flight.
     #[must_use]
     pub fn free(mut self, name: &'static str) -> Self {
         self.selection.change(S::META, name, None);
         self
     }
 
-    /// States with another rate than zero, in units of the state per second.
+    /// Wants another rate than zero of states, in units of the state per second.
     #[must_use]
     pub fn rate(mut self, name: &'static str, rate: f64) -> Self {
         self.selection.change(S::META, name, Some(rate));
         self
     }
 
-    /// Outputs with a wanted value.
+    /// Wants a value of outputs.
     #[must_use]
     pub fn output(mut self, name: &'static str, value: f64) -> Self {
         let mut found = false;
@@ -196,9 +201,9 @@ where
     ///
     /// # Errors
     ///
-    /// A name that the model has not, conditions that cannot be met from the guess, or only with other differences between states that
-    /// change alike, a point where constraints depend on each other, and what [`System::close`](crate::System::close) and
-    /// [`System::trouble`](crate::System::trouble) say of a state.
+    /// A name that the model does not have, conditions that cannot be met from the guess, or only with other differences between
+    /// states that change alike, a point where constraints depend on each other, and what [`System::close`](crate::System::close)
+    /// and [`System::trouble`](crate::System::trouble) say of a state.
     pub fn solve(&self) -> Result<Trimmed<N, M>, Untrimmed> {
         // From there no way leads back.
         match Trouble::of_input(S::META, &self.start.input) {

@@ -20,8 +20,8 @@
 //!
 //! - Joints: `fixed`, `revolute`, `continuous`, `prismatic`, `planar` and `floating`, about any axis. Links that fixed
 //!   joints hold together become one body. Where an axis is no coordinate axis, the printed frame of the link is turned so
-//!   that it is one; where the next joint is neither aligned, so that one turn leads there, as in the frames of Denavit and
-//!   Hartenberg (1955). Positions and orientations are those of the file's links all the same.
+//!   that it is one; where the next joint is not aligned with it either, it is turned so that a single rotation leads there,
+//!   as in the frames of Denavit and Hartenberg (1955). Positions and orientations are those of the file's links all the same.
 //! - Planar and floating joints are none of the numbered joints: each has parameters of its own for its start, such as
 //!   `table_initial_travel`.
 //! - A joint that mimics another one has the rate of that, by a transformer, and is none of the numbered joints; the angle
@@ -36,8 +36,8 @@
 //!   its `stop_stiffness` and `stop_dissipation`, on slides `slide_stop_stiffness` and `slide_stop_dissipation`, whose defaults
 //!   know nothing of the robot. What a `limit` says of efforts and velocities is left out, and all of it without the option.
 //! - An `origin` may have a `quat_xyzw` instead of `rpy`.
-//! - What shows or collides is left out. Every other tag without an equation is named with its line, and what else the tags
-//!   of poses, inertias and joints tell. A file for `xacro` is refused, as it may lack links.
+//! - Visual and collision geometry is left out. Every other tag that is not converted is named with its line, and so is what else
+//!   the tags of poses, inertias and joints tell. A file for `xacro` is refused, since links may be missing in it.
 //!
 //! # Links, forces and Jacobians
 //!

@@ -10,19 +10,20 @@ use crate::{Dual, Real};
 
 pub use sampled::{SampleError, Sampled};
 
-/// An input `u(t)` that is smooth but for jumps at times known in advance.
+/// An input `u(t)` of `M` numbers that is smooth except for jumps at times known in advance.
 ///
-/// Integrators end a step at each jump and start anew behind it, so that no step straddles a jump. All stages of a
-/// step ask for the value on the step's own side: a piece is continued up to its end, where the next one begins.
+/// Integrators end a step at each jump and start anew behind it, so that no step straddles a jump. What lies between two jumps is
+/// a piece. All stages of a step ask for the value on the piece of the step, which is continued up to and including its end, where
+/// the next piece begins.
 ///
 /// | input | value |
 /// |---|---|
 /// | `()` | zero |
 /// | [`Constant`] | a constant |
-/// | [`Pulse`] | a constant for a time, zero else |
+/// | [`Pulse`] | a constant for a time, zero otherwise |
 /// | [`Smooth`] | a function of time without jumps |
 /// | [`Differentiable`] | the same on dual numbers, with its exact time derivative |
-/// | [`Sampled`] | values at times, held or joined by lines |
+/// | [`Sampled`] | values at given times, held or joined by lines |
 /// | [`Sum`] | two inputs added |
 /// | `&I` | what `I` is |
 #[diagnostic::on_unimplemented(
@@ -52,13 +53,13 @@ pub trait Input<T: Real, const M: usize> {
         quotient(t, ahead, |t| self.value(t, since))
     }
 
-    /// Whether the value stays the same between jumps; if it does, nobody looks for jumps that are not declared.
+    /// Whether the value stays the same between jumps; if it does, integrators do not look for jumps that are not declared.
     #[must_use]
     fn is_constant_between_jumps(&self) -> bool {
         false
     }
 
-    /// The value at `t`; at a jump, the one behind it.
+    /// The value at `t`; at a jump, the one after it.
     #[must_use]
     fn at(&self, t: T) -> SVector<T, M> {
         self.value(t, t)
@@ -146,7 +147,7 @@ pub struct Pulse<T, const M: usize> {
     pub amplitude: SVector<T, M>,
     /// The time of the first jump.
     pub start: T,
-    /// The time of the second jump; may be infinite, which makes a step of the pulse.
+    /// The time of the second jump; if it is infinite, the pulse is a step.
     pub end: T,
 }
 

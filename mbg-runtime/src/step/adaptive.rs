@@ -23,50 +23,62 @@ use crate::{Input, Real, System};
 
 /// A method at steps whose length follows its estimate of the error.
 ///
-/// An error counts as small enough when the root of the mean square of
-/// `error / (absolute · nominal + relative · |x|)` over all states is at most 1. The length is controlled by the errors
-/// and lengths of the step and of the one before: by proportion and integral, for methods of Rosenbrock by proportion
-/// alone. An error that has grown goes on growing, for explicit methods only where nothing but its state drives the model,
-/// so that no pulse is stepped over (all in Gustafsson, *ACM Transactions on Mathematical Software* 20
-/// (1994), 496–517). It starts from the first two derivatives, much as in `dopri5` of Hairer, Nørsett and Wanner. Steps end
-/// exactly on the jumps of the input and where laws change by time alone
-/// ([`System::next_change`]), and the starting step is chosen anew behind each.
+/// A step is accepted when the root of the mean square of `error / (absolute · nominal + relative · |x|)` over all states is at
+/// most 1. Steps end exactly on the jumps of the input and where laws change by time alone ([`System::next_change`]), and the
+/// starting step is chosen anew after each.
 ///
-/// On [`Dual`](crate::Dual) numbers slopes control the step, too, so that those of a model at rest are as exact as those of one
-/// that moves. They make up a motion beside the other along each direction, whose error counts as small enough when it is no
-/// larger part of it than the larger tolerance, both in units of the tolerances of states. Slopes that are not finite do not
-/// count, nor do any in steps that are no longer than a hundredth of that part of the run.
+/// # Control of the length
 ///
-/// Jumps that the input does not declare cost rejected steps, and in single precision the digits of time may be too few for
-/// what a stiff model does behind one: declare it. So that none is stepped over while the system is at rest,
-/// the input is looked at between the ends of each step; what is shorter than a sixty-fourth of the longest step may
-/// still be missed, and [`Adaptive::longest`] is the remedy.
+/// The length is controlled by the errors and lengths of the step and of the one before, with a proportional and an integral part,
+/// for methods of Rosenbrock with a proportional part alone. An error that has grown is expected to go on growing; for explicit
+/// methods only where nothing but its state drives the model, so that no pulse is stepped over (all in Gustafsson, *ACM
+/// Transactions on Mathematical Software* 20 (1994), 496–517). The starting step follows from the first two derivatives, much as in
+/// `dopri5` of Hairer, Nørsett and Wanner.
+///
+/// On [`Dual`](crate::Dual) numbers, slopes control the step, too, so that those of a model at rest are as exact as those of one
+/// that moves. The slopes along each direction are a motion of their own. Its error is small enough when it is no larger part of
+/// that motion than the larger tolerance, both in units of the tolerances of states. Slopes that are not finite do not count, nor
+/// do any in steps that are no longer than a hundredth of that part of the run.
+///
+/// # What steps might miss
+///
+/// Declare the jumps of an input: those that are not declared cost rejected steps, and in single precision the digits of time may
+/// be too few for what a stiff model does after one. The input is looked at between the ends of each step, so that no such jump is
+/// stepped over while the system is at rest. What is shorter than a sixty-fourth of the longest step may still be missed;
+/// [`Adaptive::longest`] is the remedy.
 ///
 /// A model may pulse while all that drives it is smooth, as a rectifier does, whether the source is an input or its own
 /// ([`System::AUTONOMOUS`] is `false`). Where an input varies between its jumps or the model depends on time, steps that are
 /// long beside those before are therefore checked in between: model and dense output must have much the same derivative.
 /// The checks are half as far apart as steps were when they last became short, and a 24th of the time since: what lasts
-/// longer is seen, once or again and again. Where next to nothing moves at the start, the first step is a 24th of the run at
-/// most. At steps of much the same length there are none after a while. Checked at three points is each step behind a refused
-/// one of a driven model, and of any model each whose estimate of the error has grown by more than its length explains: an
-/// estimate presumes a smooth solution, and where a pulse or a contact begins it may be small by chance. So are steps behind whose
-/// ends a choice in the laws is another one ([`System::courses`]); between two such thresholds, such as the ends of
-/// a bump over the way of what rolls at rest, each step is looked into that passes both, for what lasts longer than its ten
-/// millionth part, and each in which the argument may come to one and go back, as the distance from a place does that is passed by.
+/// longer is seen, whether it comes once or recurs. At steps of much the same length there are no checks after a while. Where next
+/// to nothing moves at the start, the first step is at most a 24th of the run.
+///
+/// An estimate of the error presumes a smooth solution, and may be small by chance where a pulse or a contact begins. So some steps
+/// are checked at three points: in a driven model each step after a refused one, and in any model each step whose estimate has
+/// grown by more than its length explains, and each at whose end a choice in the laws has changed ([`System::courses`]). A choice
+/// may have two thresholds, such as the ends of a bump over which something rolls from rest. A step that passes both is looked into
+/// for whatever lasts longer than its ten millionth part, and so is one in which the argument may come to a threshold and go back,
+/// as the distance from a place does that is passed by.
+///
+/// # Laws that change
 ///
 /// Where a step is refused that goes over such a threshold, the next ones end almost there instead of becoming shorter and shorter, a
-/// straight line of a hundred millionth of it at most leads over, and the starting step is chosen anew behind it. So friction,
-/// relays, cams and contacts cost about three short steps and a start each time that a law changes.
+/// straight line of at most a hundred millionth of the step leads over it, and the starting step is chosen anew behind it. So
+/// friction, relays, cams and contacts cost about three short steps and a start each time that a law changes.
+///
+/// # Motion that stays at a threshold
 ///
 /// Where a law jumps so that the motion leads back to the threshold from both sides, it stays there: dry friction that holds a load, a
-/// clutch whose sides go together, a controller that switches its force. From there on the state goes along the threshold, by that
-/// mean of the derivatives at both sides which does not leave it (Filippov, *Differential Equations with Discontinuous Righthand
-/// Sides*, Kluwer 1988, §4), and along up to sixteen at once by the parts that each has in the mean (Utkin, *Sliding Modes in
-/// Control and Optimization*, Springer 1992, §2). At which of several it stays is one linear complementarity problem (Murty, *Linear
-/// Complementarity*, Heldermann 1988): one may be torn loose where another is met, and arguments may tell of each other, as slips of
-/// clutches in a ring do. Steps end where such a part is used up, as where a force tears a load loose. An
-/// evaluation then takes one of the model on each side, and a Jacobian one on each side as well, without how an argument bends; that
-/// Jacobian is taken for dense. A block that friction stops:
+/// clutch whose sides turn together, a controller that switches its force. From there on the state goes along the threshold, by the
+/// mean of the derivatives at both sides that does not leave it (Filippov, *Differential Equations with Discontinuous Righthand
+/// Sides*, Kluwer 1988, §4), or along up to sixteen thresholds at once, by the share of each in the mean (Utkin, *Sliding Modes in
+/// Control and Optimization*, Springer 1992, §2). At which of several thresholds it stays is a linear complementarity problem
+/// (Murty, *Linear Complementarity*, Heldermann 1988): it may leave one where it meets another, and arguments may depend on each
+/// other, as slips of clutches in a ring do. Steps end where a share is used up, as where a force tears a load loose.
+///
+/// Along a threshold, an evaluation takes one of the model on each side. So does a Jacobian, which neglects the curvature of the
+/// argument and counts as dense. A block that friction stops:
 ///
 /// ```
 /// use mbg_runtime::{Adaptive, Dop853, Integrator, System, mbg};
@@ -116,20 +128,20 @@ use crate::{Input, Real, System};
 pub struct Adaptive<'a, Method> {
     /// The method.
     pub method: Method,
-    /// Tolerance in units of the state.
+    /// Tolerance relative to the size of a state.
     ///
-    /// An explicit method takes both tolerances smaller where this one exceeds 1e-2, [`Pirk16`](super::Pirk16) where it exceeds
-    /// 1e-4: to looser ones steps come to lengths at which what decays grows.
+    /// Explicit methods reduce both tolerances where this one exceeds 1e-2, [`Pirk16`](super::Pirk16) where it exceeds 1e-4: at
+    /// looser ones, steps become so long that what decays would grow.
     pub relative: f64,
-    /// Tolerance where the state is near zero, in units of its nominal size.
+    /// Tolerance where a state is near zero, relative to its nominal size.
     pub absolute: f64,
     /// Nominal sizes of the states, in their order; a state without one has size 1.
     pub nominal: &'a [f64],
-    /// The starting step; chosen from the problem when there is none.
+    /// The starting step; if `None`, it is chosen from the problem.
     pub first: Option<f64>,
-    /// No step is longer, but for the rounding of time.
+    /// The longest step, but for the rounding of time.
     pub longest: f64,
-    /// No more steps than these in the whole run, rejected ones included.
+    /// The most steps of the whole run, rejected ones included.
     pub most: u64,
 }
 

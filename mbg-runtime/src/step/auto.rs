@@ -19,24 +19,28 @@ use crate::{Input, Real, Sparsity, System};
 
 /// Integrates with a method that it picks for each piece between two jumps of the input.
 ///
-/// | what is known at the start of the piece | method |
+/// A problem counts as stiff if the fastest mode turns or decays by more than 10 000 rad within the piece.
+///
+/// | at the start of the piece | method |
 /// |---|---|
-/// | the fastest mode moves more than 10 000 rad within the piece; a relative tolerance of at most 1e-5 | [`Radau9`] |
-/// | the same to a larger tolerance; the mode is an oscillation | [`Radau5`] |
-/// | the same, and it decays | [`Rodas5P`] |
-/// | a relative tolerance above 3e-6, or less than 20 rad within the piece | [`Tsit5`] |
+/// | stiff; the relative tolerance is at most 1e-5 | [`Radau9`] |
+/// | stiff, to a larger tolerance; the fastest mode oscillates | [`Radau5`] |
+/// | stiff, to a larger tolerance; the fastest mode decays | [`Rodas5P`] |
+/// | not stiff; the relative tolerance is above 3e-6, or the fastest mode moves less than 20 rad within the piece | [`Tsit5`] |
 /// | else | [`Dop853`] |
 ///
 /// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of steps of
-/// the power method: where many modes are about as fast, within a factor of two. [`Auto::choose`] tells what is picked and
-/// why. A problem may become stiff later on: while a method for smooth problems has more than 1000 steps to go, the fastest mode
-/// is looked at after 50 of them, and again whenever a quarter of them has been added, at least 50. Where stability is what keeps
-/// the steps short, the piece goes on with a method for stiff ones.
+/// the power method; where many modes are about as fast, it is exact within a factor of two. [`Auto::choose`] tells what is picked
+/// and why.
+///
+/// A problem may become stiff later on. While a method for smooth problems has more than 1000 steps to go, the fastest mode is
+/// looked at after 50 steps, and again whenever a quarter of the steps so far, at least 50, have been added. Where stability keeps
+/// the steps short, the rest of the piece goes on with a method for stiff problems.
 ///
 /// # Stack
 ///
 /// A run allocates nothing: all it works with is on the stack. Methods for smooth problems keep some tens of vectors there, those
-/// for stiff ones matrices, of `8 N²` bytes each for `N` states in `f64`. Measured with 400 states, optimised:
+/// for stiff problems keep matrices of `8 N²` bytes each, for `N` states in `f64`. Measured in optimised builds:
 ///
 /// | method | matrices | 400 states |
 /// |---|---|---|
@@ -46,18 +50,17 @@ use crate::{Input, Real, Sparsity, System};
 /// | [`Radau9`] | 6 | 8.1 MB |
 /// | `Auto` while a model is not stiff | 1 | 1.4 MB |
 ///
-/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. With what they give,
+/// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. With their results,
 /// [`Linearised::of`](crate::Linearised::of) takes 7, [`Linearised::held`](crate::Linearised::held) 11, and
-/// [`Trim::solve`](crate::Trim::solve) 13.
+/// [`Trim::solve`](crate::Trim::solve) 13. Builds without optimisation copy more and take three to four times as much.
 ///
-/// The main thread has 8 MB on most systems and others, such as those of tests, have 2 MB. A larger model overflows it, and the
-/// process is aborted: run it in a thread of its own, by `std::thread::Builder::new().stack_size(256 << 20).spawn(…)`. Without optimisation more is copied, which
-/// takes three to four times as much.
+/// The main thread has 8 MB on most systems; others, such as those of tests, have 2 MB. A larger model overflows the stack, and the
+/// process is aborted. Run it in a thread of its own then, by `std::thread::Builder::new().stack_size(256 << 20).spawn(…)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Auto<'a> {
-    /// Tolerance in units of the state.
+    /// Tolerance relative to the size of a state.
     pub relative: f64,
-    /// Tolerance where the state is near zero, in units of its nominal size.
+    /// Tolerance where a state is near zero, relative to its nominal size.
     pub absolute: f64,
     /// Nominal sizes of the states, in their order; a state without one has size 1.
     pub nominal: &'a [f64],

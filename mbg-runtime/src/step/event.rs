@@ -19,15 +19,16 @@ type Asked<T> = (T, f64);
 impl<T: Real, const N: usize, Memory: Copy> Step<'_, T, N, Memory> {
     /// The first time in the step, not counting its start, at which `guard` goes through zero in this direction.
     ///
-    /// `guard` is asked at the ends of eight equal parts of the step. A part in which it may come to zero and go back, by the
-    /// parabola through three of these, is narrowed to where it turns; of a guard that is zero at the start, the first part is
-    /// halved to where it may have come back: in at most 24 evaluations more. Crossings are missed that are closer to each other
-    /// than some hundred thousandth of the step, or of a guard that turns more than once in a part. The time is found by the
-    /// Illinois method, and bisection where that is slow or the guard stays zero, in at most [`Step::SEARCH`] evaluations, to the
-    /// last bits. Lanes share their time: the first decides. On [`Dual`](crate::Dual) numbers the time has the slope of the zero,
-    /// and so has the state there.
+    /// `guard` is evaluated at the ends of eight equal parts of the step. A part in which it may come to zero and go back, by the
+    /// parabola through three of these, is narrowed to where it turns. If the guard is zero at the start, the first part is
+    /// halved to where it may have come back. Both take at most 24 more evaluations. Crossings are missed that are closer to each
+    /// other than some hundred thousandth of the step, and so are those of a guard that turns more than once in a part.
     ///
-    /// Nothing is found either where the guard is not a number before it goes through zero.
+    /// The time is found to the last bits by the Illinois method, and by bisection where that is slow or the guard stays zero, in
+    /// at most [`Step::SEARCH`] evaluations. Lanes share their time: the first decides. On [`Dual`](crate::Dual) numbers the time
+    /// has the slope of the zero, and so has the state there.
+    ///
+    /// Nothing is found if the guard is not a number before it goes through zero.
     #[must_use]
     pub fn crossing(
         &mut self,
@@ -37,7 +38,7 @@ impl<T: Real, const N: usize, Memory: Copy> Step<'_, T, N, Memory> {
         self.search(direction, guard).ok().flatten()
     }
 
-    /// The same, or the first time at which the guard was asked and was not a number.
+    /// As [`crossing`](Self::crossing), or the first time at which the guard was evaluated and was not a number.
     pub(super) fn search(
         &mut self,
         direction: Direction,

@@ -16,28 +16,38 @@ use crate::{Input, Real, System};
 
 /// A method at steps of constant length.
 ///
-/// The grid is `t0 + k · h`. It starts anew at each jump of the input; the step before a jump, or before `t1`, is
-/// shortened to end there. Where `h` divides the way up to rounding, all steps are equal and no tiny one remains: of length
-/// `h` where the way is `n · h` to the last bit, else next to it. So the state advances by the time that is told, however
-/// many pieces a run has and however its times are rounded.
+/// # Length of the steps
 ///
-/// Nothing estimates an error here. An explicit method whose step is too long for the fastest mode lets the state grow from step to
-/// step, and what is finite counts as a state: such a run ends well with numbers of any size, and is
-/// [told](crate::Trouble::NotFinite) only where one overflows. Nothing says how large the states of a model may be: look at them,
-/// at [`System::energy`], or at how they change with half the step; or take [`Adaptive`](super::Adaptive).
+/// Steps end on the grid `t0 + k · h`, which starts anew at each jump of the input. The step before a jump, or before `t1`, is
+/// shortened to end there. Where `h` divides the time up to there but for rounding, all steps are equal and no tiny one remains:
+/// their length is `h` if the time is `n · h` to the last bit, else next to `h`. So the state advances by exactly the time that is
+/// asked for, however many pieces a run has and however its times are rounded.
 ///
-/// A method that uses a Jacobian loses a step across a kink of a stiff law, as where a diode beside a coil begins to block. Such
-/// a step is halved until its stages are found and finite, and the observer is given each part. Methods of Radau then follow the
-/// kink. Those of Rosenbrock take a part that is lost, too, by Euler's implicit method, where that errs by less than a thousandth
-/// of what states have been. The midpoint rule comes as near to the kink as a tenth of that.
+/// # Steps that are too long
 ///
-/// Where a law jumps since a state goes through a threshold, as a relay, a contact or dry friction by `sign(f)` does, the step ends
-/// there and another one begins, up to the end of the step of the grid: no stage is beyond the jump, and the method keeps its order.
-/// Where the motion leads back from both sides it stays, as told of [`Adaptive`](super::Adaptive): friction holds. Along one threshold
-/// a step takes about three times the evaluations. Within a step of the grid it is begun anew 64 times at most, so that a loop with a
-/// clock of its own knows the longest time of a tick: each is a run of one step, from zero to `h`. Lanes share their steps, which end
-/// where a law jumps in any of them; one in which the motion stays goes over the threshold to and fro, by an error of the order of the
-/// step, and what an output says there is that of one side. [`Rk4::step`] goes over all jumps. There a law is to rise within a width.
+/// Nothing estimates an error here. With an explicit method whose step is too long for the fastest mode, the state grows from step
+/// to step. Such a run ends without an error, with numbers of any size; [`NotFinite`](crate::Trouble::NotFinite) is returned only
+/// once one overflows. Look at the states, at [`System::energy`], or at how they change with half the step; or take
+/// [`Adaptive`](super::Adaptive).
+///
+/// # Kinks and jumps of laws
+///
+/// Where a stiff law has a kink, as where a diode beside a coil begins to block, a step of a method that uses a Jacobian may fail.
+/// It is then halved until its stages are found and finite, and the observer is given each part. Methods of Radau then follow the
+/// kink. Those of Rosenbrock take a part that fails, too, by Euler's implicit method, where the error of that is less than a
+/// thousandth of what states have been; the midpoint rule comes as near to the kink as a tenth of that.
+///
+/// Where a law jumps because a state goes through a threshold, as with a relay, a contact or dry friction by `sign(f)`, the step
+/// ends there and another one begins, up to the end of the step of the grid: no stage is beyond the jump, and the method keeps its
+/// order. Where the motion leads back to the threshold from both sides, it stays there, see [`Adaptive`](super::Adaptive): friction
+/// holds. Along one threshold a step takes about three times the evaluations.
+///
+/// Within a step of the grid, at most 64 steps are begun, so that a loop with a clock of its own knows the longest time of a tick:
+/// each tick is a run of one step, from zero to `h`.
+///
+/// Lanes share their steps, which end where a law jumps in any of them. A lane in which the motion stays goes over the threshold to and
+/// fro, by an error of the order of the step, and an output is that of one side there. [`Rk4::step`] goes over all jumps. For both, let
+/// a law rise over a width.
 ///
 /// ```
 /// use mbg_runtime::{Constant, Fixed, Integrator, Rk4, System, mbg};
@@ -62,12 +72,12 @@ use crate::{Input, Real, System};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A law that is steep at one place without a kink and level beside it, as dry friction by `tanh`, is one for those of Radau, or for
-/// [`Adaptive`](super::Adaptive) steps: one of Rosenbrock that starts where it is level knows nothing of the steep place, and makes
-/// another motion of a block that sticks and slips.
+/// A law that is steep in one place without a kink and flat beside it, such as dry friction by `tanh`, needs a method of Radau, or
+/// [`Adaptive`](super::Adaptive) steps. A step of Rosenbrock that starts where it is flat does not see the steep place, and gives a
+/// wrong motion of a block that sticks and slips.
 ///
-/// Next to a singular position of closed loops a step whose stages are not found is one of [`Dop853`](super::Dop853) whose stages are
-/// closed, if that is off by no more than 1e-5 of what states have been.
+/// Next to a singular position of closed loops, a step whose stages are not found is replaced by one of [`Dop853`](super::Dop853)
+/// with closed stages, if that is off by no more than 1e-5 of what states have been.
 ///
 /// # Example
 ///
@@ -89,7 +99,7 @@ pub struct Fixed<Method> {
     pub method: Method,
     /// Length of a step.
     pub step: f64,
-    /// Whether what rounding takes off the sum of all steps is kept and added to the next (Kahan's summation).
+    /// Whether the rounding error of each sum is kept and added to the next step (Kahan's summation).
     pub compensated: bool,
 }
 
@@ -147,12 +157,13 @@ impl<Scheme: Method, const N: usize> Integrator<N> for Fixed<Scheme> {
 }
 
 impl Rk4 {
-    /// Runs from `t0` to `t1` in steps of `h`: [`Fixed`] with [`Rk4`], with states alone for an observer.
+    /// Runs from `t0` to `t1` in steps of `h`, as [`Fixed`] with [`Rk4`] does; `observer` is given the time and the state at the
+    /// start and at the end of each step.
     ///
-    /// `observer` is given the start and the end of each step. A loop with a clock of its own takes [`Rk4::step`]: in single precision
-    /// times that are summed up step by step drift away, and after half an hour a millisecond is lost in their rounding.
-    /// So do the angles of what turns on and on lose digits, and closed loops then gape: where the model reads no more of them than
-    /// sine and cosine, take whole turns off the state between two steps.
+    /// A loop with a clock of its own takes [`Rk4::step`]: in single precision, times that are summed up step by step drift away,
+    /// and after half an hour a millisecond is lost in their rounding. In the same way an angle that grows without bound loses
+    /// digits, and closed loops then gape: where the model reads only its sine and cosine, take whole turns off the state between
+    /// two steps.
     ///
     /// # Errors
     ///
@@ -196,12 +207,12 @@ impl Rk4 {
         Ok(problem.statistics)
     }
 
-    /// One step of length `h` from `t` with the input held at `u`, for loops that bring their own clock, with the least code
-    /// and stack. Of a model without attitudes and closed loops, the same bits as those of [`Fixed`] over a way, `t1 - t0`, that is
-    /// `n · h` to the last bit, where [`FUSED`](crate::FUSED) does not hold.
+    /// One step of length `h` from `t` with the input held at `u`, for loops that have their own clock, with the least code
+    /// and stack. For a model without attitudes and closed loops it gives the same bits as [`Fixed`] does over a time `t1 - t0`
+    /// that is `n · h` to the last bit, where [`FUSED`](crate::FUSED) does not hold.
     ///
-    /// Nothing is closed and nothing is checked: attitudes become longer or shorter and closed loops open, unless each step is
-    /// followed by [`System::close`]. Ask [`System::trouble`], which also tells a state that is not finite.
+    /// Nothing is closed and nothing is checked: unless each step is followed by [`System::close`], attitudes drift from rotations
+    /// and closed loops open. Ask [`System::trouble`], which also tells of a state that is not finite.
     ///
     /// ```
     /// use mbg_runtime::{Rk4, System, Trouble};

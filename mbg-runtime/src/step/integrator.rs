@@ -21,27 +21,31 @@ use crate::{Input, Real, System};
 pub struct Arrival<T, const N: usize> {
     /// The time of the event, or the end.
     pub time: T,
-    /// The state there; at an event interpolated, and on closed loops.
+    /// The state there; at an event it is interpolated, with loops closed.
     pub state: SVector<T, N>,
-    /// Whether it was the event.
+    /// Whether it ended at the event, not at the end of the time.
     pub found: bool,
-    /// What it took.
+    /// What the run took.
     pub statistics: Statistics,
 }
 
 /// A method with its step size or tolerance: [`Fixed`](super::Fixed), [`Adaptive`](super::Adaptive) or
 /// [`Auto`](super::Auto).
 ///
+/// It runs a model in one of four ways: [`integrate`](Self::integrate) shows each step to an observer, [`sample`](Self::sample)
+/// gives the state at given times, [`sample_outputs`](Self::sample_outputs) the outputs, too, and [`until`](Self::until) ends at an
+/// event.
+///
 /// Every run
 ///
 /// - starts by closing the loops of the system, and closes them after every step ([`System::close`]);
-/// - ends a step at each jump of the input and starts anew behind it, however close the next one is;
-/// - asks [`System::trouble`] at the start, after each step and behind each jump;
-/// - begins without what a run before has found: the first solve of a nonlinear algebraic loop starts at zero. A loop with
-///   several solutions may find another one than the end of the run before had.
+/// - ends a step at each jump of the input and starts anew after it, however close the next one is;
+/// - asks [`System::trouble`] at the start, after each step and after each jump;
+/// - begins without the memory of former runs: the first solve of a nonlinear algebraic loop starts at zero. Where such a loop has
+///   several solutions, that may be another one than at the end of the run before.
 ///
-/// From then on each solve begins where the one before ended, so that a run stays on its branch of such a loop. Outputs from the
-/// state alone, with a memory that is new, may be those of another branch: take them by
+/// From then on each solve begins where the one before ended, so that a run stays on its branch of such a loop. Outputs that are
+/// worked out from the state with a new memory may be those of another branch: take them by
 /// [`sample_outputs`](Integrator::sample_outputs), or begin with [`Step::memory`].
 pub trait Integrator<const N: usize> {
     /// Refuses settings that cannot be met.
@@ -99,8 +103,8 @@ pub trait Integrator<const N: usize> {
     ///
     /// # Errors
     ///
-    /// A trouble, a state, derivative or Jacobian that is not finite, a step that became too small or failed, too many
-    /// steps.
+    /// See [`Cause`]: a trouble of the model, a state, derivative or Jacobian that is not finite, a step that became too small or
+    /// failed, too many steps.
     fn integrate<T, S, I, const M: usize, const P: usize>(
         &self,
         system: &S,
@@ -125,8 +129,8 @@ pub trait Integrator<const N: usize> {
 
     /// Runs from `t0` to the last of `times`, which must ascend; `observer` is given the state at each of them.
     ///
-    /// Between the ends of steps it is interpolated. The times have no influence on the steps, but for the last one,
-    /// at which the last step ends.
+    /// Between the ends of steps the state is interpolated. The times have no influence on the steps, except that the last step
+    /// ends at the last of them.
     ///
     /// # Errors
     ///
@@ -150,9 +154,9 @@ pub trait Integrator<const N: usize> {
         })
     }
 
-    /// The same with the outputs, at the input of the time and on the branch on which the run is of a nonlinear loop with
-    /// several solutions. Where the motion stays at a threshold of the laws they are their mean there: of friction that holds, what
-    /// holds.
+    /// As [`sample`](Self::sample), and `observer` is given the outputs, too, for the input at that time. Where a nonlinear loop
+    /// has several solutions, they are on the branch of the run. Where the motion stays at a threshold of the laws, laws have their
+    /// mean there: friction that holds has the force that holds.
     ///
     /// # Errors
     ///
@@ -217,11 +221,10 @@ pub trait Integrator<const N: usize> {
     /// Runs from `t0` until `guard` goes through zero, at the latest until `t1`; `observer` is given the steps up to the
     /// event, at which the last one ends.
     ///
-    /// The time of the event is found as [`Step::crossing`] tells, in a bounded number of evaluations of the guard. To
-    /// go on, change the state and run again from there: a guard that is zero, or on the far side by rounding, at
-    /// the start counts when it comes back.
-    /// One that is back before a hundred thousandth of the first step is missed, with all that follows: a ball that bounces falls
-    /// through the floor when its flights have become that short. Let it rest before.
+    /// The time of the event is found as [`Step::crossing`] describes, in a bounded number of evaluations of the guard. To
+    /// go on, change the state and run again from there. A guard that is zero at the start, or beyond it by rounding, counts only
+    /// when it comes back to zero. If it does so within a hundred thousandth of the first step, that is missed, with all that
+    /// follows: a ball that bounces falls through the floor when its flights have become that short. Let it rest before.
     ///
     /// A guard that reads a nonlinear loop with several solutions begins with [`Step::memory`] of the step before, which the
     /// observer leaves in a [`Cell`](core::cell::Cell) for it.

@@ -124,7 +124,7 @@ mod tests {
     fn rubbing(
         forces: &[f64],
         pairs: &[(usize, Option<usize>, f64)],
-    ) -> (Each<f64, K>, SMatrix<f64, K, K>) {
+    ) -> (Each<f64, K>, Each<Each<f64, K>, K>) {
         let along = |pair: &(usize, Option<usize>, f64), mass: usize| -> f64 {
             f64::from(u8::from(pair.0 == mass)) - f64::from(u8::from(pair.1 == Some(mass)))
         };
@@ -133,22 +133,22 @@ mod tests {
                 .map(|mass| along(a, mass) * along(b, mass))
                 .sum::<f64>()
         };
-        let (mut first, mut faster) = ([0.0; K], SMatrix::zeros());
+        let (mut first, mut faster) = (Each::all(0.0), Each::all(Each::all(0.0)));
         for (row, pair) in pairs.iter().enumerate() {
             first[row] = (0..forces.len())
                 .map(|mass| along(pair, mass) * forces[mass])
                 .sum();
             for (column, other) in pairs.iter().enumerate() {
-                faster[(row, column)] = -2.0 * other.2 * product(pair, other);
+                faster[column][row] = -2.0 * other.2 * product(pair, other);
                 first[row] += other.2 * product(pair, other);
             }
         }
         (first, faster)
     }
 
-    fn of(forces: &[f64], pairs: &[(usize, Option<usize>, f64)]) -> Each<Choice, K> {
+    fn of(forces: &[f64], pairs: &[(usize, Option<usize>, f64)]) -> [Choice; K] {
         let (first, faster) = rubbing(forces, pairs);
-        chosen((&first, &faster), &[None; K][..pairs.len()]).unwrap()
+        *chosen((&first, &faster), pairs.len(), &Each::all(None)).unwrap()
     }
 
     #[test]
@@ -188,8 +188,9 @@ mod tests {
     #[test]
     fn what_is_known_stays_so() {
         let (first, faster) = rubbing(&[0.5, 0.0], &[(0, None, 1.0), (0, Some(1), 1.0)]);
-        let known = [None, Some(Choice::Before)];
-        let [brake, clutch, ..] = chosen((&first, &faster), &known).unwrap();
+        let mut known = Each::all(None);
+        known[1] = Some(Choice::Before);
+        let [brake, clutch, ..] = *chosen((&first, &faster), 2, &known).unwrap();
         assert_eq!((brake, clutch), (Choice::Ahead, Choice::Before));
     }
 }

@@ -43,3 +43,5 @@ mod stops;
 mod thresholds;
 #[path = "methods/times.rs"]
 mod times;
+#[path = "methods/work.rs"]
+mod work;

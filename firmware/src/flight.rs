@@ -5,6 +5,7 @@ use core::hint::black_box;
 use mbg_runtime::{Real, Rk4, System};
 use nalgebra::SVector;
 
+use crate::digest::Digest;
 use crate::reference::{Instant, PULSE};
 use crate::{measure, print};
 
@@ -184,27 +185,6 @@ impl Difference {
             print::scientific(self.largest / self.value);
             print::line("");
         }
-    }
-}
-
-/// All bits of all states in one number (Fowler, Noll and Vo's hash 1a).
-struct Digest(u64);
-
-impl Digest {
-    const fn new() -> Self {
-        Self(0xCBF2_9CE4_8422_2325)
-    }
-
-    fn add(&mut self, number: f64) {
-        for byte in number.to_bits().to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
-        }
-    }
-
-    fn print(&self) {
-        print::text("digest of all states ");
-        print::bits(self.0);
-        print::line("");
     }
 }
 

@@ -1,7 +1,9 @@
 //! Runs the generated INS on a microcontroller, or on this machine to compare with.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+mod digest;
 mod flight;
+mod joint;
 mod machine;
 mod measure;
 #[path = "../../examples/ins/models.rs"]
@@ -48,6 +50,7 @@ fn flights() -> bool {
             Steps::guarded,
             1e-10,
         )
+        & joint::moves()
 }
 
 #[cfg(not(target_os = "none"))]

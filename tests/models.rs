@@ -64,4 +64,5 @@ mod models {
     #[allow(deprecated, reason = "a warning of the macro, which is meant there")]
     mod starts;
     mod trims;
+    mod water;
 }

@@ -21,6 +21,7 @@ macro_rules! files {
 
 files! {
     "Accumulator": "accumulator.mbg",
+    "AddedMass": "added_mass.mbg",
     "Backlash": "backlash.mbg",
     "Bearing": "bearing.mbg",
     "Bearings": "bearings.mbg",

@@ -32,6 +32,8 @@ const JOINTS: [&str; 13] = [
      arm: Turn { by: rot_x(0.5) } (foot, tip);",
     "joint: Free { } (ground, tip); load: Load { force: [1.0, 2.0, 3.0] } (tip);
      point: PointMass { mass: 0.5 } (tip);",
+    "joint: Free { } (ground, tip); #[derivative]
+     water: AddedMass { mass: diag(0.3, 0.6, 0.7), inertia: 0.2, centre: [0.1, 0.0, 0.0] } (tip);",
     "joint: Free { } (ground, tip);
      cut: Cut {} (ground, tip);",
     "joint: Prismatic { axis: 2, initial: 0.1 } (ground, tip);

@@ -145,6 +145,7 @@ where
     const META: &'static Meta = S::META;
     type Memory = S::Memory;
     type Conditioning = S::Conditioning;
+    type Room = S::Room;
 
     fn initial_state(&self) -> SVector<T, N> {
         self.0.initial_state()

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use mbg_runtime::{Dual, Meta, Operations, Power, Real, System, Variable};
+use mbg_runtime::{Dual, Meta, Operations, Power, Real, Room, System, Variable};
 use nalgebra::{SMatrix, SVector};
 
 /// A right-hand side, which does not read the time; its Jacobians follow on dual numbers.
@@ -47,6 +47,7 @@ impl<T: Real, L: Law<N, M>, const N: usize, const M: usize> System<T, N, M, 0> f
     const AUTONOMOUS: bool = true;
     type Memory = ();
     type Conditioning = [T; 0];
+    type Room = Room<0>;
 
     fn initial_state(&self) -> SVector<T, N> {
         SVector::from_element(T::from_f64(0.0))

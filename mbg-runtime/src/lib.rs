@@ -130,7 +130,7 @@ pub use step::Verner9;
 pub use step::{
     Adaptive, Arrival, Auto, Cause, Choice, Direction, Dop853, Estimating, Fixed, Gauss6,
     ImplicitMidpoint, Integrator, Method, Picked, Pirk8, Pirk16, Radau5, Radau9, Reason, Rk4,
-    Rodas4, Rodas5P, Ros2, Statistics, Step, Stopped, Transition, Tsit5,
+    Rodas4, Rodas5P, Room, Rooms, Ros2, Statistics, Step, Stopped, Transition, Tsit5,
 };
 pub use system::{ParameterError, Power, System, Trouble};
 pub use trim::{Trim, Trimmed};

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::input::quotient;
 use crate::step::Element;
-use crate::{Columns, Course, Loop, Memory, Meta, Real, Solver, Sparsity, Variable};
+use crate::{Columns, Course, Loop, Memory, Meta, Real, Rooms, Solver, Sparsity, Variable};
 
 /// A state-space model `ẋ = f(t, x, u)`, `y = h(t, x, u)` with `N` states, `M` inputs and `P` outputs.
 ///
@@ -37,6 +37,11 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
 
     /// One value per inverted block, as [`conditioning`](Self::conditioning) gives it; an array.
     type Conditioning: AsRef<[T]> + Copy;
+
+    /// [`Room<K>`](crate::Room) for thresholds at which a motion stays at once, in a system that tells of the
+    /// [`courses`](Self::courses) of K arguments, and of 16 if there are more; `Room<0>` in one that tells of none, which runs do not ask
+    /// then.
+    type Room: Rooms;
 
     /// The state at the start, from the model's `initial:` values.
     #[must_use]
@@ -234,16 +239,12 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     ) {
     }
 
-    /// Of how many arguments [`courses`](Self::courses) tells, the same everywhere; 0 unless it is given, and then runs do not ask. At so
-    /// many thresholds a motion may stay at once, but for those beyond sixteen.
-    const COURSES: usize = 0;
-
     /// Whether one of these arguments goes as an input does. If none does, runs do not work out how fast inputs change, and give zeros
     /// in the place of that.
     const COURSES_FOLLOW_INPUTS: bool = true;
 
-    /// Whether it tells of any, as [`COURSES`](Self::COURSES) has it.
-    const HAS_COURSES: bool = Self::COURSES > 0;
+    /// Whether it tells of any, as there is [`Room`](Self::Room) for them.
+    const HAS_COURSES: bool = <Self::Room as Rooms>::COUNT > 0;
 
     /// The normalised determinant of each inverted block, in the order of [`Meta::conditioning`]; a model is at the
     /// edge of its singular set where one of them is zero. One whose size is that of inertias is divided by the largest

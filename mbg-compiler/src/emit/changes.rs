@@ -79,7 +79,6 @@ fn courses(compiled: &Compiled) -> Option<TokenStream> {
     let point = quote!((T, [#state; 2], [#input; 2]));
     (!compiled.thresholds.is_empty()).then(|| {
         quote! {
-            const COURSES: ::core::primitive::usize = #groups;
             #follow
             fn courses(
                 &self, from: #point, to: #point, memory: &mut #memory,

@@ -130,6 +130,7 @@ fn behaviour(name: &Ident, size: &Ident) -> TokenStream {
         };
         type Memory = #memory;
         type Conditioning = [T; #size];
+        type Room = mbg_runtime::Room<0>;
         fn initial_state(&self) -> #vector { loop {} }
         fn derivative(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #vector { loop {} }
         fn output(&self, _: T, _: &#vector, _: &#vector, _: &mut #memory) -> #vector { loop {} }

@@ -13,6 +13,9 @@ use crate::elaborate::Condition;
 use crate::program::Step;
 use crate::symbolic::Symbol;
 
+/// A run has room for so many thresholds at which a motion stays, at most.
+const MOST: usize = 16;
+
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> Items {
     let constructor = constructor(compiled);
@@ -139,6 +142,7 @@ fn system(compiled: &Compiled) -> TokenStream {
     let changes = changes(compiled);
     let memory = memory(compiled);
     let derivatives = derivatives(compiled);
+    let room = Literal::usize_suffixed(compiled.thresholds.len().min(MOST));
     let autonomous = !compiled.program.routines[Routines::DERIVATIVE].reads(Symbol::Time);
     let arguments = quote! {
         t: T,
@@ -154,6 +158,7 @@ fn system(compiled: &Compiled) -> TokenStream {
             const AUTONOMOUS: ::core::primitive::bool = #autonomous;
             type Memory = #memory;
             type Conditioning = [T; #k];
+            type Room = mbg_runtime::Room<#room>;
 
             #[inline]
             fn initial_state(&self) -> mbg_runtime::__private::SVector<T, #n> { #initial }

@@ -16,7 +16,7 @@ const MEANINGLESS: [&str; 2] = ["everything.mbg", "mistakes.mbg"];
 const LONGEST: usize = 1100;
 
 /// Joints between the ground and a body.
-const JOINTS: [&str; 13] = [
+const JOINTS: [&str; 14] = [
     "joint: Revolute { axis: 1, initial: 0.3, friction: 0.1 } (ground, tip);",
     "joint: Prismatic { axis: 0, tilt: rot_y(0.4), stiffness: 20.0, damping: 0.3 } (ground, tip);",
     "joint: Cylindrical { axis: 2, initial_turning: 0.5, turn_stiffness: 2.0 } (ground, tip);",

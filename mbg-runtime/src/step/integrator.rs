@@ -10,7 +10,7 @@ use super::jumps::{Ran, Runs, walk_over_jumps};
 use super::over::Place;
 use super::problem::Problem;
 use super::slide::{Nowhere, Walked};
-use super::sliding::{for_surfaces, output_along};
+use super::sliding::Rooms;
 use super::surfaces::Surfaces;
 use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
@@ -208,9 +208,7 @@ pub trait Integrator<const N: usize> {
             let y = match surfaces {
                 Some(surfaces) if S::HAS_COURSES => {
                     let known = (surfaces, &mut memory);
-                    for_surfaces!(S::COURSES, K => {
-                        output_along::<_, _, _, N, M, P, K>((system, input), (t, whole), x, known)
-                    })
+                    S::Room::output((system, input), (t, whole), x, known)
                 }
                 _ => system.output(t, x, &input.at(t), &mut memory),
             };

@@ -60,6 +60,7 @@ pub use method::{Estimating, Method};
 pub use parallel::{Pirk8, Pirk16};
 pub use radau::{Radau5, Radau9};
 pub use rosenbrock::{Rodas4, Rodas5P, Ros2};
+pub use sliding::{Room, Rooms};
 pub use transition::Transition;
 
 /// What a simulation took.

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Meta, Operations, Power, Real, System, Variable};
+use crate::{Meta, Operations, Power, Real, Room, System, Variable};
 
 const fn meta(states: &'static [Variable], conditioning: &'static [&'static str]) -> Meta {
     Meta {
@@ -48,6 +48,7 @@ macro_rules! system {
             const AUTONOMOUS: bool = true;
             type Memory = ();
             type Conditioning = [T; $blocks];
+            type Room = Room<0>;
 
             fn initial_state(&self) -> SVector<T, $states> {
                 SVector::from_element(T::from_f64(0.0))

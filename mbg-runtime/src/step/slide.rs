@@ -9,7 +9,7 @@ use super::event::Direction;
 use super::method::Span;
 use super::over::Place;
 use super::problem::Problem;
-use super::sliding::{Sliding, for_surfaces};
+use super::sliding::{Rooms, Sliding};
 use super::surfaces::{Surfaces, is_later};
 use super::thresholds::Point;
 use super::tolerance::Tolerance;
@@ -256,10 +256,7 @@ where
         let known = (&mut memory, &mut self.statistics.evaluations);
         let measure = tolerance.around(&here.state);
         let near = (&near, &measure);
-        let rest = for_surfaces!(S::COURSES, K => {
-            Sliding::<_, _, _, N, K>::rest(model, times, here, near, known)
-        });
-        let Some(rest) = rest else {
+        let Some(rest) = S::Room::rest(model, times, here, near, known) else {
             return Ok(None);
         };
         let until = here.time + T::from_f64(rest.ahead);
@@ -289,10 +286,7 @@ where
         let times = (self.since, self.inside, self.whole);
         let place = (here.time, &mut x);
         let known = (&mut memory, &mut self.statistics.evaluations);
-        for_surfaces!(S::COURSES, K => {
-            let surfaces = Surfaces::<T, K>::NONE.with(surfaces);
-            Sliding::settled(model, times, place, surfaces, known).is_some()
-        })
+        S::Room::stays(model, times, place, surfaces, known)
     }
 }
 
@@ -358,10 +352,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                 && let Some(surfaces) = surfaces
             {
                 let known = (surfaces, &mut settled);
-                let slid = for_surfaces!(S::COURSES, K => {
-                    self.slide::<S, I, M, P, K>(problem, (here, end), known, observer)
-                });
-                match slid? {
+                match S::Room::slide(self, problem, (here, end), known, observer)? {
                     ControlFlow::Continue(place) => here = place,
                     ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
                 }

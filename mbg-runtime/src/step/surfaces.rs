@@ -140,7 +140,7 @@ where
         self.courses(from, to, |course, _| {
             for threshold in course.thresholds {
                 let level = course.level(*threshold);
-                if number < S::COURSES && course.is_choice && holds(course, level) {
+                if course.is_choice && holds(course, level) {
                     let surfaces = surfaces.get_or_insert(Surfaces::NONE);
                     surfaces.add(Surface {
                         course: number,

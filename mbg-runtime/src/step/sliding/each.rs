@@ -67,13 +67,13 @@ impl<V, const K: usize> Index<usize> for Each<V, K> {
     type Output = V;
 
     fn index(&self, place: usize) -> &V {
-        &self.0[place.min(K - 1)]
+        &self.0[place.min(K.saturating_sub(1))]
     }
 }
 
 impl<V, const K: usize> IndexMut<usize> for Each<V, K> {
     fn index_mut(&mut self, place: usize) -> &mut V {
-        &mut self.0[place.min(K - 1)]
+        &mut self.0[place.min(K.saturating_sub(1))]
     }
 }
 

@@ -3,6 +3,7 @@
 mod choice;
 mod each;
 mod line;
+mod room;
 mod settle;
 mod sides;
 mod system;
@@ -12,6 +13,7 @@ use core::cell::Cell;
 use nalgebra::SVector;
 
 use each::Each;
+pub use room::{Room, Rooms};
 
 use super::seen;
 use super::surfaces::Surfaces;
@@ -42,29 +44,6 @@ impl Like {
         apart: 0.0,
     };
 }
-
-/// Calls what is written for so many surfaces at once as a model has arguments, but for those beyond [`MOST`]: of what a model does not
-/// have no room is kept. There is a call for each number, of which a model has its own.
-macro_rules! for_surfaces {
-    ($count:expr, $surfaces:ident => $call:expr) => {
-        $crate::step::sliding::for_surfaces!(
-            $count, $surfaces => $call, 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15
-        )
-    };
-    ($count:expr, $surfaces:ident => $call:expr, $($some:literal)*) => {
-        match $count {
-            $($some => {
-                const $surfaces: usize = $some;
-                $call
-            })*
-            _ => {
-                const $surfaces: usize = $crate::step::surfaces::MOST;
-                $call
-            }
-        }
-    };
-}
-pub(super) use for_surfaces;
 
 /// The laws of a model whose motion stays at thresholds of them: friction that holds, a relay that goes on and off without end.
 ///

@@ -18,12 +18,12 @@ where
     const META: &'static Meta = S::META;
     const AUTONOMOUS: bool = S::AUTONOMOUS;
     const SEEKS_CHANGES: bool = S::SEEKS_CHANGES;
-    const COURSES: usize = S::COURSES;
     const COURSES_FOLLOW_INPUTS: bool = S::COURSES_FOLLOW_INPUTS;
     const HAS_ATTITUDES: bool = S::HAS_ATTITUDES;
 
     type Memory = S::Memory;
     type Conditioning = S::Conditioning;
+    type Room = S::Room;
 
     fn initial_state(&self) -> SVector<T, N> {
         self.system.initial_state()

@@ -27,12 +27,12 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         .line("outer", BLUE, angle(0))
         .line("middle", ORANGE, angle(1))
         .line("inner", GREEN, angle(2));
-    let part = |part: usize| over(&passing, move |it| it.output[3 + part]);
-    let parts = Panel::new("Quaternion", "time in s", "part")
-        .line("w", PURPLE, part(0))
-        .line("x", BLUE, part(1))
-        .line("y", ORANGE, part(2))
-        .line("z", GREEN, part(3));
+    let component = |place: usize| over(&passing, move |it| it.output[3 + place]);
+    let components = Panel::new("Quaternion", "time in s", "component")
+        .line("w", PURPLE, component(0))
+        .line("x", BLUE, component(1))
+        .line("y", ORANGE, component(2))
+        .line("z", GREEN, component(3));
     let still = Vector3::zeros();
     let conditioning = over(&whirling, |it| {
         gimbals.conditioning(it.time, &it.state, &still)[0]
@@ -49,6 +49,6 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
         path,
         "A rotorcraft pitches over: gimbals come near their lock, the quaternion has none",
         380,
-        &[angles, parts, block],
+        &[angles, components, block],
     )
 }

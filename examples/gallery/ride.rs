@@ -9,7 +9,7 @@ use nalgebra::{Complex, ComplexField, SVector};
 
 use crate::draw::{BLUE, ORANGE, Panel, Point, picture};
 use crate::quarter_car::{QuarterCar, QuarterCarParameters};
-use crate::references::quarter_car as by_hand;
+use crate::references::quarter_car::response;
 
 /// Amplitudes over frequencies in Hz.
 fn amplitudes(responses: &[(f64, Complex<f64>)]) -> Vec<Point> {
@@ -41,18 +41,21 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     };
     let mut amplitude = Panel::new("Amplitude", "frequency in Hz", "speed by that of the road");
     let mut phase = Panel::new("Phase", "frequency in Hz", "phase in degrees");
-    for (output, name, color) in [(0, "body", BLUE), (1, "wheel", ORANGE)] {
+    for (output, name, by_hand, color) in [
+        (0, "body", "body, by hand", BLUE),
+        (1, "wheel", "wheel, by hand", ORANGE),
+    ] {
         let line = over(800, &|frequency| {
             Some(linear.response(frequency)?[(2 + output, 0)])
         });
-        let dots = over(20, &|frequency| Some(by_hand::response(frequency)[output]));
+        let dots = over(20, &|frequency| Some(response(frequency)[output]));
         amplitude =
             amplitude
                 .line(name, color, amplitudes(&line))
-                .dots("", color, amplitudes(&dots));
+                .dots(by_hand, color, amplitudes(&dots));
         phase = phase
             .line(name, color, phases(&line))
-            .dots("", color, phases(&dots));
+            .dots(by_hand, color, phases(&dots));
     }
     picture(
         path,

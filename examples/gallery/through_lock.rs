@@ -23,7 +23,7 @@ pub(crate) fn draw(path: &Path) -> Result<(), Box<dyn Error>> {
     let body = PulledQuaternion::<f64>::new(PulledQuaternionParameters::default())?;
     let end = THROUGH_LOCK.iter().map(|row| row.0).fold(0.0, f64::max);
     let found = run(&body, &through_lock(), body.initial_state(), end, 3000)?;
-    let mut parts = Panel::new("Quaternion", "time in s", "part").weight(1.2);
+    let mut parts = Panel::new("Quaternion", "time in s", "component").weight(1.2);
     let names = ["w", "x", "y", "z"];
     let colors = [PURPLE, BLUE, ORANGE, GREEN];
     for (part, (name, color)) in names.into_iter().zip(colors).enumerate() {

@@ -213,6 +213,11 @@ const FIXTURES: &[(Code, &str)] = &[
              hinge: PlanarRevolute {} (g, b); arm: PlanarOffset { y: 0.1 * t } (b, c); bob: PlanarPointMass { mass: 1.0 } (c); }",
     ),
     (
+        codes::GROUND_ABOVE,
+        "model M { gravity [0.0, 0.0, 9.81]; 1 g[6]; 1 a[6]; Sf still[6] { flow: 0.0 } -> g; free: Free (g, a);
+             body: Body { mass: 1.0, inertia: 1.0 } (a); foot: Contact { stiffness: 1e4 } (a); }",
+    ),
+    (
         codes::UNIT_MISMATCH,
         beside_a_mass!("param x: m = 1.0; param y: s = 1.0; output z = x + y;"),
     ),

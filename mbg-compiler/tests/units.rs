@@ -783,37 +783,3 @@ fn a_wave_without_an_amplitude_is_told_at_its_law() {
     );
     assert!(text.contains("`1.0 * …`"), "{text}");
 }
-
-/// Of a law of several entries in different units the one that is wrong is told, with what stands beside that.
-#[test]
-fn an_entry_of_a_law_is_told_where_entries_differ_in_their_units() {
-    let wing = |law: &str| {
-        format!(
-            "model Wing {{ param mass: kg = 1.0; param offset: kg*m = 0.1; param inertia: kg*m^2 = 0.5; param lift: N = 2.0;
-             1 motion[2] {{ I wing {{ inertia: [[mass, offset], [offset, inertia]] }} }}
-             {law} }}"
-        )
-    };
-    let (place, text) = told(&wing("Se air[2] { effort: [-lift, lift] } -> motion;"));
-    assert!(place.starts_with("[-lift"), "{place}");
-    insta::assert_snapshot!(text, @"
-    `effort[1]` of `air` must be `N*m` here, and this is `N` [MBG0501]
-      the effort is `N*m` and the flow `1/s` there
-    ");
-    let law = "param d: N*s/m = 1.0; motion -> R drag { resistance: [[d, 0.0], [0.0, d]] };";
-    insta::assert_snapshot!(told(&wing(law)).1, @"
-    `resistance[1][1]` of `drag` must be `N*m*s` here, and this is `N*s/m` [MBG0501]
-      the effort is `N*m` and the flow `1/s` there
-    ");
-    let law = "param k: N/m = 1.0; motion -> TF lever { flow: [[1, mass]] } -> out; 1 out { C spring { stiffness: k } }";
-    insta::assert_snapshot!(told(&wing(law)).1, @"
-    `flow[0][1]` of `lever` must be `m` here, and this is `kg` [MBG0501]
-      before it the effort is `N*m` and the flow `1/s`, after it the effort is `N` and the flow `m/s`
-    ");
-    // Where all are alike no entry needs to be told.
-    let law = "1 way[2]; param k: N = 1.0; param m: kg = 1.0; way -> I both { inertia: m }; way -> C c { stiffness: diag(k, k) };";
-    insta::assert_snapshot!(told(&wing(law)).1, @"
-    `stiffness` of `c` must be `N/m` here, and this is `N` [MBG0501]
-      the effort is `N` and the flow `m/s` there
-    ");
-}

@@ -162,7 +162,7 @@ fn what_rubs_in_a_network_holds_where_it_can() {
             .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    for number in 0..80 {
+    for number in 0..200 {
         let network = Rubbing::at_random(KINDS[number % KINDS.len()], &mut next);
         let expected = network.speeds(2.0);
         for (name, _, speeds) in by_all(&network.model(), 2.0, 1e-8, 0.1) {

@@ -49,8 +49,8 @@ pub(in super::super) struct Rest<T, const N: usize> {
 enum Aside {
     /// It stays on it.
     On,
-    /// Nothing leads back to it: it goes on over it.
-    Passed,
+    /// Nothing leads back to it: it goes on over it, at this rate.
+    Passed(f64),
     /// To this side, below or above, at this rate.
     Left(f64, f64),
 }
@@ -242,7 +242,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let rest = self.all().without(&Surfaces::<T, K>::one(passed));
         let mut asides = Each::all(Aside::On);
         if let Some((place, _)) = self.surfaces.of(passed.course) {
-            asides[place] = Aside::Passed;
+            asides[place] = Aside::Passed(0.0);
         }
         *x = self.put_aside((at, x), (&asides, reach), memory);
         self.arrange(rest, (at, x), memory);
@@ -387,7 +387,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             let rate = sides.rate(place, choices.iter().take(count));
             match known.get(place) {
                 _ if stays => Aside::On,
-                Some(Some(_)) => Aside::Passed,
+                Some(Some(_)) => Aside::Passed(rate),
                 _ => Aside::Left(sides.side(place, choices[place]), rate),
             }
         });
@@ -431,7 +431,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         }
     }
 
-    /// The state surely beside what the motion leaves, if it is not farther away: that it has yet to come to.
+    /// The state surely beside what the motion does not stay at, if it is not farther away: that it has yet to come to. What is
+    /// passed is in the way where the motion stays at another one, as laws are asked a little off it.
     fn put_aside<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
@@ -462,6 +463,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             let alone = rest.map_or(1.0, |rest| rest.norm());
             T::from_f64(BESIDE * reach * alone) * aside[place]
         });
+        let mut all = sorted.iter().take(self.free);
+        let stays = all.any(|aside| matches!(aside, Aside::On));
         let soon = PLACES * T::EPSILON * at.time.magnitude();
         let ways: Each<T, K> = Each::of(|place| match sorted[place] {
             // What is put on it later is not to move the others any more.
@@ -478,7 +481,16 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                     false => T::from_f64(0.0),
                 }
             }
-            Aside::Passed => T::from_f64(0.0),
+            // Where it goes it does not come to it at once again.
+            Aside::Passed(rate) if stays => {
+                let mut sides = [rate, seen(distances[place])].into_iter();
+                let side = sides.find(|side| *side != 0.0).map_or(0.0, f64::signum);
+                match seen(distances[place]).abs() < seen(least[place]) {
+                    true => T::from_f64(side) * least[place] - distances[place],
+                    false => T::from_f64(0.0),
+                }
+            }
+            Aside::Passed(_) => T::from_f64(0.0),
         });
         let mut moved = self.moved(x, rates.solve(ways));
         if self.free < self.surfaces.count() {

@@ -34,6 +34,9 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M>,
 {
+    /// Whether it ends at those at which the motion comes to rest.
+    const RESTS: bool = true;
+
     /// Whether those count at which no law jumps.
     fn are_all(self) -> bool {
         false
@@ -74,7 +77,10 @@ where
         way: (f64, T, &Tolerance<N>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<Option<Walked<T, N>>, Stopped> {
-        problem.come_to_rest(here, way, observer)
+        match Self::RESTS {
+            true => problem.come_to_rest(here, way, observer),
+            false => Ok(None),
+        }
     }
 }
 
@@ -88,15 +94,7 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
-    fn rest(
-        self,
-        _problem: &mut Problem<'_, T, S, I, N, M, P>,
-        _here: &Point<T, N>,
-        _way: (f64, T, &Tolerance<N>),
-        _observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Option<Walked<T, N>>, Stopped> {
-        Ok(None)
-    }
+    const RESTS: bool = false;
 }
 
 /// At those at which the motion stays.
@@ -174,6 +172,8 @@ where
     S: System<T, N, M, P>,
     I: Input<T, M> + ?Sized,
 {
+    const RESTS: bool = false;
+
     fn between(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
@@ -182,16 +182,6 @@ where
         let mut is_led_back = false;
         problem.courses(from, to, |course, _| is_led_back |= course.is_led_back());
         is_led_back.then_some(Surfaces::NONE)
-    }
-
-    fn rest(
-        self,
-        _problem: &mut Problem<'_, T, S, I, N, M, P>,
-        _here: &Point<T, N>,
-        _way: (f64, T, &Tolerance<N>),
-        _observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Option<Walked<T, N>>, Stopped> {
-        Ok(None)
     }
 }
 

@@ -78,7 +78,6 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
     }
 
     /// How far a state is from all surfaces, and how it is moved across those that are free.
-    #[inline(always)]
     pub(super) fn beyond<const M: usize, const P: usize>(
         &self,
         at: &Moment<T, M>,

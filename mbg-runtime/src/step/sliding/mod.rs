@@ -208,33 +208,3 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         least + late
     }
 }
-
-/// The outputs of a model next to thresholds at which its motion stays.
-pub(super) fn output_along<
-    T,
-    S,
-    I,
-    const N: usize,
-    const M: usize,
-    const P: usize,
-    const K: usize,
->(
-    (system, input): (&S, &I),
-    (t, whole): (T, f64),
-    x: &SVector<T, N>,
-    (surfaces, memory): (Surfaces<T>, &mut S::Memory),
-) -> SVector<T, P>
-where
-    T: Real,
-    S: System<T, N, M, P>,
-    I: Input<T, M> + ?Sized,
-{
-    let (mut x, u) = (*x, input.at(t));
-    let times = (t, (t, t), whole);
-    let known = (&mut *memory, &mut 0);
-    let surfaces = Surfaces::<T, K>::NONE.with(&surfaces);
-    match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
-        Some(sliding) => sliding.output(t, &x, &u, memory),
-        None => system.output(t, &x, &u, memory),
-    }
-}

@@ -11,8 +11,8 @@ use super::super::slide::{Settled, Walk};
 use super::super::surfaces::Surfaces;
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
+use super::Sliding;
 use super::settle::Rest;
-use super::{Sliding, output_along};
 use crate::step::Stopped;
 use crate::{Input, Real, System};
 
@@ -146,16 +146,23 @@ impl<const K: usize> Rooms for Room<K> {
     }
 
     fn output<T, S, I, const N: usize, const M: usize, const P: usize>(
-        model: (&S, &I),
-        times: (T, f64),
+        (system, input): (&S, &I),
+        (t, whole): (T, f64),
         x: &SVector<T, N>,
-        known: (Surfaces<T>, &mut S::Memory),
+        (surfaces, memory): (Surfaces<T>, &mut S::Memory),
     ) -> SVector<T, P>
     where
         T: Real,
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        output_along::<_, _, _, N, M, P, K>(model, times, x, known)
+        let (mut x, u) = (*x, input.at(t));
+        let times = (t, (t, t), whole);
+        let known = (&mut *memory, &mut 0);
+        let surfaces = Surfaces::<T, K>::NONE.with(&surfaces);
+        match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
+            Some(sliding) => sliding.output(t, &x, &u, memory),
+            None => system.output(t, &x, &u, memory),
+        }
     }
 }

@@ -373,7 +373,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             let jumps = sides.leads_back[place] && !wide.bends(sides, place, WIDE);
             known[place] = (!jumps).then(|| sides.to_side(place, seen(distances[place])));
         }
-        let choices = sides.chosen(count, &known)?;
+        let choices = sides.chosen(&known)?;
         let units = self.gradients().map(|gradient| unit(&gradient));
         let mut span = Span::<N, K>::of_nothing();
         for (unit, choice) in units.iter().zip(&choices).take(count) {
@@ -384,7 +384,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let asides = Each::of(|place| {
             let stays = matches!(choices[place], Choice::Stays(_))
                 || units[place].is_some_and(|unit| span.has::<T>(&unit));
-            let rate = sides.rate(place, choices.iter().take(count));
+            let rate = sides.rate(place, &choices);
             match known.get(place) {
                 _ if stays => Aside::On,
                 Some(Some(_)) => Aside::Passed(rate),

@@ -80,16 +80,12 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     }
 
     /// How the motion is at each of so many surfaces, where some are not open.
-    pub(super) fn chosen(
-        &self,
-        count: usize,
-        known: &Each<Option<Choice>, K>,
-    ) -> Option<Each<Choice, K>> {
+    pub(super) fn chosen(&self, known: &Each<Option<Choice>, K>) -> Option<Each<Choice, K>> {
         let forward = &self.line.forward;
         let first = Each::of(|row| forward[row] * seen(self.first[row]));
         let faster =
             Each::of(|column| Each::of(|row| forward[row] * seen(self.faster[column][row])));
-        chosen((&first, &faster), count, known)
+        chosen((&first, &faster), self.count, known)
     }
 
     /// How far beside surfaces others are to be, in units of what is surely beside one.
@@ -124,8 +120,8 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     }
 
     /// How fast the argument of a surface goes in the mean of these.
-    pub(super) fn rate<'a>(&self, place: usize, choices: impl Iterator<Item = &'a Choice>) -> f64 {
-        let parts = choices.enumerate();
+    pub(super) fn rate(&self, place: usize, choices: &Each<Choice, K>) -> f64 {
+        let parts = choices.iter().enumerate().take(self.count);
         let faster = parts.map(|(other, choice)| seen(self.faster[other][place]) * choice.part());
         seen(self.first[place]) + faster.sum::<f64>()
     }

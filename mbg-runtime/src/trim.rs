@@ -26,6 +26,13 @@ const ASIDE: f64 = 6e-6;
 const LEFT: f64 = 1e-11;
 /// Nothing counts as smaller, beside what would be as much as all else of a condition: terms may be zero.
 const TINY: f64 = 1e-9;
+/// Guesses at most that begin elsewhere, where what is to be chosen has an influence.
+const ELSEWHERE: usize = 4;
+/// The first place that is tried is nearer than that by this part of itself or of its unit, and all others twice as far each.
+const NEAREST: f64 = 1e-6;
+const DOUBLINGS: usize = 40;
+/// How often a way from where there is none is halved.
+const HALVINGS: usize = 60;
 /// How far beside a state is what tells how exactly it is closed, in units of the state.
 const LITTLE: f64 = 1e-8;
 /// A state is closed to this where constraints do not depend on each other, in its unit.
@@ -92,7 +99,8 @@ const APART: f64 = 1e-9;
 ///   stays as it is in the guess, unless one of them is fixed, free or given a rate. No motion reaches a point with another
 ///   difference, such as one beyond the voltage at which a plate is pulled in: [`Untrimmed::Apart`]. It is taken only if outputs,
 ///   rates or fixed states ask for it, while without them there is a point with the differences of the guess.
-/// - A contact that does not touch has no slope: guess a state in which it touches, such as that to which a run has fallen.
+/// - An input beyond a limiter has no influence, nor has the height of what does not touch the ground. Where conditions are not met
+///   and so it is, the search begins again, with that at the nearest place where it has one.
 /// - Dry friction by `sign(f)` counts as zero at rest, so that no point is found that friction alone holds. A run finds where it
 ///   comes to rest, and a law that rises over a width, such as `tanh(f / width)`, has such points.
 ///
@@ -118,6 +126,23 @@ pub struct Trimmed<const N: usize, const M: usize> {
     pub state: SVector<f64, N>,
     /// The input.
     pub input: SVector<f64, M>,
+}
+
+impl<const N: usize, const M: usize> Trimmed<N, M> {
+    /// A state or, behind these, an input.
+    fn unknown(&self, number: usize) -> f64 {
+        let mut unknowns = self.state.iter().chain(&self.input);
+        unknowns.nth(number).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The point with another one.
+    fn with(mut self, number: usize, unknown: f64) -> Self {
+        let mut unknowns = self.state.iter_mut().chain(&mut self.input);
+        if let Some(place) = unknowns.nth(number) {
+            *place = unknown;
+        }
+        self
+    }
 }
 
 /// What is left of rates and of outputs.
@@ -286,6 +311,7 @@ where
             wanted,
             reached: wanted + lefts.get(place).unwrap_or(&0.0),
             is_fixed: rows.iter().nth(row).is_some_and(Row::is_empty),
+            idle: None,
         }
     }
 
@@ -366,6 +392,95 @@ where
             most = (most.0.sup(&rates), most.1.sup(&outputs));
         }
         (ROUNDING * (most.0 - least.0), ROUNDING * (most.1 - least.1))
+    }
+
+    /// Where corrections lead to from a point, and what is missed there.
+    fn descended(
+        &self,
+        from: Trimmed<N, M>,
+    ) -> Result<(Trimmed<N, M>, Option<Untrimmed>), Untrimmed> {
+        let mut point = self.closed(from)?;
+        let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
+        let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
+        let infinite = f64::INFINITY;
+        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
+        for _ in 0..ITERATIONS {
+            sizes.0.zip_apply(&point.state, larger);
+            sizes.1.zip_apply(&point.input, larger);
+            let rounding = self.rounding(&point);
+            let mut rows = self.rows(&point, &rounding)?;
+            match self.descend(&point, &mut rows, &rounding, &mut units) {
+                Some(next) => point = next,
+                None => break,
+            }
+        }
+        let rounding = self.rounding(&point);
+        let mut rows = self.rows(&point, &rounding)?;
+        let seen = rows.seen(&sizes, TINY, &self.tangents(&point));
+        // NaN is the worst, whatever its sign.
+        let parts = rows.iter().map(|row| row.part_left(&seen).abs());
+        let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        match worst {
+            // NaN is not small.
+            Some((row, left)) if !matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) => {
+                Ok((point, Some(self.missed(&point, row, &mut rows))))
+            }
+            _ => self
+                .singular(&point, (&rows, &rounding))
+                .map_or(Ok((point, None)), Err),
+        }
+    }
+
+    /// The point with what has no influence there moved to the nearest place where it has: into the range of a limiter, or into a
+    /// contact. With the name of the first of it.
+    #[inline(never)]
+    fn elsewhere(&self, point: &Trimmed<N, M>) -> Option<(Trimmed<N, M>, &'static str)> {
+        let (states, inputs) = self.selection.fixed;
+        let fixed = states.into_iter().chain(inputs);
+        let idle = fixed
+            .enumerate()
+            .filter(|(number, is_fixed)| !is_fixed && !self.has_influence(point, *number));
+        let mut elsewhere = *point;
+        let mut first = None;
+        for (number, _) in idle {
+            if let Some(place) = self.influential(point, number) {
+                elsewhere = elsewhere.with(number, place);
+                first = first.or(S::META.states.iter().chain(S::META.inputs).nth(number));
+            }
+        }
+        Some((self.closed(elsewhere).ok()?, first?.name))
+    }
+
+    /// The place nearest to a point at which a state or an input has an influence, if there is one where the range of a law begins.
+    fn influential(&self, point: &Trimmed<N, M>, number: usize) -> Option<f64> {
+        let (here, left) = (point.unknown(number), self.left(point));
+        let is_same = |place| self.left(&point.with(number, place)) == left;
+        let nearest = NEAREST * here.abs().max(1.0);
+        let distances = core::iter::successors(Some(nearest), |distance| Some(2.0 * distance));
+        let mut ways = distances
+            .take(DOUBLINGS)
+            .flat_map(|distance| [-distance, distance]);
+        let way = ways.find(|way| !is_same(here + way))?;
+        // The range may be narrow, and lie in between.
+        let (mut near, mut far) = (here + 0.5 * way, here + way);
+        for _ in 0..HALVINGS {
+            if self.has_influence(&point.with(number, far), number) {
+                return Some(far);
+            }
+            let between = 0.5 * (near + far);
+            match is_same(between) {
+                true => near = between,
+                false => far = between,
+            }
+        }
+        None
+    }
+
+    /// Whether conditions change with a state or an input there.
+    fn has_influence(&self, point: &Trimmed<N, M>, number: usize) -> bool {
+        let rounding = (SVector::zeros(), SVector::zeros());
+        let rows = self.rows(point, &rounding);
+        rows.is_ok_and(|rows| rows.iter().any(|row| row.entry(number) != 0.0))
     }
 
     /// A point at which less is left of the conditions, if there is one.
@@ -517,36 +632,22 @@ where
     }
 
     fn found(&self, from: Trimmed<N, M>) -> Result<Trimmed<N, M>, Untrimmed> {
-        let mut point = self.closed(from)?;
-        let mut sizes: Sizes<N, M> = (SVector::zeros(), SVector::zeros());
-        let larger = |size: &mut f64, number: f64| *size = size.max(number.abs());
-        let infinite = f64::INFINITY;
-        let mut units: Sizes<N, M> = (SVector::repeat(infinite), SVector::repeat(infinite));
-        for _ in 0..ITERATIONS {
-            sizes.0.zip_apply(&point.state, larger);
-            sizes.1.zip_apply(&point.input, larger);
-            let rounding = self.rounding(&point);
-            let mut rows = self.rows(&point, &rounding)?;
-            match self.descend(&point, &mut rows, &rounding, &mut units) {
-                Some(next) => point = next,
-                None => break,
+        let (mut point, mut missed) = self.descended(from)?;
+        for _ in 0..ELSEWHERE {
+            let Some((elsewhere, name)) = missed.and_then(|_| self.elsewhere(&point)) else {
+                break;
+            };
+            // What is told is why the guess leads nowhere.
+            if let Some(Untrimmed::Missed { idle, .. }) = &mut missed {
+                idle.get_or_insert(name);
+            }
+            match self.descended(elsewhere) {
+                Ok((next, None)) => return Ok(next),
+                Ok((next, _)) => point = next,
+                Err(_) => break,
             }
         }
-        let rounding = self.rounding(&point);
-        let mut rows = self.rows(&point, &rounding)?;
-        let seen = rows.seen(&sizes, TINY, &self.tangents(&point));
-        // NaN is the worst, whatever its sign.
-        let parts = rows.iter().map(|row| row.part_left(&seen).abs());
-        let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        match worst {
-            // NaN is not small.
-            Some((row, left)) if !matches!(left.partial_cmp(&LEFT), Some(Ordering::Less)) => {
-                Err(self.missed(&point, row, &mut rows))
-            }
-            _ => self
-                .singular(&point, (&rows, &rounding))
-                .map_or(Ok(point), Err),
-        }
+        missed.map_or(Ok(point), Err)
     }
 }
 

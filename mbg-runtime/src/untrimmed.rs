@@ -25,6 +25,8 @@ pub enum Untrimmed {
         reached: f64,
         /// Whether nothing that may be chosen has an influence on it.
         is_fixed: bool,
+        /// What may be chosen and has no influence at all there, though it has elsewhere, such as an input beyond a limiter.
+        idle: Option<&'static str>,
     },
     /// A point that no motion from the guess reaches: what two states differ by that change alike whatever is done, such as the
     /// displacements of two springs at one junction, would have to be something else. With the differences of the guess none was
@@ -94,12 +96,20 @@ impl core::fmt::Display for Untrimmed {
                 wanted,
                 reached,
                 is_fixed,
+                idle,
             } => {
                 write_missed(formatter, (name, is_output), [wanted, reached])?;
                 if !wanted.is_finite() {
                     return Ok(());
                 }
-                write_choices(formatter, name, (is_output, is_fixed))
+                write_choices(formatter, name, (is_output, is_fixed))?;
+                match idle {
+                    Some(idle) => write!(
+                        formatter,
+                        "; `{idle}` is beyond a limit, where it has no influence"
+                    ),
+                    None => Ok(()),
+                }
             }
             Self::Apart {
                 name,

@@ -561,3 +561,76 @@ fn differences_change_where_that_is_asked() {
     let forces = 100.0 * state[1] + 10.0 * state[2] - 2.0 * 5.0 * state[3];
     assert!((state[1] - 0.02).abs() < 1e-12 && (forces - 11.0).abs() < 1e-9);
 }
+
+mbg! {
+    /// A motor whose speed is controlled, with a voltage that is limited.
+    model Servo {
+        param proportional: V*s/rad = 0.5;
+        param integrating: V/rad = 2.0;
+        param most: V = 12.0;
+        input wanted: rad/s;
+        let error = wanted - shaft.f;
+        integral sum = error;
+        let voltage = max(-most, min(most, proportional * error + integrating * sum));
+        1 coil { Se source { effort: voltage } I windings { inertia: 1e-3 } R wire { resistance: 1.0 } }
+        coil -> GY motor { effort: 0.05 } -> shaft;
+        1 shaft { I rotor { inertia: 1e-3 } R bearing { resistance: 1e-4 } }
+        output speed: rad/s = shaft.f;
+    }
+
+    /// A mass above a floor.
+    model Dropped {
+        param above: m = 0.3;
+        1 fall {
+            I mass { inertia: 2.0 }
+            Se weight { effort: -19.62 }
+            C floor { effort: if q < 0.0 { 1e5 * q } else { 0.0 * q }, initial: above }
+            R damper { effort: if floor.q < 0.0 { 100.0 * f } else { 0.0 * f } }
+        }
+    }
+
+    /// A tank that a pump fills through a valve.
+    model Filled {
+        input command;
+        let opening = max(0.0, min(command, 1.0));
+        0 level {
+            C tank { compliance: 2.0, initial: 0.1 }
+            Sf pump { flow: 0.3 * opening }
+            R outflow { flow: 0.2 * e }
+        }
+        output content = tank.q;
+    }
+}
+
+#[test]
+fn what_is_beyond_a_limit_is_led_back() {
+    let servo = Servo::<f64>::new(ServoParameters::default()).unwrap();
+    let at = |wanted| Trim::new(&servo).input(&[wanted]).fix("wanted").solve();
+    // By far more than the limit at the start, at rest with 0.052 V for each rad/s.
+    for speed in [-229.0, -100.0, 50.0, 100.0, 225.0, 230.0] {
+        let sum = at(speed).unwrap().state[2];
+        assert!((sum / (0.026 * speed) - 1.0).abs() < 1e-12, "{speed} {sum}");
+    }
+    assert_eq!(
+        at(300.0).unwrap_err().to_string().split("; ").last(),
+        Some("`sum` is beyond a limit, where it has no influence")
+    );
+    let filled = Filled::<f64>::new(FilledParameters::default()).unwrap();
+    for command in [-1e3, -0.5, 0.5, 2.0, 70.0] {
+        let trim = Trim::new(&filled).input(&[command]);
+        let open = trim.output("content", 1.5).solve().unwrap().input[0];
+        assert!((open - 0.5).abs() < 1e-12, "{command} {open}");
+        let open = trim.fix("tank").solve().unwrap().input[0];
+        assert!((open - 0.1 / 3.0).abs() < 1e-12, "{command} {open}");
+        assert!(trim.output("content", 3.1).solve().is_err(), "{command}");
+    }
+}
+
+#[test]
+fn what_is_above_a_floor_is_found_on_it() {
+    for above in [-0.01, 1e-6, 0.3, 70.0] {
+        let dropped = Dropped::<f64>::new(DroppedParameters { above }).unwrap();
+        let floor = Trim::new(&dropped).solve().unwrap().state[1];
+        assert!((floor / -1.962e-4 - 1.0).abs() < 1e-12, "{above} {floor}");
+    }
+}

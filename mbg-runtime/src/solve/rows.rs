@@ -41,6 +41,12 @@ impl<const N: usize, const M: usize> Row<N, M> {
         self.largest() == 0.0
     }
 
+    /// The entry of a state or, behind these, of an input.
+    pub(crate) fn entry(&self, number: usize) -> f64 {
+        let mut entries = self.by_state.iter().chain(&self.by_input);
+        entries.nth(number).copied().unwrap_or(0.0)
+    }
+
     /// The number by which another one is to be multiplied to be this one, but for such a part of it.
     pub(crate) fn in_units_of(&self, other: &Self, part: f64) -> Option<f64> {
         let pairs = || self.pairs(other);

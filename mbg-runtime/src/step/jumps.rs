@@ -348,10 +348,9 @@ where
             if open <= width {
                 break;
             }
-            let ahead = self.reached(&before, &behind).map_or(0.0, seen);
             // By the rate, then from behind, and by halves where neither comes nearer.
             let part = match round % 3 {
-                0 => ahead + 0.5 * width,
+                0 => self.reached(&before, &behind).map_or(0.0, seen) + 0.5 * width,
                 1 => open - width,
                 _ => 0.5 * open,
             };

@@ -33,6 +33,7 @@ mod models {
         reason = "warnings of the macro, one of which is tested there"
     )]
     mod behaviour;
+    mod body_contacts;
     #[expect(
         deprecated,
         reason = "a warning of the macro: loops begin open there, and are closed"

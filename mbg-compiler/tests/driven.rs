@@ -20,7 +20,7 @@ fn what_a_component_is_given_in_time_is_told_by_its_parameter() {
     insta::assert_snapshot!(told(&hinged("", contact)), @"
     4:1 the displacement of `c.stop.upper_spring` does not change as `c.stop.upper_spring` flows [MBG0309]
       `height` of `c` changes with time, and no flow knows that rate
-      `height`: Of the plane along its normal, from the origin of the world. The ground stands still
+      `height`: Of the plane along its normal, from the origin of the world. The ground stands still: on what moves it is a `BodyContact`
       help: give `height` a value that stays: what moves is a junction with a flow, such as a frame behind a joint whose rate is given, `Sf drive { flow: … } -> joint.rate;`
     ");
     let stop = "s: Stop { stiffness: 1e4, displacement: hinge.angle, lower: -1.0 + sin(1.0 * t), upper: 2.0 + sin(1.0 * t) } (hinge.rate);";

@@ -423,6 +423,29 @@ fn a_frame_is_given_as_a_whole() {
 }
 
 #[test]
+fn a_contact_of_two_bodies_is_one_between_them() {
+    let scene = |contact: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[6]; 1 deck[6]; 1 hull[6];
+             Sf still[6] {{ flow: 0.0 }} -> ground; heave: Prismatic {{ axis: 2 }} (ground, deck); free: Free (ground, hull);
+             d: Body {{ mass: 1.0, inertia: 1.0 }} (deck); h: Body {{ mass: 1.0, inertia: 1.0 }} (hull); {contact} }}"
+        )
+    };
+    let written = typed(&scene("c: Contact { stiffness: 1e4 } (hull, deck);"));
+    assert_eq!(written, ["c: BodyContact { … } (hull, deck);"]);
+    assert_eq!(told(&scene(&written[0].replace('…', "stiffness: 1e4"))), "");
+    assert_eq!(
+        typed(&scene("c: SphereContact { stiffness: 1e4 } (hull, deck);")),
+        ["BodyContact"]
+    );
+    let holds = scene("c: BodyContact { stiffness: 1e4, at_rest: holds } (hull, deck);");
+    insta::assert_snapshot!(told(&holds), @"
+    3:135 `BodyContact` has no parameter `at_rest` [MBG0207]
+      help: in space friction creeps, below `friction_speed`; a `PlanarBodyContact` holds
+    ");
+}
+
+#[test]
 fn a_ground_that_is_no_plane_is_a_stop() {
     let scene = |part: &str| {
         format!(
@@ -459,7 +482,7 @@ fn a_ground_that_is_no_plane_is_a_stop() {
     insta::assert_snapshot!(told(&lifted), @"
     2:76 the displacement of `c.stop.upper_spring` reads the input `u`, whose rate nothing knows [MBG0309]
       `height` of `c` changes with time, and no flow knows that rate
-      `height`: Of the ground along its normal, from the origin of the world. It stands still
+      `height`: Of the ground along its normal, from the origin of the world. It stands still: on what moves it is a `PlanarBodyContact`
       help: give `height` a value that stays: what moves is a junction with a flow, such as a frame behind a joint whose rate is given, `Sf drive { flow: … } -> joint.rate;`
     ");
     assert_eq!(told(&contact("0.0", "way[1..3]")), "");

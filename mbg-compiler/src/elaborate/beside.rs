@@ -66,8 +66,25 @@ pub(super) fn meant(instance: &ast::Instance) -> Option<&'static str> {
         {
             Some("Contact")
         }
+        Some("Contact") if instance.connections.len() == 2 => Some("BodyContact"),
         here => here,
     }
+}
+
+/// The call of a contact between two bodies, where one with the ground is given both.
+pub(super) fn between(instance: &ast::Instance, component: &ast::Component) -> Option<String> {
+    let between = match component.name.to_string().as_str() {
+        "Contact" => "BodyContact",
+        "PlanarContact" => "PlanarBodyContact",
+        _ => return None,
+    };
+    let ([at, on], true) = (&instance.connections[..], component.library) else {
+        return None;
+    };
+    let (name, [at, on]) = (&instance.name, [at, on].map(dump::reference));
+    Some(format!(
+        "write `{name}: {between} {{ … }} ({at}, {on});`, which is between two bodies"
+    ))
 }
 
 /// What to type for an argument that the component does not have; `names` are those of its parameters.
@@ -218,9 +235,12 @@ fn holds(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
     if !is_one_of(&argument.name, &HOLDS) {
         return None;
     }
-    if instance.component == "Contact" {
-        let help = "in space friction creeps, below `friction_speed`; a `PlanarContact` holds";
-        return Some(help.to_owned());
+    for component in ["Contact", "BodyContact"] {
+        if instance.component == component {
+            return Some(format!(
+                "in space friction creeps, below `friction_speed`; a `Planar{component}` holds"
+            ));
+        }
     }
     travel(instance)?;
     let name = &instance.name;

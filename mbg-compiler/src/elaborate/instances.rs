@@ -87,6 +87,7 @@ impl<'a> Builder<'a> {
         if !is_counted {
             let call = ordered
                 .take()
+                .or_else(|| beside::between(instance, component))
                 .unwrap_or_else(|| by_ports(instance, component));
             self.tell(scope, wrong_count(instance, component).help(call));
         }

@@ -218,7 +218,8 @@ impl<'a> Builder<'a> {
         });
         let (ground, name) = (over.next()?, &instance.name);
         let note = format!(
-            "`{ground}` of `{name}` changes with where the body is, and the ground of a contact is one plane"
+            "`{ground}` of `{name}` changes with where the body is, and the ground of a contact is one plane, at rest or, that of a \
+             `BodyContact`, on another body"
         );
         let frame = instance.connections.first().map(dump::reference)?;
         let slopes = match velocity.len() {

@@ -16,7 +16,7 @@ const MEANINGLESS: [&str; 2] = ["everything.mbg", "mistakes.mbg"];
 const LONGEST: usize = 1100;
 
 /// Joints between the ground and a body.
-const JOINTS: [&str; 14] = [
+const JOINTS: [&str; 15] = [
     "joint: Revolute { axis: 1, initial: 0.3, friction: 0.1 } (ground, tip);",
     "joint: Prismatic { axis: 0, tilt: rot_y(0.4), stiffness: 20.0, damping: 0.3 } (ground, tip);",
     "joint: Cylindrical { axis: 2, initial_turning: 0.5, turn_stiffness: 2.0 } (ground, tip);",
@@ -41,6 +41,10 @@ const JOINTS: [&str; 14] = [
      floor: Contact {
         stiffness: 50.0, dissipation: 0.3, friction: 0.5, friction_speed: 0.1, rolling_resistance: 0.1, radius: 0.2
      } (tip);",
+    "joint: Free { } (ground, tip); 1 deck[6]; heave: Prismatic { axis: 2 } (ground, deck);
+     hull: PointMass { mass: 9.0 } (deck);
+     skid: BodyContact { stiffness: 50.0, dissipation: 0.3, friction: 0.5, friction_speed: 0.1, radius: 0.2 } (tip, deck);
+     knob: BodyContact { stiffness: 50.0, radius: 0.1, sphere: 0.2 } (tip, deck);",
 ];
 
 /// Joints between angular velocities.
@@ -52,7 +56,7 @@ const ROTATIONS: [&str; 4] = [
 ];
 
 /// What hangs on the ground in a plane.
-const PLANAR: [&str; 5] = [
+const PLANAR: [&str; 6] = [
     "hinge: PlanarRevolute { initial: 0.3 } (ground, tip);
      mass: PlanarPointMass { mass: 0.5 } (tip); body: PlanarBody { mass: 1.0, inertia: 0.1 } (tip);",
     "slide: PlanarPrismatic { direction: 0.3, stiffness: 20.0, friction: 0.2 } (ground, tip);
@@ -66,6 +70,10 @@ const PLANAR: [&str; 5] = [
      floor: PlanarContact {
         stiffness: 50.0, friction: 0.5, friction_speed: 0.1, rolling_resistance: 0.1, radius: 0.2
      } (tip);",
+    "slide: PlanarPrismatic { direction: 0.3, initial: 0.1 } (ground, tip); mass: PlanarPointMass { mass: 0.5 } (tip);
+     1 cart[3]; road: PlanarPrismatic (ground, cart); wagon: PlanarPointMass { mass: 2.0 } (cart);
+     skid: PlanarBodyContact { stiffness: 50.0, friction: 0.5, at_rest: holds, radius: 0.2 } (tip, cart);
+     knob: PlanarBodyContact { stiffness: 50.0, radius: 0.1, circle: 0.2 } (tip, cart);",
 ];
 
 /// Models of other domains, laws of every function, and a component in a file.

@@ -45,6 +45,7 @@ mod references;
 mod rings;
 mod scope;
 mod size;
+mod slopes;
 mod spread;
 mod tools;
 mod turns;

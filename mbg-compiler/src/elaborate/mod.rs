@@ -48,6 +48,7 @@ mod size;
 mod slopes;
 mod spread;
 mod tools;
+mod turning;
 mod turns;
 mod unused;
 

@@ -42,7 +42,10 @@ fn plate(statements: &str) -> String {
 
 /// What a slip is answered with first, with this in its gaps; typed in its place, it is no mistake.
 fn follow(scene: &dyn Fn(&str) -> String, slip: &str, gap: &str) -> String {
-    let written = typed(&scene(slip)).join(" ");
+    let mut written = typed(&scene(slip));
+    // Names of functions of the runtime are told, too.
+    written.retain(|it| it.ends_with(';'));
+    let written = written.join(" ");
     let filled = written.replace('…', gap);
     assert_eq!(told(&scene(&filled)), "", "{slip}: {filled}");
     written
@@ -178,8 +181,8 @@ fn parts_of_circuits_are_told_with_elements() {
             "let p = if mod(t, 1e-3) < 0.5 * 1e-3 { 1.0 } else { 0.0 };",
         ),
     ] {
-        // A bridge holds its nodes together, of which one follows.
-        let scene = |text: &str| circuit(text).replace("C n", "#[derivative] C n");
+        // A bridge and a source hold their nodes together, of which one follows.
+        let scene = |text: &str| circuit(text).replace("{ C ", "{ #[derivative] C ");
         let written = follow(&scene, slip, "0.5");
         assert!(written.contains(part), "{written}");
     }

@@ -60,6 +60,7 @@ codes! {
     LOST_IMPULSE = "MBG0409", "a law of time that jumps, and which storages follow";
     UNKNOWN_MOTION = "MBG0410", "geometry that moves inertia, by a rate that no flow knows";
     GROUND_ABOVE = "MBG0411", "a ground that is above what it holds";
+    TURNING_AXES = "MBG0412", "an inertia in axes that turn, whose momentum nothing turns";
     UNIT_MISMATCH = "MBG0501", "units that do not agree";
     UNIT_NAME = "MBG0502", "a name that is no unit of SI";
     UNIT_SCALE = "MBG0503", "a unit that would scale values";

@@ -64,7 +64,10 @@ fn laws_of_pseudo_bonds_need_no_energy() {
 
 #[test]
 fn mistakes_in_laws_are_told() {
-    insta::assert_snapshot!(mistake("1 v[2] { EJS wheel { momentum: [0.0, 1.0] } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 2 [MBG0204]");
+    insta::assert_snapshot!(mistake("1 v[2] { EJS wheel { momentum: [0.0, 1.0] } I b { inertia: 1.0 } }"), @"
+    2:14 `wheel` needs a junction of dimension 3, and this one has 2 [MBG0204]
+      help: an `EJS` turns with an angular velocity in space; in a plane, a velocity in axes of the body turns by `v -> MGY wheel { effort: [[-p.y, p.x]] } -> rate;`, and one in axes of the world by nothing
+    ");
     insta::assert_snapshot!(mistake("1 v[4] { EJS wheel { momentum: 1.0 } I b { inertia: 1.0 } }"), @"2:14 `wheel` needs a junction of dimension 3, and this one has 4 [MBG0204]");
     insta::assert_snapshot!(mistake("input f; 1 v { I b { inertia: 1.0 } Se s { effort: 2.0 * f } }"), @"
     2:58 `f` is a variable of `s` in its law, and declared as another value [MBG0202]

@@ -727,7 +727,7 @@ fn remainders_and_whole_parts_have_their_functions() {
         ("round(r)", "floor(r + 0.5)"),
         ("trunc(r + n)", "(sign(r + n) * floor(abs(r + n)))"),
         ("fmod(r, 2.0)", "(sign(r) * mod(abs(r), 2.0))"),
-        ("r.rem_euclid(2.0 * n)", "mod(r, 2.0 * n)"),
+        ("r.rem_euclid(2.0 * n)", "mod(r, abs(2.0 * n))"),
         ("modulo(r, 2.0)", "mod(r, 2.0)"),
         ("max(r, n, 2.0 * t)", "max(r, max(n, 2.0 * t))"),
     ] {
@@ -736,7 +736,7 @@ fn remainders_and_whole_parts_have_their_functions() {
     }
     insta::assert_snapshot!(told(&text("if t % 1e-3 < 5e-4 { 24.0 } else { 0.0 }")), @"
     2:21 `%` stands between whole numbers, and `t` changes while the model runs [MBG0217]
-      help: write `mod(t, 1e-3)`
+      help: write `mod(t, 1e-3)`, which has the sign of `1e-3`
     ");
     // Of what stays the same, another cause is told.
     insta::assert_snapshot!(told(&text("n % 2")), @"

@@ -396,7 +396,7 @@ fn converters_are_told_what_their_number_multiplies() {
     ");
     insta::assert_snapshot!(told(&text("TF", "effort: [[1.0, 0.0], [0.0, 2.0]]")), @"
     2:26 `TF` does not know `effort` [MBG0207]
-      help: write `flow: …` with the inverse of it: the flow behind it is that times the flow before it
+      help: write `flow: transpose([[1.0, 0.0], [0.0, 2.0]])` with the bonds turned round: the flow behind it is that times the flow before it
       help: its words are `flow`
     ");
     insta::assert_snapshot!(told(&text("GY", "r: 2.0")), @"

@@ -63,7 +63,7 @@ fn components_are_told_as_what_they_are_made_of() {
         ),
         (
             "z: VCC { transConductance: 2.0 } (k, g, l, g);",
-            "1 z_between { Sf z { flow: … * (k.e - g.e) } } l -> z_between -> g;",
+            "1 z_between { Sf z { flow: 2.0 * (k.e - g.e) } } l -> z_between -> g;",
         ),
         (
             "z: NMOS (k, l, g);",

@@ -513,3 +513,26 @@ fn what_other_tools_have_for_a_ground_is_declared() {
     );
     assert_eq!(told(&scene(&written)), "");
 }
+
+#[test]
+fn a_tilt_is_a_rotation() {
+    let told = |tilt: &str| {
+        let model = format!(
+            "#[derivative] model M {{ causality componentwise; gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 arm[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             hinge: Revolute {{ axis: 1, tilt: {tilt} }} (ground, arm); body: Body {{ mass: 1.0, inertia: 1.0 }} (arm); }}"
+        );
+        let list = diagnose(&model);
+        let told: Vec<String> = list.list().iter().map(|it| it.text()).collect();
+        told.join("\n")
+    };
+    for tilt in ["rot_x(0.5)", "diag(1.0, -1.0, -1.0)", "1.0"] {
+        assert_eq!(told(tilt), "");
+    }
+    let angle = told("0.5");
+    let expected = "`tilt` does not fit in `Revolute`: expected a 3×3 matrix, found a number";
+    assert!(angle.starts_with(expected), "{angle}");
+    assert!(angle.contains("such as `rot_x(0.5)`"), "{angle}");
+    let stretched = told("diag(1.0, 2.0, 3.0)");
+    let expected = "`tilt` does not fit in `Revolute`: this matrix is no rotation";
+    assert!(stretched.starts_with(expected), "{stretched}");
+}

@@ -14,7 +14,7 @@ use super::ways::{Between, apart, through, turned};
 use super::words::{self, ChainStep};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
-use crate::graph::{Bond, BondGraph, Element, ElementId, End, Rule};
+use crate::graph::{Bond, BondGraph, Element, ElementId, ElementKind, End, Rule};
 
 /// The first way out, where the drawing alone is at fault.
 pub const COMPONENTWISE: &str = "write `causality componentwise;` in the model: one stroke per component instead of one per multibond";
@@ -192,6 +192,7 @@ fn ways_out(
     let resistors = resistors.filter(|id| may_be_rewritten(graph, **id, outlook));
     helps.extend(resistors.filter_map(|id| resistor_help(graph, *id)));
     helps.extend(chain.fixed.iter().find_map(|id| turned(graph, *id)));
+    helps.extend(gyrated(graph, chain));
     if explain::blocks_axes(graph, &chain.fixed) {
         helps.push(JACOBIAN.to_owned());
     }
@@ -199,6 +200,28 @@ fn ways_out(
     let more = outlook.helps().into_iter();
     helps.extend(more.filter(|help| !known.contains(help)));
     helps
+}
+
+/// The only transformer of the user's between storages that depend on each other: it may have been meant to be a gyrator.
+fn gyrated(graph: &BondGraph, chain: &Chain) -> Option<String> {
+    let origins = chain.steps.iter().map(|step| step.origin);
+    let origins: BTreeSet<_> = origins.collect();
+    let elements = graph.elements.iter();
+    let mut transformers = elements.filter(|it| {
+        matches!(it.kind, ElementKind::TF | ElementKind::MTF) && origins.contains(&it.origin)
+    });
+    let (Some(only), None) = (transformers.next(), transformers.next()) else {
+        return None;
+    };
+    if chain.integral.is_empty() || only.instance().is_some() {
+        return None;
+    }
+    let name = &only.name;
+    Some(format!(
+        "where its effort goes with the flow on the other side, as of a motor, write `GY {name} {{ effort: … }}` in the place of \
+         `{} {name}`",
+        words::symbol(only.kind)
+    ))
 }
 
 /// A storage as its statement begins.

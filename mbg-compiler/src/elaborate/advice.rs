@@ -244,6 +244,9 @@ impl Lookup<'_, '_> {
         if let Some(near) = nearest(&name, &names) {
             return Some(format!("did you mean `{front}.{near}`?"));
         }
+        if let Some(frame) = self.of_its_frame(pool, &path[..count], &name) {
+            return Some(frame);
+        }
         (!known.is_empty()).then(|| format!("of `{front}` can be read {}", listing(known)))
     }
 

@@ -52,14 +52,15 @@ const STARTS: [&str; 6] = [
     "v0",
 ];
 
-/// The component of the library that is called otherwise elsewhere: a ground that rubs is no frame that stands, and a wheel on one
-/// frame none on a rack.
+/// The component of the library that is called otherwise elsewhere: a ground that rubs is no frame that stands, a wheel on one
+/// frame none on a rack, and a tyre between two shafts no contact of a frame.
 pub(super) fn meant(instance: &ast::Instance) -> Option<&'static str> {
     let is_on_one = instance.connections.len() == 1;
     let rubs =
         |it: &ast::Field| it.name == "stiffness" || parameter(&it.name, &["friction"]).is_some();
     match component(&instance.component.to_string()) {
         Some("Rack") if is_on_one => Some("Contact"),
+        Some("Contact") if instance.connections.len() > 1 => None,
         None if is_on_one
             && instance.component == "Ground"
             && instance.arguments.iter().any(rubs) =>

@@ -185,6 +185,9 @@ impl Builder<'_> {
         if report.code == codes::EXPRESSION {
             report.helps.extend(self.driven(culprit, component));
         }
+        if report.message.ends_with("found a 6×6 matrix") {
+            report.helps.extend(self.with_added_mass(definition.value));
+        }
         let is_zero = elsewhere::number(definition.value) == Some(0.0);
         if report.code == codes::NOT_FINITE && is_zero {
             report.helps.extend(self.without_inertia(definition.value));
@@ -220,6 +223,20 @@ impl Builder<'_> {
             true => driven::by_motor(instance, component, argument),
             false => driven::by_rate(instance, component),
         }
+    }
+
+    /// What to type for a body that is given the inertia of a frame, with the masses.
+    fn with_added_mass(&self, value: &Expr) -> Option<String> {
+        let (instance, argument) = self.given_to(value)?;
+        let (name, at) = (&instance.name, dump::reference(&instance.connections[0]));
+        let is_body = instance.component == "Body" && argument.name == "inertia";
+        is_body.then(|| {
+            format!(
+                "`inertia` has the moments about the centre of mass, `diag(…, …, …)`, and `mass` is a number of its own; masses that \
+                 differ by their axes, as those of the water around a hull, stand beside it: \
+                 `{name}_water: AddedMass {{ mass: diag(…, …, …), inertia: diag(…, …, …) }} ({at});`"
+            )
+        })
     }
 
     /// What to type for a body of whose mass and inertia one is zero.
@@ -284,6 +301,19 @@ fn direction(value: &Expr) -> Option<[f64; 3]> {
         }
         _ => None,
     }
+}
+
+/// What to type for a vector that is told by the letter of its axis, or a normal by the number of that.
+pub(super) fn unit_vector(name: &str, value: &Expr) -> Option<String> {
+    let entries = match elsewhere::number(value) {
+        Some(axis) if name == "normal" => [0.0, 1.0, 2.0].map(|it| f64::from(u8::from(it == axis))),
+        Some(_) => return None,
+        None => direction(value)?,
+    };
+    let (value, [x, y, z]) = (dump::expression(value), entries.map(|it| it + 0.0));
+    (entries != [0.0; 3]).then(|| {
+        format!("`{value}` is an axis, and its direction a vector: write `{name}: [{x:?}, {y:?}, {z:?}]`")
+    })
 }
 
 /// What to type for an axis that is told by a letter or a vector.

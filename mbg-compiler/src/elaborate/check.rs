@@ -85,21 +85,41 @@ impl Builder<'_> {
     /// What to type where a bond joins too many or too few components of a junction to an element or another junction.
     fn other_components(&self, bond: usize) -> Option<String> {
         let Bond { from, to, .. } = &self.graph.bonds[bond];
-        [(from, to), (to, from)].into_iter().find_map(|(own, far)| {
-            let End::Junction(id, range) = own else {
-                return None;
-            };
-            let (junction, size) = (&self.graph.junctions[id.0], self.size(far));
-            let is_short = range.len() < junction.dimension && range.len() + 1 == size;
-            let excluded = if is_short { END_EXCLUDED } else { "" };
-            if let Some(help) = part_of_frame(&junction.name, junction.dimension, size) {
-                return Some(format!("{excluded}{help}"));
-            }
-            let longer = range.start..range.start + size;
-            let fits = is_short && longer.end <= junction.dimension;
-            let longer = End::Junction(*id, longer);
-            fits.then(|| format!("{excluded}write `{}`", self.graph.end_name(&longer)))
-        })
+        [(from, to), (to, from)]
+            .into_iter()
+            .find_map(|(own, far)| {
+                let End::Junction(id, range) = own else {
+                    return None;
+                };
+                let (junction, size) = (&self.graph.junctions[id.0], self.size(far));
+                let is_short = range.len() < junction.dimension && range.len() + 1 == size;
+                let excluded = if is_short { END_EXCLUDED } else { "" };
+                if let Some(help) = part_of_frame(&junction.name, junction.dimension, size) {
+                    return Some(format!("{excluded}{help}"));
+                }
+                let longer = range.start..range.start + size;
+                let fits = is_short && longer.end <= junction.dimension;
+                let longer = End::Junction(*id, longer);
+                fits.then(|| format!("{excluded}write `{}`", self.graph.end_name(&longer)))
+            })
+            .or_else(|| self.first_components([from, to]))
+    }
+
+    /// What to type where one end of a bond has more components than the other.
+    fn first_components(&self, ends: [&End; 2]) -> Option<String> {
+        let [longer, shorter] = match ends.map(|end| self.size(end)) {
+            [from, to] if from > to => ends,
+            _ => [ends[1], ends[0]],
+        };
+        let (End::Junction(id, range), End::Junction(..) | End::OnePort(_)) = (longer, shorter)
+        else {
+            return None;
+        };
+        let picked = range.start..range.start + self.size(shorter);
+        let picked = self.graph.end_name(&End::Junction(*id, picked));
+        Some(format!(
+            "a part of the components is bonded by its numbers, from 0: the first are `{picked}`"
+        ))
     }
 
     /// What to type where the matrix of a two-port would fit at both of its ends if it were transposed.

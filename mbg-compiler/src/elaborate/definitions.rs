@@ -8,6 +8,7 @@ use proc_macro2::Ident;
 use syn::Expr;
 
 use super::Builder;
+use super::blame::unit_vector;
 use super::elsewhere;
 use super::expressions::{Result, Value};
 use super::frames::IN_SPACE;
@@ -178,7 +179,9 @@ impl<'a> Builder<'a> {
         self.check_known(definition)?;
         let value = match told {
             Some(told) => self.value_of(scope, told, name)?,
-            None => self.evaluate(scope, expression)?,
+            None => self
+                .evaluate(scope, expression)
+                .map_err(|report| of_axis(report, (name, dimension), expression))?,
         };
         let value = match dimension {
             None => value,
@@ -217,8 +220,11 @@ impl<'a> Builder<'a> {
     ) -> Result<Value> {
         let is_number = matches!(value, Value::Scalar(_));
         let is_quaternion = value.is_vector_of(4) && size == 3 && tools::is_of_angles(name);
+        let along = unit_vector(&name.to_string(), expression);
+        let along = along.filter(|_| is_number && size == IN_SPACE / 2);
         let column = self.column(value, size, name);
         column.map_err(|report| match is_number {
+            _ if along.is_some() => Box::new(along.into_iter().fold(*report, Diagnostic::help)),
             _ if is_gravity(expression) => about_gravity(report, size),
             _ if is_quaternion => Box::new(report.help(tools::as_angles(name, expression))),
             true if tools::is_way(name) && size == IN_SPACE / 2 => {
@@ -240,6 +246,19 @@ impl<'a> Builder<'a> {
             scope,
             report.note(format!("each needs the next: {}", through.join(", "))),
         );
+    }
+}
+
+/// What to type where the letter of an axis, which is no name, stands for a vector.
+fn of_axis(
+    report: Box<Diagnostic>,
+    (name, dimension): (&Ident, Option<usize>),
+    expression: &Expr,
+) -> Box<Diagnostic> {
+    let is_letter = report.code == codes::UNKNOWN_NAME && dimension == Some(IN_SPACE / 2);
+    match unit_vector(&name.to_string(), expression).filter(|_| is_letter) {
+        Some(help) => Box::new(report.help(help)),
+        None => report,
     }
 }
 

@@ -7,6 +7,7 @@ use syn::{BinOp, Expr, ExprBinary, Lit, Member, Stmt, UnOp};
 
 use super::constants::plain_name;
 use super::indices::component_index;
+use super::tools::plain;
 use crate::symbolic::LARGEST_POWER;
 use crate::syntax::dump;
 
@@ -19,6 +20,12 @@ const CHOICE: &str = "(if a { b } else { c })";
 /// What is zero up to a width on both sides.
 const DEAD_ZONE: &str = "(max(x - width, 0.0) + min(x + width, 0.0))";
 
+/// A curve by its points.
+const CURVE: &str = "interpolate(x, places, values)";
+
+/// A root, of negative values an odd one.
+const ROOT: &str = "(sign(x) * pow(abs(x), 1.0 / n))";
+
 const ASINH: &str = "ln(x + sqrt(x * x + 1))";
 const ACOSH: &str = "ln(x + sqrt(x * x - 1))";
 const ATANH: &str = "(ln((1 + x) / (1 - x)) / 2)";
@@ -29,11 +36,10 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("PI", &[], PI),
     ("π", &[], PI),
     ("tau", &[], "6.283185307179586"),
-    ("TAU", &[], "6.283185307179586"),
     ("time", &[], "t"),
     ("g", &[], "9.81"),
     ("euler", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
-    ("euler_angles", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
+    ("eulerangles", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
     ("rpy", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
     ("arctan", &["x"], "atan(x)"),
     ("arctan2", &["y", "x"], "atan2(y, x)"),
@@ -45,12 +51,16 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("frac", &["x"], "fraction(x)"),
     ("fract", &["x"], "fraction(x)"),
     // Of the sign of `x` elsewhere, where `mod` is of that of `y`.
-    ("fmod", &["x", "y"], "(sign(x) * mod(abs(x), y))"),
-    ("rem", &["x", "y"], "(sign(x) * mod(abs(x), y))"),
+    ("fmod", &["x", "y"], "(sign(x) * mod(abs(x), abs(y)))"),
+    ("rem", &["x", "y"], "(sign(x) * mod(abs(x), abs(y)))"),
+    ("remainder", &["x", "y"], "(x - y * floor(x / y + 0.5))"),
     ("div", &["x", "y"], "(sign(x / y) * floor(abs(x / y)))"),
     ("integer", &["x"], "floor(x)"),
     ("sqr", &["x"], "powi(x, 2)"),
     ("cbrt", &["x"], "(sign(x) * pow(abs(x), 1.0 / 3.0))"),
+    ("root", &["x"], "sqrt(x)"),
+    ("root", &["x", "n"], ROOT),
+    ("nthroot", &["x", "n"], ROOT),
     ("noEvent", &["x"], "x"),
     ("smooth", &["order", "x"], "x"),
     ("homotopy", &["x", "simplified"], "x"),
@@ -59,7 +69,7 @@ const WORDS: &[(&str, &[&str], &str)] = &[
         &["x", "a", "b"],
         "(a * max(x, 0.0) + b * min(x, 0.0))",
     ),
-    ("rem_euclid", &["x", "y"], "mod(x, y)"),
+    ("rem_euclid", &["x", "y"], "mod(x, abs(y))"),
     ("modulo", &["x", "y"], "mod(x, y)"),
     ("sinh", &["x"], "((exp(x) - exp(-x)) / 2)"),
     ("cosh", &["x"], "((exp(x) + exp(-x)) / 2)"),
@@ -70,7 +80,6 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("atanh", &["x"], ATANH),
     ("artanh", &["x"], ATANH),
     ("expm1", &["x"], "(exp(x) - 1)"),
-    ("exp_m1", &["x"], "(exp(x) - 1)"),
     ("log1p", &["x"], "ln(1 + x)"),
     ("ln_1p", &["x"], "ln(1 + x)"),
     ("log", &["x"], "ln(x)"),
@@ -86,47 +95,18 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("sat", &["x", "a", "b"], "min(max(x, a), b)"),
     ("limit", &["x", "a", "b"], "min(max(x, a), b)"),
     ("ifelse", &["a", "b", "c"], CHOICE),
-    ("if_else", &["a", "b", "c"], CHOICE),
     ("select", &["a", "b", "c"], CHOICE),
     ("iif", &["a", "b", "c"], CHOICE),
     ("deadzone", &["x", "width"], DEAD_ZONE),
-    ("dead_zone", &["x", "width"], DEAD_ZONE),
     ("deadband", &["x", "width"], DEAD_ZONE),
-    (
-        "interp",
-        &["x", "places", "values"],
-        "interpolate(x, places, values)",
-    ),
-    (
-        "lookup",
-        &["x", "places", "values"],
-        "interpolate(x, places, values)",
-    ),
-    (
-        "table",
-        &["x", "places", "values"],
-        "interpolate(x, places, values)",
-    ),
-    (
-        "lookup1d",
-        &["x", "places", "values"],
-        "interpolate(x, places, values)",
-    ),
-    (
-        "CombiTable1D",
-        &["x", "places", "values"],
-        "interpolate(x, places, values)",
-    ),
-    (
-        "CombiTable1Ds",
-        &["x", "places", "values"],
-        "interpolate(x, places, values)",
-    ),
-    (
-        "interp1",
-        &["places", "values", "x"],
-        "interpolate(x, places, values)",
-    ),
+    ("interp", &["x", "places", "values"], CURVE),
+    ("lookup", &["x", "places", "values"], CURVE),
+    ("table", &["x", "places", "values"], CURVE),
+    ("lookup1d", &["x", "places", "values"], CURVE),
+    ("tablelookup", &["x", "places", "values"], CURVE),
+    ("CombiTable1D", &["x", "places", "values"], CURVE),
+    ("CombiTable1Ds", &["x", "places", "values"], CURVE),
+    ("interp1", &["places", "values", "x"], CURVE),
     (
         "pwm",
         &["time", "duty", "period"],
@@ -144,6 +124,68 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("degrees", &["x"], "(57.29577951308232 * x)"),
     ("rad2deg", &["x"], "(57.29577951308232 * x)"),
 ];
+
+/// Functions that keep what was, their arguments, and the integral that is declared in their place, for its name `late`.
+const DECLARED: &[(&[&str], &[&str], &str)] = &[
+    (
+        &[
+            "ratelimit",
+            "ratelimiter",
+            "slewrate",
+            "slewratelimiter",
+            "slew",
+        ],
+        &["x", "rate"],
+        "late = min(max((x - late) / 1e-3, -rate), rate)",
+    ),
+    (
+        &[
+            "ratelimit",
+            "ratelimiter",
+            "slewrate",
+            "slewratelimiter",
+            "slew",
+        ],
+        &["x", "up", "down"],
+        "late = min(max((x - late) / 1e-3, down), up)",
+    ),
+    (
+        &["lowpass", "lag", "pt1", "firstorder"],
+        &["x", "time"],
+        "late = (x - late) / time",
+    ),
+    (
+        &["limint", "limintegrate", "limitedintegral"],
+        &["x", "lower", "upper"],
+        "late = if late > upper { min(x, 0.0) } else if late < lower { max(x, 0.0) } else { x }",
+    ),
+    (
+        &["limint", "limintegrate", "limitedintegral"],
+        &["x", "lower", "upper", "start"],
+        "late = if late > upper { min(x, 0.0) } else if late < lower { max(x, 0.0) } else { x }, initial: start",
+    ),
+];
+
+/// What to declare for a function that keeps what was.
+fn declared(word: &str, arguments: &[Expr]) -> Option<String> {
+    let word = plain(word);
+    let mut known = DECLARED.iter();
+    let (_, places, text) = known.find(|(words, places, _)| {
+        words.contains(&word.as_str()) && places.len() == arguments.len()
+    })?;
+    let mut places: Vec<(&str, &Expr)> = places.iter().copied().zip(arguments).collect();
+    // Some tools give the lower limit first.
+    if let [_, ("up", up), ("down", down)] = &mut places[..]
+        && number(up) < Some(0.0)
+        && number(up).is_some()
+    {
+        std::mem::swap(up, down);
+    }
+    Some(format!(
+        "what keeps what was is declared: write `integral {};`, and read `late`",
+        filled(text, &places)
+    ))
+}
 
 /// A curve that is given by its points, `[[x, y], …]`, by its places and values.
 pub(super) fn curve_of_points(arguments: &[Expr]) -> Option<String> {
@@ -242,6 +284,7 @@ const OUTSIDE: &[&str] = &[
 /// What to type here for a word of another language with these arguments.
 pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
     match (word, arguments) {
+        ("inverse" | "inv", [matrix]) => return Some(inverse(matrix)),
         ("powf", [base, exponent]) => return Some(power(base, exponent)),
         ("der" | "ddt" | "dt" | "derivative", [of]) => return Some(rate(of)),
         ("integral" | "integrate" | "int" | "resint", [of]) => return Some(integral(of, None)),
@@ -259,8 +302,6 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
             | "CombiTable2Ds",
             [_, _, _, _, _],
         ) => return map(arguments),
-        // Both orders are written elsewhere.
-        ("interp1", [_, Expr::Array(_), Expr::Array(_)]) => return instead("interp", arguments),
         ("vec" | "vec2" | "vec3" | "vector" | "array" | "Vector3", entries) => {
             let entries: Vec<String> = entries.iter().map(dump::expression).collect();
             return Some(format!("write `[{}]`", entries.join(", ")));
@@ -273,13 +314,42 @@ pub(super) fn instead(word: &str, arguments: &[Expr]) -> Option<String> {
         }
         _ => {}
     }
-    let (_, places, text) = WORDS.iter().find(|(known, _, _)| *known == word)?;
+    if let Some(help) = declared(word, arguments) {
+        return Some(help);
+    }
+    let known = || WORDS.iter().filter(|(known, ..)| is_same(known, word));
+    let fitting = known().find(|(_, places, _)| places.len() == arguments.len());
+    let (_, places, text) = fitting.or_else(|| known().next())?;
+    // Both orders are written elsewhere.
+    let places: &[&str] = match arguments {
+        [Expr::Array(_), Expr::Array(_), _] if *text == CURVE => &["places", "values", "x"],
+        [_, Expr::Array(_), Expr::Array(_)] if *text == CURVE => &["x", "places", "values"],
+        _ => places,
+    };
     if places.len() != arguments.len() {
         let places = places.join(", ");
         return Some(format!("for `{word}({places})` write `{text}`"));
     }
     let places: Vec<(&str, &Expr)> = places.iter().copied().zip(arguments).collect();
-    Some(format!("write `{}`", filled(text, &places)))
+    Some(format!(
+        "write `{}`",
+        filled(&without_signs(text, &places), &places)
+    ))
+}
+
+/// A text in which the magnitudes of numbers are these.
+fn without_signs(text: &str, places: &[(&str, &Expr)]) -> String {
+    let numbers = places
+        .iter()
+        .filter_map(|(place, value)| Some((place, number(value)?)));
+    numbers.fold(text.to_owned(), |text, (place, number)| {
+        text.replace(&format!("abs({place})"), &format!("{:?}", number.abs()))
+    })
+}
+
+/// Whether these are one word in the spellings of two tools; letters alone differ by their capitals.
+fn is_same(known: &str, word: &str) -> bool {
+    known == word || known.len() > 2 && plain(known) == plain(word)
 }
 
 /// What to type for an expression of Rust that no law is.
@@ -311,6 +381,18 @@ pub(super) fn of_rust(expression: &Expr) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// What to type for the inverse of a matrix: laws have that of a rotation, and elements take that of another.
+fn inverse(matrix: &Expr) -> String {
+    let (rotation, matrix) = (
+        filled("transpose(x)", &[("x", matrix)]),
+        dump::expression(matrix),
+    );
+    format!(
+        "of a rotation write `{rotation}`; of another matrix an element finds it: `R name {{ conductance: {matrix} }}` has the \
+         resistance that is its inverse, and an `I` gives its flow by `inertia`"
+    )
 }
 
 /// What to read or declare where a rate is meant. Nothing differentiates an input.
@@ -477,7 +559,11 @@ pub(super) fn turns(angles: &Expr) -> Option<String> {
 /// A remainder of values that vary.
 pub(super) fn remainder(remainder: &ExprBinary) -> String {
     let places = [("a", &*remainder.left), ("b", &*remainder.right)];
-    format!("write `{}`", filled("mod(a, b)", &places))
+    let divisor = dump::expression(&remainder.right);
+    format!(
+        "write `{}`, which has the sign of `{divisor}`",
+        filled("mod(a, b)", &places)
+    )
 }
 
 /// What to type for a condition that is read as a number, or times one, and where it stands.
@@ -588,6 +674,11 @@ pub(super) fn number(expression: &Expr) -> Option<f64> {
         }
         _ => None,
     }
+}
+
+/// An expression as it stands beside a sign of another.
+pub(super) fn operand(value: &Expr) -> String {
+    filled("-x", &[("x", value)]).split_off(1)
 }
 
 /// A text with expressions in place of its names.

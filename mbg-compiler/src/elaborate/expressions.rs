@@ -317,7 +317,11 @@ impl<N: Names> Evaluator<'_, N> {
             if !self.names.all().iter().any(|name| first == name) {
                 let message = format!("`{first}` is not declared");
                 let report = error(codes::UNKNOWN_NAME, first.span(), message);
-                return Err(Box::new(match self.advice(&steps) {
+                let is_module = first.to_string().starts_with(char::is_uppercase);
+                let constant = steps.last().filter(|_| is_module);
+                let constant =
+                    constant.and_then(|it| elsewhere::instead(&it.name.to_string(), &[]));
+                return Err(Box::new(match self.advice(&steps).or(constant) {
                     Some(help) => report.help(help),
                     None => report.did_you_mean(&first.to_string(), &self.names.all()),
                 }));

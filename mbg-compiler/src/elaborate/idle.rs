@@ -40,6 +40,7 @@ impl Builder<'_> {
     pub(super) fn warn_of_idle(&mut self) {
         let mut warnings: Vec<Diagnostic> = self.weightless().into_iter().collect();
         warnings.extend(self.grounds_above());
+        warnings.extend(self.in_turning_axes());
         let mut still = self.held_frames();
         self.carry_stillness(&mut still);
         for (inner, frames) in &self.frames {

@@ -15,7 +15,7 @@ use super::parts_elsewhere;
 use super::scope::{Entity, Scope};
 use super::tools;
 use super::unused::without_effect;
-use super::{Builder, beside, blame};
+use super::{Builder, beside, blame, slopes};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, End, Junction, JunctionKind, declaration};
@@ -253,15 +253,17 @@ impl<'a> Builder<'a> {
     ) {
         let message = format!("`{}` has no parameter `{}`", component.name, argument.name);
         let report = error(codes::UNKNOWN_FIELD, argument.name.span(), message);
-        if let Some(vector) = tools::vector(&argument.name, &instance.arguments, names) {
-            if let Some(written) = vector {
-                self.tell(scope, report.help(format!("write `{written}`")));
+        let vector = tools::vector(&argument.name, &instance.arguments, names);
+        if let Some(told) = vector.or_else(|| slopes::told(instance, argument)) {
+            if let Some(help) = told {
+                self.tell(scope, report.help(help));
             }
             return;
         }
         let here = beside::told(instance, argument, names)
             .or_else(|| self.parameter_here(scope, (instance, component), argument, names))
             .or_else(|| tools::by_ratio(instance, argument))
+            .or_else(|| tools::sequence(argument, names))
             .or_else(|| tools::at_point(instance, argument));
         if let Some(help) = here {
             return self.tell(scope, report.help(help));

@@ -12,6 +12,7 @@ use super::frames::part_of_frame;
 use super::model::{Assumption, Condition, Place, Quantity};
 use super::own::Own;
 use super::scope::Lookup;
+use super::turning;
 use crate::causality::ways::beside;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
@@ -78,7 +79,7 @@ impl Reader<'_, '_, '_> {
             (ElementKind::Se, _) => Ok(plain(Law::Source(self.vector(value)?), Rule::EffortOut)),
             (ElementKind::Sf, _) => Ok(plain(Law::Source(self.vector(value)?), Rule::FlowOut)),
             (ElementKind::EJS, _) => {
-                self.check_euler()?;
+                self.check_euler(value)?;
                 let momentum = self.vector(value)?;
                 Ok(plain(Law::EulerJunction(momentum), Rule::Gyroscopic))
             }
@@ -123,17 +124,15 @@ impl Reader<'_, '_, '_> {
     }
 
     /// An angular momentum has three components.
-    fn check_euler(&self) -> Result<()> {
+    fn check_euler(&self, momentum: &Expr) -> Result<()> {
         let (name, size) = (&self.element.name, self.own.dimension);
         if size == 3 {
             return Ok(());
         }
         let message = format!("`{name}` needs a junction of dimension 3, and this one has {size}");
-        Err(Box::new(error(
-            codes::WRONG_DIMENSION,
-            name.span(),
-            message,
-        )))
+        let report = error(codes::WRONG_DIMENSION, name.span(), message);
+        let help = turning::elsewhere(self.lookup.graph, self.own.element, (name, momentum));
+        Err(Box::new(help.into_iter().fold(report, Diagnostic::help)))
     }
 
     /// What stands after a word, without what follows from it.
@@ -197,6 +196,10 @@ impl Reader<'_, '_, '_> {
             return Vec::new();
         }
         let mut helps = Vec::from_iter(part_of_frame(&junction.name, size, rows));
+        if self.element.kind == ElementKind::EJS && rows == 2 {
+            let named = (&self.element.name, value);
+            helps.push(turning::in_plane(self.lookup.graph, None, named));
+        }
         if size == 1 && matches!(value, Expr::Path(_) | Expr::Field(_)) {
             let text = dump::expression(value);
             let first = if rows > 3 { "[0]" } else { ".x" };

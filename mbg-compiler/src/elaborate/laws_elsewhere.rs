@@ -265,12 +265,21 @@ fn by_converter(law: &str, word: &str, value: Option<&Expr>) -> Option<String> {
     let number = value.filter(|value| !matches!(value, Expr::Array(_)));
     let inverse = number.map(|value| filled("1 / x", &[("x", value)]));
     let rule = format!("the {law} behind it is that times the flow before it");
+    let turned = value.filter(|it| law == "flow" && !matches!(it, Expr::Lit(_) | Expr::Unary(_)));
+    let turned = turned.map(|value| {
+        let transposed = filled("transpose(x)", &[("x", value)]);
+        format!("`{law}: {transposed}` with the bonds turned round")
+    });
     match (word, inverse) {
         // What one variable is multiplied by, the other is divided by, as power stays.
-        ("effort" | "flow", Some(inverse)) => Some(format!("write `{law}: {inverse}`: {rule}")),
-        ("effort" | "flow", None) => {
-            Some(format!("write `{law}: …` with the inverse of it: {rule}"))
-        }
+        ("effort" | "flow", inverse) => Some(match (inverse, turned) {
+            (Some(inverse), Some(turned)) => {
+                format!("write `{law}: {inverse}`: {rule}; of a vector or a matrix write {turned}")
+            }
+            (Some(inverse), None) => format!("write `{law}: {inverse}`: {rule}"),
+            (None, Some(turned)) => format!("write {turned}: {rule}"),
+            (None, None) => format!("write `{law}: …` with the inverse of it: {rule}"),
+        }),
         _ if !RATIOS.contains(&word) => None,
         // The ratio of a gear is told either way.
         (_, Some(inverse)) if law == "flow" => Some(format!(

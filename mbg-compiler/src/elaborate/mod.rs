@@ -45,8 +45,10 @@ mod references;
 mod rings;
 mod scope;
 mod size;
+mod slopes;
 mod spread;
 mod tools;
+mod turning;
 mod turns;
 mod unused;
 

@@ -2,8 +2,8 @@
 
 use syn::Expr;
 
-use super::elsewhere::filled;
-use super::frames::IN_PLANE;
+use super::elsewhere::{filled, operand};
+use super::frames::{IN_PLANE, IN_SPACE};
 use super::tools::plain;
 use crate::graph::JunctionKind;
 use crate::syntax::{ast, dump};
@@ -52,14 +52,37 @@ const ELEMENTS: &[(&[&str], Stand, &[Law])] = &[
             "fixedtemperature",
             "prescribedtemperature",
             "temperaturesource",
+            "thruster",
+            "propeller",
+            "jet",
         ],
         Stand::At,
         &[("Se", "source", "effort: EFFORT")],
     ),
     (
+        &["buoyancy", "buoyancyforce", "archimedes"],
+        Stand::At,
+        &[("Se", "lift", "effort: 9.81 * DENSITY * VOLUME")],
+    ),
+    (
         &["sinevoltage", "acvoltagesource"],
         Stand::Between,
         &[("Se", "source", SINE)],
+    ),
+    (
+        &[
+            "pwm",
+            "pwmvoltage",
+            "controlledpwmvoltage",
+            "pulsevoltage",
+            "pulsevoltagesource",
+        ],
+        Stand::Between,
+        &[(
+            "Se",
+            "source",
+            "effort: if mod(t, 1 / FREQUENCY) < DUTY / FREQUENCY { EFFORT } else { 0.0 }",
+        )],
     ),
     (
         &["stepvoltage"],
@@ -167,6 +190,10 @@ const ELEMENTS: &[(&[&str], Stand, &[Law])] = &[
         &[
             "quadraticspeeddependenttorque",
             "quadraticspeeddependentforce",
+            "drag",
+            "airdrag",
+            "aerodynamicdrag",
+            "aerodynamics",
         ],
         Stand::At,
         &[("R", "load", "effort: … * f * abs(f)")],
@@ -207,11 +234,26 @@ const ELEMENTS: &[(&[&str], Stand, &[Law])] = &[
         &[("R", "damper", "resistance: DAMPING")],
     ),
     (
-        &["springdamper", "springanddamper"],
+        &[
+            "springdamper",
+            "springanddamper",
+            "shockabsorber",
+            "strut",
+            "suspensionstrut",
+            "coilover",
+        ],
         Stand::Between,
         &[
             ("C", "spring", "stiffness: STIFFNESS"),
             ("R", "damper", "resistance: DAMPING"),
+        ],
+    ),
+    (
+        &["oleo", "oleostrut", "oleopneumaticstrut", "gasspring"],
+        Stand::Between,
+        &[
+            ("C", "gas", "effort: … * pow(1 - q / …, -1.4)"),
+            ("R", "oil", "effort: … * f * abs(f)"),
         ],
     ),
     (
@@ -252,13 +294,31 @@ const GIVEN: &[(&str, &[&str])] = &[
             "voltage",
             "temperature",
             "amplitude",
+            "thrust",
         ],
     ),
     (
         "FLOW",
-        &["i", "current", "w", "w_fixed", "v", "v_fixed", "speed"],
+        &[
+            "i",
+            "current",
+            "w",
+            "w_fixed",
+            "v",
+            "v_fixed",
+            "speed",
+            "photocurrent",
+            "isc",
+        ],
     ),
     ("FREQUENCY", &["f", "freqhz", "frequency"]),
+    ("DUTY", &["duty", "duty_cycle", "dutycycle"]),
+    ("GAIN", &["gain", "transconductance", "transresistance"]),
+    ("DENSITY", &["density", "rho"]),
+    ("VOLUME", &["volume"]),
+    ("AREA", &["area", "s", "a", "sref", "reference_area"]),
+    ("RADIUS", &["radius", "r"]),
+    ("OHMS", &["resistance", "r"]),
     ("TIME", &["starttime", "start_time", "steptime"]),
     ("RATIO", &["ratio", "gear_ratio"]),
     ("LEAD", &["lead"]),
@@ -270,8 +330,102 @@ const GIVEN: &[(&str, &[&str])] = &[
     ("DAMPING", &["d", "b", "damping", "damping_coefficient"]),
 ];
 
+/// What stands at frames in space, with the marks of [`CIRCUITS`].
+const IN_FRAMES: &[(&[&str], &str)] = &[
+    (
+        &["thruster", "propeller", "jet"],
+        "@: Load { force: [EFFORT, 0.0, 0.0] } (#0);",
+    ),
+    (
+        &["buoyancy", "buoyancyforce", "archimedes"],
+        "@: Load { axes: world, force: [0.0, 0.0, 9.81 * DENSITY * VOLUME], orientation_at: … } (#0);` with the `orientation_b` of \
+         the joint that leads there; where it acts at another point, `1 @_at[6]; @_arm: Offset { by: […, …, …] } (#0, @_at);` leads to it",
+    ),
+    (
+        &["drag", "airdrag", "aerodynamicdrag"],
+        "#0[3..6] -> R @ { effort: … * sqrt(transpose(f) * f + 1e-12) * f };",
+    ),
+    (
+        &["aerodynamics"],
+        "#0[3..6] -> R @ { effort: 0.6 * AREA * sqrt(transpose(f) * f + 1e-12) * (diag(…, …, …) * f) };` with the coefficients of \
+         drag along x, and of side force and lift by the angles that the velocity has to it; what damps its turning is \
+         `#0[0..3] -> R @_damping { resistance: diag(…, …, …) };`",
+    ),
+];
+
+/// The same in a plane.
+const IN_PLANAR_FRAMES: &[(&[&str], &str)] = &[
+    (
+        &["thruster", "propeller", "jet"],
+        "@: PlanarLoad { force: [EFFORT, 0.0] } (#0);",
+    ),
+    (
+        &["buoyancy", "buoyancyforce", "archimedes"],
+        "@: PlanarLoad { axes: world, force: [0.0, 9.81 * DENSITY * VOLUME] } (#0);",
+    ),
+    (
+        &["drag", "airdrag", "aerodynamicdrag", "aerodynamics"],
+        "#0[1..3] -> R @ { effort: … * sqrt(transpose(f) * f + 1e-12) * f };",
+    ),
+];
+
 /// Circuits that components of other tools are here, with `@` for their names and `#` for their junctions by number.
 const CIRCUITS: &[(&[&str], &str)] = &[
+    (
+        &["potentiometer"],
+        "@_upper: Resistor { resistance: (1 - …) * OHMS } (#0, #2); @_lower: Resistor { resistance: … * OHMS } (#2, #1);` with where \
+         the wiper is in both, such as `input @_place;`, between zero and one and neither of these",
+    ),
+    (
+        &[
+            "hbridge",
+            "fullbridge",
+            "dcdcconverter",
+            "fourquadrantchopper",
+        ],
+        "1 @_supply; 1 @_load; #0 -> @_supply -> #1; #3 -> @_load -> #2; @_load -> MTF @ { flow: … } -> @_supply;` on the average, \
+         with the duty from -1 to 1, such as `input @_duty;`",
+    ),
+    (
+        &["solarcell", "photovoltaiccell", "pvcell"],
+        "@_junction: Diode (#0, #1); 1 @_light { Sf @ { flow: FLOW } } #1 -> @_light -> #0;",
+    ),
+    (
+        &["fuse", "circuitbreaker"],
+        "input @_blown; 1 @_wire { R @ { resistance: if @_blown > 0.5 { 1e9 } else { 1e-3 } } } #0 -> @_wire -> #1; \
+         integral @_melting = powi(@_wire.f, 2);` and, to find by `Integrator::until` where it blows, `output @_left = … - @_melting;`",
+    ),
+    (
+        &["ccc", "cccs", "currentcontrolledcurrentsource"],
+        "1 @_sensed; #0 -> @_sensed -> #1; 1 @_driven { Sf @ { flow: GAIN * @_sensed.f } } #2 -> @_driven -> #3;",
+    ),
+    (
+        &["ccv", "ccvs", "currentcontrolledvoltagesource"],
+        "1 @_sensed; #0 -> @_sensed -> #1; 1 @_driven { Se @ { effort: GAIN * @_sensed.f } } #3 -> @_driven -> #2;",
+    ),
+    (
+        &["lossygear", "gearwithefficiency"],
+        "#0 -> TF @ { flow: 1 / RATIO } -> #1; @_loss: Friction { sliding: … } (#1);` with what is lost, such as \
+         (1 - efficiency) of the torque of the load",
+    ),
+    (
+        &["torqueconverter", "fluidcoupling"],
+        "let @_ratio = min(max(#1.f / max(#0.f, 1.0), 0.0), 1.0); \
+         let @_torque = powi(#0.f / …, 2) * interpolate(@_ratio, [0.0, 0.8, 1.0], [1.0, 0.9, 0.0]); \
+         Se @_pump { effort: -@_torque } -> #0; Se @_turbine { effort: max(2.0 - 1.25 * @_ratio, 1.0) * @_torque } -> #1;",
+    ),
+    (
+        &[
+            "tire",
+            "tyre",
+            "tiremagicformula",
+            "tiresimple",
+            "tyresimple",
+        ],
+        "0 @_road; 1 @_slip { R @ { effort: … * tanh(f / …) } } #0 -> TF @_rim { flow: RADIUS } -> @_road; @_road -> @_slip; \
+         @_road -> #1;` from the shaft of the wheel to the speed of the car, with the load times the coefficient of friction, and \
+         the speed of the slip at which it is nearly reached",
+    ),
     (
         &[
             "emf",
@@ -288,11 +442,11 @@ const CIRCUITS: &[(&[&str], &str)] = &[
     ),
     (
         &["vcv", "vcvs", "voltagecontrolledvoltagesource"],
-        "1 @_between { Se @ { effort: … * (#0.e - #1.e) } } #3 -> @_between -> #2;",
+        "1 @_between { Se @ { effort: GAIN * (#0.e - #1.e) } } #3 -> @_between -> #2;",
     ),
     (
         &["vcc", "vccs", "voltagecontrolledcurrentsource"],
-        "1 @_between { Sf @ { flow: … * (#0.e - #1.e) } } #2 -> @_between -> #3;",
+        "1 @_between { Sf @ { flow: GAIN * (#0.e - #1.e) } } #2 -> @_between -> #3;",
     ),
     (
         &["nmos", "nchannelmosfet"],
@@ -327,7 +481,7 @@ const CIRCUITS: &[(&[&str], &str)] = &[
     ),
     (
         &["position", "move", "accelerate", "positionsource"],
-        "input @_rate; Sf @ { flow: @_rate } -> #0;` and, to read it, `integral @_position = @_rate;",
+        "input @_rate; Sf @ { flow: @_rate } -> #0;` and, to read it, `integral @_position = @_rate;`",
     ),
 ];
 
@@ -353,6 +507,21 @@ const TOLD: &[(&[&str], &str)] = &[
     ),
     (
         &[
+            "inductionmachine",
+            "inductionmotor",
+            "asynchronousmachine",
+            "asynchronousinductionmachine",
+            "squirrelcage",
+            "aimsquirrelcage",
+        ],
+        "a machine of three phases is written in two axes that stand, with the currents of the stator, then those of the rotor: \
+         `1 @[4] { I @_field { inertia: [[ls, 0.0, lm, 0.0], [0.0, ls, 0.0, lm], [lm, 0.0, lr, 0.0], [0.0, lm, 0.0, lr]] } } \
+         @[0..2] -> R @_stator { resistance: rs }; @[2..4] -> R @_rotor { resistance: rr }; \
+         @[2..4] -> MGY @_gap { effort: pairs * [[@_field.p[3], -@_field.p[2]]] } -> shaft; \
+         Se @_grid[2] { effort: [u * cos(w * t), u * sin(w * t)] } -> @[0..2];` with the shaft `shaft`",
+    ),
+    (
+        &[
             "jointrrr", "jointrrp", "jointupr", "jointups", "jointusr", "jointusp", "jointssr",
             "jointssp",
         ],
@@ -374,8 +543,18 @@ pub(super) fn elements(
     end: Option<(JunctionKind, usize)>,
 ) -> Option<String> {
     let component = plain(&instance.component.to_string());
-    if let Some(text) = named_alike(CIRCUITS, &component) {
-        return Some(format!("here it is written `{}`", circuit(instance, text)));
+    let circuits = match end {
+        Some((_, IN_SPACE)) => IN_FRAMES,
+        Some((_, IN_PLANE)) => IN_PLANAR_FRAMES,
+        _ => CIRCUITS,
+    };
+    if let Some(text) = named_alike(circuits, &component) {
+        // What is told behind the text to type ends it itself.
+        let end = if text.contains('`') { "" } else { "`" };
+        return Some(format!(
+            "here it is written `{}{end}",
+            circuit(instance, text)
+        ));
     }
     if let Some(text) = named_alike(TOLD, &component) {
         return Some(circuit(instance, text));
@@ -415,10 +594,14 @@ fn named_alike(table: &[(&[&str], &'static str)], name: &str) -> Option<&'static
     Some(text)
 }
 
-/// A text with the name of an instance and its junctions.
+/// A text with the name of an instance, its junctions, and its arguments.
 fn circuit(instance: &ast::Instance, text: &str) -> String {
     let named = text.replace('@', &instance.name.to_string());
-    (0..4).fold(named, |text, place| {
+    let values = GIVEN.iter().fold(named, |text, (place, names)| {
+        let value = argument(instance, names).map_or_else(|| "…".to_owned(), operand);
+        text.replace(place, &value)
+    });
+    (0..4).fold(values, |text, place| {
         let junction = instance.connections.get(place);
         let junction = junction.map_or_else(|| "…".to_owned(), dump::reference);
         text.replace(&format!("#{place}"), &junction)
@@ -427,14 +610,9 @@ fn circuit(instance: &ast::Instance, text: &str) -> String {
 
 /// An element with the arguments of an instance in its law.
 fn given(instance: &ast::Instance, (kind, name, law): &Law) -> Part {
-    let places = GIVEN.iter().filter_map(|(place, names)| {
-        let mut arguments = instance.arguments.iter();
-        let argument = arguments.find(|it| {
-            let name = it.name.to_string().to_lowercase();
-            names.contains(&name.as_str())
-        })?;
-        Some((*place, argument.value.as_ref()?))
-    });
+    let places = GIVEN
+        .iter()
+        .filter_map(|(place, names)| Some((*place, argument(instance, names)?)));
     let places: Vec<(&str, &Expr)> = places.collect();
     let (word, value) = law.split_once(": ").unwrap_or_default();
     let missing = GIVEN
@@ -445,6 +623,16 @@ fn given(instance: &ast::Instance, (kind, name, law): &Law) -> Part {
     });
     let law = format!("{word}: {value}");
     Part { kind, name, law }
+}
+
+/// The argument of an instance that has one of these names.
+fn argument<'i>(instance: &'i ast::Instance, names: &[&str]) -> Option<&'i Expr> {
+    let mut arguments = instance.arguments.iter();
+    let argument = arguments.find(|it| {
+        let name = it.name.to_string().to_lowercase();
+        names.contains(&name.as_str())
+    })?;
+    argument.value.as_ref()
 }
 
 /// What holds a flow or an effort at zero.

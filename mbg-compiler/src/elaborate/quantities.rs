@@ -5,7 +5,7 @@ use proc_macro2::{Ident, Span};
 use super::advice::text;
 use super::elsewhere;
 use super::expressions::{Names, Step};
-use super::frames::IN_SPACE;
+use super::frames::{IN_PLANE, IN_SPACE};
 use super::scope::{Entity, Lookup};
 use crate::diagnostics::listing;
 use crate::graph::{ElementKind, JunctionId, JunctionKind};
@@ -105,6 +105,12 @@ const BY_VARIABLE: &[(&str, &[&str])] = &[
     ("e", &["force", "effort", "voltage"]),
 ];
 
+/// What an effort and a flow make.
+const POWERS: [&str; 5] = ["power", "P", "loss", "losses", "heat"];
+
+/// What components along axes are called.
+const LETTERS: [&str; 3] = ["x", "y", "z"];
+
 /// Angular velocities of frames in space, which come before their velocities.
 const TURNING: [&str; 3] = ["angular_velocity", "omega", "w"];
 
@@ -113,6 +119,29 @@ fn variable(word: &str) -> Option<&'static str> {
     let mut variables = VARIABLES.iter();
     let (variable, _) = variables.find(|(own, words)| *own == word || words.contains(&word))?;
     Some(variable)
+}
+
+/// The axis of a component of a velocity, and whether it is that of an angular one.
+fn component_of(word: &str) -> Option<(bool, usize)> {
+    let names = [
+        (false, "v"),
+        (false, "velocity_"),
+        (true, "w"),
+        (true, "omega_"),
+    ];
+    names.into_iter().find_map(|(turns, name)| {
+        let letter = word.strip_prefix(name)?.trim_start_matches('_');
+        let axis = LETTERS.iter().position(|it| *it == letter)?;
+        Some((turns, axis))
+    })
+}
+
+/// A product of two variables with so many components.
+fn product(size: usize, owner: &str, [first, second]: [&str; 2]) -> String {
+    match size {
+        1 => format!("{owner}.{first} * {owner}.{second}"),
+        _ => format!("transpose({owner}.{first}) * {owner}.{second}"),
+    }
 }
 
 fn step(name: &str) -> Step {
@@ -138,19 +167,28 @@ impl Lookup<'_, '_> {
         let of = |variable: &str| [front, &[step(variable)][..]].concat();
         let owner = text(front);
         match word.as_str() {
-            "power" => {
+            _ if POWERS.contains(&word.as_str()) => {
                 let [effort, flow] = ["e", "f"].map(of);
-                let has_both = self.has_value(pool, &effort) && self.has_value(pool, &flow);
-                return has_both.then(|| format!("write `{owner}.e * {owner}.f`"));
+                let size = self
+                    .size(pool, &effort)
+                    .filter(|_| self.has_value(pool, &flow));
+                return size.map(|size| format!("write `{}`", product(size, &owner, ["e", "f"])));
             }
             "energy" => return Some(self.energy(pool, front)),
-            "acceleration" => {
+            "v" if self.leads_to_element(front) => {
+                let [effort, flow] = ["e", "f"].map(|it| text(&of(it)));
+                return Some(format!(
+                    "write `{flow}` for a velocity, `{effort}` for a voltage"
+                ));
+            }
+            "acceleration" | "acc" | "a" => {
                 let flow = syn::parse_str(&format!("{owner}.f")).ok()?;
                 return elsewhere::instead("der", &[flow]);
             }
             _ => {}
         }
-        if let Some(part) = self.of_frame(front, &word) {
+        let part = self.of_frame(front, &word);
+        if let Some(part) = part.or_else(|| self.along_axis(pool, front, &word)) {
             return Some(part);
         }
         let variable = self.variable_at(front, &word)?;
@@ -176,6 +214,44 @@ impl Lookup<'_, '_> {
         }
     }
 
+    fn leads_to_element(&self, front: &[Step]) -> bool {
+        let found = self.scopes.follow(self.scope, front);
+        matches!(found, Ok(Some((Entity::Element(_), count))) if count == front.len())
+    }
+
+    /// The component of a flow that `vx` or `omega_z` is.
+    fn along_axis(&mut self, pool: &mut Pool, front: &[Step], word: &str) -> Option<String> {
+        let (turns, axis) = component_of(word)?;
+        let owner = text(front);
+        let size = self.size(pool, &[front, &[step("f")][..]].concat())?;
+        let letter = LETTERS[axis];
+        // A frame has its angular velocity before its velocity.
+        let of_frame = match (turns, axis) {
+            (false, 0 | 1) => Some(axis + 1),
+            (true, 2) => Some(0),
+            _ => None,
+        };
+        match (size, of_frame) {
+            (1, _) => Some(format!("write `{owner}.f`")),
+            (IN_SPACE, _) => {
+                let place = if turns { axis } else { axis + IN_SPACE / 2 };
+                Some(format!("write `{owner}.f[{place}]`, in axes of the frame"))
+            }
+            (IN_PLANE, Some(place)) => Some(format!(
+                "write `{owner}.f.{letter}`; of a frame in a plane `{owner}.f[{place}]`"
+            )),
+            _ => (axis < size).then(|| format!("write `{owner}.f.{letter}`")),
+        }
+    }
+
+    /// The number of components of a value, if this has one.
+    fn size(&mut self, pool: &mut Pool, path: &[Step]) -> Option<usize> {
+        match self.value(pool, path) {
+            Some(Ok(value)) => Some(value.entries(pool)?.len()),
+            _ => None,
+        }
+    }
+
     fn has_value(&mut self, pool: &mut Pool, path: &[Step]) -> bool {
         matches!(self.value(pool, path), Some(Ok(_)))
     }
@@ -184,13 +260,14 @@ impl Lookup<'_, '_> {
     fn energy(&mut self, pool: &mut Pool, front: &[Step]) -> String {
         let owner = text(front);
         let all = "`System::energy` gives what all storages hold";
-        let halves = [("q", "e"), ("p", "f")].into_iter().find(|(state, _)| {
-            let state = [front, &[step(state)][..]].concat();
-            self.has_value(pool, &state)
+        let halves = [["q", "e"], ["p", "f"]].into_iter().find_map(|variables| {
+            let state = [front, &[step(variables[0])][..]].concat();
+            Some((self.size(pool, &state)?, variables))
         });
         match halves {
-            Some((state, other)) => format!(
-                "where its law is linear write `0.5 * {owner}.{state} * {owner}.{other}`; {all}"
+            Some((size, variables)) => format!(
+                "where its law is linear write `0.5 * {}`; {all}",
+                product(size, &owner, variables)
             ),
             None => all.to_owned(),
         }
@@ -202,11 +279,19 @@ impl Lookup<'_, '_> {
         else {
             return None;
         };
-        if range.len() != IN_SPACE {
-            return None;
-        }
         let (owner, half) = (text(front), IN_SPACE / 2);
         match word {
+            _ if range.len() == IN_PLANE => {
+                let told = if variable(word) == Some("q") && word != "angle" {
+                    "position_b"
+                } else if word == "angle" || word == "orientation" {
+                    "angle_b"
+                } else {
+                    return None;
+                };
+                self.led_to(*id, told)
+            }
+            _ if range.len() != IN_SPACE => None,
             "velocity" | "speed" | "v" => Some(format!(
                 "write `{owner}.f[{half}..{IN_SPACE}]`, in axes of the frame"
             )),
@@ -218,11 +303,46 @@ impl Lookup<'_, '_> {
                     "orientation" => "orientation_b",
                     _ => "position_b",
                 };
-                let joint = self.told_by(*id, told)?;
-                Some(format!("what leads to it tells it: write `{joint}.{told}`"))
+                self.led_to(*id, told)
             }
             _ => None,
         }
+    }
+
+    /// What tells where a frame is.
+    fn led_to(&self, junction: JunctionId, told: &str) -> Option<String> {
+        let joint = self.told_by(junction, told)?;
+        Some(format!("what leads to it tells it: write `{joint}.{told}`"))
+    }
+
+    /// The same of the only frame of a component, such as a body.
+    pub(super) fn of_its_frame(
+        &mut self,
+        pool: &mut Pool,
+        front: &[Step],
+        word: &str,
+    ) -> Option<String> {
+        let Ok(Some((Entity::Instance(inner), _))) = self.scopes.follow(self.scope, front) else {
+            return None;
+        };
+        let inner = &self.scopes[*inner];
+        let mut ports = inner
+            .names
+            .iter()
+            .filter_map(|(name, entity)| match entity {
+                Entity::Junction(id, _) => {
+                    let junction = &self.graph.junctions[id.0].name;
+                    (*junction != format!("{}{name}", inner.prefix)).then_some(junction)
+                }
+                _ => None,
+            });
+        let (Some(frame), None) = (ports.next(), ports.next()) else {
+            return None;
+        };
+        let prefix = self.scopes[self.scope].prefix.as_str();
+        let frame: Vec<Step> = frame.strip_prefix(prefix)?.split('.').map(step).collect();
+        let part = self.of_frame(&frame, word);
+        part.or_else(|| self.along_axis(pool, &frame, word))
     }
 
     /// The component in use that leads to a junction and has such a value.

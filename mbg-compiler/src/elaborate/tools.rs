@@ -7,6 +7,7 @@ use syn::Expr;
 
 use super::elsewhere::bare;
 use super::frames::{IN_PLANE, IN_SPACE};
+use crate::syntax::slips::axes_of;
 use crate::syntax::words::{near, nearest};
 use crate::syntax::{ast, dump, library};
 
@@ -486,6 +487,30 @@ pub(super) fn parameter<'a>(word: &Ident, names: &[&'a str]) -> Option<&'a str> 
     })
 }
 
+/// What to type for the axes of a joint that turns about three of them, as one word or a list.
+pub(super) fn sequence(argument: &ast::Field, names: &[&str]) -> Option<String> {
+    let words = [
+        "sequence",
+        "rotation_sequence",
+        "rotation_order",
+        "axes",
+        "order",
+    ];
+    if !words.iter().any(|word| argument.name == word) || !names.contains(&"first") {
+        return None;
+    }
+    let axes = match argument.value.as_ref().map(dump::expression) {
+        Some(text) => axes_of(&text),
+        None => None,
+    };
+    Some(match axes {
+        Some([first, second, third]) => {
+            format!("write `first: {first}, second: {second}, third: {third}`")
+        }
+        None => "write `first: …, second: …, third: …` with 0, 1 or 2 for x, y or z".to_owned(),
+    })
+}
+
 /// What to type for a vector in the place of its components `x` and `y`, which are parameters of their own, and for
 /// components in the place of their vector: once, at the first of them. None where the word is neither.
 pub(super) fn vector(
@@ -503,7 +528,7 @@ pub(super) fn vector(
             }
             _ => ["…", "…"].map(str::to_owned),
         };
-        return Some(Some(format!("x: {x}, y: {y}")));
+        return Some(Some(format!("write `x: {x}, y: {y}`")));
     }
     let vector = VECTORS.iter().find(|vector| known(vector))?;
     let is_component = |it: &Ident| LETTERS.iter().any(|letter| it == letter && !known(letter));
@@ -516,7 +541,7 @@ pub(super) fn vector(
         let value = given.and_then(|given| given.value.as_ref());
         value.map_or_else(|| "0.0".to_owned(), dump::expression)
     });
-    Some((first.name == *word).then(|| format!("{vector}: [{}]", entries.join(", "))))
+    Some((first.name == *word).then(|| format!("write `{vector}: [{}]`", entries.join(", "))))
 }
 
 /// Vectors in space from one point to another.

@@ -1,6 +1,6 @@
 //! Chains of bonds, references to junctions, and instances of components.
 
-use proc_macro2::{Delimiter, Group, Span, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenTree};
 use syn::Expr;
 
 use super::alone::alone;
@@ -88,10 +88,11 @@ fn node(
             "a junction is declared in a statement of its own, and its name stands in the chain";
         return Err(Box::new((*cursor.expected(what)).help(help)));
     }
-    let misspelt = cursor.ident(0).is_some()
-        && cursor.ident(1).is_some()
+    let is_element = |word: &Ident| elsewhere::element(&word.to_string()).is_some();
+    let misspelt = cursor.ident(1).is_some()
         && (cursor.group(2, Delimiter::Brace).is_some()
-            || cursor.group(3, Delimiter::Brace).is_some());
+            || cursor.group(3, Delimiter::Brace).is_some()
+            || cursor.ident(0).is_some_and(is_element));
     if misspelt {
         return Err(Box::new(no_element(cursor, what)));
     }
@@ -307,7 +308,8 @@ pub(super) fn instance(
         };
         let mut error = *cursor.expected(&format!("{wanted} after {}", cursor.previous()));
         let block = signals::block(&component.to_string(), &name.to_string());
-        error = if let Some(block) = block {
+        let told = slips::setting(&name, &component).filter(|_| braces.is_none());
+        error = if let Some(block) = told.or(block) {
             error.help(block)
         } else if words::element(&component.to_string()).is_some() {
             error.help(format!(

@@ -31,7 +31,7 @@ const PARTS: &[(&[&str], &str)] = &[
         &["spring", "capacitor", "capacitance", "compliance", "tank"],
         "C",
     ),
-    (&["damper", "dashpot", "resistor", "resistance"], "R"),
+    (&["damper", "dashpot", "resistor", "resistance", "d"], "R"),
     (
         &[
             "f",
@@ -165,6 +165,11 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
         }
         "state" if cursor.ident(1).is_some() => state(cursor),
         "initial" | "init" | "start" if cursor.ident(1).is_some() => Some(start(cursor)),
+        "import" => imported(cursor),
+        "annotation" => {
+            arguments()?;
+            Some("what is drawn or told of a model stands in comments, `//` and `///`: leave `annotation(…)` out".to_owned())
+        }
         "reinit" if cursor.group(1, Delimiter::Parenthesis).is_some() => Some(EVENTS.to_owned()),
         "end" if cursor.ident(1).is_some() => Some(format!(
             "braces close what they open: leave `{};` out",
@@ -178,6 +183,19 @@ pub(super) fn statement(cursor: &Cursor) -> Option<String> {
             declaration(cursor, here)
         }
     }
+}
+
+/// What to type for `import Modelica.Constants.pi;`.
+pub(super) fn imported(cursor: &Cursor) -> Option<String> {
+    let is_import = cursor.ident(0).is_some_and(|word| word == "import");
+    cursor.ident(1).filter(|_| is_import)?;
+    let path = dump::tokens(until_end(cursor, 1));
+    Some(match path.ends_with(".pi") {
+        true => "nothing is imported: write `let pi = 3.141592653589793;` in the model".to_owned(),
+        false => format!(
+            "nothing is imported, and the library and the units are there without it: leave `import {path};` out"
+        ),
+    })
 }
 
 /// What finds events.

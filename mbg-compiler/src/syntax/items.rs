@@ -7,6 +7,7 @@ use syn::parse::Parser;
 use super::ast::{Component, Item, Model, Port, Source, Statement};
 use super::attributes::Attributes;
 use super::cursor::{Cursor, Parsed};
+use super::elsewhere::imported;
 use super::recovery::Sink;
 use super::statements::body;
 use super::{inclusions, words};
@@ -118,6 +119,9 @@ fn keyword(cursor: &mut Cursor, public: bool, sink: &mut Sink<'_>) -> Parsed<&'s
 
 /// What stands here is no item; perhaps it is a statement.
 fn elsewhere(cursor: &Cursor, error: Diagnostic, word: &str) -> Box<Diagnostic> {
+    if let Some(help) = imported(cursor) {
+        return Box::new(error.help(help));
+    }
     let statement = words::STATEMENTS.contains(&word)
         || words::element(word).is_some()
         || cursor.junction_digit(0)

@@ -29,7 +29,7 @@ mod raw;
 mod reads;
 mod recovery;
 pub(crate) mod signals;
-mod slips;
+pub(crate) mod slips;
 mod statements;
 mod ternaries;
 mod units;

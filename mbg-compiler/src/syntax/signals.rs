@@ -46,8 +46,8 @@ const BLOCKS: &[(&[&str], &str)] = &[
         "`let @ = max(u - 0.1, 0.0) + min(u + 0.1, 0.0);`",
     ),
     (
-        &["ratelimiter", "slewratelimiter", "ratelimit"],
-        "`integral @ = min(max((u - @) / 1e-3, -rate), rate);`",
+        &["ratelimiter", "slewratelimiter"],
+        "`integral @ = min(max((u - @) / 1e-3, -1.0), 1.0);`",
     ),
     (
         &["quantizer", "quantiser", "quantize", "quantise"],
@@ -99,6 +99,10 @@ const BLOCKS: &[(&[&str], &str)] = &[
         "`output @ = ….f;`, or `….e`: what a junction or an element has is read without a sensor",
     ),
     (&["inport", "fromworkspace", "signalbuilder"], "`input @;`"),
+    (
+        &["pwm", "pulse", "pulsegenerator", "squarewave"],
+        "`let @ = if mod(t, 1e-3) < 0.5 * 1e-3 { 1.0 } else { 0.0 };`",
+    ),
     (&["constant", "constantblock"], "`let @ = 1.0;`"),
     (&["sine", "sinewave"], "`let @ = 2.0 * sin(3.0 * t);`"),
     (&["ramp"], "`let @ = max(t - 1.0, 0.0);`"),

@@ -19,6 +19,38 @@ pub(super) fn ahead(cursor: &Cursor, offset: usize, name: &str, component: &str)
     Some(written(name, component, braces, parentheses?))
 }
 
+/// The axes that `zyx`, `"ZYX"` or `[3, 2, 1]` names, by their numbers here; counted from one where there is a third.
+pub(crate) fn axes_of(text: &str) -> Option<[usize; 3]> {
+    let marks = text.to_lowercase();
+    let marks: Vec<char> = marks.chars().filter(|it| it.is_alphanumeric()).collect();
+    let first = usize::from(marks.contains(&'3'));
+    let axes = marks.into_iter().map(|mark| match mark {
+        'x' | 'y' | 'z' => Some(mark as usize - 'x' as usize),
+        _ => (mark.to_digit(10)? as usize).checked_sub(first),
+    });
+    let axes: Option<Vec<usize>> = axes.collect();
+    let axes: [usize; 3] = axes?.try_into().ok()?;
+    axes.iter().all(|axis| *axis < 3).then_some(axes)
+}
+
+/// What to type for `sequence: zyx;`, which is no instance.
+pub(super) fn setting(name: &Ident, value: &Ident) -> Option<String> {
+    let axes = axes_of(&value.to_string());
+    Some(match (name.to_string().as_str(), axes) {
+        ("sequence" | "rotation_sequence" | "rotation_order", Some([first, second, third])) => {
+            format!(
+                "the axes of a rotation stand in the braces of its joint: `free: Free {{ first: {first}, second: {second}, third: {third} }} (a, b);`"
+            )
+        }
+        ("orientation", None) => {
+            "how an orientation is represented stands in the braces of its joint: \
+             `free: Free { orientation: quaternion } (a, b);`"
+                .to_owned()
+        }
+        _ => return None,
+    })
+}
+
 /// What to type for the elements of a junction that stand apart from its declaration.
 pub(super) fn apart(cursor: &Cursor, junction: &Reference, braces: &Group) -> Option<String> {
     let [

@@ -1,0 +1,146 @@
+//! The terms of Euler and Newton in axes that turn: what to type for an `EJS` that stands elsewhere than at an angular velocity in
+//! space, and a warning of an inertia on a whole frame without them.
+
+use proc_macro2::Ident;
+use syn::Expr;
+
+use super::Builder;
+use super::frames::{IN_PLANE, IN_SPACE};
+use crate::causality::ways::beside;
+use crate::codes;
+use crate::diagnostics::{Diagnostic, error};
+use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId};
+use crate::syntax::dump;
+
+/// What to type for an `EJS` at a junction that has not three components.
+pub(super) fn elsewhere(
+    graph: &BondGraph,
+    element: ElementId,
+    (name, momentum): (&Ident, &Expr),
+) -> Option<String> {
+    let (own, _) = beside(graph, element)?;
+    let End::Junction(id, range) = own else {
+        return None;
+    };
+    match range.len() {
+        1 => Some(format!(
+            "about one axis nothing turns with the angular velocity: remove `{name}`"
+        )),
+        2 => Some(in_plane(graph, Some(own), (name, momentum))),
+        IN_SPACE => {
+            let junction = &graph.junctions[id.0].name;
+            let momentum = dump::expression(momentum);
+            let terms = terms(junction, &name.to_string(), &momentum);
+            Some(format!("write `{terms}`"))
+        }
+        _ => None,
+    }
+}
+
+/// What to type for an `EJS` of a momentum in a plane, which stands at the velocity, if that has two components.
+pub(super) fn in_plane(
+    graph: &BondGraph,
+    own: Option<&End>,
+    (name, momentum): (&Ident, &Expr),
+) -> String {
+    let momentum = match momentum {
+        Expr::Field(_) | Expr::Path(_) => dump::expression(momentum),
+        _ => "p".to_owned(),
+    };
+    let owner = momentum.strip_suffix(".p");
+    let ids = (0..graph.elements.len()).map(ElementId);
+    let owner = owner.and_then(|owner| {
+        ids.into_iter()
+            .find(|id| graph.elements[id.0].name == owner)
+    });
+    if owner.is_some_and(|id| graph.elements[id.0].instance().is_some()) {
+        return format!(
+            "a frame in a plane has its velocity in axes of the world, which do not turn: remove `{name}`"
+        );
+    }
+    let at = own.or_else(|| Some(beside(graph, owner?)?.0));
+    let velocity = at.map_or_else(|| "velocity".to_owned(), |at| graph.end_name(at));
+    let rate = match at {
+        Some(End::Junction(id, range)) if graph.junctions[id.0].dimension == IN_PLANE => {
+            let other = if range.start == 0 { IN_PLANE - 1 } else { 0 };
+            graph.end_name(&End::Junction(*id, other..other + 1))
+        }
+        _ => "rate".to_owned(),
+    };
+    format!(
+        "an `EJS` turns with an angular velocity in space; in a plane, a velocity in axes of the body turns by \
+         `{velocity} -> MGY {name} {{ effort: [[-{momentum}.y, {momentum}.x]] }} -> {rate};`, and one in axes of the world by nothing"
+    )
+}
+
+/// What turns the momentum of a frame in space with its axes, by the name of what has it.
+fn terms(junction: &str, name: &str, momentum: &str) -> String {
+    let half = IN_SPACE / 2;
+    format!(
+        "{junction}[0..{half}] -> EJS {name} {{ momentum: {momentum}[0..{half}] }}; \
+         {junction}[{half}..{IN_SPACE}] -> MGY {name}_coupling {{ effort: skew({momentum}[{half}..{IN_SPACE}]) }} -> {junction}[0..{half}];"
+    )
+}
+
+impl Builder<'_> {
+    /// Warnings of inertias of the user's on all of a frame that turns freely, whose momenta nothing turns.
+    pub(super) fn in_turning_axes(&self) -> Vec<Diagnostic> {
+        let inertias = (0..self.graph.elements.len()).map(ElementId);
+        let inertias = inertias.filter(|id| {
+            self.graph.elements[id.0].kind == ElementKind::I && !self.is_of_library(*id)
+        });
+        let warnings = inertias.filter_map(|id| {
+            let (End::Junction(frame, range), _) = beside(&self.graph, id)? else {
+                return None;
+            };
+            let turns = range.len() == IN_SPACE && self.floats(*frame) && !self.has_terms(*frame);
+            let (scope, element) = self.written.get(&id).filter(|_| turns)?;
+            let name = &element.name;
+            let message = format!(
+                "`{name}` is an inertia in axes that turn, and nothing turns its momentum with them"
+            );
+            let report = error(codes::TURNING_AXES, name.span(), message);
+            let prefix = self.scopes[*scope].prefix.as_str();
+            let junction = &self.graph.junctions[frame.0].name;
+            let junction = junction.strip_prefix(prefix).unwrap_or(junction);
+            let terms = terms(junction, &format!("{name}_turning"), &format!("{name}.p"));
+            Some(report.help(format!(
+                "write `{terms}` beside it, or give the frame a `Body` or an `AddedMass` in its place"
+            )))
+        });
+        warnings.collect()
+    }
+
+    /// Whether a joint leads to a frame and leaves it free.
+    fn floats(&self, frame: JunctionId) -> bool {
+        self.called.values().any(|(scope, instance)| {
+            let end = instance.connections.get(1);
+            let end = end.and_then(|end| self.end_of(*scope, end).ok().flatten());
+            instance.component == "Free"
+                && self.components.get("Free").is_some_and(|it| it.library)
+                && matches!(end, Some((End::Junction(id, _), _)) if id == frame)
+        })
+    }
+
+    /// Whether something of the user's at a frame is gyroscopic.
+    fn has_terms(&self, frame: JunctionId) -> bool {
+        let is_at = |end: &End| matches!(end, End::Junction(id, _) if *id == frame);
+        let bonds = self.graph.bonds.iter();
+        let mut beside = bonds.filter_map(|bond| match (&bond.from, &bond.to) {
+            (near, End::OnePort(id) | End::In(id)) if is_at(near) => Some(*id),
+            (End::OnePort(id) | End::Out(id), near) if is_at(near) => Some(*id),
+            _ => None,
+        });
+        beside.any(|id| {
+            use ElementKind::{EJS, GY, MGY};
+            matches!(self.graph.elements[id.0].kind, EJS | GY | MGY) && !self.is_of_library(id)
+        })
+    }
+
+    /// Whether an element stands in a component of the library.
+    fn is_of_library(&self, id: ElementId) -> bool {
+        // What `gyroscopic` puts beside an inertia follows it.
+        let written = self.written.range(..=id).next_back();
+        written.is_some_and(|(_, (scope, _))| self.scopes[*scope].library.is_some())
+    }
+}

@@ -63,6 +63,20 @@ mbg! {
 }
 
 mbg! {
+    /// Two tanks that run empty at once, in pascals and cubic metres.
+    model Cascade {
+        0 above { C upper { compliance: 1.6e-5, initial: 0.098 } }
+        0 below {
+            C lower { compliance: 2e-5, initial: 0.098 }
+            R drain { flow: 2e-5 * sign(e) * sqrt(abs(e)) }
+        }
+        1 pipe { R orifice { flow: 2e-5 * sign(e) * sqrt(abs(e)) } }
+        above -> pipe -> below;
+        output contents[2] = [upper.q, lower.q];
+    }
+}
+
+mbg! {
     /// A mass on a spring, and a damper whose force is a root of its speed, from rest.
     model Swing {
         1 body {
@@ -312,6 +326,27 @@ fn what_flows_between_tanks_turns() {
             assert!(tried < 600, "{name} from {upper} and {lower}: {tried}");
         });
     }
+}
+
+/// The root of the lower pressure falls by 0.25 a second, and that of the difference is half of it: both are zero at 280 s.
+#[test]
+fn two_tanks_run_empty_at_once() {
+    let model = Cascade::<f64>::new(CascadeParameters::default()).unwrap();
+    let exact = |t: f64| SVector::from([2e-5 * (70.0 - 0.25 * t).max(0.0).powi(2); 2]);
+    let times = times(400.0);
+    adaptive(&model, &(), &times, |(name, tolerance), found, tried| {
+        let error = largest_error(found, &times, exact);
+        assert!(
+            error < 20.0 * tolerance,
+            "{name} at {tolerance:e}: {error:e}"
+        );
+        assert!(tried < 5000, "{name} at {tolerance:e}: {tried}");
+    });
+    fixed(&model, &(), &times, 1.0, |name, found, tried| {
+        let error = largest_error(found, &times, exact);
+        assert!(error < 1e-5, "{name}: {error:e}");
+        assert!(tried < 1000, "{name}: {tried}");
+    });
 }
 
 /// One after another they are level, and hold all that was in them.

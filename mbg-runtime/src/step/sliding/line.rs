@@ -135,9 +135,13 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let Beyond { distances, rates } = &self.beyond(at, x, memory);
         let aside = self.aside_behind(x, distances);
         let aside = aside.map(|aside| T::from_f64(factor) * aside);
+        // Where none depends on others it goes across one after another: beside a surface a law may be a root, which would differ
+        // by how far that is when another is crossed.
+        let farthest = if count > free { f64::INFINITY } else { 0.5 };
+        let beyond = |along: f64, place: usize| (along - place as f64).clamp(-farthest, farthest);
         let state = |paces: &Each<f64, K>, along: f64| {
             let ways = Each::of(|place| {
-                let beyond = T::from_f64(paces[place] * (along - place as f64)) * aside[place];
+                let beyond = T::from_f64(paces[place] * beyond(along, place)) * aside[place];
                 beyond - distances[place]
             });
             self.moved(x, rates.solve(ways))
@@ -166,7 +170,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
                 (false, false) => 0.0,
             };
             for (place, pace) in way.paces.iter().enumerate().take(free) {
-                reach = reach.max(pace * (along - place as f64).abs());
+                reach = reach.max(pace * beyond(along, place).abs());
             }
             state(&way.paces, along)
         };

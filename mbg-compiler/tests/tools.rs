@@ -273,26 +273,30 @@ fn what_is_made_of_elements_is_told_with_them() {
 }
 
 #[test]
-fn an_effort_at_the_start_is_told_as_a_state() {
+fn an_effort_at_the_start_is_given_by_its_word() {
     let text = |law: &str, start: &str| {
         format!("model M {{ 0 n {{ C c {{ {law}, {start} }} R r {{ resistance: 1.0 }} }} }}")
     };
-    for (law, slip, here) in [
-        (
-            "compliance: 2.0",
-            "initial_effort: 3.0",
-            "initial: 2.0 * 3.0",
-        ),
-        (
-            "stiffness: 2.0",
-            "initial_voltage: 3.0",
-            "initial: 3.0 / 2.0",
-        ),
-        ("effort: 2.0 * q", "initial_effort: 3.0", "initial: …"),
+    for (law, slip) in [
+        ("compliance: 2.0", "initial_pressure: 3.0"),
+        ("stiffness: 2.0", "initial_voltage: 3.0"),
+        ("effort: 2.0 * q", "initial_force: 3.0"),
     ] {
-        assert_eq!(typed(&text(law, slip)), [here]);
-        assert_eq!(told(&text(law, &here.replace('…', "1.5"))), "");
+        assert_eq!(typed(&text(law, slip)), ["initial_effort: 3.0"]);
+        assert_eq!(told(&text(law, "initial_effort: 3.0")), "");
     }
+    insta::assert_snapshot!(told(&text("effort: q * q", "initial_effort: 3.0")), @"
+    1:54 the displacement of `c` does not follow from an effort: its law is not linear [MBG0213]
+      help: give the displacement itself: `initial: …`
+    ");
+    insta::assert_snapshot!(told(&text("stiffness: 2.0, initial: 1.0", "initial_effort: 3.0")), @"
+    1:53 `c` is given both a displacement and an effort at the start [MBG0104]
+      help: remove `initial` or `initial_effort`: one follows from the other
+    ");
+    insta::assert_snapshot!(told(&text("stiffness: 2.0, displacement: 1.0", "initial_effort: 3.0")), @"
+    1:58 `c` is given both a displacement and where that starts [MBG0104]
+      help: remove `initial_effort` or `displacement`: one follows from the other
+    ");
 }
 
 #[test]

@@ -60,6 +60,22 @@ mbg! {
         output turning[2] = [rate.f, other.f];
     }
 
+    /// Storages that are given their efforts, which their laws begin with in one unit or two, as numbers or matrices.
+    pub model Loaded {
+        param voltage: V = 9.0;
+        param capacitance: F = 2e-3;
+        0 wire { C capacitor { compliance: capacitance, initial_effort: voltage } R leak { resistance: 50.0 } }
+        1 slide { C spring { effort: 2.0 + 4.0 * q, initial_effort: 5.0 } R damper { resistance: 1.0 } }
+        1 plane[2] {
+            C seat { stiffness: [[2.0, 1.0], [1.0, 3.0]], initial_effort: [7.0, 0.5 * voltage] }
+            R mount { resistance: 1.0 }
+        }
+        output voltage_begun: V = wire.e;
+        output force = spring.e;
+        output forces[2] = seat.e;
+        output charge: C = capacitor.q;
+    }
+
     /// Orientations that are parameters, at which single entries of rotations may vanish.
     pub model Turned {
         causality componentwise;
@@ -123,6 +139,20 @@ mbg! {
 fn named<const N: usize>(meta: &mbg_runtime::Meta, state: &[f64], name: &str) -> [f64; N] {
     let first = meta.states.iter().position(|it| it.name.starts_with(name));
     state[first.unwrap()..][..N].try_into().unwrap()
+}
+
+#[test]
+fn storages_start_with_the_efforts_they_are_given() {
+    for voltage in [9.0, -0.3] {
+        let parameters = LoadedParameters {
+            voltage,
+            ..Default::default()
+        };
+        let model = Loaded::<f64>::new(parameters).unwrap();
+        let found = model.output(0.0, &model.initial_state(), &SVector::zeros(), &mut ());
+        let expected = [voltage, 5.0, 7.0, 0.5 * voltage, 2e-3 * voltage];
+        assert!(apart(found.as_slice(), &expected) < 4e-15, "{found}");
+    }
 }
 
 #[test]

@@ -338,7 +338,7 @@ impl<'a> Builder<'a> {
             own,
         }
         .read(field)?;
-        let starts = |field: &&ast::Field| field.name == "initial" || field.name == "initial_flow";
+        let starts = |field: &&ast::Field| field.name.to_string().starts_with("initial");
         let start = element.fields.iter().find(starts);
         let place = start.and_then(|field| field.value.as_ref());
         let place = place.map_or(element.name.span(), |value| value.span());

@@ -44,7 +44,7 @@ pub(super) fn words_of(kind: ElementKind) -> Vec<&'static str> {
 fn other_words(kind: ElementKind) -> &'static [&'static str] {
     match kind {
         ElementKind::I => &["initial", "initial_flow", "gyroscopic"],
-        ElementKind::C => &["initial", "displacement"],
+        ElementKind::C => &["initial", "initial_effort", "displacement"],
         _ => &[],
     }
 }
@@ -414,15 +414,17 @@ impl Reader<'_, '_, '_> {
         let Some(field) = find("displacement") else {
             return Ok(None);
         };
-        if let Some(initial) = find("initial") {
+        if let Some(initial) = find("initial").or_else(|| find("initial_effort")) {
             let message = format!(
                 "`{}` is given both a displacement and where that starts",
                 self.element.name
             );
             let report = error(codes::FIELD_REPEATED, initial.name.span(), message);
-            return Err(Box::new(report.help(
-                "remove `initial` or `displacement`: one follows from the other",
-            )));
+            let help = format!(
+                "remove `{}` or `displacement`: one follows from the other",
+                initial.name
+            );
+            return Err(Box::new(report.help(help)));
         }
         let Some(value) = &field.value else {
             let message = "expected `displacement: value`";
@@ -571,30 +573,30 @@ impl Reader<'_, '_, '_> {
     }
 
     pub(super) fn initial(&mut self, coenergy: &[Expression]) -> Result<Option<Vec<Expression>>> {
+        let Start { word, state, port } = start_of(self.element.kind);
         let find = |word: &str| self.element.fields.iter().find(|field| field.name == word);
-        if let (Some(_), Some(second)) = (find("initial"), find("initial_flow")) {
+        if let (Some(_), Some(second)) = (find("initial"), find(word)) {
             let name = &self.element.name;
-            let message = format!("`{name}` is given both a momentum and a flow at the start");
+            let message = format!("`{name}` is given both a {state} and {port} at the start");
             let report = error(codes::FIELD_REPEATED, second.name.span(), message);
-            return Err(Box::new(report.help(
-                "remove `initial` or `initial_flow`: one follows from the other",
-            )));
+            let help = format!("remove `initial` or `{word}`: one follows from the other");
+            return Err(Box::new(report.help(help)));
         }
         if let Some(value) = find("initial").and_then(|field| field.value.as_ref()) {
             return self.vector(value).map(Some);
         }
-        let Some(value) = find("initial_flow").and_then(|field| field.value.as_ref()) else {
+        let Some(value) = find(word).and_then(|field| field.value.as_ref()) else {
             return Ok(None);
         };
-        let flow = self.vector(value)?;
-        self.momentum(coenergy, &flow, value.span()).map(Some)
+        let given = self.vector(value)?;
+        self.stored(coenergy, &given, value.span()).map(Some)
     }
 
-    /// The momentum whose flow is given: `p = I (f − f₀)`, from `f = I⁻¹ p + f₀`.
-    fn momentum(
+    /// The state at which a linear law gives this flow or effort: `p = I (f − f₀)`, from `f = I⁻¹ p + f₀`, and so for displacements.
+    fn stored(
         &mut self,
         coenergy: &[Expression],
-        flow: &[Expression],
+        given: &[Expression],
         span: Span,
     ) -> Result<Vec<Expression>> {
         let mut at_rest = Substitution::new();
@@ -602,28 +604,51 @@ impl Reader<'_, '_, '_> {
             at_rest.set(Symbol::State(state), Expression::ZERO);
         }
         let (mut entries, mut added) = (Vec::new(), Vec::new());
-        for (row, flow) in coenergy.iter().zip(flow) {
+        for (row, given) in coenergy.iter().zip(given) {
             for state in self.own.states.clone() {
                 entries.push(Differentiator::new(Symbol::State(state)).derivative(self.pool, *row));
             }
             let rest = at_rest.apply(self.pool, *row).unwrap_or(Expression::ZERO);
-            added.push(self.pool.subtract(*flow, rest));
+            added.push(self.pool.subtract(*given, rest));
         }
         let own =
             |it: &Symbol| matches!(it, Symbol::State(state) if self.own.states.contains(state));
         if symbols(self.pool, &entries).iter().any(own) {
-            let name = &self.element.name;
+            let (Start { state, port, .. }, name) =
+                (start_of(self.element.kind), &self.element.name);
             let message = format!(
-                "the momentum of `{name}` does not follow from a flow: its law is not linear"
+                "the {state} of `{name}` does not follow from {port}: its law is not linear"
             );
             let report = error(codes::EXPRESSION, span, message);
             return Err(Box::new(
-                report.help("give the momentum itself: `initial: …`"),
+                report.help(format!("give the {state} itself: `initial: …`")),
             ));
         }
         let size = self.own.dimension;
-        let inertia = self.inverse("slope", &Matrix::new(size, size, entries), span)?;
-        Ok(inertia.times(self.pool, &Matrix::column(added)).entries)
+        let slopes = self.inverse("slope", &Matrix::new(size, size, entries), span)?;
+        Ok(slopes.times(self.pool, &Matrix::column(added)).entries)
+    }
+}
+
+/// How the start of a storage is given in the place of its state.
+struct Start {
+    word: &'static str,
+    state: &'static str,
+    port: &'static str,
+}
+
+const fn start_of(kind: ElementKind) -> Start {
+    match kind {
+        ElementKind::I => Start {
+            word: "initial_flow",
+            state: "momentum",
+            port: "a flow",
+        },
+        _ => Start {
+            word: "initial_effort",
+            state: "displacement",
+            port: "an effort",
+        },
     }
 }
 

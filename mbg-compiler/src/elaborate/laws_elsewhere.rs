@@ -94,15 +94,16 @@ const STARTS: &[(ElementKind, &[&str], &str)] = &[
         ],
         "initial",
     ),
-];
-
-/// What the effort of a compliance at the start is called.
-const EFFORTS: &[&str] = &[
-    "initial_effort",
-    "initial_voltage",
-    "initial_force",
-    "initial_pressure",
-    "initial_temperature",
+    (
+        ElementKind::C,
+        &[
+            "initial_voltage",
+            "initial_force",
+            "initial_pressure",
+            "initial_temperature",
+        ],
+        "initial_effort",
+    ),
 ];
 
 /// What the number of a transformer or gyrator is called.
@@ -117,7 +118,6 @@ pub(super) fn told(element: &Element, word: &Ident, value: Option<&Expr>) -> Opt
         .or_else(|| turned_round(element.kind, word))
         .or_else(|| stroke(word))
         .or_else(|| preloaded(element, word, value))
-        .or_else(|| effort_at_start(element, word, value))
 }
 
 /// What to type for the law of an element that stands behind a word of another name.
@@ -204,26 +204,6 @@ fn here(
     let mut own = table.iter().filter(|(owner, ..)| *owner == kind);
     let (.., here) = own.find(|(_, words, _)| words.iter().any(|known| word == known))?;
     Some(format!("write `{here}: {}`", value_text(value)))
-}
-
-/// What to type for a compliance that is given its effort at the start in the place of its state.
-fn effort_at_start(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {
-    let is_effort = EFFORTS.iter().any(|effort| word == effort);
-    let value = value.filter(|_| is_effort && element.kind == ElementKind::C)?;
-    let law = |word: &str| {
-        let law = element.fields.iter().find(|field| field.name == word);
-        law.and_then(|law| law.value.as_ref())
-    };
-    let start = match (law("compliance"), law("stiffness")) {
-        (Some(compliance), _) => filled("c * x", &[("c", compliance), ("x", value)]),
-        (_, Some(stiffness)) => filled("x / k", &[("k", stiffness), ("x", value)]),
-        _ => {
-            return Some(
-                "write `initial: …` with the `q` at which its law gives this effort".to_owned(),
-            );
-        }
-    };
-    Some(format!("write `initial: {start}`: its state is `q`"))
 }
 
 /// Where a spring without load is, as its length or its angle is told elsewhere.

@@ -283,9 +283,15 @@ fn is_field(word: &Ident) -> bool {
         .flat_map(|(_, kind)| words::law_words(*kind));
     let is_law = laws.any(|law| word == law);
     is_law
-        || ["initial", "initial_flow", "gyroscopic", "displacement"]
-            .iter()
-            .any(|known| word == known)
+        || [
+            "initial",
+            "initial_flow",
+            "initial_effort",
+            "gyroscopic",
+            "displacement",
+        ]
+        .iter()
+        .any(|known| word == known)
 }
 
 fn is_between(word: &Ident) -> bool {

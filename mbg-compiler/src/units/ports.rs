@@ -147,7 +147,7 @@ impl Ports {
             "energy" => stored(&inner[row]),
             "initial" if kind == ElementKind::I => momentum,
             "initial" | "displacement" => displacement,
-            "effort" => effort.clone(),
+            "effort" | "initial_effort" => effort.clone(),
             _ => flow.clone(),
         }]
     }

@@ -313,22 +313,11 @@ impl<'a> Reporter<'a> {
             [value] => text(value),
             _ => "…".to_owned(),
         };
-        if self.model.graph.elements[id.0].kind == ElementKind::I {
-            return format!("write `initial_flow: {value}`");
-        }
-        let law = self.claims.list.iter().find_map(|it| match &it.subject {
-            Subject::Word(other, law) if *other == id && COEFFICIENTS.contains(&law.as_str()) => {
-                Some((law, it.entries[0]))
-            }
-            _ => None,
-        });
-        match law {
-            Some((law, entry)) if law == "compliance" => {
-                format!("write `initial: {} * {value}`", text(entry))
-            }
-            Some((_, entry)) => format!("write `initial: {value} / {}`", text(entry)),
-            None => "write the `q` at which its law gives this effort".to_owned(),
-        }
+        let word = match self.model.graph.elements[id.0].kind {
+            ElementKind::I => "initial_flow",
+            _ => "initial_effort",
+        };
+        format!("write `{word}: {value}`")
     }
 
     /// What to type where units differ because temperature times heat flow is taken for power.

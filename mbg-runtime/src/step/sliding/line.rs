@@ -152,8 +152,9 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             way = self.met(way, ends, (at, &aside), state, memory);
             let longer = way.longer.min(LONGEST);
             way.paces = way.paces.map(|pace| longer * pace);
-            // Far from where others are met rounding leads astray.
-            let met = way.crossings.iter().take(count);
+            // Far from where others are met rounding leads astray. What is not met yet is by the longer way.
+            let crossings = way.crossings.iter().take(count);
+            let met = crossings.filter(|along| along.is_finite());
             let first = met.clone().copied().fold(ends[0], f64::min);
             let last = met.copied().fold(ends[1], f64::max);
             way = self.met(way, [first, last], (at, &aside), state, memory);

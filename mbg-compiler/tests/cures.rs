@@ -362,7 +362,7 @@ fn the_one_value_in_another_unit_is_told_and_not_what_contradicts_it() {
     insta::assert_snapshot!(told(&tank("Pa", initial)), @"
     2:60 `initial` of `oil` must be `m^3` here, and this is `Pa` [MBG0501]
       the effort is `Pa` and the flow `m^3/s` there
-      help: write `initial: given / 1e13`
+      help: write `initial_effort: given`
     ");
     assert_eq!(told(&tank("Pa", &format!("{initial} / 1e13"))), "");
     insta::assert_snapshot!(told(&tank("m^2", "compliance: given")), @"

@@ -473,8 +473,8 @@ fn a_storage_given_its_effort_or_flow_at_the_start_is_told_its_state() {
                 1 j { C b { stiffness: k, initial: g } I i { inertia: m, initial: w } } }";
     let mut mended = text.to_owned();
     for (before, after) in [
-        ("initial: v", "initial: c * v"),
-        ("initial: g", "initial: g / k"),
+        ("initial: v", "initial_effort: v"),
+        ("initial: g", "initial_effort: g"),
         ("initial: w", "initial_flow: w"),
     ] {
         let helps = helps(&mended, codes::UNIT_MISMATCH);

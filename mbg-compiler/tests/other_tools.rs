@@ -103,7 +103,7 @@ fn unknown_components_are_told_by_the_nearest() {
     };
     insta::assert_snapshot!(told(&text("BoxBody")), @"
     2:1 component `BoxBody` is not declared [MBG0203]
-      help: the library has `Body`, `PlanarBody`, see the page `library` of the documentation of `mbg_runtime`
+      help: the library has `Body`, `BodyContact`, `PlanarBody`, `PlanarBodyContact`, see the page `library` of the documentation of `mbg_runtime`
     ");
     insta::assert_snapshot!(told(&text("Valv")), @"
     2:1 component `Valv` is not declared [MBG0203]

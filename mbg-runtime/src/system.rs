@@ -586,7 +586,12 @@ impl core::fmt::Display for Trouble {
                     let comma = if index == 0 { "" } else { ", " };
                     write!(formatter, "{comma}`{name}`")?;
                 }
-                write!(formatter, " was not solved, {residual:e} is left")
+                match residual.is_nan() {
+                    true => formatter.write_str(
+                        " was not solved: a law of it has no value there, as where it divides by zero",
+                    ),
+                    false => write!(formatter, " was not solved, {residual:e} is left"),
+                }
             }
         }
     }

@@ -138,7 +138,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         // Where none depends on others it goes across one after another: beside a surface a law may be a root, which would differ
         // by how far that is when another is crossed.
         let farthest = if count > free { f64::INFINITY } else { 0.5 };
-        let beyond = |along: f64, place: usize| (along - place as f64).clamp(-farthest, farthest);
+        let beyond = |along: f64, place: usize| (along - place as f64).max(-farthest).min(farthest);
         let state = |paces: &Each<f64, K>, along: f64| {
             let ways = Each::of(|place| {
                 let beyond = T::from_f64(paces[place] * beyond(along, place)) * aside[place];

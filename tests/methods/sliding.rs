@@ -8,6 +8,8 @@ use nalgebra::SVector;
 
 #[path = "sliding/constant_steps.rs"]
 mod constant_steps;
+#[path = "sliding/falling.rs"]
+mod falling;
 #[path = "sliding/moving.rs"]
 mod moving;
 #[path = "sliding/networks.rs"]

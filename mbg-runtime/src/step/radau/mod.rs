@@ -13,6 +13,7 @@ use super::elimination::Shifted;
 use super::linear::{Complex, Element};
 use super::method::{Estimating, Family, Method, Start, Stepper, Trial, along, combination};
 use super::problem::Problem;
+use super::seen;
 use super::tolerance::{Sizes, Tolerance};
 use crate::{Input, Real, System};
 use newton::{FAR, Newton};
@@ -102,6 +103,10 @@ pub trait Tabulated<const S: usize, const PAIRS: usize>: Copy {
 const FAST: f64 = 1e-3;
 /// Steps may become so long that a sweep reduces the error by this; the factor is about in proportion to the length.
 const SLOW: f64 = 0.2;
+/// Of a step that is so many times as long as the last one, that one tells nothing: its polynomial would be continued by rounding
+/// alone, and the factor by which sweeps reduced the error is about in proportion to the length. The control lets steps become ten
+/// times as long, but goes on with long ones behind one that ended early, as before a threshold.
+const LONGER: f64 = 16.0;
 /// A step without a tolerance ends where the slope there leads to, but for such a part of what states have been.
 const ASTRAY: f64 = 1e-3;
 
@@ -194,6 +199,7 @@ where
         if !start.again {
             self.is_second = !self.is_second;
         }
+        self.forget_shorter(length);
         let mut stages = self.predict(length);
         self.factorise(problem, (start, &stages));
         let mut newton =
@@ -312,6 +318,20 @@ where
             error: left,
             coarse: left * left,
         }
+    }
+
+    /// Forgets the last step where this one is far longer.
+    fn forget_shorter(&mut self, length: T) {
+        if !self
+            .last()
+            .is_some_and(|(before, _)| seen(length / *before) > LONGER)
+        {
+            return;
+        }
+        let [first, second] = &mut self.steps;
+        let last = if self.is_second { first } else { second };
+        last.0 = T::from_f64(0.0);
+        self.rate = 1.0;
     }
 
     /// The last step.

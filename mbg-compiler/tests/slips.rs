@@ -659,6 +659,15 @@ fn numbers_with_units_are_told_without_them() {
             "hinge: Revolute {{ axis: 1, initial: {angle} }} (ground, arm);"
         ))
     };
+    for (compliance, value) in [
+        ("1.5 mL/mmHg", "1.5 * 7.500615758456563e-9"),
+        ("2 m^3/Pa", "2.0"),
+    ] {
+        let tank = format!(
+            "model M {{ 0 a {{ C c {{ compliance: {compliance} }} R r {{ resistance: 1.0 }} }} }}"
+        );
+        assert_eq!(typed(&tank).last().unwrap(), value);
+    }
     for (angle, value) in [
         ("30 deg", "30.0 * 0.017453292519943295"),
         ("30.0deg", "30.0 * 0.017453292519943295"),

@@ -5,10 +5,10 @@ use syn::ExprArray;
 
 use super::ast::{Reference, Segment};
 use super::cursor::Cursor;
-use super::{dump, elements, elsewhere, library, words};
+use super::{dump, elements, elsewhere, library, units, words};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
-use crate::units::without_unit;
+use crate::units::{without_unit, without_units};
 
 /// The instance that was probably meant, whose parameters and junctions stand `offset` places ahead.
 pub(super) fn ahead(cursor: &Cursor, offset: usize, name: &str, component: &str) -> Option<String> {
@@ -253,6 +253,12 @@ fn between(cursor: &Cursor, is_law: bool) -> Vec<String> {
         Some(call) => vec![format!("for a product write `{before} * {word}{call}`")],
         None => {
             let mut helps = multiplied(&before, &word.to_string());
+            if cursor.punct(1, '/') || cursor.punct(1, '*') || cursor.punct(1, '^') {
+                // What the first unit alone would scale by is wrong.
+                let units = units::ahead(cursor);
+                let whole = units.and_then(|units| without_units(&before, &units));
+                helps = whole.into_iter().collect();
+            }
             if is_law && ["e", "f", "p", "q"].iter().any(|own| word == own) {
                 helps.reverse();
             }

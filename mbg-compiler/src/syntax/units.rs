@@ -58,6 +58,21 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
     }
 }
 
+/// Names and exponents of the unit that stands here, if it ends as a value does.
+pub(super) fn ahead(cursor: &Cursor) -> Option<Vec<(String, i32)>> {
+    let ends = |cursor: &Cursor, offset| [',', ';'].iter().any(|&end| cursor.punct(offset, end));
+    let length = cursor.length_until(ends);
+    let mut inside = Cursor::new(cursor.ahead(length).iter().cloned().collect());
+    let mut unit = Unit {
+        text: String::new(),
+        factors: Vec::new(),
+    };
+    product(&mut inside, &mut unit, 1, DEPTH).ok()?;
+    let factors = unit.factors.into_iter();
+    let spelt = factors.map(|(name, exponent)| (name.to_string(), exponent));
+    inside.ended().then(|| spelt.collect())
+}
+
 /// Whether a value stands here, for which the `=` is missing.
 fn value_follows(cursor: &Cursor) -> bool {
     let is_number = matches!(cursor.peek(0), Some(TokenTree::Literal(_)));

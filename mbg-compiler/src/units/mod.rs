@@ -23,7 +23,7 @@ mod suspects;
 
 use std::collections::BTreeMap;
 
-pub(crate) use names::{acceleration, without_unit};
+pub(crate) use names::{acceleration, without_unit, without_units};
 
 use self::dimension::{Dimension, Ratio, Unknowns};
 use self::inference::{Inference, Measure, Mismatch};

@@ -313,7 +313,18 @@ pub(crate) fn without_unit(number_text: &str, unit: &str) -> Option<String> {
     if let Some(value) = with_prefix(number_text, unit) {
         return Some(format!("numbers carry no prefix: write `{value}`"));
     }
-    let known = lookup(unit).or_else(|| spellings::meant(unit, 1))?;
+    without_units(number_text, &[(unit.to_owned(), 1)])
+}
+
+/// What to type for a number with a product of powers of units behind it.
+pub(crate) fn without_units(number_text: &str, units: &[(String, i32)]) -> Option<String> {
+    let mut known = Known::default();
+    for (unit, exponent) in units {
+        known.multiply(match lookup(unit) {
+            Some(unit) => unit.to_power(*exponent),
+            None => spellings::meant(unit, *exponent)?,
+        });
+    }
     let is_integer = number_text.chars().all(|digit| digit.is_ascii_digit());
     let mut value = number_text.to_owned() + if is_integer { ".0" } else { "" };
     if known.scales() {

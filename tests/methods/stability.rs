@@ -1,8 +1,8 @@
 //! Limits of stability of explicit methods, at steps of one length and to loose tolerances.
 
 use mbg_runtime::{
-    Adaptive, Dop853, Estimating, Fixed, Integrator, Method, Pirk8, Pirk16, Real, Rk4, Tsit5,
-    Variable, Verner9,
+    Adaptive, Auto, Dop853, Estimating, Fixed, Integrator, Method, Pirk8, Pirk16, Radau9, Real,
+    Rk4, System, Tsit5, Variable, Verner9, mbg,
 };
 use nalgebra::SVector;
 
@@ -91,4 +91,46 @@ fn loose_tolerances_do_not_let_modes_grow() {
     assert_decays(Verner9);
     assert_decays(Pirk8);
     assert_decays(Pirk16);
+}
+
+mbg! {
+    /// A loudspeaker, whose current settles fast beside the motion of its cone.
+    model Speaker {
+        1 coil { I field { inertia: 5e-4 } R wire { resistance: 6.0 } Se drive { effort: 10.0 * sin(300.0 * t) } }
+        1 cone { I mass { inertia: 0.02 } C rim { stiffness: 1500.0 } R air { resistance: 1.5 } }
+        coil -> GY motor { effort: 7.0 } -> cone;
+        output current = coil.f;
+    }
+}
+
+/// Where stability limits steps what settles fast is small at their ends, and is to be so in between.
+#[test]
+fn samples_are_as_exact_as_the_ends_of_steps_that_stability_limits() {
+    let model = Speaker::<f64>::new(SpeakerParameters::default()).unwrap();
+    let times: Vec<f64> = (1..=400)
+        .map(|number| 2.49e-4 * f64::from(number))
+        .collect();
+    macro_rules! by {
+        ($solver:expr) => {{
+            let mut samples = Vec::new();
+            let start = model.initial_state();
+            let run = $solver.sample(&model, &(), 0.0, start, &times, |_, x| samples.push(*x));
+            run.unwrap();
+            samples
+        }};
+    }
+    let exact = by!(Adaptive::new(Radau9, 1e-13, 1e-14));
+    for tolerance in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
+        let found = [
+            ("Tsit5", by!(Adaptive::new(Tsit5, tolerance, tolerance))),
+            ("Dop853", by!(Adaptive::new(Dop853, tolerance, tolerance))),
+            ("Verner9", by!(Adaptive::new(Verner9, tolerance, tolerance))),
+            ("Auto", by!(Auto::new(tolerance, tolerance))),
+        ];
+        for (name, found) in found {
+            let errors = found.iter().zip(&exact).map(|(a, b)| (a - b).amax());
+            let error = errors.fold(0.0, f64::max) / tolerance;
+            assert!(error < 6.0, "{name} at {tolerance:e}: {error} times that");
+        }
+    }
 }

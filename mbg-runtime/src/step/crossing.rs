@@ -249,6 +249,25 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         }
     }
 
+    /// The same for what is read there, within a tolerance as the ends of the step are.
+    pub(super) fn samples<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        end: (&SVector<T, N>, Option<SVector<T, N>>),
+        tolerance: &Tolerance<N>,
+    ) -> Polynomial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        if self.is_across::<S, M, P>() {
+            self.explicit.samples(problem, start, end, tolerance)
+        } else {
+            self.work.samples(problem, start, end, tolerance)
+        }
+    }
+
     /// Where the step at hand takes its Jacobian.
     pub(super) fn place_of_jacobian(&self, start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
         self.work.place_of_jacobian(start)

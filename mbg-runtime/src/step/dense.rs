@@ -48,6 +48,46 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
         cubic
     }
 
+    /// This cubic made to go through these states at a third and at two thirds, with these derivatives by `s`.
+    pub(super) fn through_thirds(mut self, there: [(SVector<T, N>, SVector<T, N>); 2]) -> Self {
+        let number = T::from_f64;
+        // What is missed is `s² r²` times a cubic, of which values and derivatives are known.
+        let [(a, a_slope), (b, b_slope)] = [0, 1].map(|place| {
+            let (thirds, (state, slope)) = ([1.0, 2.0][place], there[place]);
+            let (here, ahead) = self.with_slope(number(thirds / 3.0));
+            let [weight, change] = [4.0 / 81.0, [4.0 / 27.0, -4.0 / 27.0][place]];
+            let value = (state - here).map(|missed| missed / number(weight));
+            let missed = slope - ahead;
+            let slope = missed.zip_map(&value, |missed, value| {
+                (missed - number(change) * value) / number(weight)
+            });
+            (value, slope)
+        });
+        let sum = |factors: [f64; 4]| -> SVector<T, N> {
+            let [by_a, by_b, by_a_slope, by_b_slope] = factors.map(number);
+            SVector::from_fn(|row, _| {
+                by_a * a[row]
+                    + by_b * b[row]
+                    + by_a_slope * a_slope[row]
+                    + by_b_slope * b_slope[row]
+            })
+        };
+        // At both ends, then what is left of the cubic in between.
+        let first = sum([-4.0, 5.0, -4.0 / 3.0, -2.0 / 3.0]);
+        let change = sum([9.0, -9.0, 2.0, 2.0]);
+        let left = |value: SVector<T, N>, part: f64| {
+            let line = first.zip_map(&change, |first, change| first + number(part) * change);
+            value.zip_map(&line, |value, line| number(4.5) * (value - line))
+        };
+        let (near, far) = (left(a, 1.0 / 3.0), left(b, 2.0 / 3.0));
+        let twist = far.zip_map(&near, |far, near| number(3.0) * (far - near));
+        let bend = near.zip_map(&twist, |near, twist| near - twist / number(3.0));
+        for (place, coefficient) in [first, change, bend, twist].into_iter().enumerate() {
+            self.coefficients[3 + place] = coefficient;
+        }
+        self
+    }
+
     pub(super) fn at(&self, s: T) -> SVector<T, N> {
         let rest = T::from_f64(1.0) - s;
         let mut sum = SVector::<T, N>::from_element(T::from_f64(0.0));
@@ -223,7 +263,8 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
     /// The state at a time of the step, interpolated with [`Method::DENSE_ORDER`](super::Method::DENSE_ORDER); outside
     /// of the step an extrapolation.
     ///
-    /// The first call may evaluate the derivative, up to four times.
+    /// The first call may evaluate the derivative, up to five times. It is some thirty times where stability limits the steps of
+    /// [`Dop853`](crate::Dop853), so that what settles fast is as exact as at their ends.
     #[must_use]
     pub fn at(&mut self, t: T) -> SVector<T, N> {
         let polynomial = self.polynomial.get_or_insert_with(&mut self.source);
@@ -235,5 +276,26 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
     pub(super) fn cut(&mut self, end: T, state: SVector<T, N>) {
         self.state = state;
         self.span.end = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::SVector;
+
+    use super::Polynomial;
+
+    #[test]
+    fn a_polynomial_through_thirds_has_degree_seven() {
+        for power in 0..8 {
+            let value = |s: f64| SVector::from([s.powi(power)]);
+            let slope = |s: f64| SVector::from([f64::from(power) * s.powi((power - 1).max(0))]);
+            let there = [1.0, 2.0].map(|thirds| (value(thirds / 3.0), slope(thirds / 3.0)));
+            let cubic = Polynomial::cubic((&value(0.0), slope(0.0)), (&value(1.0), slope(1.0)));
+            let found = cubic.through_thirds(there);
+            for s in [0.0, 0.1, 1.0 / 3.0, 0.5, 0.7, 1.0] {
+                assert!((found.at(s) - value(s)).amax() < 1e-14, "{power} {s}");
+            }
+        }
     }
 }

@@ -138,6 +138,21 @@ pub trait Stepper<A, T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
 
+    /// The same for what is read there, within a tolerance as the ends of the step are.
+    fn samples<S, I, const M: usize, const P: usize>(
+        &mut self,
+        problem: &mut Problem<'_, T, S, I, N, M, P>,
+        start: &Start<T, N>,
+        end: (&SVector<T, N>, Option<SVector<T, N>>),
+        _tolerance: &Tolerance<N>,
+    ) -> Polynomial<T, N>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M> + ?Sized,
+    {
+        self.polynomial(problem, start, end)
+    }
+
     /// Where and when the step that has been tried last takes its Jacobian, if the method takes one.
     fn place_of_jacobian(&self, _start: &Start<T, N>) -> Option<(T, SVector<T, N>)> {
         None

@@ -320,12 +320,11 @@ where
         }
     }
 
-    /// Forgets the last step where this one is far longer.
+    /// Forgets the last step where this one is far longer. Without one the first sweep does not see where stages lead, and is none that
+    /// could be enough.
     fn forget_shorter(&mut self, length: T) {
-        if !self
-            .last()
-            .is_some_and(|(before, _)| seen(length / *before) > LONGER)
-        {
+        let last = self.last();
+        if last.is_some_and(|(before, _)| seen(length / *before) <= LONGER) {
             return;
         }
         let [first, second] = &mut self.steps;

@@ -447,6 +447,14 @@ fn components_of_velocities_and_powers_are_told_as_they_are_read() {
         assert_eq!(told(&output(written)), "");
     }
     assert_eq!(typed(&plate("output y = plate.vy;"))[1], "plate.f[2]");
+    let rods = |read: &str| {
+        format!(
+            "model M {{ rods: for k in 0..2 {{ 1 end[6]; body: Body {{ mass: 1.0, inertia: 1.0 }} (end); }}
+             output y = {read}; }}"
+        )
+    };
+    assert_eq!(typed(&rods("rods[1].body.vz"))[0], "rods[1].end.f[5]");
+    assert_eq!(told(&rods("rods[1].end.f[5]")), "");
     let vector = |read: &str| {
         format!(
             "model M {{ 1 v[3] {{ I m {{ inertia: 1.0 }} R r {{ resistance: 1.0 }} }} output y = {read}; }}"

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Span};
 
 use super::advice::text;
 use super::elsewhere;
-use super::expressions::{Names, Step};
+use super::expressions::{Index, Names, Step};
 use super::frames::{IN_PLANE, IN_SPACE};
 use super::scope::{Entity, Lookup};
 use crate::diagnostics::listing;
@@ -149,6 +149,27 @@ fn step(name: &str) -> Step {
         name: Ident::new(name, Span::call_site()),
         index: None,
     }
+}
+
+/// The steps of a path as the graph names it, such as `rods[1].end`.
+fn steps(path: &str) -> Option<Vec<Step>> {
+    let step = |text: &str| {
+        let indexed = text.strip_suffix(']').and_then(|it| it.split_once('['));
+        let (name, index) = indexed.map_or((text, None), |(name, index)| (name, Some(index)));
+        let index = match index {
+            Some(index) => Some(Index {
+                number: index.parse().ok()?,
+                span: Span::call_site(),
+                written: syn::parse_str(index).ok()?,
+            }),
+            None => None,
+        };
+        Some(Step {
+            name: syn::parse_str(name).ok()?,
+            index,
+        })
+    };
+    path.split('.').map(step).collect()
 }
 
 impl Lookup<'_, '_> {
@@ -340,7 +361,7 @@ impl Lookup<'_, '_> {
             return None;
         };
         let prefix = self.scopes[self.scope].prefix.as_str();
-        let frame: Vec<Step> = frame.strip_prefix(prefix)?.split('.').map(step).collect();
+        let frame = steps(frame.strip_prefix(prefix)?)?;
         let part = self.of_frame(&frame, word);
         part.or_else(|| self.along_axis(pool, &frame, word))
     }

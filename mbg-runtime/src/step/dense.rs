@@ -52,24 +52,22 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
     pub(super) fn through_thirds(mut self, there: [(SVector<T, N>, SVector<T, N>); 2]) -> Self {
         let number = T::from_f64;
         // What is missed is `s² r²` times a cubic, of which values and derivatives are known.
-        let [(a, a_slope), (b, b_slope)] = [0, 1].map(|place| {
-            let (thirds, (state, slope)) = ([1.0, 2.0][place], there[place]);
+        let [near, far] = there;
+        let [(a, a_slope), (b, b_slope)] = [(1.0, near), (2.0, far)].map(|(thirds, there)| {
             let (here, ahead) = self.with_slope(number(thirds / 3.0));
-            let [weight, change] = [4.0 / 81.0, [4.0 / 27.0, -4.0 / 27.0][place]];
-            let value = (state - here).map(|missed| missed / number(weight));
-            let missed = slope - ahead;
+            let (weight, change) = (4.0 / 81.0, (12.0 - 8.0 * thirds) / 27.0);
+            let value = (there.0 - here).map(|missed| missed / number(weight));
+            let missed = there.1 - ahead;
             let slope = missed.zip_map(&value, |missed, value| {
                 (missed - number(change) * value) / number(weight)
             });
             (value, slope)
         });
-        let sum = |factors: [f64; 4]| -> SVector<T, N> {
-            let [by_a, by_b, by_a_slope, by_b_slope] = factors.map(number);
-            SVector::from_fn(|row, _| {
-                by_a * a[row]
-                    + by_b * b[row]
-                    + by_a_slope * a_slope[row]
-                    + by_b_slope * b_slope[row]
+        let zero = SVector::<T, N>::from_element(number(0.0));
+        let sum = |factors: [f64; 4]| {
+            let terms = [a, b, a_slope, b_slope].into_iter().zip(factors);
+            terms.fold(zero, |sum, (term, factor)| {
+                sum.zip_map(&term, |sum, term| sum + number(factor) * term)
             })
         };
         // At both ends, then what is left of the cubic in between.
@@ -82,8 +80,9 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
         let (near, far) = (left(a, 1.0 / 3.0), left(b, 2.0 / 3.0));
         let twist = far.zip_map(&near, |far, near| number(3.0) * (far - near));
         let bend = near.zip_map(&twist, |near, twist| near - twist / number(3.0));
-        for (place, coefficient) in [first, change, bend, twist].into_iter().enumerate() {
-            self.coefficients[3 + place] = coefficient;
+        let higher = self.coefficients.iter_mut().skip(3);
+        for (place, coefficient) in higher.zip([first, change, bend, twist]) {
+            *place = coefficient;
         }
         self
     }

@@ -438,10 +438,10 @@ fn a_contact_of_two_bodies_is_one_between_them() {
     let written = typed(&scene("c: Contact { stiffness: 1e4 } (hull, deck);"));
     assert_eq!(written, ["c: BodyContact { … } (hull, deck);"]);
     assert_eq!(told(&scene(&written[0].replace('…', "stiffness: 1e4"))), "");
-    assert_eq!(
-        typed(&scene("c: SphereContact { stiffness: 1e4 } (hull, deck);")),
-        ["BodyContact"]
-    );
+    for called in ["SphereContact", "HertzContact", "SpatialContactForce"] {
+        let elsewhere = format!("c: {called} {{ stiffness: 1e4 }} (hull, deck);");
+        assert_eq!(typed(&scene(&elsewhere)), ["BodyContact"], "{called}");
+    }
     let holds = scene("c: BodyContact { stiffness: 1e4, at_rest: holds } (hull, deck);");
     insta::assert_snapshot!(told(&holds), @"
     3:135 `BodyContact` has no parameter `at_rest` [MBG0207]
@@ -463,7 +463,9 @@ fn a_ground_that_is_no_plane_is_a_stop() {
             "c: PlanarContact {{ stiffness: 1e4, height: {height}, position_at: {position} }} (foot);"
         ))
     };
-    let written = typed(&contact(ground, "way[1..3]")).pop().unwrap();
+    let over = contact(ground, "way[1..3]");
+    assert!(told(&over).contains("of a `PlanarBodyContact`, on another body"));
+    let written = typed(&over).pop().unwrap();
     assert_eq!(
         written,
         "1 c_approach; foot[1..3] -> MTF c_down { flow: [[slope, -1.0]] } -> c_approach; \

@@ -53,32 +53,37 @@ const STARTS: [&str; 6] = [
 ];
 
 /// The component of the library that is called otherwise elsewhere: a ground that rubs is no frame that stands, a wheel on one
-/// frame none on a rack, and a tyre between two shafts no contact of a frame.
-pub(super) fn meant(instance: &ast::Instance) -> Option<&'static str> {
+/// frame none on a rack, and a tyre between two shafts no contact of frames. With how many components the first junction has.
+pub(super) fn meant(instance: &ast::Instance, size: Option<usize>) -> Option<&'static str> {
     let is_on_one = instance.connections.len() == 1;
+    let is_on_frames = matches!(size, Some(IN_PLANE | IN_SPACE));
     let rubs =
         |it: &ast::Field| it.name == "stiffness" || parameter(&it.name, &["friction"]).is_some();
     match component(&instance.component.to_string()) {
         Some("Rack") if is_on_one => Some("Contact"),
-        Some("Contact") if instance.connections.len() > 1 => None,
+        Some("Contact") if instance.connections.len() > 1 => is_on_frames.then_some("BodyContact"),
         None if is_on_one
             && instance.component == "Ground"
             && instance.arguments.iter().any(rubs) =>
         {
             Some("Contact")
         }
-        Some("Contact") if instance.connections.len() == 2 => Some("BodyContact"),
         here => here,
+    }
+}
+
+/// What a contact with the ground is called on another body.
+pub(super) fn on_body(component: &str) -> Option<&'static str> {
+    match component {
+        "Contact" => Some("BodyContact"),
+        "PlanarContact" => Some("PlanarBodyContact"),
+        _ => None,
     }
 }
 
 /// The call of a contact between two bodies, where one with the ground is given both.
 pub(super) fn between(instance: &ast::Instance, component: &ast::Component) -> Option<String> {
-    let between = match component.name.to_string().as_str() {
-        "Contact" => "BodyContact",
-        "PlanarContact" => "PlanarBodyContact",
-        _ => return None,
-    };
+    let between = on_body(&component.name.to_string())?;
     let ([at, on], true) = (&instance.connections[..], component.library) else {
         return None;
     };
@@ -236,12 +241,11 @@ fn holds(instance: &ast::Instance, argument: &ast::Field) -> Option<String> {
     if !is_one_of(&argument.name, &HOLDS) {
         return None;
     }
-    for component in ["Contact", "BodyContact"] {
-        if instance.component == component {
-            return Some(format!(
-                "in space friction creeps, below `friction_speed`; a `Planar{component}` holds"
-            ));
-        }
+    let component = instance.component.to_string();
+    if ["Contact", "BodyContact"].contains(&component.as_str()) {
+        return Some(format!(
+            "in space friction creeps, below `friction_speed`; a `Planar{component}` holds"
+        ));
     }
     travel(instance)?;
     let name = &instance.name;

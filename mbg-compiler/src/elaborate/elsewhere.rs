@@ -125,27 +125,25 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("rad2deg", &["x"], "(57.29577951308232 * x)"),
 ];
 
+/// What limits how fast a value changes, and what limits an integral.
+const SLEWS: &[&str] = &[
+    "ratelimit",
+    "ratelimiter",
+    "slewrate",
+    "slewratelimiter",
+    "slew",
+];
+const LIMITED: &[&str] = &["limint", "limintegrate", "limitedintegral"];
+
 /// Functions that keep what was, their arguments, and the integral that is declared in their place, for its name `late`.
 const DECLARED: &[(&[&str], &[&str], &str)] = &[
     (
-        &[
-            "ratelimit",
-            "ratelimiter",
-            "slewrate",
-            "slewratelimiter",
-            "slew",
-        ],
+        SLEWS,
         &["x", "rate"],
         "late = min(max((x - late) / 1e-3, -rate), rate)",
     ),
     (
-        &[
-            "ratelimit",
-            "ratelimiter",
-            "slewrate",
-            "slewratelimiter",
-            "slew",
-        ],
+        SLEWS,
         &["x", "up", "down"],
         "late = min(max((x - late) / 1e-3, down), up)",
     ),
@@ -155,12 +153,12 @@ const DECLARED: &[(&[&str], &[&str], &str)] = &[
         "late = (x - late) / time",
     ),
     (
-        &["limint", "limintegrate", "limitedintegral"],
+        LIMITED,
         &["x", "lower", "upper"],
         "late = if late > upper { min(x, 0.0) } else if late < lower { max(x, 0.0) } else { x }",
     ),
     (
-        &["limint", "limintegrate", "limitedintegral"],
+        LIMITED,
         &["x", "lower", "upper", "start"],
         "late = if late > upper { min(x, 0.0) } else if late < lower { max(x, 0.0) } else { x }, initial: start",
     ),

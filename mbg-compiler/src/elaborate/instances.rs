@@ -390,7 +390,7 @@ impl<'a> Builder<'a> {
             .or_else(|| kinds::as_element(instance))
             .or_else(|| parts_elsewhere::elements(instance, end))
             .or_else(|| signals::block(&name.to_string(), &value));
-        let mut report = match (beside::meant(instance), elements) {
+        let mut report = match (beside::meant(instance, end.map(|it| it.1)), elements) {
             (Some(here), _) => {
                 let here = fitting(here);
                 report.help(format!("write `{here}`, as it is called here"))

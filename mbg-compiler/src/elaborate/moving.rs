@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Ident;
 use syn::Expr;
 
-use super::Builder;
 use super::blame::text;
 use super::definitions::Progress;
 use super::elsewhere::value_text;
@@ -16,6 +15,7 @@ use super::expressions::Value;
 use super::frames::{Frame, IN_PLANE, IN_SPACE};
 use super::model::StateRate;
 use super::scope::Entity;
+use super::{Builder, beside};
 use crate::codes;
 use crate::diagnostics::{error, listing};
 use crate::graph::{Element, ElementId, ElementKind, End, JunctionId};
@@ -219,7 +219,8 @@ impl<'a> Builder<'a> {
         let (ground, name) = (over.next()?, &instance.name);
         let note = format!(
             "`{ground}` of `{name}` changes with where the body is, and the ground of a contact is one plane, at rest or, that of a \
-             `BodyContact`, on another body"
+             `{}`, on another body",
+            beside::on_body(&instance.component.to_string())?
         );
         let frame = instance.connections.first().map(dump::reference)?;
         let slopes = match velocity.len() {

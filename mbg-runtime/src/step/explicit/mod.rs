@@ -220,11 +220,9 @@ where
             let slope = problem.slope(span.end, &x);
             (x, scaled(slope))
         });
-        let ends = (
-            (&start.x, scaled(start.slope)),
-            (end, scaled(self.slopes[S])),
-        );
-        Polynomial::cubic(ends.0, ends.1).through_thirds(there)
+        let first = (&start.x, scaled(start.slope));
+        let last = (end, scaled(self.slopes[S]));
+        Polynomial::cubic(first, last).through_thirds(there)
     }
 
     /// Whether a stage for the dense output alone was beyond a threshold that the step is not, which no error tells.

@@ -52,6 +52,7 @@ macro_rules! functions {
 }
 
 impl<const LIBRARY: bool> Real for Plain<LIBRARY> {
+    type Lane = f64;
     type Columns = Self;
     type Stages = mbg_runtime::Four<Self>;
 
@@ -63,8 +64,12 @@ impl<const LIBRARY: bool> Real for Plain<LIBRARY> {
         Self(value)
     }
 
-    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-        self.0.find(test)
+    fn from_lane(number: f64) -> Self {
+        Self(number)
+    }
+
+    fn in_lane(self, lane: usize) -> Option<f64> {
+        self.0.in_lane(lane)
     }
 
     #[inline]

@@ -1,9 +1,7 @@
 //! How the arguments of choices go from one point to another.
 
-use core::cell::Cell;
-
 use crate::Real;
-use crate::step::seen;
+use crate::step::{lane, seen};
 
 /// How much farther than a step the way from its start is looked at.
 pub(crate) const FARTHER: f64 = 1.25;
@@ -35,7 +33,7 @@ impl<T: Real> Course<'_, T> {
     #[inline]
     pub fn passed(&self, lasting: T) -> u32 {
         let counts = self.lanes().map(|it| {
-            let farthest = farthest(seen(lasting), it.from, it.to);
+            let farthest = farthest(lane(lasting), it.from, it.to);
             let counts = self.thresholds_in(it.number).map(|threshold| {
                 let places = [it.from[0], farthest, it.to[0]];
                 let [first, turning, last] = places.map(|place| self.below(place, threshold));
@@ -63,12 +61,12 @@ impl<T: Real> Course<'_, T> {
         let mean = (to - from) / lasting;
         let rate = zero.select_less(mean * self.from[1], self.from[1], mean);
         let rate = zero.select_less(rate.abs(), rate, one);
-        let mut soonest: Option<(f64, T)> = None;
+        let mut soonest: Option<(T::Lane, T)> = None;
         for threshold in self.thresholds {
             let numbers = [from - *threshold, to - *threshold, rate];
             // Lanes share their time.
             for number in 0.. {
-                let [Some(first), Some(last), Some(rate)] = numbers.map(|it| lane(it, number))
+                let [Some(first), Some(last), Some(rate)] = numbers.map(|it| it.in_lane(number))
                 else {
                     break;
                 };
@@ -81,7 +79,7 @@ impl<T: Real> Course<'_, T> {
             }
         }
         // Whole turns of the way have no slope.
-        soonest.map(|(time, way)| T::from_f64(time).root_of(|time| way - rate * time))
+        soonest.map(|(time, way)| T::from_lane(time).root_of(|time| way - rate * time))
     }
 
     /// Whether the argument stays on its sides of all thresholds at which choices change, at the second point and for so much time on its
@@ -89,13 +87,14 @@ impl<T: Real> Course<'_, T> {
     /// between both points may be astray; in all lanes.
     #[inline]
     pub(crate) fn is_clear(&self, lasting: T) -> bool {
-        let lasting = FARTHER * seen(lasting);
-        let is_clear = |it: Lane| {
+        let [farther, half] = [FARTHER, 0.5].map(T::Lane::from_f64);
+        let lasting = farther * lane(lasting);
+        let is_clear = |it: Lane<T::Lane>| {
             let ([from, rate], [to, later]) = (it.from, it.to);
             let ends = [
                 to,
                 from + rate * lasting,
-                from + 0.5 * (rate + later) * lasting,
+                from + half * (rate + later) * lasting,
                 // The same way back.
                 from - (to - from),
             ];
@@ -104,11 +103,11 @@ impl<T: Real> Course<'_, T> {
                 let beyond = from - threshold;
                 // Written so that what is no number is not clear.
                 let is_beside = match self.repeats {
-                    true => side as f64 != beyond,
-                    false => beyond.abs() > 0.0,
+                    true => side as f64 != beyond.into(),
+                    false => beyond != T::Lane::from_f64(0.0),
                 };
                 is_beside
-                    && beyond.is_finite()
+                    && beyond - beyond == T::Lane::from_f64(0.0)
                     && ends.iter().all(|end| self.below(*end, threshold) == side)
             })
         };
@@ -118,38 +117,39 @@ impl<T: Real> Course<'_, T> {
     /// Whether the first point is beside a threshold at which choices change, nearer than a part of the way that the argument goes, or
     /// was to go in so much time; in any lane.
     pub(crate) fn begins_beside(&self, lasting: T) -> bool {
-        self.lanes().any(|it| self.is_beside(&it, seen(lasting)))
+        self.lanes().any(|it| self.is_beside(&it, lane(lasting)))
     }
 
-    fn is_beside(&self, it: &Lane, lasting: f64) -> bool {
+    fn is_beside(&self, it: &Lane<T::Lane>, lasting: T::Lane) -> bool {
         let ([from, rate], [to, _]) = (it.from, it.to);
-        let way = (rate * lasting).abs().max((to - from).abs());
-        let is_beside = |threshold: f64| {
+        let near = [rate * lasting, to - from].map(|way| T::Lane::from_f64(BESIDE) * way.abs());
+        let is_beside = |threshold: T::Lane| {
             let beyond = from - threshold;
-            let turns = match self.repeats {
-                true => whole_below(beyond + 0.5) as f64,
-                false => 0.0,
+            let apart = match self.repeats {
+                true => beyond - whole(nearest(beyond)),
+                false => beyond,
             };
-            (beyond - turns).abs() <= BESIDE * way
+            near.iter().any(|near| apart.abs() <= *near)
         };
         self.is_choice && self.thresholds_in(it.number).any(is_beside)
     }
 
     /// Whether the argument hardly moves from beside a threshold in so much time, though it was to, and goes on to; in any lane.
     pub(crate) fn is_held(&self, lasting: T) -> bool {
-        let lasting = seen(lasting);
+        let lasting = lane(lasting);
+        let [held, fast] = [HELD, FAST].map(T::Lane::from_f64);
         self.lanes().any(|it| {
             let ([from, rate], [to, later]) = (it.from, it.to);
             let moved = (to - from) / lasting;
-            moved.abs() < HELD * rate.abs() && later / rate > FAST && self.is_beside(&it, lasting)
+            moved.abs() < held * rate.abs() && later / rate > fast && self.is_beside(&it, lasting)
         })
     }
 
     /// Whether the argument has gone to a threshold, or over it, in any lane, behind which it does not go on as its rate tells.
     pub(crate) fn is_led_back(&self) -> bool {
-        let is_led_back = |it: Lane| {
+        let is_led_back = |it: Lane<T::Lane>| {
             let [from, to] = [it.from[0], it.to[0]];
-            let goes_on = (to - from) * it.to[1] > 0.0;
+            let goes_on = (to - from) * it.to[1] > T::Lane::from_f64(0.0);
             self.thresholds_in(it.number)
                 .any(|threshold| self.between(from - threshold, to - threshold).is_some())
                 && !goes_on
@@ -160,21 +160,21 @@ impl<T: Real> Course<'_, T> {
     /// Whether the argument misses more than a part of the way that it should have gone in so much time by its rates at both points, in
     /// any lane.
     pub(crate) fn is_astray(&self, lasting: T, least: f64) -> bool {
+        let [half, least] = [0.5, least].map(T::Lane::from_f64);
         self.lanes().any(|it| {
             let ([from, rate], [to, later]) = (it.from, it.to);
-            let way = 0.5 * (rate + later) * seen(lasting);
+            let way = half * (rate + later) * lane(lasting);
             ((to - from) - way).abs() > least * way.abs()
         })
     }
 
     /// At how many whole turns behind a threshold an argument meets it that goes from one place to another, both beyond it.
-    fn between(&self, first: f64, last: f64) -> Option<f64> {
-        let turns = match self.repeats {
-            true if first < last => whole_below(-first).saturating_neg(),
-            true => whole_below(first),
-            false => 0,
+    fn between(&self, first: T::Lane, last: T::Lane) -> Option<T::Lane> {
+        let whole = match self.repeats {
+            true if first < last => whole(whole_below((-first).into()).saturating_neg()),
+            true => whole(whole_below(first.into())),
+            false => T::Lane::from_f64(0.0),
         };
-        let whole = turns as f64;
         let is_between = (first <= whole && whole < last) || (first >= whole && whole > last);
         is_between.then_some(whole)
     }
@@ -189,49 +189,63 @@ impl<T: Real> Course<'_, T> {
                 (to - from - rate * lasting) / (lasting * lasting),
             ]
         });
-        soonest.filter(|time| *time <= seen(lasting))
+        let within = soonest.filter(|time| *time <= lane(lasting));
+        within.map(Into::into)
     }
 
     /// About how long behind the second point the next threshold is, if the argument goes on to bend as it does between both.
     pub(crate) fn behind(&self, lasting: T) -> Option<f64> {
-        self.soonest(lasting, |[[_, before], [to, rate]], lasting| {
-            [to, rate, 0.5 * (rate - before) / lasting]
-        })
+        let half = T::Lane::from_f64(0.5);
+        let soonest = self.soonest(lasting, |[[_, before], [to, rate]], lasting| {
+            [to, rate, half * (rate - before) / lasting]
+        });
+        soonest.map(Into::into)
     }
 
     /// How long it is to the first threshold at which choices change from a value with a rate and half its change, by the values and
     /// rates at both points, of which those that are not known are as if the way was straight.
-    fn soonest(&self, lasting: T, way: impl Fn([[f64; 2]; 2], f64) -> [f64; 3]) -> Option<f64> {
+    fn soonest(
+        &self,
+        lasting: T,
+        way: impl Fn([[T::Lane; 2]; 2], T::Lane) -> [T::Lane; 3],
+    ) -> Option<T::Lane> {
         if !self.is_choice {
             return None;
         }
-        let lanes = (0..).map_while(|number| {
-            let [from, to] = [self.from[0], self.to[0]].map(|it| lane(it, number));
-            let (from, to, lasting) = (from?, to?, lane(lasting, number)?);
-            let mean = (to - from) / lasting;
-            let rates =
-                [self.from[1], self.to[1]].map(|it| lane(it, number).filter(|it| *it != 0.0));
-            let [before, behind] = rates.map(|rate| rate.unwrap_or(mean));
-            let [value, rate, bend] = way([[from, before], [to, behind]], lasting);
-            let ways = self.thresholds.iter().flat_map(|threshold| {
-                let beyond = value - lane(*threshold, number).unwrap_or(f64::NAN);
-                match self.repeats {
-                    true => [whole_below(beyond), whole_below(-beyond).saturating_neg()]
-                        .map(|turns| turns as f64 - beyond),
+        let [zero, two, four] = [0.0, 2.0, 4.0].map(T::Lane::from_f64);
+        let mut soonest = T::Lane::from_f64(f64::INFINITY);
+        for it in self.lanes() {
+            let lasting = lasting.in_lane(it.number)?;
+            let mean = (it.to[0] - it.from[0]) / lasting;
+            let known =
+                |[value, rate]: [T::Lane; 2]| [value, if rate == zero { mean } else { rate }];
+            let [value, rate, bend] = way([it.from, it.to].map(known), lasting);
+            for threshold in self.thresholds_in(it.number) {
+                let beyond = value - threshold;
+                let ways = match self.repeats {
+                    true => [
+                        whole_below(beyond.into()),
+                        whole_below((-beyond).into()).saturating_neg(),
+                    ]
+                    .map(|turns| whole::<T::Lane>(turns) - beyond),
                     false => [-beyond; 2],
+                };
+                let time = |way: T::Lane| {
+                    let root = (rate * rate + four * bend * way).sqrt();
+                    two * way / (rate + if way < zero { -root } else { root })
+                };
+                for time in ways
+                    .into_iter()
+                    .take(1 + usize::from(self.repeats))
+                    .map(time)
+                {
+                    if zero < time && time < soonest {
+                        soonest = time;
+                    }
                 }
-            });
-            let times = ways.map(|way| {
-                let root = Real::sqrt(rate * rate + 4.0 * bend * way);
-                2.0 * way / (rate + if way < 0.0 { -root } else { root })
-            });
-            Some(
-                times
-                    .filter(|time| *time > 0.0)
-                    .fold(f64::INFINITY, f64::min),
-            )
-        });
-        Some(lanes.fold(f64::INFINITY, f64::min)).filter(|time| time.is_finite())
+            }
+        }
+        Some(soonest).filter(|time| *time - *time == zero)
     }
 
     /// What the argument is at a threshold, with the whole turns that it has made at the second point.
@@ -239,49 +253,47 @@ impl<T: Real> Course<'_, T> {
         if !self.repeats {
             return threshold;
         }
-        let turns = whole_below(seen(self.to[0] - threshold) + 0.5);
-        threshold + T::from_f64(turns as f64)
+        threshold + whole(nearest(lane(self.to[0] - threshold)))
     }
 
     /// How it goes in each lane.
     #[inline]
-    fn lanes(&self) -> impl Iterator<Item = Lane> {
+    fn lanes(&self) -> impl Iterator<Item = Lane<T::Lane>> {
         let ends = [self.from, self.to];
         (0..).map_while(move |number| {
-            lane(ends[0][0], number)?;
-            let [from, to] = ends.map(|end| end.map(|it| lane(it, number).unwrap_or(f64::NAN)));
+            ends[0][0].in_lane(number)?;
+            let [from, to] = ends.map(|end| end.map(|it| or_nan(it.in_lane(number))));
             Some(Lane { number, from, to })
         })
     }
 
     #[inline]
-    fn thresholds_in(&self, number: usize) -> impl Iterator<Item = f64> {
+    fn thresholds_in(&self, number: usize) -> impl Iterator<Item = T::Lane> {
         let thresholds = self.thresholds.iter();
-        thresholds.map(move |it| lane(*it, number).unwrap_or(f64::NAN))
+        thresholds.map(move |it| or_nan(it.in_lane(number)))
     }
 
     /// How often a threshold lies below an argument.
     #[inline]
-    fn below(&self, argument: f64, threshold: f64) -> i64 {
+    fn below(&self, argument: T::Lane, threshold: T::Lane) -> i64 {
         match self.repeats {
-            true => whole_below(argument - threshold),
+            true => whole_below((argument - threshold).into()),
             false => i64::from(threshold < argument),
         }
     }
 }
 
 /// One lane of an argument: its value and rate at both points.
-struct Lane {
+struct Lane<L> {
     number: usize,
-    from: [f64; 2],
-    to: [f64; 2],
+    from: [L; 2],
+    to: [L; 2],
 }
 
-/// A lane by its number.
+/// The number in a lane that there is.
 #[inline]
-pub(crate) fn lane<T: Real>(number: T, place: usize) -> Option<f64> {
-    let asked = Cell::new(0);
-    number.find(|_| asked.replace(asked.get() + 1) == place)
+pub(crate) fn or_nan<L: Real>(number: Option<L>) -> L {
+    number.unwrap_or_else(|| L::from_f64(f64::NAN))
 }
 
 /// The smaller of two times.
@@ -291,13 +303,23 @@ pub(crate) fn sooner<T: Real>(a: T, b: T) -> T {
 
 /// What an argument does not go beyond between two points, given with their rates: where it turns, the place at which the
 /// tangents meet, else an end. It holds for what is convex, as a distance from a place is along a line.
-fn farthest(lasting: f64, [a, rate_a]: [f64; 2], [b, rate_b]: [f64; 2]) -> f64 {
-    if rate_a * rate_b < 0.0 {
+fn farthest<L: Real + PartialOrd>(lasting: L, [a, rate_a]: [L; 2], [b, rate_b]: [L; 2]) -> L {
+    let zero = L::from_f64(0.0);
+    if rate_a * rate_b < zero {
         let time = (b - a - rate_b * lasting) / (rate_a - rate_b);
-        a + rate_a * time.max(0.0).min(lasting)
+        a + rate_a * if time > zero { time.min(lasting) } else { zero }
     } else {
         b
     }
+}
+
+/// The whole number next to a number.
+fn nearest(number: impl Into<f64>) -> i64 {
+    whole_below(number.into() + 0.5)
+}
+
+fn whole<T: Real>(number: i64) -> T {
+    T::from_f64(number as f64)
 }
 
 /// The largest whole number that is not above a number.

@@ -223,6 +223,7 @@ impl<T: Real, L: Columns<T>> One for Dual<T, L> {
 }
 
 impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
+    type Lane = T::Lane;
     type Columns = Self;
     type Stages = crate::Four<Self>;
 
@@ -234,8 +235,12 @@ impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
         Self::unchanging(T::from_f64(value))
     }
 
-    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-        self.value.find(test)
+    fn from_lane(number: T::Lane) -> Self {
+        Self::unchanging(T::from_lane(number))
+    }
+
+    fn in_lane(self, lane: usize) -> Option<T::Lane> {
+        self.value.in_lane(lane)
     }
 
     fn magnitude(self) -> f64 {

@@ -102,6 +102,7 @@ macro_rules! one_by_one {
 }
 
 impl<T: Real> Real for Four<T> {
+    type Lane = T::Lane;
     type Columns = Self;
     type Stages = Four<Self>;
 
@@ -113,8 +114,14 @@ impl<T: Real> Real for Four<T> {
         Self([T::from_f64(value); 4])
     }
 
-    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-        self.0.into_iter().find_map(|number| number.find(&test))
+    #[inline]
+    fn from_lane(number: T::Lane) -> Self {
+        Self([T::from_lane(number); 4])
+    }
+
+    fn in_lane(self, lane: usize) -> Option<T::Lane> {
+        let of = |number: T| (0..).map_while(move |lane| number.in_lane(lane));
+        self.0.into_iter().flat_map(of).nth(lane)
     }
 
     #[inline]

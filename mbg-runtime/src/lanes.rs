@@ -38,15 +38,17 @@ use crate::{Columns, FUSED, Real};
 
 /// A scalar of several numbers.
 pub trait Lanes: Real {
-    /// One number.
-    type Lane: Real;
     /// How many there are.
     const COUNT: usize;
 
     /// Lanes with what `number` gives for each.
     fn from_lanes(number: impl FnMut(usize) -> Self::Lane) -> Self;
     /// The number in a lane; NaN where there is no such lane.
-    fn lane(self, lane: usize) -> Self::Lane;
+    #[inline]
+    fn lane(self, lane: usize) -> Self::Lane {
+        let number = self.in_lane(lane);
+        number.unwrap_or_else(|| Self::Lane::from_f64(f64::NAN))
+    }
 }
 
 /// Columns side by side. Where there are fewer than lanes, the last is repeated; without any all is zero.
@@ -90,17 +92,11 @@ macro_rules! lane_by_lane {
 macro_rules! lanes {
     ($lanes:ident, $scalar:ident, $count:literal, $constants:ident, $unsigned:ident, $bits:literal, $fraction:literal) => {
         impl Lanes for $lanes {
-            type Lane = $scalar;
             const COUNT: usize = $count;
 
             #[inline]
             fn from_lanes(number: impl FnMut(usize) -> $scalar) -> Self {
                 Self::new(core::array::from_fn(number))
-            }
-
-            #[inline]
-            fn lane(self, lane: usize) -> $scalar {
-                self.to_array().get(lane).copied().unwrap_or($scalar::NAN)
             }
         }
 
@@ -124,6 +120,7 @@ macro_rules! lanes {
         }
 
         impl Real for $lanes {
+            type Lane = $scalar;
             type Columns = Self;
             type Stages = crate::Four<Self>;
 
@@ -136,8 +133,13 @@ macro_rules! lanes {
             }
 
             #[inline]
-            fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-                self.to_array().into_iter().find_map(|lane| lane.find(&test))
+            fn from_lane(number: $scalar) -> Self {
+                Self::splat(number)
+            }
+
+            #[inline]
+            fn in_lane(self, lane: usize) -> Option<$scalar> {
+                self.to_array().get(lane).copied()
             }
 
             #[inline]

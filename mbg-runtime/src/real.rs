@@ -41,6 +41,8 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
+    /// What each of its lanes is: itself where it is one number, and of [`Dual`](crate::Dual) numbers what their values are.
+    type Lane: Real<Lane = Self::Lane> + PartialOrd + Into<f64>;
     /// What several columns or rows of a Jacobian are worked out in at once.
     type Columns: crate::Columns<Self>;
     /// Four of them side by side, as the stages of a step are: lanes where the feature `lanes` has them, else
@@ -57,10 +59,18 @@ pub trait Real:
 
     /// The nearest number to a constant of the model.
     fn from_f64(value: f64) -> Self;
+    /// The same number in every lane.
+    fn from_lane(number: Self::Lane) -> Self;
+    /// The number in a lane; none behind the last.
+    fn in_lane(self, lane: usize) -> Option<Self::Lane>;
     /// The first lane, seen as `f64`, for which `test` holds.
     ///
     /// Lanes are asked in order, each once, until one passes. `number.find(|_| true)` is the first lane.
-    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64>;
+    #[inline]
+    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
+        let lanes = (0..).map_while(|lane| self.in_lane(lane));
+        lanes.map(Into::into).find(|lane| test(*lane))
+    }
     /// Absolute value, seen as `f64`; of several lanes the largest, and NaN when one is.
     fn magnitude(self) -> f64 {
         let largest = Cell::new(0.0_f64);

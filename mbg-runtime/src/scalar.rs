@@ -38,9 +38,13 @@ macro_rules! ordered {
         }
 
         #[inline]
-        fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-            let lane = f64::from(self);
-            test(lane).then_some(lane)
+        fn from_lane(number: Self) -> Self {
+            number
+        }
+
+        #[inline]
+        fn in_lane(self, lane: usize) -> Option<Self> {
+            (lane == 0).then_some(self)
         }
 
         #[inline]
@@ -132,6 +136,7 @@ macro_rules! ordered {
 }
 
 impl Real for f64 {
+    type Lane = Self;
     #[cfg(all(feature = "lanes", target_feature = "avx512f"))]
     type Columns = crate::lanes::f64x8;
     #[cfg(all(feature = "lanes", not(target_feature = "avx512f")))]
@@ -149,6 +154,7 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
+    type Lane = Self;
     #[cfg(feature = "lanes")]
     type Columns = crate::lanes::f32x8;
     #[cfg(not(feature = "lanes"))]

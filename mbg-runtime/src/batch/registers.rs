@@ -161,6 +161,7 @@ macro_rules! registers {
         }
 
         impl<S: Proven> Real for $name<S> {
+            type Lane = $scalar;
             type Columns = Self;
             type Stages = Four<Self>;
 
@@ -173,8 +174,13 @@ macro_rules! registers {
             }
 
             #[inline]
-            fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-                self.0.as_slice().iter().find_map(|lane| lane.find(&test))
+            fn from_lane(number: $scalar) -> Self {
+                Self(SimdBase::splat(S::kept(), number))
+            }
+
+            #[inline]
+            fn in_lane(self, lane: usize) -> Option<$scalar> {
+                self.0.as_slice().get(lane).copied()
             }
 
             #[inline(always)]

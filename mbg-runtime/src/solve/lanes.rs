@@ -60,6 +60,7 @@ macro_rules! functions {
 }
 
 impl Real for Pair {
+    type Lane = f64;
     type Columns = Self;
     type Stages = crate::Four<Self>;
 
@@ -70,8 +71,12 @@ impl Real for Pair {
         Self([value; 2])
     }
 
-    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-        self.0.into_iter().find(|lane| test(*lane))
+    fn from_lane(number: f64) -> Self {
+        Self([number; 2])
+    }
+
+    fn in_lane(self, lane: usize) -> Option<f64> {
+        self.0.get(lane).copied()
     }
 
     fn sin_cos(self) -> (Self, Self) {

@@ -1,6 +1,5 @@
 //! A choice of method by what is known of a problem.
 
-use core::cell::Cell;
 use core::fmt;
 use core::ops::ControlFlow;
 
@@ -344,8 +343,7 @@ fn fastest<T: Real, const N: usize>(
     sparsity: Option<&Sparsity>,
 ) -> (f64, bool) {
     let lanes = (0..).map_while(|number| {
-        let some = jacobian.iter().next()?;
-        lane(*some, number)?;
+        jacobian.iter().next()?.in_lane(number)?;
         Some(fastest_of(jacobian, sparsity, number))
     });
     lanes.fold(
@@ -356,16 +354,6 @@ fn fastest<T: Real, const N: usize>(
     )
 }
 
-/// The lane of this number.
-fn lane<T: Real>(number: T, place: u32) -> Option<f64> {
-    let left = Cell::new(place);
-    number.find(|_| {
-        let before = left.get();
-        left.set(before.wrapping_sub(1));
-        before == 0
-    })
-}
-
 /// What [`fastest`] tells of one lane.
 ///
 /// The last three vectors of the power method are nearly dependent: `v″ = a v′ + b v` has the eigenvalues as roots. Where many
@@ -373,9 +361,9 @@ fn lane<T: Real>(number: T, place: u32) -> Option<f64> {
 fn fastest_of<T: Real, const N: usize>(
     jacobian: &SMatrix<T, N, N>,
     sparsity: Option<&Sparsity>,
-    number: u32,
+    number: usize,
 ) -> (f64, bool) {
-    let seen = |it: T| lane(it, number).unwrap_or(f64::NAN);
+    let seen = |it: T| it.in_lane(number).map_or(f64::NAN, Into::into);
     let scale = jacobian
         .iter()
         .fold(0.0, |largest: f64, it| largest.max(seen(*it).abs()));

@@ -1,7 +1,7 @@
 //! The times at which steps of constant length end.
 
 use super::method::Span;
-use super::{less, seen};
+use super::{lane, less};
 use crate::Real;
 
 /// The steps over a piece, of which one may be begun anew from within.
@@ -86,11 +86,13 @@ struct Division<T> {
 fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
     let way = end - start;
     let number = |count: u64| T::from_f64(count as f64);
-    let ratio = seen(way / h);
-    let whole = ratio as u64;
-    let rest = ratio - whole as f64;
-    let times = start.magnitude().max(end.magnitude()) / seen(h);
-    let rounding = (8.0 * T::EPSILON * (times + ratio)).min(0.25);
+    let ratio = lane(way / h);
+    let whole = Into::<f64>::into(ratio) as u64;
+    let rest = ratio - T::Lane::from_f64(whole as f64);
+    let [start, end, step] = [start, end, h].map(|it| lane(it).abs());
+    let times = if start > end { start } else { end } / step;
+    let [one, most, unit] = [1.0, 0.25, 8.0 * T::EPSILON].map(T::Lane::from_f64);
+    let rounding = (unit * (times + ratio)).min(most);
     let even = |count: u64| {
         let steps = number(count);
         let step = if way == steps * h { h } else { way / steps };
@@ -102,7 +104,7 @@ fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
     };
     if whole > 0 && rest <= rounding {
         even(whole)
-    } else if rest >= 1.0 - rounding {
+    } else if rest >= one - rounding {
         even(whole.saturating_add(1))
     } else {
         Division {

@@ -9,7 +9,7 @@ use super::over::{Place, SOON};
 use super::problem::Problem;
 use super::slide::{Ends, Walked};
 use super::tolerance::{NOISE, Sizes};
-use super::{Stopped, less, seen};
+use super::{Stopped, lane, less, seen};
 use crate::{Input, Real, System};
 
 /// The part of the way to a jump that steps leave, at least and at most: by how much its place may be off, which is less the nearer it
@@ -342,19 +342,20 @@ where
         last: Place<T, N>,
     ) -> [Place<T, N>; 2] {
         let [mut before, mut behind] = [first, last];
-        let width = self.apart(behind.0, seen(behind.0 - before.0));
+        let width = T::Lane::from_f64(self.apart(behind.0, seen(behind.0 - before.0)));
+        let [zero, half] = [0.0, 0.5].map(T::Lane::from_f64);
         for round in 0..NARROWINGS {
-            let open = seen(behind.0 - before.0);
+            let open = lane(behind.0 - before.0);
             if open <= width {
                 break;
             }
             // By the rate, then from behind, and by halves where neither comes nearer.
             let part = match round % 3 {
-                0 => self.reached(&before, &behind).map_or(0.0, seen) + 0.5 * width,
+                0 => self.reached(&before, &behind).map_or(zero, lane) + half * width,
                 1 => open - width,
-                _ => 0.5 * open,
+                _ => half * open,
             };
-            let time = before.0 + T::from_f64(part);
+            let time = before.0 + T::from_lane(part);
             if !less(before.0, time) || !less(time, behind.0) {
                 continue;
             }
@@ -365,7 +366,7 @@ where
             }
         }
         // One of them may be at the threshold itself, where a law is that of one side alone.
-        let aside = T::from_f64(width);
+        let aside = T::from_lane(width);
         let earlier = before.0 - aside;
         if less(first.0, earlier) {
             before = (earlier, step.at(earlier));

@@ -15,7 +15,7 @@ use super::problem::Problem;
 use super::slide::{Ends, Walk, Walked, WhereALaneStays};
 use super::thresholds::Point;
 use super::{Cause, Stopped, check_result, less, seen};
-use crate::course::{FARTHER, lane, sooner};
+use crate::course::{FARTHER, sooner};
 use crate::{Input, Real, System};
 
 /// A method along its grid.
@@ -63,7 +63,7 @@ impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, 
         if !S::HAS_COURSES {
             return self.over(problem, (here, end), observer);
         }
-        if lane(here.0, 1).is_some() {
+        if here.0.in_lane(1).is_some() {
             return self.walk_in_lanes(problem, (here, end), observer);
         }
         self.looks = true;

@@ -135,16 +135,17 @@ where
         length: f64,
         (rest, slope): (T, &SVector<T, N>),
     ) -> f64 {
-        let mut beyond = PLACES * T::EPSILON * from.0.magnitude().max(length);
+        let beyond = PLACES * T::EPSILON * from.0.magnitude().max(length);
+        let [two, mut beyond] = [2.0, beyond].map(T::Lane::from_f64);
         for _ in 0..DOUBLINGS {
-            let way = rest + T::from_f64(beyond);
+            let way = rest + T::from_lane(beyond);
             let to = (from.0 + way, along(&from.1, way, slope));
             if self.reached_with(from, &to, slope).is_some() {
                 break;
             }
-            beyond *= 2.0;
+            beyond = two * beyond;
         }
-        beyond
+        beyond.into()
     }
 
     /// A step straight over a threshold that is so far ahead, if there is time left, and over which one so long was refused; and

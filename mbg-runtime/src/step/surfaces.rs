@@ -1,10 +1,9 @@
 //! Thresholds of the laws at which a motion may stay.
 
+use super::lane;
 use super::over::Place;
 use super::problem::Problem;
-use super::seen;
 use super::thresholds::Point;
-use crate::course::lane;
 use crate::{Course, Input, Real, System};
 
 /// So many at once.
@@ -88,7 +87,8 @@ where
     /// The same but for those from which the motion goes on behind them.
     pub(super) fn met_between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Option<Surfaces<T>> {
         self.surfaces(from, to, |course, level| {
-            let goes_on = seen(course.to[0] - course.from[0]) * seen(course.to[1]) > 0.0;
+            let goes_on =
+                lane(course.to[0] - course.from[0]) * lane(course.to[1]) > T::Lane::from_f64(0.0);
             is_between(course, level) && !goes_on
         })
     }
@@ -109,19 +109,21 @@ where
 
     /// The thresholds next to a point.
     pub(super) fn next_to(&self, here: &Point<T, N>) -> Option<Surfaces<T>> {
-        let time = PLACES * T::EPSILON * here.time.magnitude().max(self.whole);
+        let [unit, whole] = [PLACES * T::EPSILON, self.whole].map(T::Lane::from_f64);
+        let time = unit * lane(here.time).abs().max(whole);
         self.surfaces(here, here, |course, level| {
-            let [value, rate] = course.from.map(seen);
-            (value - seen(level)).abs() <= time * rate.abs()
+            let [value, rate] = course.from.map(lane);
+            (value - lane(level)).abs() <= time * rate.abs()
         })
     }
 
     /// The thresholds that a motion comes to within a time, as fast as it is, or at which it is.
     pub(super) fn ahead(&self, here: &Point<T, N>, lasting: f64) -> Option<Surfaces<T>> {
+        let [zero, lasting] = [0.0, lasting].map(T::Lane::from_f64);
         self.surfaces(here, here, |course, level| {
-            let [value, rate] = course.from.map(seen);
-            let way = seen(level) - value;
-            way == 0.0 || (way * rate > 0.0 && way.abs() <= lasting * rate.abs())
+            let [value, rate] = course.from.map(lane);
+            let way = lane(level) - value;
+            way == zero || (way * rate > zero && way.abs() <= lasting * rate.abs())
         })
     }
 
@@ -132,7 +134,7 @@ where
         to: &Point<T, N>,
         holds: impl Fn(&Course<'_, T>, T) -> bool,
     ) -> Option<Surfaces<T>> {
-        if lane(from.time, 1).is_some() {
+        if from.time.in_lane(1).is_some() {
             return None;
         }
         let mut surfaces = None;
@@ -156,12 +158,12 @@ where
 
 /// Whether a time is later than another one by more than numbers may blur.
 pub(super) fn is_later<T: Real>(time: T, later: T) -> bool {
-    seen(later - time) > PLACES * T::EPSILON * later.magnitude()
+    lane(later - time) > T::Lane::from_f64(PLACES * T::EPSILON) * lane(later).abs()
 }
 
 pub(super) fn is_between<T: Real>(course: &Course<'_, T>, level: T) -> bool {
-    let [from, to] = [course.from, course.to].map(|it| seen(it[0] - level));
-    from * to <= 0.0 && from != to
+    let [from, to] = [course.from, course.to].map(|it| lane(it[0] - level));
+    from * to <= T::Lane::from_f64(0.0) && from != to
 }
 
 #[cfg(test)]

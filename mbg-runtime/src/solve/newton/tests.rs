@@ -421,6 +421,7 @@ macro_rules! functions {
 }
 
 impl Real for Undecided {
+    type Lane = f64;
     type Columns = Self;
     type Stages = crate::Four<Self>;
 
@@ -431,8 +432,12 @@ impl Real for Undecided {
         Self(value)
     }
 
-    fn find(self, test: impl Fn(f64) -> bool) -> Option<f64> {
-        Some(self.0).filter(|number| test(*number))
+    fn from_lane(number: f64) -> Self {
+        Self(number)
+    }
+
+    fn in_lane(self, lane: usize) -> Option<f64> {
+        self.0.in_lane(lane)
     }
 
     fn sin_cos(self) -> (Self, Self) {

@@ -2,10 +2,9 @@
 
 use nalgebra::SVector;
 
-use super::super::seen;
+use super::super::lane;
 use super::sides::Factors;
 use super::{Each, Moment, Sliding};
-use crate::course::whole_below;
 use crate::{Real, System};
 
 /// How far beside a threshold laws are asked, in units of the rounding of its argument.
@@ -16,7 +15,7 @@ const PACE: f64 = 0.618_033_988_749_894_9;
 const LONGEST: f64 = 1024.0;
 
 /// States on a line that crosses surfaces.
-pub(super) struct Line<T, const N: usize, const K: usize> {
+pub(super) struct Line<T: Real, const N: usize, const K: usize> {
     /// That before all of them.
     pub(super) start: SVector<T, N>,
     /// Those behind each, in the order in which it meets these.
@@ -24,9 +23,9 @@ pub(super) struct Line<T, const N: usize, const K: usize> {
     /// The place of the surface that is met so.
     pub(super) order: Each<usize, K>,
     /// In which direction each is crossed.
-    pub(super) forward: Each<f64, K>,
+    pub(super) forward: Each<T::Lane, K>,
     /// How far it goes, in units of what is surely beside a surface.
-    pub(super) reach: f64,
+    pub(super) reach: T::Lane,
 }
 
 /// Where a state is beyond surfaces.
@@ -46,35 +45,40 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             let terms = gradient
                 .iter()
                 .zip(x)
-                .map(|(by, state)| (*by * *state).magnitude());
-            let size = terms.fold(surface.level.magnitude(), |size, term| size + term);
-            *aside += T::from_f64(ASIDE * T::EPSILON * size);
+                .map(|(by, state)| lane(*by * *state).abs());
+            let size = terms.fold(lane(surface.level).abs(), |size, term| size + term);
+            *aside += T::from_lane(T::Lane::from_f64(ASIDE * T::EPSILON) * size);
         }
         aside
     }
 
     /// The same of a state that is moved by such distances first, as far as numbers tell of these.
     pub(super) fn aside_behind(&self, x: &SVector<T, N>, distances: &Each<T, K>) -> Each<T, K> {
-        let mut sizes = Each::<f64, K>::all(0.0);
+        let zero = T::Lane::from_f64(0.0);
+        let mut sizes = Each::<T::Lane, K>::all(zero);
         for (size, gradient) in sizes
             .iter_mut()
             .zip(self.gradients.iter())
             .take(self.surfaces.count())
         {
-            *size = gradient.get().map(|by| by.magnitude()).norm();
+            *size = length(&gradient.get());
         }
-        let ways = (0..self.free).map(|place| seen(distances[place]).abs() / sizes[place]);
-        let way = ASIDE * T::EPSILON * ways.fold(0.0, f64::max);
-        let aside = self.aside(x);
+        let ways = (0..self.free).map(|place| lane(distances[place]).abs() / sizes[place]);
+        let way = T::Lane::from_f64(ASIDE * T::EPSILON) * ways.fold(zero, larger);
+        let mut aside = self.aside(x);
         // What is at it by others is to be crossed with it.
         let (twins, likes) = &self.twins;
         let mut farther = Each::<f64, K>::all(0.0);
         for like in likes.iter().take(twins.count()) {
             farther[like.leader] = farther[like.leader].max(like.apart);
         }
-        Each::of(|place| {
-            aside[place] * T::from_f64(1.0 + farther[place]) + T::from_f64(way * sizes[place])
-        })
+        for (place, aside) in aside.iter_mut().enumerate().take(self.surfaces.count()) {
+            if farther[place] > 0.0 {
+                *aside = *aside * T::from_f64(1.0 + farther[place]);
+            }
+            *aside += T::from_lane(way * sizes[place]);
+        }
+        aside
     }
 
     /// How far a state is from all surfaces, and how it is moved across those that are free.
@@ -133,45 +137,58 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
     {
         let (count, free) = (self.surfaces.count(), self.free);
         let Beyond { distances, rates } = &self.beyond(at, x, memory);
-        let aside = self.aside_behind(x, distances);
-        let aside = aside.map(|aside| T::from_f64(factor) * aside);
+        let (aside, factor) = (self.aside_behind(x, distances), T::from_f64(factor));
+        let aside = aside.map(|aside| factor * aside);
         // Where none depends on others it goes across one after another: beside a surface a law may be a root, which would differ
         // by how far that is when another is crossed.
-        let farthest = if count > free { f64::INFINITY } else { 0.5 };
-        let beyond = |along: f64, place: usize| (along - place as f64).max(-farthest).min(farthest);
-        let state = |paces: &Each<f64, K>, along: f64| {
-            let ways = Each::of(|place| {
-                let beyond = T::from_f64(paces[place] * beyond(along, place)) * aside[place];
-                beyond - distances[place]
-            });
+        let half = T::Lane::from_f64(0.5);
+        let beyond = |along: T::Lane, place: usize| {
+            let beyond = along - nth(place);
+            match count > free {
+                true => beyond,
+                false if beyond < -half => -half,
+                false if beyond > half => half,
+                false => beyond,
+            }
+        };
+        let state = |paces: &Each<T::Lane, K>, along: T::Lane| {
+            let mut ways = distances.map(|it| -it);
+            for (place, way) in ways.iter_mut().enumerate().take(free) {
+                *way += T::from_lane(paces[place] * beyond(along, place)) * aside[place];
+            }
             self.moved(x, rates.solve(ways))
         };
         let mut way = Way::across();
         if count > free {
-            let ends = [-0.5, free as f64 - 0.5];
+            let ends = [-half, nth::<T::Lane>(free) - half];
             way = self.met(way, ends, (at, &aside), state, memory);
-            let longer = way.longer.min(LONGEST);
+            let longest = T::Lane::from_f64(LONGEST);
+            let longer = if way.longer < longest {
+                way.longer
+            } else {
+                longest
+            };
             way.paces = way.paces.map(|pace| longer * pace);
             // Far from where others are met rounding leads astray. What is not met yet is by the longer way.
             let crossings = way.crossings.iter().take(count);
-            let met = crossings.filter(|along| along.is_finite());
-            let first = met.clone().copied().fold(ends[0], f64::min);
-            let last = met.copied().fold(ends[1], f64::max);
+            let met = crossings.filter(|along| is_finite(**along));
+            let first = met.clone().copied().fold(ends[0], smaller);
+            let last = met.copied().fold(ends[1], larger);
             way = self.met(way, [first, last], (at, &aside), state, memory);
         }
         let crossings = way.crossings;
-        let order = Each::by(count, |place| crossings[place]);
-        let mut reach = 0.0_f64;
+        let order = Each::by(count, |place| crossings[place].into());
+        let mut reach = T::Lane::from_f64(0.0);
         let mut before = |place: usize| {
             let crossing = |place: usize| crossings[order[place]];
             let along = match (place > 0, place < count) {
-                (true, true) => 0.5 * (crossing(place - 1) + crossing(place)),
-                (true, false) => crossing(place - 1) + 0.5,
-                (false, true) => crossing(place) - 0.5,
-                (false, false) => 0.0,
+                (true, true) => half * (crossing(place - 1) + crossing(place)),
+                (true, false) => crossing(place - 1) + half,
+                (false, true) => crossing(place) - half,
+                (false, false) => T::Lane::from_f64(0.0),
             };
             for (place, pace) in way.paces.iter().enumerate().take(free) {
-                reach = reach.max(pace * beyond(along, place).abs());
+                reach = larger(reach, *pace * beyond(along, place).abs());
             }
             state(&way.paces, along)
         };
@@ -193,12 +210,12 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
     /// each two as far away as need be.
     fn met<const M: usize, const P: usize>(
         &self,
-        mut way: Way<K>,
-        ends: [f64; 2],
+        mut way: Way<T::Lane, K>,
+        ends: [T::Lane; 2],
         (at, aside): (&Moment<T, M>, &Each<T, K>),
-        state: impl Fn(&Each<f64, K>, f64) -> SVector<T, N>,
+        state: impl Fn(&Each<T::Lane, K>, T::Lane) -> SVector<T, N>,
         memory: &S::Memory,
-    ) -> Way<K>
+    ) -> Way<T::Lane, K>
     where
         S: System<T, N, M, P>,
     {
@@ -206,48 +223,91 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         let rest = SVector::from_element(T::from_f64(0.0));
         let [first, last] = ends.map(|along| state(&way.paces, along));
         let told = self.told(at, [(&first, &rest), (&last, &rest)], memory);
-        let mut rates: Each<f64, K> = Each::of(|place| way.paces[place] * seen(aside[place]));
+        let one = T::Lane::from_f64(1.0);
+        let mut rates: Each<T::Lane, K> = Each::of(|place| way.paces[place] * lane(aside[place]));
         for place in free..count {
-            let [from, to] = told.map(|it| seen(it[0][place]));
+            let [from, to] = told.map(|it| lane(it[0][place]));
             rates[place] = (to - from) / (ends[1] - ends[0]);
             way.crossings[place] = ends[0] - from / rates[place];
-            way.forward[place] = f64::signum(to - from);
+            way.forward[place] = if to < from { -one } else { one };
         }
         let longer = (0..count).map(|place| {
             let here = way.crossings[place];
             let others = (0..count).filter(|other| *other != place);
             let apart = others.map(|other| (way.crossings[other] - here).abs());
-            let gap = apart.fold(1.0, f64::min);
-            seen(aside[place]) / (0.5 * gap * rates[place].abs())
+            let gap = apart.fold(one, smaller);
+            lane(aside[place]) / (T::Lane::from_f64(0.5) * gap * rates[place].abs())
         });
-        way.longer = longer.fold(1.0, f64::max);
+        way.longer = longer.fold(one, larger);
         way
     }
 }
 
 /// How a line goes across surfaces.
-struct Way<const K: usize> {
+struct Way<L, const K: usize> {
     /// How fast across each free surface.
-    paces: Each<f64, K>,
+    paces: Each<L, K>,
     /// Where it meets each: a free one at the number of its place.
-    crossings: Each<f64, K>,
-    forward: Each<f64, K>,
-    longer: f64,
+    crossings: Each<L, K>,
+    forward: Each<L, K>,
+    longer: L,
 }
 
-impl<const K: usize> Way<K> {
+impl<L: Real + PartialOrd, const K: usize> Way<L, K> {
     /// By the golden ratio.
     fn across() -> Self {
-        let place = |place: usize| place as f64;
-        let pace = |place: usize| {
-            let along = PACE * place as f64;
-            2.0 + 2.0 * (along - whole_below(along) as f64)
+        let [zero, one, two] = [0.0, 1.0, 2.0].map(L::from_f64);
+        let mut along = zero;
+        let pace = |_| {
+            let pace = two + two * along;
+            along += L::from_f64(PACE)
+                - if along + L::from_f64(PACE) < one {
+                    zero
+                } else {
+                    one
+                };
+            pace
         };
         Self {
             paces: Each::of(pace),
-            crossings: Each::of(place),
-            forward: Each::all(1.0),
-            longer: 1.0,
+            crossings: Each::of(nth),
+            forward: Each::all(one),
+            longer: one,
         }
     }
+}
+
+/// A place as a number. There are few.
+fn nth<L: Real>(place: usize) -> L {
+    let one = L::from_f64(1.0);
+    (0..place).fold(L::from_f64(0.0), |number, _| number + one)
+}
+
+/// The size of a vector; of one whose squares single precision has not, that of its largest entry.
+pub(super) fn length<T: Real, const N: usize>(vector: &SVector<T, N>) -> T::Lane {
+    let vector = vector.map(lane);
+    let size = dot(&vector, &vector).sqrt();
+    match size > T::Lane::from_f64(0.0) && is_finite(size) {
+        true => size,
+        false => vector.iter().fold(size, |size, it| larger(size, it.abs())),
+    }
+}
+
+pub(super) fn dot<L: Real, const N: usize>(a: &SVector<L, N>, b: &SVector<L, N>) -> L {
+    let pairs = a.iter().zip(b);
+    pairs.fold(L::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
+// Written so that what is no number is left out.
+
+pub(super) fn larger<L: PartialOrd>(a: L, b: L) -> L {
+    if b > a { b } else { a }
+}
+
+pub(super) fn smaller<L: PartialOrd>(a: L, b: L) -> L {
+    if b < a { b } else { a }
+}
+
+pub(super) fn is_finite<L: Real>(number: L) -> bool {
+    number - number == L::from_f64(0.0)
 }

@@ -2,12 +2,12 @@
 
 use nalgebra::SVector;
 
-use super::super::seen;
 use super::super::surfaces::{Surface, Surfaces};
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
+use super::super::{lane, seen};
 use super::choice::Choice;
-use super::line::{ASIDE, Beyond};
+use super::line::{ASIDE, Beyond, dot, is_finite, larger, length, smaller};
 use super::sides::{Sides, shortest};
 use super::{Each, Like, Moment, Sliding};
 use crate::{Input, Real, System};
@@ -265,30 +265,32 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         self.evaluations.set(self.evaluations.get() + 1);
         let aside = self.aside(x);
         let moment = MOMENT * T::EPSILON * at.time.magnitude().max(whole);
+        let [one, two, moment] = [1.0, 2.0, moment].map(T::Lane::from_f64);
         let [[distances, rates], _] = self.told(at, [(x, &slope); 2], memory);
         let gradients = self.gradients();
-        let (mut span, mut is_near) = (Span::<N, K>::of_nothing(), Each::<_, K>::all(false));
+        let (mut span, mut is_near) = (Span::<_, N, K>::of_nothing(), Each::<_, K>::all(false));
         for (place, is_near) in is_near.iter_mut().enumerate().take(self.surfaces.count()) {
-            let (mut alone, mut beside) = (1.0, SVector::zeros());
-            let (unit, distance) = (unit(&gradients[place]), seen(distances[place]));
-            let size = gradients[place].map(seen).norm();
+            let (mut alone, mut beside) = (one, SVector::from_element(T::Lane::from_f64(0.0)));
+            let (unit, distance) = (unit(&gradients[place]), lane(distances[place]));
+            let size = length(&gradients[place]);
             if let Some(unit) = unit
-                && let Some(rest) = span.add::<T>(&unit)
+                && let Some(rest) = span.add(&unit)
             {
                 // What is almost led along others moves states far where it is moved a little.
-                alone = rest.norm();
-                beside = size * (unit - rest);
+                alone = length(&rest);
+                beside = (unit - rest).map(|it| size * it);
             }
-            let near = (NEAR / T::SINGULAR * alone).max(1.0) * seen(aside[place]);
+            let near = T::Lane::from_f64(NEAR / T::SINGULAR) * alone;
+            let near = larger(near, one) * lane(aside[place]);
             let reaches = |rate: T, slope: &SVector<T, N>| {
-                let rate = seen(rate) - beside.dot(&slope.map(seen));
+                let rate = lane(rate) - dot(&beside, &slope.map(lane));
                 distance.abs() < near + moment * rate.abs()
             };
             *is_near = reaches(rates[place], &slope)
                 || unit.is_some_and(|unit| {
                     // As fast as on the other side: what comes there fast may be almost held on this one.
-                    let way = 2.0 * distance / size;
-                    let there = x - unit.map(|by| T::from_f64(way * by));
+                    let way = two * distance / size;
+                    let there = x - unit.map(|by| T::from_lane(way * by));
                     let slope =
                         (self.system).derivative(at.time, &there, &at.input, &mut { *memory });
                     self.evaluations.set(self.evaluations.get() + 1);
@@ -312,10 +314,8 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         self.surfaces = surfaces;
         self.look(at, x, memory);
         let gradients = self.gradients();
-        let (mut span, mut units) = (
-            Span::<N, K>::of_nothing(),
-            Each::<_, K>::all(SVector::zeros()),
-        );
+        let nothing = SVector::from_element(T::Lane::from_f64(0.0));
+        let (mut span, mut units) = (Span::<_, N, K>::of_nothing(), Each::<_, K>::all(nothing));
         let [mut free, mut bound, mut twins] = [Surfaces::NONE; 3];
         let mut likes = Each::all(Like::NOTHING);
         for (place, surface) in surfaces.iter().enumerate() {
@@ -323,18 +323,20 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 // No state leads there.
                 continue;
             };
-            let differs =
-                |other: &SVector<f64, N>| (other - unit).norm().min((other + unit).norm());
-            let leads = |other: &SVector<f64, N>| differs(other) < DEPENDENT * T::EPSILON;
+            let differs = |other: &SVector<T::Lane, N>| {
+                smaller(length(&(other - unit)), length(&(other + unit)))
+            };
+            let leads = |other: &SVector<T::Lane, N>| is_dependent::<T>(differs(other));
             if let Some(leader) = units.iter().take(place).position(leads) {
-                let size = |place: usize| gradients[place].map(seen).norm();
+                let size = |place: usize| length(&gradients[place]).into();
+                let unlike: f64 = differs(&units[leader]).into();
                 likes[twins.count()] = Like {
                     leader,
                     size: size(place) / size(leader),
-                    apart: BESIDE * (1.0 + GROWS * differs(&units[leader]) / (ASIDE * T::EPSILON)),
+                    apart: BESIDE * (1.0 + GROWS * unlike / (ASIDE * T::EPSILON)),
                 };
                 twins.add(*surface);
-            } else if span.add::<T>(&unit).is_some() {
+            } else if span.add(&unit).is_some() {
                 free.add(*surface);
             } else {
                 bound.add(*surface);
@@ -375,15 +377,15 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         }
         let choices = sides.chosen(&known)?;
         let units = self.gradients().map(|gradient| unit(&gradient));
-        let mut span = Span::<N, K>::of_nothing();
+        let mut span = Span::<_, N, K>::of_nothing();
         for (unit, choice) in units.iter().zip(&choices).take(count) {
             if let (Some(unit), Choice::Stays(_)) = (unit, choice) {
-                span.add::<T>(unit);
+                span.add(unit);
             }
         }
         let asides = Each::of(|place| {
             let stays = matches!(choices[place], Choice::Stays(_))
-                || units[place].is_some_and(|unit| span.has::<T>(&unit));
+                || units[place].is_some_and(|unit| span.has(&unit));
             let rate = sides.rate(place, &choices);
             match known.get(place) {
                 _ if stays => Aside::On,
@@ -436,7 +438,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     fn put_aside<const M: usize, const P: usize>(
         &mut self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
-        (asides, reach): (&Each<Aside, K>, f64),
+        (asides, reach): (&Each<Aside, K>, T::Lane),
         memory: &S::Memory,
     ) -> SVector<T, N>
     where
@@ -456,12 +458,13 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         }
         let Beyond { distances, rates } = &self.beyond(at, x, memory);
         let aside = self.aside_behind(x, distances);
-        let (gradients, mut span) = (self.gradients(), Span::<N, K>::of_nothing());
+        let (gradients, mut span) = (self.gradients(), Span::<_, N, K>::of_nothing());
+        let [one, beside] = [1.0, BESIDE].map(T::Lane::from_f64);
         let least: Each<T, K> = Each::of(|place| {
             let unit = unit(&gradients[place]).filter(|_| place < self.free);
-            let rest = unit.and_then(|unit| span.add::<T>(&unit));
-            let alone = rest.map_or(1.0, |rest| rest.norm());
-            T::from_f64(BESIDE * reach * alone) * aside[place]
+            let rest = unit.and_then(|unit| span.add(&unit));
+            let alone = rest.map_or(one, |rest| length(&rest));
+            T::from_lane(beside * reach * alone) * aside[place]
         });
         let mut all = sorted.iter().take(self.free);
         let stays = all.any(|aside| matches!(aside, Aside::On));
@@ -522,46 +525,55 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
 }
 
 /// What gradients make together.
-struct Span<const N: usize, const K: usize> {
-    basis: Each<SVector<f64, N>, K>,
+struct Span<L, const N: usize, const K: usize> {
+    basis: Each<SVector<L, N>, K>,
     count: usize,
 }
 
-impl<const N: usize, const K: usize> Span<N, K> {
+impl<L: Real<Lane = L> + PartialOrd, const N: usize, const K: usize> Span<L, N, K> {
     fn of_nothing() -> Self {
         Self {
-            basis: Each::<_, K>::all(SVector::zeros()),
+            basis: Each::<_, K>::all(SVector::from_element(L::from_f64(0.0))),
             count: 0,
         }
     }
 
     /// What is beside it of a unit.
-    fn beside(&self, unit: &SVector<f64, N>) -> SVector<f64, N> {
+    fn beside(&self, unit: &SVector<L, N>) -> SVector<L, N> {
         let known = self.basis.iter().take(self.count);
-        known.fold(*unit, |rest, known| rest - known * known.dot(&rest))
+        known.fold(*unit, |rest, known| {
+            let along = dot(known, &rest);
+            rest - known.map(|it| it * along)
+        })
     }
 
-    fn has<T: Real>(&self, unit: &SVector<f64, N>) -> bool {
-        self.beside(unit).norm() < DEPENDENT * T::EPSILON
+    fn has(&self, unit: &SVector<L, N>) -> bool {
+        is_dependent::<L>(length(&self.beside(unit)))
     }
 
     /// Adds a unit, with what of it was beside it, if anything was.
-    fn add<T: Real>(&mut self, unit: &SVector<f64, N>) -> Option<SVector<f64, N>> {
-        if self.has::<T>(unit) {
+    fn add(&mut self, unit: &SVector<L, N>) -> Option<SVector<L, N>> {
+        let rest = self.beside(unit);
+        let size = length(&rest);
+        if is_dependent::<L>(size) {
             return None;
         }
-        let rest = self.beside(unit);
         if let Some(next) = self.basis.get_mut(self.count) {
-            *next = rest / rest.norm();
+            *next = rest.map(|it| it / size);
             self.count += 1;
         }
         Some(rest)
     }
 }
 
+/// Whether so much of a unit beside others may be rounding.
+fn is_dependent<T: Real>(beside: T::Lane) -> bool {
+    beside < T::Lane::from_f64(DEPENDENT * T::EPSILON)
+}
+
 /// The direction of a gradient, if it has one.
-fn unit<T: Real, const N: usize>(gradient: &SVector<T, N>) -> Option<SVector<f64, N>> {
-    let gradient = gradient.map(seen);
-    let size = gradient.norm();
-    (size > 0.0 && size.is_finite()).then(|| gradient / size)
+fn unit<T: Real, const N: usize>(gradient: &SVector<T, N>) -> Option<SVector<T::Lane, N>> {
+    let size = length(gradient);
+    let has_direction = size > T::Lane::from_f64(0.0) && is_finite(size);
+    has_direction.then(|| gradient.map(|it| lane(it) / size))
 }

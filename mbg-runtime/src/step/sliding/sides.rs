@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::jumps::least_jump;
-use super::super::seen;
+use super::super::{lane, seen};
 use super::choice::{Choice, chosen};
 use super::line::Line;
 use super::{Each, Moment, Sliding};
@@ -18,7 +18,7 @@ const BENT: f64 = 0.125;
 const PLACES: f64 = 8.0;
 
 /// What a model says on the sides of surfaces, along a line that crosses each.
-pub(super) struct Sides<T, const N: usize, const K: usize> {
+pub(super) struct Sides<T: Real, const N: usize, const K: usize> {
     /// How many surfaces there are.
     count: usize,
     line: Line<T, N, K>,
@@ -32,7 +32,7 @@ pub(super) struct Sides<T, const N: usize, const K: usize> {
     pub(super) rates: Factors<T, K>,
     /// Whether its own argument goes slower ahead of each, and by how much.
     pub(super) leads_back: Each<bool, K>,
-    slower: Each<f64, K>,
+    slower: Each<T::Lane, K>,
     /// Which part of the mean is behind each.
     pub(super) parts: Each<T, K>,
 }
@@ -70,7 +70,7 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
 
     /// Whether a law bends at a surface and does not jump, as these sides show, which are farther from it than others by a factor.
     pub(super) fn bends(&self, nearer: &Self, place: usize, factor: f64) -> bool {
-        self.slower[place] > BENT * factor * nearer.slower[place]
+        self.slower[place] > T::Lane::from_f64(BENT * factor) * nearer.slower[place]
     }
 
     /// How far the mean is from leaving a surface, as a part of what the laws differ by there.
@@ -82,6 +82,7 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     /// How the motion is at each of so many surfaces, where some are not open.
     pub(super) fn chosen(&self, known: &Each<Option<Choice>, K>) -> Option<Each<Choice, K>> {
         let forward = &self.line.forward;
+        let forward = forward.map(Into::<f64>::into);
         let first = Each::of(|row| forward[row] * seen(self.first[row]));
         let faster =
             Each::of(|column| Each::of(|row| forward[row] * seen(self.faster[column][row])));
@@ -89,14 +90,14 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     }
 
     /// How far beside surfaces others are to be, in units of what is surely beside one.
-    pub(super) fn reach(&self) -> f64 {
+    pub(super) fn reach(&self) -> T::Lane {
         self.line.reach
     }
 
     /// The part of the mean that is above a surface.
     pub(super) fn above(&self, place: usize, choice: Choice) -> f64 {
         let part = choice.part();
-        match self.line.forward[place] > 0.0 {
+        match self.forward(place) > 0.0 {
             true => part,
             false => 1.0 - part,
         }
@@ -106,14 +107,19 @@ impl<T: Real, const N: usize, const K: usize> Sides<T, N, K> {
     pub(super) fn side(&self, place: usize, choice: Choice) -> f64 {
         match choice {
             Choice::Stays(_) => 0.0,
-            Choice::Before => -self.line.forward[place],
-            Choice::Ahead => self.line.forward[place],
+            Choice::Before => -self.forward(place),
+            Choice::Ahead => self.forward(place),
         }
+    }
+
+    /// In which direction a surface is crossed.
+    fn forward(&self, place: usize) -> f64 {
+        self.line.forward[place].into()
     }
 
     /// What goes to a side is as if it did by this choice.
     pub(super) fn to_side(&self, place: usize, side: f64) -> Choice {
-        match side * self.line.forward[place] > 0.0 {
+        match side * self.forward(place) > 0.0 {
             true => Choice::Ahead,
             false => Choice::Before,
         }
@@ -225,11 +231,11 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             faster: Each::all(Each::all(zero)),
             rates: Factors::One(zero),
             leads_back: Each::all(false),
-            slower: Each::all(0.0),
+            slower: Each::all(T::Lane::from_f64(0.0)),
             parts: self.shares,
         };
         let (mut before, mut slope) = (&sides.line.start, base);
-        let jump = least_jump::<T>();
+        let jump = T::Lane::from_f64(least_jump::<T>());
         let way = sides.line.order.iter().zip(&sides.line.behind);
         for (number, (own, behind)) in way.enumerate().take(count) {
             let own = *own;
@@ -241,12 +247,12 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             }
             sides.jumps[own] = next - slope;
             let faster: Each<T, K> = Each::of(|other| rates_behind[other] - rates[other]);
-            sides.slower[own] = -sides.line.forward[own] * seen(faster[own]);
+            sides.slower[own] = -sides.line.forward[own] * lane(faster[own]);
             sides.faster[own] = faster;
             let gradient = self.gradients[own].get();
             let terms = gradient.iter().zip(slope.iter().zip(&next));
-            let size = terms.fold(0.0, |size, (by, (a, b))| {
-                size + by.magnitude() * (a.magnitude() + b.magnitude())
+            let size = terms.fold(T::Lane::from_f64(0.0), |size, (by, (a, b))| {
+                size + lane(*by).abs() * (lane(*a).abs() + lane(*b).abs())
             });
             sides.leads_back[own] = sides.slower[own] > jump * size;
             (before, slope) = (behind, next);
@@ -254,8 +260,10 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         self.evaluations
             .set(self.evaluations.get() + 1 + count as u64);
         sides.rates = Factors::of(free, |own| sides.faster[own]);
-        for place in (free..count).filter(|place| sides.line.forward[*place] < 0.0) {
-            sides.parts[place] = T::from_f64(1.0) - sides.parts[place];
+        for place in free..count {
+            if sides.forward(place) < 0.0 {
+                sides.parts[place] = T::from_f64(1.0) - sides.parts[place];
+            }
         }
         let right = Each::of(|row| {
             let bound = (free..count).map(|place| sides.parts[place] * sides.faster[place][row]);
@@ -274,18 +282,27 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
 pub(super) fn summed<T: Real>(terms: impl Iterator<Item = T> + Clone) -> T {
     let zero = T::from_f64(0.0);
     let sum = terms.clone().fold(zero, |sum, term| sum + term);
-    let is_rounding = |of: &dyn Fn(T) -> f64| {
-        let size = terms.clone().fold(0.0, |size, term| size + of(term).abs());
-        of(sum).abs() <= PLACES * T::EPSILON * size
-    };
-    if !is_rounding(&|number| number.magnitude()) {
+    let values = terms.clone().map(|term| lane(term).abs());
+    if !is_rounding::<T, _>(lane(sum).abs(), values) {
         return sum;
     }
-    let mut directions = (0..).take_while(|direction| sum.slope_along(*direction).is_some());
-    match directions.all(|it| is_rounding(&|number| number.slope_along(it).unwrap_or(0.0))) {
+    let mut directions =
+        (0..).map_while(|direction| Some((direction, sum.slope_along(direction)?)));
+    let is_nothing = directions.all(|(direction, of_sum)| {
+        let slopes = terms.clone();
+        let slopes = slopes.map(|term| term.slope_along(direction).unwrap_or(0.0));
+        is_rounding::<T, _>(of_sum, slopes)
+    });
+    match is_nothing {
         true => zero,
-        false => sum - T::from_f64(seen(sum)),
+        false => sum - T::from_lane(lane(sum)),
     }
+}
+
+/// Whether of terms so large rounding alone may have left so much.
+fn is_rounding<T: Real, L: Real + PartialOrd>(left: L, terms: impl Iterator<Item = L>) -> bool {
+    let size = terms.fold(L::from_f64(0.0), |size, term| size + term);
+    left <= L::from_f64(PLACES * T::EPSILON) * size
 }
 
 /// The shortest ways across surfaces of these gradients, each along the others.

@@ -1,7 +1,8 @@
 //! How the arguments of choices go from one point to another.
 
 use crate::Real;
-use crate::step::{lane, seen};
+use crate::lane::{is_finite, lane, or_nan};
+use crate::step::seen;
 
 /// How much farther than a step the way from its start is looked at.
 pub(crate) const FARTHER: f64 = 1.25;
@@ -107,7 +108,7 @@ impl<T: Real> Course<'_, T> {
                     false => beyond != T::Lane::from_f64(0.0),
                 };
                 is_beside
-                    && beyond - beyond == T::Lane::from_f64(0.0)
+                    && is_finite(beyond)
                     && ends.iter().all(|end| self.below(*end, threshold) == side)
             })
         };
@@ -245,7 +246,7 @@ impl<T: Real> Course<'_, T> {
                 }
             }
         }
-        Some(soonest).filter(|time| *time - *time == zero)
+        Some(soonest).filter(|time| is_finite(*time))
     }
 
     /// What the argument is at a threshold, with the whole turns that it has made at the second point.
@@ -288,12 +289,6 @@ struct Lane<L> {
     number: usize,
     from: [L; 2],
     to: [L; 2],
-}
-
-/// The number in a lane that there is.
-#[inline]
-pub(crate) fn or_nan<L: Real>(number: Option<L>) -> L {
-    number.unwrap_or_else(|| L::from_f64(f64::NAN))
 }
 
 /// The smaller of two times.

@@ -83,6 +83,7 @@ mod dual;
 mod exponential;
 mod four;
 mod input;
+mod lane;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 mod linearised;

@@ -1,8 +1,9 @@
 //! The times at which steps of constant length end.
 
+use super::less;
 use super::method::Span;
-use super::{lane, less};
 use crate::Real;
+use crate::lane::lane;
 
 /// The steps over a piece, of which one may be begun anew from within.
 pub(super) struct Grid<T> {

@@ -9,7 +9,8 @@ use super::over::{Place, SOON};
 use super::problem::Problem;
 use super::slide::{Ends, Walked};
 use super::tolerance::{NOISE, Sizes};
-use super::{Stopped, lane, less, seen};
+use super::{Stopped, less, seen};
+use crate::lane::lane;
 use crate::{Input, Real, System};
 
 /// The part of the way to a jump that steps leave, at least and at most: by how much its place may be off, which is less the nearer it

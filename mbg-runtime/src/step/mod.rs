@@ -41,7 +41,6 @@ use core::fmt;
 
 use nalgebra::SVector;
 
-use crate::course::or_nan;
 use crate::{Input, Real, System, Trouble};
 
 pub use adaptive::Adaptive;
@@ -158,12 +157,6 @@ impl Stopped {
             cause,
         }
     }
-}
-
-/// The first lane.
-#[inline]
-pub(crate) fn lane<T: Real>(number: T) -> T::Lane {
-    or_nan(number.in_lane(0))
 }
 
 /// The number, seen as `f64`; of several lanes the first.

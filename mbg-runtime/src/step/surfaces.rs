@@ -1,9 +1,9 @@
 //! Thresholds of the laws at which a motion may stay.
 
-use super::lane;
 use super::over::Place;
 use super::problem::Problem;
 use super::thresholds::Point;
+use crate::lane::lane;
 use crate::{Course, Input, Real, System};
 
 /// So many at once.

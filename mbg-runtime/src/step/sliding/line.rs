@@ -2,9 +2,9 @@
 
 use nalgebra::SVector;
 
-use super::super::lane;
 use super::sides::Factors;
 use super::{Each, Moment, Sliding};
+use crate::lane::{is_finite, lane, larger, length, smaller};
 use crate::{Real, System};
 
 /// How far beside a threshold laws are asked, in units of the rounding of its argument.
@@ -281,33 +281,4 @@ impl<L: Real + PartialOrd, const K: usize> Way<L, K> {
 fn nth<L: Real>(place: usize) -> L {
     let one = L::from_f64(1.0);
     (0..place).fold(L::from_f64(0.0), |number, _| number + one)
-}
-
-/// The size of a vector; of one whose squares single precision has not, that of its largest entry.
-pub(super) fn length<T: Real, const N: usize>(vector: &SVector<T, N>) -> T::Lane {
-    let vector = vector.map(lane);
-    let size = dot(&vector, &vector).sqrt();
-    match size > T::Lane::from_f64(0.0) && is_finite(size) {
-        true => size,
-        false => vector.iter().fold(size, |size, it| larger(size, it.abs())),
-    }
-}
-
-pub(super) fn dot<L: Real, const N: usize>(a: &SVector<L, N>, b: &SVector<L, N>) -> L {
-    let pairs = a.iter().zip(b);
-    pairs.fold(L::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
-}
-
-// Written so that what is no number is left out.
-
-pub(super) fn larger<L: PartialOrd>(a: L, b: L) -> L {
-    if b > a { b } else { a }
-}
-
-pub(super) fn smaller<L: PartialOrd>(a: L, b: L) -> L {
-    if b < a { b } else { a }
-}
-
-pub(super) fn is_finite<L: Real>(number: L) -> bool {
-    number - number == L::from_f64(0.0)
 }

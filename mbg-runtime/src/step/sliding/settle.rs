@@ -2,14 +2,15 @@
 
 use nalgebra::SVector;
 
+use super::super::seen;
 use super::super::surfaces::{Surface, Surfaces};
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
-use super::super::{lane, seen};
 use super::choice::Choice;
-use super::line::{ASIDE, Beyond, dot, is_finite, larger, length, smaller};
+use super::line::{ASIDE, Beyond};
 use super::sides::{Sides, shortest};
 use super::{Each, Like, Moment, Sliding};
+use crate::lane::{dot, is_finite, lane, larger, length, smaller};
 use crate::{Input, Real, System};
 
 /// Times are apart by so many units of the last place.

@@ -3,10 +3,11 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::super::jumps::least_jump;
-use super::super::{lane, seen};
+use super::super::seen;
 use super::choice::{Choice, chosen};
 use super::line::Line;
 use super::{Each, Moment, Sliding};
+use crate::lane::lane;
 use crate::solve::Regular;
 use crate::{Real, System};
 

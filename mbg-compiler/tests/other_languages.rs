@@ -55,9 +55,11 @@ fn choices_are_told_with_braces() {
         assert_eq!(help, choice);
         assert_eq!(told(&driven(&help)), "");
     }
-    let help = typed(&driven("3.0 * ifelse(t > 1, 2.0, 0.0)")).remove(0);
-    assert_eq!(help, "(if (t > 1) { 2.0 } else { 0.0 })");
-    assert_eq!(told(&driven(&help)), "");
+    for word in ["ifelse", "piecewise"] {
+        let help = typed(&driven(&format!("3.0 * {word}(t > 1, 2.0, 0.0)"))).remove(0);
+        assert_eq!(help, "(if (t > 1) { 2.0 } else { 0.0 })");
+        assert_eq!(told(&driven(&help)), "");
+    }
     insta::assert_snapshot!(told(&driven("if t > 1 then 2.0")), @"
     2:25 `then` is no word here: the values of a choice stand in braces [MBG0101]
       help: write `if t > 1 { 2.0 } else { … }`

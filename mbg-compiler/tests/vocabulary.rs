@@ -327,6 +327,7 @@ fn functions_are_told_in_any_spelling_and_with_their_signs() {
             "(c.q - 3.0 * floor(c.q / 3.0 + 0.5))",
         ),
         ("Modelica.Constants.pi * c.q", "3.141592653589793"),
+        ("Modelica.Constants.g_n * c.q", "9.80665"),
     ] {
         let output = |read: &str| shafts(&format!("output y = {read};"));
         assert_eq!(typed(&output(slip)), [written], "{slip}");
@@ -409,6 +410,23 @@ fn imports_annotations_and_sequences_are_told_where_they_belong() {
         alone,
         ["free: Free { first: 2, second: 1, third: 0 } (a, b);"]
     );
+}
+
+#[test]
+fn defaults_with_units_and_attitudes_in_braces_are_told_as_they_are_declared() {
+    for (given, number) in [("3kN / m", "3.0 * 1000"), ("2.5kg * m / s", "2.5")] {
+        let slip = shafts(&format!("param k = {given};"));
+        assert_eq!(typed(&slip).last().unwrap(), number);
+        assert_eq!(told(&shafts(&format!("param k = {number};"))), "");
+    }
+    let body = |attitude: &str| {
+        format!(
+            "model M {{ 1 hull[3] {{ I body {{ inertia: 2.0, gyroscopic }} }} {attitude} output turn[4] = a; }}"
+        )
+    };
+    let typed = typed(&body("attitude a { rate: hull.f, initial: 1.0 }"));
+    assert_eq!(typed, ["attitude a = quaternion(hull.f);"]);
+    assert_eq!(told(&body(&typed[0])), "");
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::indices::component_index;
 use super::tools::plain;
 use crate::symbolic::LARGEST_POWER;
 use crate::syntax::dump;
+use crate::units::without_units;
 
 /// The number π, as constants of other languages round it.
 const PI: &str = "3.141592653589793";
@@ -38,6 +39,7 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("tau", &[], "6.283185307179586"),
     ("time", &[], "t"),
     ("g", &[], "9.81"),
+    ("g_n", &[], "9.80665"),
     ("euler", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
     ("eulerangles", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
     ("rpy", &["q"], "angles_of(matrix_of(q), 2, 1, 0)"),
@@ -97,6 +99,7 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("ifelse", &["a", "b", "c"], CHOICE),
     ("select", &["a", "b", "c"], CHOICE),
     ("iif", &["a", "b", "c"], CHOICE),
+    ("piecewise", &["a", "b", "c"], CHOICE),
     ("deadzone", &["x", "width"], DEAD_ZONE),
     ("deadband", &["x", "width"], DEAD_ZONE),
     ("interp", &["x", "places", "values"], CURVE),
@@ -163,6 +166,42 @@ const DECLARED: &[(&[&str], &[&str], &str)] = &[
         "late = if late > upper { min(x, 0.0) } else if late < lower { max(x, 0.0) } else { x }, initial: start",
     ),
 ];
+
+/// What to type for a number with units behind it, as in `3kN / m`.
+pub(super) fn without_units_behind(expression: &Expr) -> Option<String> {
+    let (number, units) = with_units(expression)?;
+    without_units(&number, &units)
+}
+
+/// A number with the units that are written behind it, and their exponents.
+fn with_units(expression: &Expr) -> Option<(String, Vec<(String, i32)>)> {
+    match expression {
+        Expr::Lit(it) => {
+            let (number, unit) = match &it.lit {
+                Lit::Int(it) => (it.base10_digits(), it.suffix()),
+                Lit::Float(it) => (it.base10_digits(), it.suffix()),
+                _ => return None,
+            };
+            (!unit.is_empty()).then(|| (number.to_owned(), vec![(unit.to_owned(), 1)]))
+        }
+        Expr::Binary(ExprBinary {
+            left, op, right, ..
+        }) => {
+            let exponent = match op {
+                BinOp::Mul(_) => 1,
+                BinOp::Div(_) => -1,
+                _ => return None,
+            };
+            let Expr::Path(unit) = &**right else {
+                return None;
+            };
+            let (number, mut units) = with_units(left)?;
+            units.push((unit.path.get_ident()?.to_string(), exponent));
+            Some((number, units))
+        }
+        _ => None,
+    }
+}
 
 /// What to declare for a function that keeps what was.
 fn declared(word: &str, arguments: &[Expr]) -> Option<String> {

@@ -9,12 +9,12 @@ use super::claims::Subject;
 use super::definitions::{Missing, by_component, of_entries};
 use super::expressions::{Evaluator, Result, Step, Value};
 use super::laws::{Reader, words_of};
-use super::laws_elsewhere;
 use super::mentions::mentioned;
 use super::model::{Elaborated, Output, State, StateRate};
 use super::own::Own;
 use super::scope::{Entity, Lookup};
 use super::{Builder, Pending, component_names};
+use super::{elsewhere, laws_elsewhere};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::graph::{ElementId, JunctionId, Law};
@@ -582,6 +582,9 @@ fn no_default(parameter: &ast::Parameter, expression: &syn::Expr, entries: usize
     let text = dump::expression(expression);
     let message = format!("expected {numbers} as the default of `{name}`, found `{text}`");
     let report = error(codes::EXPRESSION, expression.span(), message);
+    if let Some(help) = elsewhere::without_units_behind(expression) {
+        return report.help(help);
+    }
     report.help(match size {
         None if entries > 1 => format!("write `param {name}[{entries}]{unit} = {text};`"),
         _ => format!(

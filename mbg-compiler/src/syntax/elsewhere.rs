@@ -268,6 +268,19 @@ fn start(cursor: &Cursor) -> String {
     }
 }
 
+/// What to type for `attitude q { rate: body.f }`.
+pub(super) fn attitude_in_braces(cursor: &Cursor, name: &Ident) -> Option<String> {
+    let inner = Cursor::inside(cursor.group(0, Delimiter::Brace)?);
+    let rate = until_end(&inner, 2).into_iter();
+    let rate = match inner.punct(1, ':') {
+        true => dump::tokens(rate.take_while(|token| !is_mark(token, ',')).collect()),
+        false => "…".to_owned(),
+    };
+    Some(format!(
+        "an attitude follows from an angular velocity in body axes: write `attitude {name} = quaternion({rate});`"
+    ))
+}
+
 /// `state charge: C = 1.0;`
 fn state(cursor: &Cursor) -> Option<String> {
     let tokens: Vec<TokenTree> = until_end(cursor, 1).into_iter().collect();

@@ -463,7 +463,9 @@ fn integral(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) ->
 fn attitude(cursor: &mut Cursor, attributes: Attributes, sink: &mut Sink<'_>) -> Parsed<Attitude> {
     let name = cursor.name("the name of the attitude after `attitude`")?;
     if !cursor.take_punct('=') {
-        return Err(cursor.expected(&format!("`=` after {}", cursor.previous())));
+        let report = cursor.expected(&format!("`=` after {}", cursor.previous()));
+        let help = elsewhere::attitude_in_braces(cursor, &name);
+        return Err(Box::new(help.into_iter().fold(*report, Diagnostic::help)));
     }
     let word = cursor.ident(0).map(ToString::to_string).unwrap_or_default();
     let known = Orientation::ALL.into_iter().find(|it| it.word() == word);

@@ -630,6 +630,19 @@ fn a_joint_that_can_move_without_inertia_is_told() {
         told(&links(ball, "bob: Body { mass: 0.3, inertia: 0.1 } (tip);")),
         ""
     );
+    let hung = |load: &str| {
+        format!(
+            "model M {{ gravity [0.0, 0.0, -9.81]; 1 ground[6]; 1 hook[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+             free: Free {{ initial_position: [0.0, 0.0, -5.0] }} (ground, hook); load: {load} (hook);
+             rope: LineForce {{ kind: rope, stiffness: 1e5, rest: 5.0 }} (ground, hook); output y = rope.tension; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&hung("PointMass { mass: 10.0 }")), @"
+    2:14 resistor `free.rotation.gimbal.damper` would have to give its flow, but its resistance is zero [MBG0307]
+      what `free` leads to can move without moving any inertia
+      help: give the frame behind `free` a body with an inertia: a `PointMass` has none about the lines through it
+    ");
+    assert_eq!(told(&hung("Body { mass: 10.0, inertia: 1.0 }")), "");
 }
 
 /// The help that holds a text, of the first mistake.

@@ -273,6 +273,53 @@ fn what_is_made_of_elements_is_told_with_them() {
 }
 
 #[test]
+fn what_elements_have_no_place_for_is_told() {
+    let text = |component: &str| {
+        format!(
+            "model M {{ 0 p {{ C c {{ compliance: 1.0 }} }} 0 n {{ Se zero {{ effort: 0.0 }} }} 1 v; 1 w; z:\n{component}; }}"
+        )
+    };
+    insta::assert_snapshot!(told(&text("Battery { voltage: 12.0, resistance: 0.1, capacity: 5.0 } (p, n)")), @"
+    2:1 component `Battery` is not declared [MBG0203]
+      help: here it is written `1 z_between { Se z { effort: 12.0 } } n -> z_between; z_between -> p;`; that leaves out `resistance`, `capacity`
+    ");
+    insta::assert_snapshot!(told(&text("WormGear { ratio: 40.0, efficiency: 0.7 } (v, w)")), @"
+    2:1 component `WormGear` is not declared [MBG0203]
+      help: here it is written `v -> TF z { flow: 1 / 40.0 } -> w;`; that leaves out `efficiency`
+    ");
+    // What is to be filled in may be what was given.
+    insta::assert_snapshot!(told(&text("Pipe { length: 100.0, diameter: 0.1 } (p, n)")), @"
+    2:1 component `Pipe` is not declared [MBG0203]
+      help: here it is written `1 z_between { R z { conductance: … } } p -> z_between; z_between -> n;`
+    ");
+}
+
+#[test]
+fn what_a_component_is_given_is_not_told_as_what_it_has() {
+    let text = |slide: &str, read: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 ground[3]; 1 cart[3]; Sf fixed[3] {{ flow: 0.0 }} -> ground;
+             slide: PlanarPrismatic {{ initial: 1.0{slide} }} (ground, cart); load: PlanarPointMass {{ mass: 2.0 }} (cart);
+             rope: PlanarLineForce {{ stiffness: 100.0 }} (ground, cart); output y = {read}; }}"
+        )
+    };
+    for [slip, here] in [
+        ["rope.effort", "rope.tension"],
+        ["rope.pressure", "rope.tension"],
+    ] {
+        assert_eq!(typed(&text("", slip)), [here]);
+        assert_eq!(told(&text("", here)), "");
+    }
+    for slide in ["", ", stiffness: 5.0", ", force: 3.0"] {
+        let told = told(&text(slide, "slide.effort"));
+        assert!(
+            told.contains("`damper.e`, `motor.e`") && !told.contains("slide.force"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
 fn an_effort_at_the_start_is_given_by_its_word() {
     let text = |law: &str, start: &str| {
         format!("model M {{ 0 n {{ C c {{ {law}, {start} }} R r {{ resistance: 1.0 }} }} }}")

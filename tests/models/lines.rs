@@ -29,6 +29,7 @@ mbg! {
             kind: rope, stiffness: stiffness, rest: 1.0, damping: 20.0, orientation_b: 1.0, position_b: [east, north, up]
         } (pole, stone);
         pulls: LineForce { kind: rope, rest: 1.0, damping: 5.0, orientation_b: 1.0, position_b: [east, north, up] } (pole, stone);
+        output tensions[3]: N = [rope.tension, line.tension, pulls.tension];
     }
 }
 
@@ -226,6 +227,8 @@ fn ropes_do_not_push() {
                 "{length} {rate}: {tension} instead of {expected}"
             );
         }
+        let told = model.output(0.0, &x, &SVector::zeros(), &mut ());
+        assert!((told - SVector::from([expected, expected, more])).norm() < 1e-12);
         // What ropes take from a motion is stored or becomes heat, which is never negative.
         let power = model.power(0.0, &x, &SVector::zeros(), &mut ());
         let stored = is_long * 100.0 * (length - 1.0) * rate;

@@ -5,6 +5,7 @@ use syn::Expr;
 use super::elsewhere::{filled, operand};
 use super::frames::{IN_PLANE, IN_SPACE};
 use super::tools::plain;
+use crate::diagnostics::listing;
 use crate::graph::JunctionKind;
 use crate::syntax::{ast, dump};
 
@@ -551,8 +552,9 @@ pub(super) fn elements(
     if let Some(text) = named_alike(circuits, &component) {
         // What is told behind the text to type ends it itself.
         let end = if text.contains('`') { "" } else { "`" };
+        let left_out = left_out(instance, &[text]);
         return Some(format!(
-            "here it is written `{}{end}",
+            "here it is written `{}{end}{left_out}",
             circuit(instance, text)
         ));
     }
@@ -561,6 +563,8 @@ pub(super) fn elements(
     }
     let mut known = ELEMENTS.iter();
     let (_, stand, parts) = known.find(|(names, ..)| names.contains(&component.as_str()))?;
+    let laws: Vec<&str> = parts.iter().map(|(.., law)| *law).collect();
+    let left_out = left_out(instance, &laws);
     let (kind, dimension) = end.unwrap_or((JunctionKind::One, 1));
     let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
     let parts: Vec<Part> = parts.iter().map(|part| given(instance, part)).collect();
@@ -585,7 +589,24 @@ pub(super) fn elements(
         (Stand::Between, [a, b], _) => between(parts, &name, (kind, [a, b])),
         _ => at_junction(parts, &name, at, dimension),
     };
-    Some(format!("here it is written `{text}`"))
+    Some(format!("here it is written `{text}`{left_out}"))
+}
+
+/// The arguments of an instance for which a text has no place, unless it leaves something to be filled in.
+fn left_out(instance: &ast::Instance, text: &[&str]) -> String {
+    let has = |part: &str| text.iter().any(|it| it.contains(part));
+    let places = GIVEN.iter().filter(|(place, _)| has(place));
+    let taken: Vec<&[&str]> = places.map(|(_, names)| *names).collect();
+    let names = instance.arguments.iter().map(|it| it.name.to_string());
+    let lost = names.filter(|name| {
+        let name = name.to_lowercase();
+        !taken.iter().any(|names| names.contains(&name.as_str()))
+    });
+    let lost: Vec<String> = lost.collect();
+    if lost.is_empty() || text.is_empty() || has("…") {
+        return String::new();
+    }
+    format!("; that leaves out {}", listing(lost))
 }
 
 /// The text for the names among which this one is.

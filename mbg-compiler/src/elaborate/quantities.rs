@@ -102,7 +102,7 @@ const OF_INSTANCES: &[(&[&str], &[&str])] = &[
 const BY_VARIABLE: &[(&str, &[&str])] = &[
     ("f", &["rate.f", "current"]),
     ("q", &["angle", "travel", "position_b"]),
-    ("e", &["force", "effort", "voltage"]),
+    ("e", &["tension", "force", "effort", "voltage"]),
 ];
 
 /// What an effort and a flow make.
@@ -402,9 +402,17 @@ impl Lookup<'_, '_> {
         here.iter().find_map(|path| {
             let inside = path.split('.').map(step);
             let path: Vec<Step> = front.iter().cloned().chain(inside).collect();
-            self.has_value(pool, &path)
-                .then(|| format!("write `{}`", text(&path)))
+            let is_read = !self.is_argument(&path) && self.has_value(pool, &path);
+            is_read.then(|| format!("write `{}`", text(&path)))
         })
+    }
+
+    /// Whether a path leads to what a component is given: the `force` of a joint is that of its motor alone.
+    fn is_argument(&self, path: &[Step]) -> bool {
+        match self.scopes.follow(self.scope, path) {
+            Ok(Some((Entity::Definition(id), _))) => self.definitions[*id].parameter.is_some(),
+            _ => false,
+        }
     }
 
     /// What has a quantity whose name stands alone.

@@ -9,7 +9,7 @@ use super::zero::zero_law;
 use super::{Failure, Selection, Solution, Undetermined, block_names, formulation, reduce, select};
 use crate::codes;
 use crate::compile::text;
-use crate::diagnostics::{Diagnostics, error, listing};
+use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::Elaborated;
 use crate::equations::{Equation, Owner, Scalars};
 use crate::graph::{ElementId, outermost_instance};
@@ -92,17 +92,22 @@ fn report_unheld(model: &Elaborated, selection: &Selection, diagnostics: &mut Di
     diagnostics.report(match idle {
         Some(idle) => {
             let joint = outermost_instance(&idle.name, None).unwrap_or(&idle.name);
-            report
-                .note(format!("what `{joint}` leads to can move without moving any inertia"))
-                .help(format!(
-                    "give the frame behind `{joint}` a body with an inertia: a `PointMass` has none about the lines through it"
-                ))
+            moves_without_inertia(report, joint)
         }
         None => report
             .note("something there moves without inertia, or is held twice")
             .help("give every frame that can turn or move by itself a body with an inertia")
             .help("or put a `Cut` in the place of one of two joints that hold one motion"),
     });
+}
+
+/// What is missing behind a joint on whose motion nothing heavy depends.
+pub(super) fn moves_without_inertia(report: Diagnostic, joint: &str) -> Diagnostic {
+    report
+        .note(format!("what `{joint}` leads to can move without moving any inertia"))
+        .help(format!(
+            "give the frame behind `{joint}` a body with an inertia: a `PointMass` has none about the lines through it"
+        ))
 }
 
 /// A nonlinear loop whose Jacobian is identically singular: its equations, and the slopes that show it.

@@ -1,11 +1,12 @@
 //! Resistors whose law has no inverse, where the equations need one.
 
+use super::resolve::moves_without_inertia;
 use super::{Failure, Formulation, solve};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::elaborate::Elaborated;
 use crate::equations;
-use crate::graph::{ElementId, Law};
+use crate::graph::{BondGraph, ElementId, End, Law, outermost_instance};
 use crate::network::Network;
 use crate::symbolic::{Expression, Matrix, Pool};
 
@@ -63,6 +64,18 @@ fn report(
         format!("resistor `{name}` would have to give its {given}, but its {word} {what}");
     let span = graph.origins.span(element.origin);
     let report = error(codes::FIXED_RESISTOR, span, message);
+    if let Some(joint) = joint_of_damper(graph, id) {
+        return moves_without_inertia(report, joint);
+    }
     let taken = element.instance().unwrap_or(name);
     report.help(format!("give it another {word}, or take `{taken}` away"))
+}
+
+/// The joint whose free axis an element damps: without damping, only what has inertia can tell how that moves.
+fn joint_of_damper(graph: &BondGraph, damper: ElementId) -> Option<&str> {
+    let is_free_axis =
+        |end: &End| matches!(end, End::Junction(id, _) if graph.junctions[id.0].coordinate);
+    let mut bonds = graph.bonds.iter();
+    bonds.find(|bond| bond.to == End::OnePort(damper) && is_free_axis(&bond.from))?;
+    outermost_instance(&graph.elements[damper.0].name, None)
 }

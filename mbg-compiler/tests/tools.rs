@@ -287,11 +287,39 @@ fn what_elements_have_no_place_for_is_told() {
     2:1 component `WormGear` is not declared [MBG0203]
       help: here it is written `v -> TF z { flow: 1 / 40.0 } -> w;`; that leaves out `efficiency`
     ");
+    insta::assert_snapshot!(told(&text("Damper { c: 5.0 } (v, w)")), @"
+    2:1 component `Damper` is not declared [MBG0203]
+      help: here it is written `0 z_between { R z { resistance: … } } v -> z_between; z_between -> w;`
+    ");
     // What is to be filled in may be what was given.
     insta::assert_snapshot!(told(&text("Pipe { length: 100.0, diameter: 0.1 } (p, n)")), @"
     2:1 component `Pipe` is not declared [MBG0203]
       help: here it is written `1 z_between { R z { conductance: … } } p -> z_between; z_between -> n;`
     ");
+}
+
+#[test]
+fn the_inverse_of_a_parameter_is_told() {
+    let heat = |given: &str| {
+        format!(
+            "model M {{ 0 a pseudo; 0 b pseudo {{ Se air {{ effort: 290.0 }} }} room: HeatCapacity {{ capacity: 1e3 }} (a);
+             wall: Conduction {{ {given} }} (a, b); }}"
+        )
+    };
+    for (slip, here) in [
+        ("R: 0.2", "conductance: 1 / 0.2"),
+        ("resistance: 0.2 + 0.1", "conductance: 1 / (0.2 + 0.1)"),
+    ] {
+        assert_eq!(typed(&heat(slip)), [here]);
+        assert_eq!(told(&heat(here)), "");
+    }
+    let circuit = |given: &str| {
+        format!(
+            "model M {{ 0 a {{ C c {{ compliance: 1.0 }} }} 0 b {{ Se zero {{ effort: 0.0 }} }} r: Resistor {{ {given} }} (a, b); }}"
+        )
+    };
+    assert_eq!(typed(&circuit("conductance: 0.1")), ["resistance: 1 / 0.1"]);
+    assert_eq!(told(&circuit("resistance: 1 / 0.1")), "");
 }
 
 #[test]

@@ -262,6 +262,7 @@ impl<'a> Builder<'a> {
         }
         let here = beside::told(instance, argument, names)
             .or_else(|| self.parameter_here(scope, (instance, component), argument, names))
+            .or_else(|| tools::by_inverse(argument, names))
             .or_else(|| tools::by_ratio(instance, argument))
             .or_else(|| tools::sequence(argument, names))
             .or_else(|| tools::at_point(instance, argument));
@@ -330,7 +331,10 @@ impl<'a> Builder<'a> {
             let found = found.to_string();
             !known.contains(&found.as_str()) && !ending_in(&found, &[&name_text]).is_empty()
         };
-        let is_meant = |found: &Ident| tools::parameter(found, &known) == Some(&name_text);
+        let is_meant = |found: &Ident| {
+            let meant = [tools::parameter, tools::inverse].map(|told| told(found, &known));
+            meant.contains(&Some(&name_text))
+        };
         let is_ratio = |given: &ast::Field| {
             !known.iter().any(|known| given.name == known)
                 && tools::by_ratio(instance, given).is_some()

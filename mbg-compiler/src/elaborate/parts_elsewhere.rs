@@ -552,11 +552,9 @@ pub(super) fn elements(
     if let Some(text) = named_alike(circuits, &component) {
         // What is told behind the text to type ends it itself.
         let end = if text.contains('`') { "" } else { "`" };
-        let left_out = left_out(instance, &[text]);
-        return Some(format!(
-            "here it is written `{}{end}{left_out}",
-            circuit(instance, text)
-        ));
+        let typed = circuit(instance, text);
+        let left_out = left_out(instance, &[text], &typed);
+        return Some(format!("here it is written `{typed}{end}{left_out}"));
     }
     if let Some(text) = named_alike(TOLD, &component) {
         return Some(circuit(instance, text));
@@ -564,7 +562,6 @@ pub(super) fn elements(
     let mut known = ELEMENTS.iter();
     let (_, stand, parts) = known.find(|(names, ..)| names.contains(&component.as_str()))?;
     let laws: Vec<&str> = parts.iter().map(|(.., law)| *law).collect();
-    let left_out = left_out(instance, &laws);
     let (kind, dimension) = end.unwrap_or((JunctionKind::One, 1));
     let ends: Vec<String> = instance.connections.iter().map(dump::reference).collect();
     let parts: Vec<Part> = parts.iter().map(|part| given(instance, part)).collect();
@@ -589,13 +586,14 @@ pub(super) fn elements(
         (Stand::Between, [a, b], _) => between(parts, &name, (kind, [a, b])),
         _ => at_junction(parts, &name, at, dimension),
     };
+    let left_out = left_out(instance, &laws, &text);
     Some(format!("here it is written `{text}`{left_out}"))
 }
 
-/// The arguments of an instance for which a text has no place, unless it leaves something to be filled in.
-fn left_out(instance: &ast::Instance, text: &[&str]) -> String {
-    let has = |part: &str| text.iter().any(|it| it.contains(part));
-    let places = GIVEN.iter().filter(|(place, _)| has(place));
+/// The arguments of an instance for which laws have no place, unless what is typed leaves something to be filled in.
+fn left_out(instance: &ast::Instance, laws: &[&str], typed: &str) -> String {
+    let is_read = |place: &str| laws.iter().any(|law| law.contains(place));
+    let places = GIVEN.iter().filter(|(place, _)| is_read(place));
     let taken: Vec<&[&str]> = places.map(|(_, names)| *names).collect();
     let names = instance.arguments.iter().map(|it| it.name.to_string());
     let lost = names.filter(|name| {
@@ -603,7 +601,7 @@ fn left_out(instance: &ast::Instance, text: &[&str]) -> String {
         !taken.iter().any(|names| names.contains(&name.as_str()))
     });
     let lost: Vec<String> = lost.collect();
-    if lost.is_empty() || text.is_empty() || has("…") {
+    if lost.is_empty() || laws.is_empty() || typed.contains('…') {
         return String::new();
     }
     format!("; that leaves out {}", listing(lost))

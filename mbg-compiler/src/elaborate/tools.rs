@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use proc_macro2::Ident;
 use syn::Expr;
 
-use super::elsewhere::bare;
+use super::elsewhere::{bare, operand};
 use super::frames::{IN_PLANE, IN_SPACE};
 use crate::syntax::slips::axes_of;
 use crate::syntax::words::{near, nearest};
@@ -416,6 +416,15 @@ const PARAMETERS: &[(&[&str], &[&str])] = &[
     (&["d"], &["displacement"]),
 ];
 
+/// Parameters that are the inverse of what other tools give.
+const INVERSES: &[(&[&str], &str)] = &[
+    (
+        &["resistance", "r", "thermal_resistance", "rth", "r_th"],
+        "conductance",
+    ),
+    (&["conductance", "g"], "resistance"),
+];
+
 /// The component of the library that has this name elsewhere.
 pub(super) fn component(name: &str) -> Option<&'static str> {
     let name = plain(name);
@@ -485,6 +494,23 @@ pub(super) fn parameter<'a>(word: &Ident, names: &[&'a str]) -> Option<&'a str> 
         let mut here = here.iter().filter(|_| words.contains(&word.as_str()));
         here.find_map(|here| names.iter().find(|name| *name == here).copied())
     })
+}
+
+/// The parameter of a component whose inverse has this name.
+pub(super) fn inverse<'a>(word: &Ident, names: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_string().to_lowercase();
+    let (_, here) = INVERSES
+        .iter()
+        .find(|(words, _)| words.contains(&word.as_str()))?;
+    names.iter().find(|name| *name == here).copied()
+}
+
+/// What to type for a resistance in the place of a conductance, or the other way about.
+pub(super) fn by_inverse(argument: &ast::Field, names: &[&str]) -> Option<String> {
+    let here = inverse(&argument.name, names)?;
+    let value = argument.value.as_ref();
+    let value = value.map_or_else(|| "…".to_owned(), operand);
+    Some(format!("write `{here}: 1 / {value}`"))
 }
 
 /// What to type for the axes of a joint that turns about three of them, as one word or a list.

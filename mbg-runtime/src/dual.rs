@@ -255,6 +255,13 @@ impl<T: Real, L: Columns<T>> Real for Dual<T, L> {
         }
     }
 
+    fn with_slopes_of(self, other: Self) -> Self {
+        Self {
+            value: self.value.with_slopes_of(other.value),
+            slope: other.slope,
+        }
+    }
+
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         let of_factor = (factor.slope).multiply_add(L::whole(self.value), addend.slope);
         Self {

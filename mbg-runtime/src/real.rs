@@ -88,6 +88,11 @@ pub trait Real:
     fn slope_along(self, _direction: usize) -> Option<f64> {
         None
     }
+    /// This number with the slopes of another one, if it carries any.
+    #[doc(hidden)]
+    fn with_slopes_of(self, _other: Self) -> Self {
+        self
+    }
     /// `self · factor + addend`, rounded once where [`FUSED`] holds, else twice.
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend

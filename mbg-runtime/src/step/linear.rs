@@ -140,23 +140,20 @@ impl<T: Real> Element for Complex<T> {
         product
     }
 
-    /// Divides by the larger part first, so that no square overflows.
+    /// Divides by the larger part first, so that no square overflows, in each lane by its own.
     fn reciprocal(self) -> Self {
-        let one = T::from_f64(1.0);
-        if self.real.magnitude() >= self.imaginary.magnitude() {
-            let ratio = self.imaginary / self.real;
-            let scale = one / (self.real + self.imaginary * ratio) + T::from_f64(0.0) * self.real;
-            Self {
-                real: scale,
-                imaginary: -(ratio * scale),
-            }
-        } else {
-            let ratio = self.real / self.imaginary;
-            let scale = one / (self.real * ratio + self.imaginary);
-            Self {
-                real: ratio * scale,
-                imaginary: -scale,
-            }
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        let Self { real, imaginary } = self;
+        let chosen = |if_real, if_imaginary| {
+            real.abs()
+                .select_less(imaginary.abs(), if_imaginary, if_real)
+        };
+        let (larger, smaller) = (chosen(real, imaginary), chosen(imaginary, real));
+        let ratio = smaller / larger;
+        let scale = one / (larger + smaller * ratio) + zero * larger;
+        Self {
+            real: chosen(scale, ratio * scale),
+            imaginary: -chosen(ratio * scale, scale),
         }
     }
 
@@ -438,6 +435,27 @@ mod tests {
         assert_solves::<8>();
         assert_solves::<9>();
         assert_solves::<12>();
+    }
+
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn reciprocals_are_those_of_each_lane_alone() {
+        use crate::lanes::{Lanes, f64x4};
+
+        let parts = [[0.0, 2.0], [3.0, 0.0], [-1e200, 1e180], [1.0, -4.0]];
+        let [real, imaginary] = [0, 1].map(|part| f64x4::from_lanes(|lane| parts[lane][part]));
+        let together = Complex { real, imaginary }.reciprocal();
+        for (lane, [real, imaginary]) in parts.into_iter().enumerate() {
+            let number = Complex { real, imaginary };
+            let alone = number.reciprocal();
+            let one = number * alone;
+            assert!(
+                (one.real - 1.0).abs() < 1e-15 && one.imaginary.abs() < 1e-15,
+                "{one:?}"
+            );
+            let found = [together.real.lane(lane), together.imaginary.lane(lane)];
+            assert_eq!(found, [alone.real, alone.imaginary]);
+        }
     }
 
     #[test]

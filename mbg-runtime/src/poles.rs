@@ -16,7 +16,8 @@ const SHORTER: f64 = 0.95;
 
 impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M, P> {
     /// The poles in rad/s, the eigenvalues of `A`: real parts below zero decay, pairs with imaginary parts swing. None where an
-    /// entry of `A` is not finite, or where they are not found in a bounded number of sweeps.
+    /// entry of `A` is not finite, or where they are not found in a bounded number of sweeps. Of several lanes they are those of the
+    /// first, and [`Dual`](crate::Dual) numbers leave their slopes.
     ///
     /// States from which nothing follows, and those that follow from no other, are taken first, so that a free body and a chain of
     /// integrators have poles at zero to the last bit; then the matrix is scaled (Parlett and Reinsch, *Numerische Mathematik* 13

@@ -224,7 +224,8 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// chance, and between thresholds where it passes several, since neither ends nor stages of the step may meet what is there.
     /// Where an argument turns in between, as `x * x + y * y` does when a place is passed by, thresholds count twice that it may go
     /// over and back: those on this side of where its tangents at both points meet. On [`Dual`](crate::Dual) numbers, steps end at
-    /// the thresholds at which a law jumps. A motion may stay at a threshold whose argument is told with its rate.
+    /// the thresholds at which a law jumps, those of constant length at its kinks, too. A motion may stay at a threshold whose argument
+    /// is told with its rate.
     ///
     /// Generated models give it, for arguments in which states have a part, or inputs where a law jumps. Waves over time or one
     /// state, such as `cos(q) > 0.9`, turn often, so half turns of their angles are told as well, with two thresholds each. It

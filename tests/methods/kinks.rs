@@ -1,8 +1,8 @@
 //! Steps of constant length across kinks of stiff laws.
 
 use mbg_runtime::{
-    Adaptive, Fixed, ImplicitMidpoint, Integrator, Method, Radau5, Radau9, Rk4, Rodas4, Rodas5P,
-    Ros2, Statistics, System, mbg,
+    Adaptive, Dual, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Pirk8, Radau5, Radau9,
+    Rk4, Rodas4, Rodas5P, Ros2, Statistics, System, Tsit5, mbg,
 };
 
 mbg! {
@@ -53,6 +53,19 @@ mbg! {
         0 contact;
         block -> contact -> slip;
         Sf belt { flow: -0.1 } -> contact;
+    }
+}
+
+mbg! {
+    /// A ball flies against a wall that gives way.
+    model Wall {
+        param gap = 0.4;
+        param stiffness = 1000.0;
+        param speed = 3.0;
+        1 way {
+            I ball { inertia: 1.0, initial: speed }
+            C wall { effort: if q > gap { stiffness * (q - gap) } else { 0.0 } }
+        }
     }
 }
 
@@ -258,4 +271,54 @@ fn a_diode_blocks_in_single_precision() {
     assert!(least > -4e-4, "{least}");
     let whole = f64::from(end) / step;
     assert!((statistics.steps as f64) < 1.1 * whole, "{statistics:?}");
+}
+
+/// Along one direction at a time. The ball comes back from half a swing at the wall: its way is `2 gap - speed (t - π / ω)`.
+#[test]
+fn slopes_over_a_kink_are_as_exact_as_the_method() {
+    fn end(solver: &impl Integrator<2>, along: usize) -> [Dual<f64>; 2] {
+        let [gap, stiffness, speed] =
+            [(0, 0.4), (1, 1000.0), (2, 3.0)].map(|(number, value)| Dual {
+                value,
+                slope: f64::from(u8::from(number == along)),
+            });
+        let parameters = WallParameters {
+            gap,
+            stiffness,
+            speed,
+        };
+        let model = Wall::<Dual<f64>>::new(parameters).unwrap();
+        let mut last = model.initial_state();
+        solver
+            .integrate(
+                &model,
+                &(),
+                Dual::constant(0.0),
+                Dual::constant(1.0),
+                last,
+                |step| {
+                    last = *step.state();
+                },
+            )
+            .unwrap();
+        last.into()
+    }
+    fn check<M: Method>(method: M, step: f64, within: f64) {
+        let solver = Fixed::new(method, step);
+        let half = std::f64::consts::PI / f64::sqrt(1000.0);
+        let slopes = [[0.0, 2.0], [0.0, -3.0 * half / 2000.0], [-1.0, half - 1.0]];
+        for (along, expected) in slopes.into_iter().enumerate() {
+            for (found, expected) in end(&solver, along).iter().zip(expected) {
+                let error = (found.slope - expected).abs();
+                assert!(error < within, "{}, {along}: {error:e}", M::NAME);
+            }
+        }
+    }
+    check(Rk4, 1e-3, 1e-5);
+    check(Tsit5, 1e-3, 1e-7);
+    check(Pirk8, 1e-3, 1e-7);
+    check(Gauss6::default(), 1e-3, 1e-7);
+    check(Radau5, 1e-3, 1e-7);
+    check(Rodas5P, 1e-3, 1e-7);
+    check(ImplicitMidpoint::default(), 1e-4, 1e-4);
 }

@@ -63,6 +63,17 @@ pub(super) enum Ran<T, const N: usize> {
     Met(Jump<T, N>),
 }
 
+/// Which thresholds a step ends at.
+#[derive(Clone, Copy)]
+pub(super) enum Counted {
+    /// All.
+    All,
+    /// Those at which a rate jumps.
+    Jumps,
+    /// Those at which the slope of a rate jumps, too, as that of a law with a kink does.
+    Kinks,
+}
+
 /// What runs over parts of a piece of the input.
 pub(super) trait Runs<T: Real, const N: usize> {
     /// Runs from a place to a time, on the lookout for jumps from another one on.
@@ -216,11 +227,12 @@ impl<T: Real, const N: usize> Way<T, N> {
             return Ok(Followed::There);
         }
         let mut found = None;
+        let counted = self.counted(ends.are_all());
         let mut memory = problem.memory;
         let mut beside = problem.beside();
         let done = runs.to(problem, (self.here, target), self.watched, &mut |step| {
             beside.memory = memory;
-            found = beside.jump_within(step, self.watched, ends.are_all());
+            found = beside.jump_within(step, self.watched, counted);
             if found.is_some() {
                 return ControlFlow::Break(());
             }
@@ -245,6 +257,16 @@ impl<T: Real, const N: usize> Way<T, N> {
                 Followed::Over
             }
         })
+    }
+
+    /// Steps whose length follows the error are short enough for slopes at a kink. Those of constant length are not: which stages are
+    /// beyond it does not change with where it is, so that slopes would be wrong by a part of what changes within a step.
+    fn counted(&self, are_all: bool) -> Counted {
+        match are_all {
+            true => Counted::All,
+            false if T::HAS_SLOPES && self.usual > 0.0 => Counted::Kinks,
+            false => Counted::Jumps,
+        }
     }
 
     /// Comes nearer to a jump that a step has met: how near is near enough goes by the first step that has.
@@ -309,7 +331,7 @@ where
         &mut self,
         step: &mut Step<'_, T, N, S::Memory>,
         watched: f64,
-        counts_all: bool,
+        counted: Counted,
     ) -> Option<Jump<T, N>> {
         if step.is_clear || step.surfaces.is_some() {
             // Where it stays at thresholds the derivative is that along them.
@@ -322,7 +344,7 @@ where
         for _ in 0..MOST {
             self.reached(&from, &end)?;
             let [before, behind] = self.narrowed(step, from, end);
-            if seen(before.0) >= watched && (counts_all || self.jumps(&before, &behind)) {
+            if seen(before.0) >= watched && self.counts(&before, &behind, counted) {
                 return Some(Jump {
                     start,
                     ahead: seen(before.0 - start.0),
@@ -379,14 +401,28 @@ where
         [before, behind]
     }
 
-    /// Whether the derivative differs between two places next to each other, in any lane.
-    fn jumps(&mut self, before: &Place<T, N>, behind: &Place<T, N>) -> bool {
+    /// Whether a threshold between two places next to each other counts: the derivative differs in any lane, or its slopes do.
+    fn counts(&mut self, before: &Place<T, N>, behind: &Place<T, N>, counted: Counted) -> bool {
+        if matches!(counted, Counted::All) {
+            return true;
+        }
         let [a, b] = [before, behind].map(|(time, state)| self.slope(*time, state));
         let part = T::from_f64(least_jump::<T>());
         let mut pairs = a.iter().zip(&b);
         pairs.any(|(a, b)| {
             let more = (*b - *a).abs() - part * (a.abs() + b.abs());
             more.find(|it| it > 0.0).is_some()
+                || (matches!(counted, Counted::Kinks) && bends(*a, *b))
         })
     }
+}
+
+/// Whether a number has another slope than one next to it, along any direction.
+fn bends<T: Real>(a: T, b: T) -> bool {
+    let slopes = |direction| match [b - a, a, b].map(|it| it.slope_along(direction)) {
+        [Some(change), Some(before), Some(behind)] => Some([change, before + behind]),
+        _ => None,
+    };
+    let mut directions = (0..).map_while(slopes);
+    directions.any(|[change, both]| change > least_jump::<T>() * both)
 }

@@ -8,7 +8,7 @@ use super::crossing::Across;
 use super::dense::Step;
 use super::fixed::Fixed;
 use super::grid::{FINEST, Grid, Parts};
-use super::jumps::{Jump, Ran, Runs, walk_over_jumps};
+use super::jumps::{Counted, Jump, Ran, Runs, walk_over_jumps};
 use super::method::{Method, Start, Stepper};
 use super::over::{Place, straight};
 use super::problem::Problem;
@@ -389,7 +389,7 @@ where
     let end = from.x + change;
     let mut dense = || across.polynomial(problem, from, &end);
     let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
-    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, false);
+    let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, Counted::Jumps);
     problem.memory = tried;
     // Sweeps may have been beyond one to which neither leads.
     let beside = || (!is_clear(problem, from, &change)).then(|| astray(from, whole));

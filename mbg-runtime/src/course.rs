@@ -1,7 +1,7 @@
 //! How the arguments of choices go from one point to another.
 
 use crate::Real;
-use crate::lane::{is_finite, lane, or_nan};
+use crate::lane::{are_alike, is_finite, lane, or_nan};
 use crate::step::seen;
 
 /// How much farther than a step the way from its start is looked at.
@@ -150,7 +150,7 @@ impl<T: Real> Course<'_, T> {
     pub(crate) fn is_led_back(&self) -> bool {
         let is_led_back = |it: Lane<T::Lane>| {
             let [from, to] = [it.from[0], it.to[0]];
-            let goes_on = (to - from) * it.to[1] > T::Lane::from_f64(0.0);
+            let goes_on = are_alike(to - from, it.to[1]);
             self.thresholds_in(it.number)
                 .any(|threshold| self.between(from - threshold, to - threshold).is_some())
                 && !goes_on
@@ -300,7 +300,7 @@ pub(crate) fn sooner<T: Real>(a: T, b: T) -> T {
 /// tangents meet, else an end. It holds for what is convex, as a distance from a place is along a line.
 fn farthest<L: Real + PartialOrd>(lasting: L, [a, rate_a]: [L; 2], [b, rate_b]: [L; 2]) -> L {
     let zero = L::from_f64(0.0);
-    if rate_a * rate_b < zero {
+    if are_alike(rate_a, -rate_b) {
         let time = (b - a - rate_b * lasting) / (rate_a - rate_b);
         a + rate_a * if time > zero { time.min(lasting) } else { zero }
     } else {

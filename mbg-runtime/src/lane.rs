@@ -20,6 +20,12 @@ pub(crate) fn is_finite<L: Real + PartialOrd>(number: L) -> bool {
     number.abs() < L::from_f64(f64::INFINITY)
 }
 
+/// Whether both are on the same side of zero. Their product may be too small for single precision.
+pub(crate) fn are_alike<L: Real + PartialOrd>(a: L, b: L) -> bool {
+    let zero = L::from_f64(0.0);
+    (a < zero && b < zero) || (a > zero && b > zero)
+}
+
 // Written so that what is no number is left out.
 
 pub(crate) fn larger<L: PartialOrd>(a: L, b: L) -> L {
@@ -59,6 +65,17 @@ mod tests {
         assert_eq!(of([1e-30, 0.0, 0.0]), 1e-30);
         assert_eq!(of([0.0, -1e30, 0.0]), 1e30);
         assert!(of([f32::NAN, 0.0, 1.0]).is_nan());
+    }
+
+    #[test]
+    fn small_numbers_have_a_side() {
+        let [small, large, none] = [1e-30_f32, 1e-20, f32::NAN];
+        assert!(are_alike(small, large) && are_alike(-small, -large));
+        assert!(
+            ![(small, -large), (0.0, large), (none, large)]
+                .iter()
+                .any(|it| are_alike(it.0, it.1))
+        );
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::over::Place;
 use super::problem::Problem;
 use super::thresholds::Point;
-use crate::lane::lane;
+use crate::lane::{are_alike, lane};
 use crate::{Course, Input, Real, System};
 
 /// So many at once.
@@ -87,8 +87,7 @@ where
     /// The same but for those from which the motion goes on behind them.
     pub(super) fn met_between(&self, from: &Point<T, N>, to: &Point<T, N>) -> Option<Surfaces<T>> {
         self.surfaces(from, to, |course, level| {
-            let goes_on =
-                lane(course.to[0] - course.from[0]) * lane(course.to[1]) > T::Lane::from_f64(0.0);
+            let goes_on = are_alike(lane(course.to[0] - course.from[0]), lane(course.to[1]));
             is_between(course, level) && !goes_on
         })
     }
@@ -123,7 +122,7 @@ where
         self.surfaces(here, here, |course, level| {
             let [value, rate] = course.from.map(lane);
             let way = lane(level) - value;
-            way == zero || (way * rate > zero && way.abs() <= lasting * rate.abs())
+            way == zero || (are_alike(way, rate) && way.abs() <= lasting * rate.abs())
         })
     }
 
@@ -163,7 +162,9 @@ pub(super) fn is_later<T: Real>(time: T, later: T) -> bool {
 
 pub(super) fn is_between<T: Real>(course: &Course<'_, T>, level: T) -> bool {
     let [from, to] = [course.from, course.to].map(|it| lane(it[0] - level));
-    from * to <= T::Lane::from_f64(0.0) && from != to
+    let zero = T::Lane::from_f64(0.0);
+    let is_passed = (from <= zero && to >= zero) || (from >= zero && to <= zero);
+    is_passed && from != to
 }
 
 #[cfg(test)]

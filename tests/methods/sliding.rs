@@ -18,6 +18,8 @@ mod networks;
 mod several;
 #[path = "sliding/turning.rs"]
 mod turning;
+#[path = "sliding/yielding.rs"]
+mod yielding;
 
 mbg! {
     /// A block on a floor that a spring pulls.

@@ -326,6 +326,8 @@ fn functions_are_told_in_any_spelling_and_with_their_signs() {
             "remainder(c.q, 3.0)",
             "(c.q - 3.0 * floor(c.q / 3.0 + 0.5))",
         ),
+        ("regRoot(c.q, 1e-3)", "(sign(c.q) * sqrt(abs(c.q)))"),
+        ("regSquare(c.q)", "(c.q * abs(c.q))"),
         ("Modelica.Constants.pi * c.q", "3.141592653589793"),
         ("Modelica.Constants.g_n * c.q", "9.80665"),
     ] {
@@ -410,6 +412,26 @@ fn imports_annotations_and_sequences_are_told_where_they_belong() {
         alone,
         ["free: Free { first: 2, second: 1, third: 0 } (a, b);"]
     );
+}
+
+#[test]
+fn magnetic_circuits_and_heat_are_told_by_their_laws() {
+    let coil = |winding: &str, core: &str| {
+        format!(
+            "model M {{ 1 coil {{ Se supply {{ effort: 10.0 }} R wire {{ resistance: 2.0 }} }} 0 core {{ C gap {{ {core} }} }} \
+             coil -> GY winding {{ {winding} }} -> core; output flux = gap.q; }}"
+        )
+    };
+    let slips = [
+        (coil("turns: 100.0", "stiffness: 2.0"), "effort: 100.0"),
+        (coil("effort: 3.0", "reluctance: 1e6"), "stiffness: 1e6"),
+        (coil("effort: 3.0", "permeance: 1e-6"), "compliance: 1e-6"),
+        (coil("effort: 3.0", "heat_capacity: 5.0"), "compliance: 5.0"),
+    ];
+    for (slip, written) in slips {
+        assert_eq!(typed(&slip)[0], written);
+    }
+    assert_eq!(told(&coil("effort: 100.0", "stiffness: 1e6")), "");
 }
 
 #[test]

@@ -27,6 +27,9 @@ const CURVE: &str = "interpolate(x, places, values)";
 /// A root, of negative values an odd one.
 const ROOT: &str = "(sign(x) * pow(abs(x), 1.0 / n))";
 
+/// A root, of negative values that of their size with their sign: runs go on along zero where its slope is infinite.
+const SIGNED_ROOT: &str = "(sign(x) * sqrt(abs(x)))";
+
 const ASINH: &str = "ln(x + sqrt(x * x + 1))";
 const ACOSH: &str = "ln(x + sqrt(x * x - 1))";
 const ATANH: &str = "(ln((1 + x) / (1 - x)) / 2)";
@@ -63,6 +66,9 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("root", &["x"], "sqrt(x)"),
     ("root", &["x", "n"], ROOT),
     ("nthroot", &["x", "n"], ROOT),
+    ("regRoot", &["x"], SIGNED_ROOT),
+    ("regRoot", &["x", "delta"], SIGNED_ROOT),
+    ("regSquare", &["x"], "(x * abs(x))"),
     ("noEvent", &["x"], "x"),
     ("smooth", &["order", "x"], "x"),
     ("homotopy", &["x", "simplified"], "x"),

@@ -22,10 +22,26 @@ const COEFFICIENTS: &[(ElementKind, &[&str], &str)] = &[
         "inertia",
     ),
     // A capacity is flow gathered by effort: the inverse of what a spring is known by.
-    (ElementKind::C, &["capacitance", "capacity"], "compliance"),
     (
         ElementKind::C,
-        &["spring_constant", "spring_rate", "k", "elastance"],
+        &[
+            "capacitance",
+            "capacity",
+            "heat_capacity",
+            "thermal_capacity",
+            "permeance",
+        ],
+        "compliance",
+    ),
+    (
+        ElementKind::C,
+        &[
+            "spring_constant",
+            "spring_rate",
+            "k",
+            "elastance",
+            "reluctance",
+        ],
         "stiffness",
     ),
     (
@@ -107,7 +123,7 @@ const STARTS: &[(ElementKind, &[&str], &str)] = &[
 ];
 
 /// What the number of a transformer or gyrator is called.
-const RATIOS: &[&str] = &["ratio", "modulus", "gain", "n", "m", "r"];
+const RATIOS: &[&str] = &["ratio", "modulus", "gain", "turns", "n", "m", "r"];
 
 /// What to type for a word that an element does not have.
 pub(super) fn told(element: &Element, word: &Ident, value: Option<&Expr>) -> Option<String> {

@@ -187,5 +187,23 @@ mod tests {
         assert_eq!(sum.0, with(|a, b| (a + b) - a));
         assert_eq!(first.find(|number| number < 0.0), Some(-0.7));
         assert_eq!(first.find(|number| number > 3.0), None);
+        assert_eq!(
+            [0, 3, 4].map(|lane| first.in_lane(lane)),
+            [Some(0.3), Some(2.5), None]
+        );
+        assert_eq!(Four::from_lane(2.0), Four([2.0; 4]));
+    }
+
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn lanes_of_lanes_follow_each_other() {
+        use crate::lanes::{Lanes, f64x4};
+
+        let number = |part: usize, lane: usize| (4 * part + lane) as f64;
+        let all = Four([0, 1, 2, 3].map(|part| f64x4::from_lanes(|lane| number(part, lane))));
+        for place in 0..16 {
+            assert_eq!(all.in_lane(place), Some(place as f64));
+        }
+        assert_eq!(all.in_lane(16), None);
     }
 }

@@ -164,14 +164,17 @@ pub fn project_velocity<T: Real, const M: usize, const N: usize>(
     let open = |velocity: &SVector<T, N>| {
         SVector::<T, M>::from_fn(|i, _| dot(&rows[i], &velocity.data.0[0]) - right[i])
     };
-    let mut point = velocity;
+    let (mut point, rank) = (velocity, T::from_f64(M as f64));
     let mut residual = open(&point);
     let mut iterations = 0;
     while iterations < 2 && !holds(&residual, tolerance) {
         iterations += 1;
-        let step = correction(jacobian, &residual, 0.0, T::from_f64(M as f64));
+        let step = correction(jacobian, &residual, 0.0, rank);
         point.zip_apply(&step, |v, step| *v -= step);
         residual = open(&point);
+    }
+    if T::HAS_SLOPES && holds(&residual, tolerance) {
+        point = with_slopes(point, (residual, *jacobian), rank);
     }
     Projected::new(point, &residual, tolerance, iterations)
 }
@@ -639,6 +642,15 @@ mod tests {
         assert!(
             (found.point - SVector::from([0.75, 0.0, 0.75])).norm() < 1e-14,
             "{found:?}"
+        );
+        // What is along the constraint already has the slopes of what stays so: those of `v ⊥ (3, 4)` that turns.
+        let turned = SVector::from([Dual::variable(0.8), Dual::constant(-0.6)]);
+        let row = SMatrix::from([[Dual::constant(3.0)], [Dual::constant(4.0)]]);
+        let slopes = project_velocity(turned, 1e-14, &row, &SVector::zeros()).point;
+        let slopes = slopes.map(|it| it.slope);
+        assert!(
+            (slopes - SVector::from([0.64, -0.48])).norm() < 1e-14,
+            "{slopes:?}"
         );
         let driven = jacobian * SVector::from([1.0, 2.0, 3.0]);
         let found = project_velocity(SVector::zeros(), 1e-14, &jacobian, &driven);

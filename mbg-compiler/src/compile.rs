@@ -145,14 +145,16 @@ pub fn compile(
     let network = Network::of(&elaborated.graph, &mut pool);
     let scalars = equations::form(&elaborated, &network, &mut pool);
     let first = structure::solve(&scalars, Formulation::Articulated, &mut pool);
-    let soluble = !matches!(first, Err(Failure::Singular));
     // What nothing holds would be told as storages that depend on each other.
     let uniform = elaborated.graph.causality == Causality::Uniform;
-    if uniform && !soluble && structure::report_floating(&elaborated, &scalars, &pool, diagnostics)
+    let is_singular = matches!(first, Err(Failure::Singular));
+    if uniform
+        && is_singular
+        && structure::report_floating(&elaborated, &scalars, &pool, diagnostics)
     {
         return None;
     }
-    let outlook = || match soluble {
+    let outlook = || match first.is_ok() {
         true => Outlook::Soluble,
         false => structure::outlook(&elaborated, &pool),
     };

@@ -606,3 +606,25 @@ fn displacements_that_are_told_wrongly_are_refused() {
     ");
     insta::assert_snapshot!(of("displacement: way / 0.0"), @"1:113 this divides by zero, whatever the state [MBG0216]");
 }
+
+/// Neither strokes by components nor an accepted dependence make a slip follow from a force by `sign`.
+#[test]
+fn a_spring_in_a_row_with_dry_friction_is_told_to_have_a_law_for_its_flow() {
+    let text = |law: &str| {
+        format!(
+            "model M {{ 1 floor {{ I slab {{ inertia: 5.0 }} C bed {{ stiffness: 4.0, initial: 1.0 }} }}
+             0 row {{ C spring {{ stiffness: 8.0 }} R slider {{ {law} }} }} floor -> row; output way = bed.q; }}"
+        )
+    };
+    let report = told(&text("effort: 6.0 * sign(f)"));
+    assert!(
+        report.contains("`#[derivative]` does not mend it"),
+        "{report}"
+    );
+    assert!(
+        report.contains("help: write the law of `slider` for the flow: `flow: …` in terms of `e`"),
+        "{report}"
+    );
+    assert!(!report.contains("causality componentwise"), "{report}");
+    assert_eq!(told(&text("flow: 1e3 * (e - min(max(e, -6.0), 6.0))")), "");
+}

@@ -256,16 +256,11 @@ struct Way<L, const K: usize> {
 impl<L: Real + PartialOrd, const K: usize> Way<L, K> {
     /// By the golden ratio.
     fn across() -> Self {
-        let [zero, one, two] = [0.0, 1.0, 2.0].map(L::from_f64);
-        let mut along = zero;
+        let [mut along, one, two, golden] = [0.0, 1.0, 2.0, PACE].map(L::from_f64);
         let pace = |_| {
             let pace = two + two * along;
-            along += L::from_f64(PACE)
-                - if along + L::from_f64(PACE) < one {
-                    zero
-                } else {
-                    one
-                };
+            let is_within = along + golden < one;
+            along += if is_within { golden } else { golden - one };
             pace
         };
         Self {

@@ -1,6 +1,7 @@
 //! What the equations, component by component, say of a drawing that is rejected.
 
 use super::report::COMPONENTWISE;
+use crate::codes;
 use crate::diagnostics::Diagnostic;
 use crate::graph::Element;
 
@@ -23,6 +24,16 @@ impl Outlook {
     #[must_use]
     pub fn is_soluble(&self) -> bool {
         matches!(self, Self::Soluble)
+    }
+
+    /// Whether storages depend on each other, unlike where a loop has a law without an inverse.
+    #[must_use]
+    pub fn loses_order(&self) -> bool {
+        match self {
+            Self::Soluble => false,
+            Self::Acceptable => true,
+            Self::Refused(report) => report.code != codes::NONLINEAR_LOOP,
+        }
     }
 
     /// Whether storages depend on each other and that can be accepted.

@@ -124,7 +124,7 @@ fn storage_error(
         let others = names(graph, others);
         report.notes.push(format!("the same forces {others}"));
     }
-    if !outlook.is_soluble() {
+    if outlook.loses_order() {
         report.notes.push(
             "component by component the equations have no solution either: a true loss of order, which no choice of \
              strokes mends"

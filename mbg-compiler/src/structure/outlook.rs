@@ -1,6 +1,6 @@
 //! What becomes of a model whose storages depend on each other, tried out.
 
-use super::{Failure, resolve};
+use super::{Formulation, resolve, solve};
 use crate::causality::outlook::Outlook;
 use crate::diagnostics::Diagnostics;
 use crate::elaborate::Elaborated;
@@ -17,8 +17,9 @@ pub fn outlook(model: &Elaborated, pool: &Pool) -> Outlook {
     }
     let network = Network::of(&model.graph, &mut pool);
     let scalars = equations::form(&model, &network, &mut pool);
-    let (mut told, singular) = (Diagnostics::new(), Err(Failure::Singular));
-    let solved = resolve(&mut model, scalars, singular, &mut pool, &mut told);
+    let first = solve(&scalars, Formulation::Articulated, &mut pool);
+    let mut told = Diagnostics::new();
+    let solved = resolve(&mut model, scalars, first, &mut pool, &mut told);
     match told.list() {
         [first, ..] if solved.is_none() => Outlook::Refused(Box::new(first.clone())),
         _ => Outlook::Acceptable,

@@ -3,7 +3,7 @@
 use super::less;
 use super::method::Span;
 use crate::Real;
-use crate::lane::lane;
+use crate::lane::{lane, larger};
 
 /// The steps over a piece, of which one may be begun anew from within.
 pub(super) struct Grid<T> {
@@ -91,7 +91,7 @@ fn divide<T: Real>(start: T, end: T, h: T) -> Division<T> {
     let whole = Into::<f64>::into(ratio) as u64;
     let rest = ratio - T::Lane::from_f64(whole as f64);
     let [start, end, step] = [start, end, h].map(|it| lane(it).abs());
-    let times = if start > end { start } else { end } / step;
+    let times = larger(start, end) / step;
     let [one, most, unit] = [1.0, 0.25, 8.0 * T::EPSILON].map(T::Lane::from_f64);
     let rounding = (unit * (times + ratio)).min(most);
     let even = |count: u64| {

@@ -54,7 +54,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
 
     /// The same of a state that is moved by such distances first, as far as numbers tell of these.
     pub(super) fn aside_behind(&self, x: &SVector<T, N>, distances: &Each<T, K>) -> Each<T, K> {
-        let zero = T::Lane::from_f64(0.0);
+        let [zero, one] = [0.0, 1.0].map(T::Lane::from_f64);
         let mut sizes = Each::<T::Lane, K>::all(zero);
         for (size, gradient) in sizes
             .iter_mut()
@@ -65,20 +65,17 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         }
         let ways = (0..self.free).map(|place| lane(distances[place]).abs() / sizes[place]);
         let way = T::Lane::from_f64(ASIDE * T::EPSILON) * ways.fold(zero, larger);
-        let mut aside = self.aside(x);
+        let aside = self.aside(x);
         // What is at it by others is to be crossed with it.
         let (twins, likes) = &self.twins;
-        let mut farther = Each::<f64, K>::all(0.0);
+        let mut farther = Each::<T::Lane, K>::all(zero);
         for like in likes.iter().take(twins.count()) {
-            farther[like.leader] = farther[like.leader].max(like.apart);
+            let apart = T::Lane::from_f64(like.apart);
+            farther[like.leader] = larger(farther[like.leader], apart);
         }
-        for (place, aside) in aside.iter_mut().enumerate().take(self.surfaces.count()) {
-            if farther[place] > 0.0 {
-                *aside = *aside * T::from_f64(1.0 + farther[place]);
-            }
-            *aside += T::from_lane(way * sizes[place]);
-        }
-        aside
+        Each::of(|place| {
+            aside[place] * T::from_lane(one + farther[place]) + T::from_lane(way * sizes[place])
+        })
     }
 
     /// How far a state is from all surfaces, and how it is moved across those that are free.
@@ -146,9 +143,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
             let beyond = along - nth(place);
             match count > free {
                 true => beyond,
-                false if beyond < -half => -half,
-                false if beyond > half => half,
-                false => beyond,
+                false => smaller(larger(beyond, -half), half),
             }
         };
         let state = |paces: &Each<T::Lane, K>, along: T::Lane| {
@@ -162,12 +157,7 @@ impl<T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'_, T, S, I,
         if count > free {
             let ends = [-half, nth::<T::Lane>(free) - half];
             way = self.met(way, ends, (at, &aside), state, memory);
-            let longest = T::Lane::from_f64(LONGEST);
-            let longer = if way.longer < longest {
-                way.longer
-            } else {
-                longest
-            };
+            let longer = smaller(T::Lane::from_f64(LONGEST), way.longer);
             way.paces = way.paces.map(|pace| longer * pace);
             // Far from where others are met rounding leads astray. What is not met yet is by the longer way.
             let crossings = way.crossings.iter().take(count);

@@ -76,6 +76,55 @@ impl Meta {
     pub const fn output(&self, name: &str) -> Option<usize> {
         place(self.outputs, name)
     }
+
+    /// Sizes of the states, by their names, as [`Adaptive::nominal`](crate::Adaptive::nominal) has them; 1 for those not named.
+    ///
+    /// A name also stands for all states that have more behind it, after a `.` or in brackets: `hull.p` for `hull.p.x` and its like.
+    /// Where several stand for a state the last one counts. None if a name stands for no state, or if there are not `N` states.
+    ///
+    /// ```
+    /// use mbg_runtime::{Adaptive, Integrator, System, Tsit5, mbg};
+    ///
+    /// mbg! {
+    ///     /// A capacitor of 1 nF is discharged from 5 V by 1 kΩ.
+    ///     model Pulse {
+    ///         1 wire { C capacitor { compliance: 1e-9, initial: 5e-9 } R resistor { resistance: 1e3 } }
+    ///         output voltage: V = capacitor.e;
+    ///     }
+    /// }
+    ///
+    /// const SIZES: [f64; 1] = Pulse::<f64>::META.nominal(&[("capacitor.q", 1e-9)]).unwrap();
+    ///
+    /// let pulse = Pulse::<f64>::new(PulseParameters::default())?;
+    /// let solver = Adaptive { nominal: &SIZES, ..Adaptive::new(Tsit5, 1e-9, 1e-9) };
+    /// let mut voltage = 0.0;
+    /// solver.sample_outputs(&pulse, &(), 0.0, pulse.initial_state(), &[3e-6], |_, _, y| voltage = y[0])?;
+    /// assert!((voltage - 5.0 * f64::exp(-3.0)).abs() < 1e-8);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub const fn nominal<const N: usize>(&self, sizes: &[(&str, f64)]) -> Option<[f64; N]> {
+        if N != self.states.len() {
+            return None;
+        }
+        let mut all = [1.0; N];
+        let mut size = 0;
+        while size < sizes.len() {
+            let (name, number) = sizes[size];
+            let (mut state, mut is_known) = (0, false);
+            while state < N {
+                if is_named(self.states[state].name, name) {
+                    (all[state], is_known) = (number, true);
+                }
+                state += 1;
+            }
+            if !is_known {
+                return None;
+            }
+            size += 1;
+        }
+        Some(all)
+    }
 }
 
 /// The place of a name.
@@ -91,11 +140,23 @@ const fn place(variables: &[Variable], name: &str) -> Option<usize> {
 }
 
 const fn is_same(one: &[u8], other: &[u8]) -> bool {
+    one.len() == other.len() && begins_with(one, other)
+}
+
+/// Whether a name is this one, or begins with it and a part of its own.
+pub(crate) const fn is_named(whole: &str, name: &str) -> bool {
+    let (whole, name) = (whole.as_bytes(), name.as_bytes());
+    !name.is_empty()
+        && begins_with(whole, name)
+        && (whole.len() == name.len() || matches!(whole[name.len()], b'.' | b'['))
+}
+
+const fn begins_with(name: &[u8], start: &[u8]) -> bool {
     let mut byte = 0;
-    while byte < one.len() && byte < other.len() && one[byte] == other[byte] {
+    while byte < name.len() && byte < start.len() && name[byte] == start[byte] {
         byte += 1;
     }
-    byte == one.len() && byte == other.len()
+    byte == start.len()
 }
 
 /// A scalar with a name and a unit.

@@ -1,5 +1,6 @@
 //! What is to be found of states and inputs, and what is wanted of each state.
 
+use crate::meta::is_named;
 use crate::{Meta, System, Trimmed, Untrimmed};
 
 /// Which states and inputs stay as they are, and how much each state is to change, if that matters.
@@ -105,10 +106,4 @@ impl<const N: usize, const M: usize> Selection<N, M> {
             self.unknown = Some(Untrimmed::Unknown { kind, name });
         }
     }
-}
-
-/// Whether a name is this one, or begins with it and a part of its own.
-pub(crate) fn is_named(whole: &str, name: &str) -> bool {
-    let rest = whole.strip_prefix(name);
-    !name.is_empty() && rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }

@@ -5,8 +5,9 @@ use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
 
 use crate::beside::{BESIDE, ROUNDING, aside};
+use crate::meta::is_named;
 use crate::search::{Asked, Search};
-use crate::selection::{Selection, is_named};
+use crate::selection::Selection;
 use crate::solve::{Row, Rows, Sizes};
 use crate::{Convertible, Linearised, Trouble, Untrimmed};
 

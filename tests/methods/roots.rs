@@ -340,7 +340,7 @@ fn two_tanks_run_empty_at_once() {
             error < 20.0 * tolerance,
             "{name} at {tolerance:e}: {error:e}"
         );
-        assert!(tried < 5000, "{name} at {tolerance:e}: {tried}");
+        assert!(tried < 600, "{name} at {tolerance:e}: {tried}");
     });
     fixed(&model, &(), &times, 1.0, |name, found, tried| {
         let error = largest_error(found, &times, exact);

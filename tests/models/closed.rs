@@ -261,6 +261,18 @@ fn start(model: &FourBar) -> SVector<f64, 6> {
     start
 }
 
+/// A name stands for all behind it, and the last one counts.
+#[test]
+fn sizes_go_by_names() {
+    let meta = InSpace::<f64>::META;
+    let sizes = [("one", 2.0), ("one.rate.f", 3.0), ("two.angle", 4.0)];
+    assert_eq!(meta.nominal(&sizes), Some([2.0, 4.0, 1.0, 3.0, 1.0, 1.0]));
+    for unknown in ["", "on", "one.", "one.angle.x", "four"] {
+        assert_eq!(meta.nominal::<6>(&[(unknown, 2.0)]), None, "{unknown}");
+    }
+    assert_eq!(meta.nominal::<5>(&sizes), None);
+}
+
 #[test]
 fn four_bar_stays_closed_and_keeps_its_energy() {
     let model = FourBar::new(FourBarParameters::default()).unwrap();

@@ -53,10 +53,7 @@ where
                 _ => time,
             };
             let (next, statistics) = piece([t, end], x)?;
-            sum.evaluations += statistics.evaluations;
-            sum.steps += statistics.steps;
-            sum.rejected += statistics.rejected;
-            sum.factorisations += statistics.factorisations;
+            sum += statistics;
             (t, x) = (end, next);
         }
         states.push(x);

@@ -135,7 +135,8 @@ pub struct Adaptive<'a, Method> {
     pub relative: f64,
     /// Tolerance where a state is near zero, relative to its nominal size.
     pub absolute: f64,
-    /// Nominal sizes of the states, in their order; a state without one has size 1.
+    /// Nominal sizes of the states, in their order, such as from [`Meta::nominal`](crate::Meta::nominal); a state without one has
+    /// size 1.
     pub nominal: &'a [f64],
     /// The starting step; if `None`, it is chosen from the problem.
     pub first: Option<f64>,

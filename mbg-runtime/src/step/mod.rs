@@ -38,6 +38,7 @@ mod trees;
 mod watch;
 
 use core::fmt;
+use core::ops::AddAssign;
 
 use nalgebra::SVector;
 
@@ -76,6 +77,17 @@ pub struct Statistics {
     pub jacobians: u64,
     /// Matrices factorised.
     pub factorisations: u64,
+}
+
+/// What several runs took together, such as those between events.
+impl AddAssign for Statistics {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected += other.rejected;
+        self.evaluations += other.evaluations;
+        self.jacobians += other.jacobians;
+        self.factorisations += other.factorisations;
+    }
 }
 
 /// A simulation that could not go on.

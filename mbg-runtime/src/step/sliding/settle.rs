@@ -142,14 +142,15 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             }
         }
         sliding.arrange(near, (&at, x), memory);
-        let mut there = sliding.onto(&at, x, memory);
+        // Twice: rounding is as large as the way is long, and beside what a law is a root of numbers tell far less.
+        let mut there = sliding.onto(&at, &sliding.onto(&at, x, memory), memory);
         let place = (here.time, &mut there);
         let sliding = Self::settled(model, times, place, near, (&mut *memory, evaluations))?;
         // Where a law jumps steps end without this.
         let [near, wide] = [1.0, WIDE].map(|factor| sliding.sides(&at, (&there, factor), memory));
         let is_root = (0..sliding.free).all(|place| wide.bends(&near, place, ROOT));
         // As the motion itself comes there.
-        let state = sliding.landed(here.time, x, memory);
+        let state = sliding.landed(here.time, &sliding.landed(here.time, x, memory), memory);
         (is_root && is_near(&state)).then(|| Rest {
             state,
             surfaces: Surfaces::NONE.with(&sliding.all()),

@@ -5,9 +5,11 @@
 //! reduced by those before them, over the prime field. By the greedy theorem for linear matroids the rows that vanish
 //! are the fewest, and each is a combination of earlier rows, which names its causes. Where storages depend on each
 //! other, they are chosen once more: flows of `coordinate` junctions come first, and what is fixed for almost every
-//! state, but not at the nominal one, comes last.
+//! state, but not at the nominal one, comes last. Where inertias that depend on nothing leave too few flows to
+//! coordinates, those that are far from these inertias come before those that are near.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 
 use super::mesh;
@@ -16,7 +18,7 @@ use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::{Elaborated, Ring};
 use crate::entries::merged;
 use crate::equations::{Equation, Owner, Scalars};
-use crate::graph::{ElementId, ElementKind, JunctionId, Law};
+use crate::graph::{ElementId, ElementKind, End, JunctionId, Law};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{Differentiator, Evaluation, Expression, Pool, Symbol, field};
 
@@ -119,6 +121,7 @@ fn again(
     for row in free {
         second.take(&equations[row], row, false);
     }
+    let coordinates = far_before_near(model, &second, coordinates);
     let mut candidates: Vec<(&Equation, usize)> =
         coordinates.iter().map(|row| (row, usize::MAX)).collect();
     candidates.extend(involved.into_iter().map(|row| (&equations[row], row)));
@@ -142,6 +145,73 @@ fn again(
             .collect(),
         idle: idle.collect(),
     }
+}
+
+/// Coordinates in the order in which they are taken. Where some must follow from inertias that are states, such as that of a body
+/// on a ball joint whose spin nothing else holds, they are those of the joints next to these: a ball joint gives the spin whatever
+/// its position is, while the hinge that carries it gives one only where its axis is not at a right angle to what was taken. Else
+/// they are in the order of their declaration.
+fn far_before_near(
+    model: &Elaborated,
+    taken: &Selector,
+    mut coordinates: Vec<Equation>,
+) -> Vec<Equation> {
+    let mut echelon = taken.exact.clone();
+    let causes = coordinates
+        .iter()
+        .filter_map(|row| echelon.reduce(taken.images(row), Some(row.owner)));
+    let is_inertia = |id: &ElementId| model.graph.elements[id.0].kind == ElementKind::I;
+    let inertias: BTreeSet<ElementId> = causes
+        .flatten()
+        .filter_map(|cause| storage(model, cause))
+        .filter(is_inertia)
+        .collect();
+    if inertias.is_empty() {
+        return coordinates;
+    }
+    let distances = distances(model, &inertias);
+    coordinates.sort_by_key(|row| match row.owner {
+        Owner::Coordinate(junction, _) => Reverse(distances[junction.0]),
+        _ => Reverse(usize::MAX),
+    });
+    coordinates
+}
+
+/// How many bonds are between each junction and the next of these elements, along bonds that hand on flows as flows.
+fn distances(model: &Elaborated, elements: &BTreeSet<ElementId>) -> Vec<usize> {
+    let graph = &model.graph;
+    let junctions = graph.junctions.len();
+    let node = |end: &End| match end {
+        End::Junction(id, _) => Some(id.0),
+        End::OnePort(id) => Some(junctions + id.0),
+        End::In(id) | End::Out(id) => {
+            let is_gyrator = matches!(graph.elements[id.0].law, Law::Gyrator(_));
+            (!is_gyrator).then_some(junctions + id.0)
+        }
+        End::Border => None,
+    };
+    let mut beside = vec![Vec::new(); junctions + graph.elements.len()];
+    for bond in &graph.bonds {
+        if let (Some(from), Some(to)) = (node(&bond.from), node(&bond.to)) {
+            beside[from].push(to);
+            beside[to].push(from);
+        }
+    }
+    let mut distances = vec![usize::MAX; beside.len()];
+    let mut pending: VecDeque<usize> = elements.iter().map(|id| junctions + id.0).collect();
+    for node in &pending {
+        distances[*node] = 0;
+    }
+    while let Some(node) = pending.pop_front() {
+        for next in &beside[node] {
+            if distances[*next] == usize::MAX {
+                distances[*next] = distances[node] + 1;
+                pending.push_back(*next);
+            }
+        }
+    }
+    distances.truncate(junctions);
+    distances
 }
 
 /// The equations with the slopes of what enters them nonlinearly as further coefficients.

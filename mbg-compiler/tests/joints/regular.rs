@@ -37,6 +37,26 @@ const FLYING: &str = "#[derivative] model M { causality componentwise; gravity [
     rail: Cylindrical { axis: 0 } (ground, first);
     Sf fixed[6] { flow: 0.0 } -> ground; }";
 
+/// A ball on a hinge that is declared after it.
+const BALL: &str = "#[derivative] model M {
+    1 ground[6]; 1 arm[6]; 1 ball[6];
+    Sf fixed[6] { flow: 0.0 } -> ground;
+    joint: Spherical { initial: [0.3, 0.4, 0.5] } (arm, ball);
+    hinge: Revolute { axis: 2 } (ground, arm);
+    rod: Body { mass: 1.0, inertia: 0.1 } (arm);
+    mass: Body { mass: 1.0, inertia: 0.1 } (ball);
+    output angles[3] = joint.angle; }";
+
+/// A body that flies, counted from an arm that is declared after it.
+const RELEASED: &str = "#[derivative] model M {
+    1 ground[6]; 1 arm[6]; 1 loose[6];
+    Sf fixed[6] { flow: 0.0 } -> ground;
+    free: Free { orientation: quaternion, initial_position: [0.3, 0.2, 0.5] } (arm, loose);
+    hinge: Revolute { axis: 1 } (ground, arm);
+    rod: Body { mass: 1.0, inertia: 0.1 } (arm);
+    mass: Body { mass: 1.0, inertia: 0.1 } (loose);
+    output place[3] = free.position; }";
+
 /// A routine at the start, but with another value of a state.
 fn at(model: &Compiled, state: &str, value: f64, routine: usize) -> Vec<f64> {
     let states = model.states.iter();
@@ -89,4 +109,10 @@ fn bodies_on_a_base_that_gives_way_are_singular_at_no_angle() {
 #[test]
 fn what_is_solved_with_numbers_alone_says_whether_it_is_singular() {
     regular(FLYING, "rail.angle");
+}
+
+#[test]
+fn what_carries_a_free_body_may_be_declared_after_it() {
+    regular(BALL, "joint.rotation.gimbal.angle.x");
+    regular(RELEASED, "free.position.z");
 }

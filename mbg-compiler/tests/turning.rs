@@ -128,6 +128,21 @@ fn an_euler_junction_elsewhere_than_at_an_angular_velocity_is_told_what_is_meant
         "model M {{ {plate} hull -> EJS e {{ momentum: ship.body.p }}; }}"
     ));
     assert!(told_so.contains("remove `e`"), "{told_so}");
+    // Three components that are no frame in a plane may be an angular velocity.
+    let plate = "1 g[3] { Sf still { flow: 0.0 } } 1 hull[3]; hull -> I m { inertia: diag(2.0, 3.0, 4.0) };";
+    let turned = "hull -> EJS e { momentum: m.p };";
+    let hinge = "hinge: PlanarRevolute (g, hull);";
+    let model = |parts: &str| {
+        format!("#[derivative] model M {{ causality componentwise; {plate} {parts} }}")
+    };
+    let told_so = told(&model(&format!("{turned} {hinge}")));
+    assert!(
+        told_so.contains("`e` turns with an angular velocity in space, and `hull` is a frame in a plane [MBG0204]")
+            && told_so.contains("remove `e`"),
+        "{told_so}"
+    );
+    assert_eq!(told(&model(turned)), "");
+    assert_eq!(told(&model(hinge)), "");
     let shaft = told("model M { 1 a { I m { inertia: 1.0 } EJS e { momentum: m.p } } }");
     assert!(
         shaft.contains("about one axis nothing turns with the angular velocity: remove `e`"),

@@ -10,6 +10,7 @@ use crate::causality::ways::beside;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::graph::{BondGraph, ElementId, ElementKind, End, JunctionId};
+use crate::syntax::ast::Instance;
 use crate::syntax::dump;
 
 /// What to type for an `EJS` at a junction that has not three components.
@@ -54,9 +55,7 @@ pub(super) fn in_plane(
             .find(|id| graph.elements[id.0].name == owner)
     });
     if owner.is_some_and(|id| graph.elements[id.0].instance().is_some()) {
-        return format!(
-            "a frame in a plane has its velocity in axes of the world, which do not turn: remove `{name}`"
-        );
+        return resting(name);
     }
     let at = own.or_else(|| Some(beside(graph, owner?)?.0));
     let velocity = at.map_or_else(|| "velocity".to_owned(), |at| graph.end_name(at));
@@ -70,6 +69,13 @@ pub(super) fn in_plane(
     format!(
         "an `EJS` turns with an angular velocity in space; in a plane, a velocity in axes of the body turns by \
          `{velocity} -> MGY {name} {{ effort: [[-{momentum}.y, {momentum}.x]] }} -> {rate};`, and one in axes of the world by nothing"
+    )
+}
+
+/// What to do with an `EJS` at a frame in a plane.
+fn resting(name: &Ident) -> String {
+    format!(
+        "a frame in a plane has its velocity in axes of the world, which do not turn: remove `{name}`"
     )
 }
 
@@ -111,14 +117,57 @@ impl Builder<'_> {
         warnings.collect()
     }
 
+    /// Mistakes of every `EJS` of the user's that takes the three components of a frame in a plane for an angular velocity in space.
+    pub(super) fn turned_in_plane(&self) -> Vec<Diagnostic> {
+        let ids = (0..self.graph.elements.len()).map(ElementId);
+        let euler = ids.filter(|id| {
+            self.graph.elements[id.0].kind == ElementKind::EJS && !self.is_of_library(*id)
+        });
+        let mistakes = euler.filter_map(|id| {
+            let (End::Junction(frame, range), _) = beside(&self.graph, id)? else {
+                return None;
+            };
+            let is_whole = range.len() == IN_PLANE
+                && self.graph.junctions[frame.0].dimension == IN_PLANE;
+            let (_, element) = self.written.get(&id)?;
+            let name = &element.name;
+            (is_whole && self.lies_in_plane(*frame)).then(|| {
+                let message = format!(
+                    "`{name}` turns with an angular velocity in space, and `{}` is a frame in a plane",
+                    self.graph.junctions[frame.0].name
+                );
+                let report = error(codes::WRONG_DIMENSION, name.span(), message);
+                report.help(resting(name))
+            })
+        });
+        mistakes.collect()
+    }
+
+    /// Whether a component of the library takes a junction for a frame in a plane.
+    fn lies_in_plane(&self, frame: JunctionId) -> bool {
+        self.is_given(frame, |instance, _| {
+            instance.component.to_string().starts_with("Planar")
+        })
+    }
+
     /// Whether a joint leads to a frame and leaves it free.
     fn floats(&self, frame: JunctionId) -> bool {
+        self.is_given(frame, |instance, port| {
+            instance.component == "Free" && port == 1
+        })
+    }
+
+    /// Whether a junction is given to such a component of the library at such a port.
+    fn is_given(&self, junction: JunctionId, is_one: impl Fn(&Instance, usize) -> bool) -> bool {
         self.called.values().any(|(scope, instance)| {
-            let end = instance.connections.get(1);
-            let end = end.and_then(|end| self.end_of(*scope, end).ok().flatten());
-            instance.component == "Free"
-                && self.components.get("Free").is_some_and(|it| it.library)
-                && matches!(end, Some((End::Junction(id, _), _)) if id == frame)
+            let component = self.components.get(&instance.component.to_string());
+            let mut ends = instance.connections.iter().enumerate();
+            component.is_some_and(|it| it.library)
+                && ends.any(|(port, end)| {
+                    let end = is_one(instance, port).then(|| self.end_of(*scope, end).ok());
+                    let end = end.flatten().flatten();
+                    matches!(end, Some((End::Junction(id, _), _)) if id == junction)
+                })
         })
     }
 

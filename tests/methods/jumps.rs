@@ -297,6 +297,36 @@ fn friction_has_its_slopes_at_every_turn() {
     }
 }
 
+/// At rest, and torn loose at once: one that begins with some momentum the same way has it, too, as the linear law of the slip has it.
+#[test]
+fn what_leaves_the_threshold_at_which_it_begins_keeps_its_slopes() {
+    let model = Rubbing::<Slope>::new(RubbingParameters::default()).unwrap();
+    let start = SVector::from([Dual::variable(0.0), Dual::constant(0.1)]);
+    let end = 1.0;
+    let (decay, turn) = (0.15, f64::sqrt(3.0 - 0.15 * 0.15));
+    let way = f64::exp(-decay * end) * f64::sin(turn * end) / turn;
+    let speed = f64::exp(-decay * end) * f64::cos(turn * end) - decay * way;
+    let expected = SVector::from([speed, way]);
+    for force in [2.0, -2.0] {
+        let input = mbg_runtime::Constant(SVector::from([Dual::constant(force)]));
+        let span = (Dual::constant(0.0), end);
+        let found = [
+            last(
+                &Adaptive::new(Dop853, 1e-11, 1e-11),
+                &model,
+                &input,
+                start,
+                span,
+            ),
+            last(&Fixed::new(Rk4, 1e-2), &model, &input, start, span),
+        ];
+        for found in found {
+            let slopes = found.map(|it| it.slope);
+            assert!((slopes - expected).amax() < 1e-8, "{force}: {slopes}");
+        }
+    }
+}
+
 /// The slopes of the end by one of the numbers.
 fn rubbing<T: Real>(solver: &impl Integrator<2>, numbers: [f64; 3], by: usize) -> SVector<f64, 2> {
     let mut variable = numbers.map(Dual::<T>::from_f64);

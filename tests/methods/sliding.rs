@@ -657,6 +657,27 @@ fn slopes_of_what_is_caught_are_those_of_both_together() {
     }
 }
 
+/// What the push tears loose from the floor takes along what holds on it.
+#[test]
+fn slopes_of_what_is_torn_loose_together_are_those_of_both() {
+    let model = Stacked::<Dual<f64>>::new(StackedParameters::default()).unwrap();
+    let push = Constant(SVector::from([Dual::constant(4.0)]));
+    let [begin, end] = [0.0, 1.0].map(Dual::constant);
+    for by in 0..2 {
+        let mut state = SVector::from([begin; 2]);
+        state[by].slope = 1.0;
+        NINE.integrate(&model, &push, begin, end, state, |step| {
+            state = *step.state()
+        })
+        .unwrap();
+        for (state, part) in state.iter().zip([0.25, 0.75]) {
+            let errors = [state.value - 3.0 * part, state.slope - part];
+            let worst = errors.iter().fold(0.0, |worst, it| it.abs().max(worst));
+            assert!(worst < 1e-8, "by {by}: {errors:?}");
+        }
+    }
+}
+
 /// By the friction, the place and the speed at the start: half swings turn the slope by the place about, and each is longer by half of
 /// the friction.
 #[test]

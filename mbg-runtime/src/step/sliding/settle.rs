@@ -519,8 +519,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 moved = self.moved(x, rates.solve(ways));
             }
         }
+        // By the value alone: a motion that begins next to it leaves from where it is.
         match moved.iter().all(|it| it.magnitude().is_finite()) {
-            true => moved,
+            true => moved.zip_map(x, T::with_slopes_of),
             false => *x,
         }
     }

@@ -164,7 +164,7 @@ fn what_nothing_leads_to_must_be_given_where_it_is_needed() {
     1:77 `rod` needs `angle_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarOffset`, a component of the library
       help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> a;`
-      help: or let a joint lead to it from a frame that is held
+      help: or let a joint, such as `PlanarFree`, lead to it from a frame that is held
       help: or write `angle_a: 0.0` where that of the world is meant
     ");
     // In a ring one joint that is given it is enough.
@@ -273,7 +273,7 @@ fn what_a_source_moves_is_known_by_what_leads_to_it() {
     2:14 `slide` needs `angle_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarPrismatic`, a component of the library
       help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> base;`
-      help: or let a joint lead to it from a frame that is held
+      help: or let a joint, such as `PlanarFree`, lead to it from a frame that is held
       help: or write `angle_a: 0.0` where that of the world is meant
     ");
     // What does not turn keeps its angle, wherever it goes.
@@ -282,7 +282,7 @@ fn what_a_source_moves_is_known_by_what_leads_to_it() {
     2:14 `slide` needs `position_a`, which nothing tells at its frame [MBG0214]
       this is inside `PlanarPrismatic`, a component of the library
       help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> base;`
-      help: or let a joint lead to it from a frame that is held
+      help: or let a joint, such as `PlanarFree`, lead to it from a frame that is held
       help: or write `position_a: 0.0` where that of the world is meant
     ");
 }

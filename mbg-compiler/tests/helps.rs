@@ -576,8 +576,16 @@ fn components_are_told_by_their_names_in_the_other_space() {
         in_plane,
         ["write `PlanarRevolute`, which is for frames in a plane"]
     );
+    // What a joint leaves free in space is all that there is in a plane.
+    let [all, plate] = ["PlanarFree {}", "Planar { axis: 2 }"];
+    assert_eq!(
+        helps(&model(3, plate, "PlanarBody"), codes::WRONG_DIMENSION),
+        ["write `PlanarFree`, which is for frames in a plane"]
+    );
     compiles(&model(6, space, "Body"));
+    compiles(&model(6, plate, "Body"));
     compiles(&model(3, plane, "PlanarBody"));
+    compiles(&model(3, all, "PlanarBody"));
 }
 
 /// A storage whose variable a source gives is left out or the source is let act through something.

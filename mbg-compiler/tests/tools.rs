@@ -567,6 +567,19 @@ fn a_ground_that_is_no_plane_is_a_stop() {
       help: give `height` a value that stays: what moves is a junction with a flow, such as a frame behind a joint whose rate is given, `Sf drive { flow: … } -> joint.rate;`
     ");
     assert_eq!(told(&contact("0.0", "way[1..3]")), "");
+    // What nothing guides is not at the origin of the world.
+    let loose = scene("c: PlanarContact { stiffness: 1e4 } (foot);");
+    insta::assert_snapshot!(told(&loose), @"
+    2:67 `c` needs `position_at`, which nothing tells at its frame [MBG0214]
+      this is inside `PlanarContact`, a component of the library
+      help: hold the frame, if it is at rest: `Sf wall[3] { flow: 0.0 } -> foot;`
+      help: or let a joint, such as `PlanarFree`, lead to it from a frame that is held
+    ");
+    let guided = loose.replace(
+        "1 foot[3];",
+        "1 g[3] { Sf still { flow: 0.0 } } 1 foot[3]; free: PlanarFree (g, foot);",
+    );
+    assert_eq!(told(&guided), "");
 }
 
 #[test]

@@ -307,18 +307,22 @@ impl<'a> Builder<'a> {
             None => {
                 let source = hold(&self.graph, id, start..start + size);
                 let such = if size == IN_SPACE {
-                    ", such as `Free`,"
+                    "Free"
                 } else {
-                    ""
+                    "PlanarFree"
                 };
                 report
                     .help(format!("hold the frame, if it is at rest: {source}"))
                     .help(format!(
-                        "or let a joint{such} lead to it from a frame that is held"
+                        "or let a joint, such as `{such}`, lead to it from a frame that is held"
                     ))
             }
         };
-        report.help(format!("or {keep} where that of the world is meant"))
+        // The place of a contact is none of the world's, since that does not move.
+        match name == "position_at" {
+            true => report,
+            false => report.help(format!("or {keep} where that of the world is meant")),
+        }
     }
 
     /// Path of the component in use with this scope.

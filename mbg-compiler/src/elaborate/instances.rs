@@ -503,6 +503,8 @@ fn counterpart(name: &str, size: usize) -> Option<String> {
 /// The component of the library that is in space what another is in a plane, or the other way round.
 fn in_frames(name: &str, size: usize) -> Option<String> {
     let other = match (name.strip_prefix(PLANAR), size) {
+        // A joint in space that leaves free what there is in a plane.
+        (Some(""), IN_PLANE) => format!("{PLANAR}Free"),
         (Some(other), IN_SPACE) => other.to_owned(),
         (None, IN_PLANE) => format!("{PLANAR}{name}"),
         _ => return None,

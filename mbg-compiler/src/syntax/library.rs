@@ -62,6 +62,7 @@ files! {
     "PlanarBodyContact": "planar_body_contact.mbg",
     "PlanarContact": "planar_contact.mbg",
     "PlanarCut": "planar_cut.mbg",
+    "PlanarFree": "planar_free.mbg",
     "PlanarLineForce": "planar_line_force.mbg",
     "PlanarLink": "planar_link.mbg",
     "PlanarLoad": "planar_load.mbg",

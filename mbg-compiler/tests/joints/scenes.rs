@@ -183,3 +183,75 @@ fn joints_start_with_their_rates_and_springs_at_rest() {
     }
     alike(&scene.run(Routines::ENERGY, &still), &[0.56]);
 }
+
+#[test]
+fn a_joint_in_a_plane_that_blocks_nothing_tells_where_a_body_is() {
+    let scene = Scene::of(
+        "model Thrown {
+            gravity [0.3, -9.81];
+            1 ground[3]; 1 b[3];
+            Sf fixed[3] { flow: 0.0 } -> ground;
+            free: PlanarFree {
+                initial: 0.3, initial_rate: 0.5, initial_position: [1.0, 2.0], initial_velocity: [3.0, -4.0]
+            } (ground, b);
+            body: PlanarBody { mass: 2.0, inertia: 0.3 } (b);
+            output place[3] = [free.angle, free.position.x, free.position.y];
+            output flow[3] = b.f;
+        }",
+    );
+    let start = scene.start();
+    let expected = [0.3, 1.0, 2.0, 0.5, 3.0, -4.0];
+    alike(&scene.run(Routines::OUTPUT, &start), &expected);
+    let rates = scene.run(Routines::DERIVATIVE, &start);
+    let changes = scene.along(Routines::OUTPUT, &start, &rates);
+    alike(&changes, &[0.5, 3.0, -4.0, 0.0, 0.3, -9.81]);
+}
+
+/// Wherever it is counted from a body flies as it does alone, and what is between both pushes both.
+#[test]
+fn what_flies_in_a_plane_may_be_counted_from_what_turns() {
+    let scene = |push: &str| {
+        Scene::of(&format!(
+            "#[derivative] model Thrown {{
+                causality componentwise;
+                gravity [0.3, -9.81];
+                1 ground[3]; 1 arm[3]; 1 tip[3]; 1 b[3];
+                Sf fixed[3] {{ flow: 0.0 }} -> ground;
+                hinge: PlanarRevolute (ground, arm);
+                rod: PlanarOffset {{ x: 0.7, y: 0.2 }} (arm, tip);
+                wheel: PlanarBody {{ mass: 1.0, inertia: 0.4 }} (arm);
+                free: PlanarFree {{ {push} }} (tip, b);
+                body: PlanarBody {{ mass: 2.0, inertia: 0.3 }} (b);
+                output place[3] = [free.angle_b, free.position_b.x, free.position_b.y];
+                output flow[3] = b.f;
+                output swing[2] = [hinge.angle, arm.f[0]];
+            }}"
+        ))
+    };
+    let changes = |scene: &Scene, state: &[f64]| {
+        let rates = scene.run(Routines::DERIVATIVE, state);
+        scene.along(Routines::OUTPUT, state, &rates)
+    };
+    let free = scene("");
+    let pushed = scene("force: [0.8, -0.3], torque: 0.9");
+    assert_eq!(free.names(), pushed.names());
+    for seed in 0..3 {
+        let state = free.state(seed);
+        let [moved, pushed] = [&free, &pushed].map(|scene| changes(scene, &state));
+        let outputs = free.run(Routines::OUTPUT, &state);
+        alike(&moved[..3], &outputs[3..6]);
+        alike(&moved[3..], &[0.0, 0.3, -9.81, outputs[7], 0.0]);
+        // Its axes are those of the arm, on which it pushes back at the place of the body.
+        let (sin, cos) = outputs[6].sin_cos();
+        let force = [0.8 * cos + 0.3 * sin, 0.8 * sin - 0.3 * cos];
+        let moment = outputs[1] * force[1] - outputs[2] * force[0] + 0.9;
+        let expected = [
+            0.9 / 0.3,
+            0.3 + force[0] / 2.0,
+            force[1] / 2.0 - 9.81,
+            outputs[7],
+            -moment / 0.4,
+        ];
+        alike(&pushed[3..], &expected);
+    }
+}

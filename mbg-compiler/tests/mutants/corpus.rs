@@ -56,7 +56,7 @@ const ROTATIONS: [&str; 4] = [
 ];
 
 /// What hangs on the ground in a plane.
-const PLANAR: [&str; 6] = [
+const PLANAR: [&str; 7] = [
     "hinge: PlanarRevolute { initial: 0.3 } (ground, tip);
      mass: PlanarPointMass { mass: 0.5 } (tip); body: PlanarBody { mass: 1.0, inertia: 0.1 } (tip);",
     "slide: PlanarPrismatic { direction: 0.3, stiffness: 20.0, friction: 0.2 } (ground, tip);
@@ -65,6 +65,8 @@ const PLANAR: [&str; 6] = [
      rod: PlanarOffset { x: 0.5 } (foot, tip); body: PlanarBody { mass: 1.0, inertia: 0.1 } (tip);",
     "left: PlanarLink { mass: 1.0, inertia: 0.1, centre: [0.5, 0.0], end: [1.0, 0.0] } (ground, tip);
      cut: PlanarCut { position_b: [1.0, 0.0] } (tip, ground);",
+    "free: PlanarFree { initial_position: [0.0, 1.0], initial_rate: 0.3, force: [0.2, 0.0] } (ground, tip);
+     body: PlanarBody { mass: 1.0, inertia: 0.1 } (tip);",
     "slide: PlanarPrismatic { direction: 0.3, initial: 0.1 } (ground, tip);
      mass: PlanarPointMass { mass: 0.5 } (tip);
      floor: PlanarContact {

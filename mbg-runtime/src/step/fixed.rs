@@ -39,9 +39,10 @@ use crate::{Input, Real, System};
 ///
 /// Where a law jumps because a state goes through a threshold, as with a relay, a contact or dry friction by `sign(f)`, the step
 /// ends there and another one begins, up to the end of the step of the grid: no stage is beyond the jump, and the method keeps its
-/// order. On [`Dual`](crate::Dual) numbers it ends at kinks, too, as where a contact begins: there slopes jump. Where the motion leads
-/// back to the threshold from both sides, it stays there, see [`Adaptive`](super::Adaptive): friction holds. Along one threshold a step
-/// takes about three times the evaluations.
+/// order. It goes over kinks, as where a contact begins without a jump, by an error of the order of h², whatever the order of the
+/// method. On [`Dual`](crate::Dual) numbers it ends at those kinks at which slopes jump. Where the motion leads back to the
+/// threshold from both sides, it stays there, see [`Adaptive`](super::Adaptive): friction holds. Along one threshold a step takes about
+/// three times the evaluations.
 ///
 /// Within a step of the grid, at most 64 steps are begun, so that a loop with a clock of its own knows the longest time of a tick:
 /// each tick is a run of one step, from zero to `h`.

@@ -125,7 +125,7 @@ impl<T: Real, const N: usize, const M: usize, const P: usize> Linearised<T, N, M
     /// The frequency response `C (jω I − A)⁻¹ B + D`: amplitudes and phases of outputs to inputs that swing with `frequency`
     /// in rad/s. None where it is not finite: a pole lies there. At zero that is so, too, where displacements depend on each
     /// other, as those of two springs at one junction: there a low frequency tells the response at rest.
-    /// Lanes share their pivots, and there is none where one is zero in a lane, which may be so at zero, too.
+    /// Lanes share their pivots: it may be less exact in one than alone, and there is none where no pivot serves all lanes.
     #[must_use]
     pub fn response(&self, frequency: T) -> Option<SMatrix<Complex<T>, P, M>> {
         let zero = T::from_f64(0.0);

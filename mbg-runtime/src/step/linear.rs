@@ -23,8 +23,13 @@ pub trait Element: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     fn product<const N: usize>(columns: &[[Self; N]; N], factors: &[Self; N]) -> [Self; N];
     /// Its reciprocal. That of what is infinite is NaN and not zero, by which a state would stand still unseen.
     fn reciprocal(self) -> Self;
-    /// A size to choose pivots by; of several lanes the largest.
-    fn size(self) -> f64;
+    /// A size to choose pivots by, lane by lane.
+    fn sizes(self) -> Self::Part;
+    /// That of the lane where it is the largest.
+    #[inline]
+    fn size(self) -> f64 {
+        self.sizes().magnitude()
+    }
 }
 
 impl<T: Real> Element for T {
@@ -54,8 +59,9 @@ impl<T: Real> Element for T {
         T::from_f64(1.0) / self + T::from_f64(0.0) * self
     }
 
-    fn size(self) -> f64 {
-        self.magnitude()
+    #[inline]
+    fn sizes(self) -> T {
+        self.abs()
     }
 }
 
@@ -157,8 +163,9 @@ impl<T: Real> Element for Complex<T> {
         }
     }
 
-    fn size(self) -> f64 {
-        self.real.magnitude() + self.imaginary.magnitude()
+    #[inline]
+    fn sizes(self) -> T {
+        self.real.abs() + self.imaginary.abs()
     }
 }
 
@@ -307,10 +314,17 @@ impl<E: Element, const N: usize> Factors<E, N> {
 /// Brings the largest element of a column, from the diagonal on, to the diagonal; gives its row.
 #[inline(always)]
 fn exchange<E: Element, const N: usize>(rows: &mut [[E; N]; N], column: usize) -> usize {
+    let has_lanes = E::Part::from_f64(0.0).in_lane(1).is_some();
+    let scale = has_lanes.then(|| largest(rows, column));
+    // Of several lanes by the one in which it is the smallest part of what the lane has: zero in one is a pivot for none.
+    let size = |row: &[E; N]| match scale {
+        Some(scale) => 1.0 - ((scale - row[column].sizes()) / scale).magnitude(),
+        None => row[column].size(),
+    };
     let mut pivot = column;
-    let mut largest = rows[column][column].size();
+    let mut largest = size(&rows[column]);
     for (i, row) in rows.iter().enumerate().skip(column + 1) {
-        let size = row[column].size();
+        let size = size(row);
         if size > largest {
             (pivot, largest) = (i, size);
         }
@@ -319,6 +333,16 @@ fn exchange<E: Element, const N: usize>(rows: &mut [[E; N]; N], column: usize) -
         rows.swap(column, pivot);
     }
     pivot
+}
+
+/// The largest size in a column, from the diagonal on, lane by lane; 1 where nothing is there.
+fn largest<E: Element, const N: usize>(rows: &[[E; N]; N], column: usize) -> E::Part {
+    let [zero, one] = [0.0, 1.0].map(E::Part::from_f64);
+    let sizes = rows.iter().skip(column).map(|row| row[column].sizes());
+    let largest = sizes.fold(zero, |largest, size| {
+        largest.select_less(size, size, largest)
+    });
+    zero.select_less(largest, largest, one)
 }
 
 /// Writes entries to a matrix, without a copy of it.
@@ -435,6 +459,36 @@ mod tests {
         assert_solves::<8>();
         assert_solves::<9>();
         assert_solves::<12>();
+    }
+
+    /// What is the largest in one lane is zero in another one.
+    #[cfg(feature = "lanes")]
+    #[test]
+    fn a_pivot_serves_all_lanes() {
+        use crate::lanes::{Lanes, f64x4};
+
+        let entry = |lane: usize, row: usize, column: usize| match (row, column) {
+            (0, 0) => [0.0, 90.0, 0.0, 1.0][lane],
+            (1, 0) => [70.0, 0.0, 2.0, 80.0][lane],
+            _ if row == column => 3.0,
+            _ => 1.0 / (1.0 + row as f64 + 2.0 * column as f64),
+        };
+        fn solved<E: Element>(entry: impl Fn(usize, usize) -> E) -> [E; 9] {
+            let mut factors = Factors::<E, 9>::empty();
+            factors.factorise(entry);
+            factors.solve([E::from_part(E::Part::from_f64(1.0)); 9])
+        }
+        let together = solved(|row, column| f64x4::from_lanes(|lane| entry(lane, row, column)));
+        for lane in 0..4 {
+            let alone = solved(|row, column| entry(lane, row, column));
+            for (found, expected) in together.iter().zip(alone) {
+                let found = found.lane(lane);
+                assert!(
+                    (found - expected).abs() < 1e-13,
+                    "{lane}: {found} {expected}"
+                );
+            }
+        }
     }
 
     #[cfg(feature = "lanes")]

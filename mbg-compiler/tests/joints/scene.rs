@@ -64,7 +64,9 @@ impl Scene {
         };
         let known = match joint {
             "PlanarRevolute" => "angle_a: carrier.angle",
-            "PlanarPrismatic" => "angle_a: carrier.angle, position_a: reach.position_b",
+            "PlanarPrismatic" | "PlanarFree" => {
+                "angle_a: carrier.angle, position_a: reach.position_b"
+            }
             _ => {
                 "gravity_a: carrier.gravity_b, orientation_a: carrier.orientation_b, position_a: reach.position_b"
             }

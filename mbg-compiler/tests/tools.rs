@@ -582,6 +582,35 @@ fn a_ground_that_is_no_plane_is_a_stop() {
     assert_eq!(told(&guided), "");
 }
 
+/// What both sides of a joint that gives way are needed for.
+#[test]
+fn positions_behind_what_gives_way_are_told() {
+    let model = |part: &str, word: &str| {
+        format!(
+            "#[derivative] model M {{ causality componentwise; 1 g[3]; Sf still {{ flow: 0.0 }} -> g; 1 a[3]; 1 b[3]; 1 c[3];
+             rail: PlanarPrismatic (g, a); leg: PlanarPrismatic {{ direction: -1.5, initial: 1.0{word} }} (a, b);
+             foot: PlanarOffset {{ x: 0.3, y: 0.1 }} (b, c); body: PlanarBody {{ mass: 2.0, inertia: 0.3 }} (b); {part} }}"
+        )
+    };
+    let compliant = ", blocked: compliant";
+    for part in [
+        "on: PlanarContact { stiffness: 100.0, height: -0.3 } (c);",
+        "on: PlanarLineForce { stiffness: 100.0, rest: 0.3 } (g, c);",
+    ] {
+        let text = told(&model(part, compliant));
+        assert!(
+            text.contains(
+                "`leg` gives way, and positions behind it do not know by how much, while flows do"
+            ) && text.contains("help: leave `blocked: compliant` out of `leg`"),
+            "{text}"
+        );
+        assert_eq!(told(&model(part, "")), "");
+    }
+    // What leads to both ends moves both.
+    let between = "on: PlanarLineForce { stiffness: 100.0, rest: 0.3 } (b, c);";
+    assert!(!told(&model(between, compliant)).contains("gives way"));
+}
+
 #[test]
 fn all_parameters_are_listed_where_they_are_few() {
     let contact = foot("", "f: PlanarContact { stiffness: 1e4, wobble: 1.0 }");

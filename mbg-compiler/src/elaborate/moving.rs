@@ -163,7 +163,8 @@ impl<'a> Builder<'a> {
             let told = match in_time.is_empty() {
                 true => self
                     .over_travel(inner, instance)
-                    .or_else(|| not_there(instance))?,
+                    .or_else(|| not_there(instance))
+                    .or_else(|| self.behind_what_gives_way(inner, instance))?,
                 false => told_in_time(&path, &in_time),
             };
             Some((path, told))
@@ -234,6 +235,60 @@ impl<'a> Builder<'a> {
              ({name}_approach);` with the height of the ground there, its slope, and the height of the point"
         );
         Some((vec![note], help))
+    }
+
+    /// What is said of a contact or a force along a line where joints that give way lead to one of its frames: they hand on positions
+    /// without their deflections, as their geometry leaves these out.
+    fn behind_what_gives_way(
+        &self,
+        inner: usize,
+        instance: &Instance,
+    ) -> Option<(Vec<String>, String)> {
+        let component = instance.component.to_string();
+        let component = component.strip_prefix("Planar").unwrap_or(&component);
+        if !["Contact", "BodyContact", "LineForce"].contains(&component) {
+            return None;
+        }
+        let frames = self.frames.get(&inner)?;
+        let ways = frames.iter().map(|frame| self.giving_way(frame.place.0));
+        // What leads to both moves both.
+        let joints = ways.reduce(|one, other| &one ^ &other)?;
+        let joints = joints.iter().map(|joint| (*joint).to_owned());
+        let joints = listing(joints);
+        if joints.is_empty() {
+            return None;
+        }
+        let note = format!(
+            "{joints} gives way, and positions behind it do not know by how much, while flows do"
+        );
+        let help = format!("leave `blocked: compliant` out of {joints}");
+        Some((vec![note], help))
+    }
+
+    /// The compliant joints by which a frame is led to.
+    fn giving_way(&self, mut frame: JunctionId) -> BTreeSet<&str> {
+        let (mut joints, mut passed) = (BTreeSet::new(), BTreeSet::new());
+        while passed.insert(frame) {
+            let mut leading = self.frames.iter().filter_map(|(scope, frames)| {
+                let [first, second] = frames.as_slice() else {
+                    return None;
+                };
+                (second.place.0 == frame && first.component.library).then_some((scope, first))
+            });
+            let Some((scope, first)) = leading.next() else {
+                break;
+            };
+            let is_compliant = |(_, instance): &(usize, &Instance)| {
+                let mut arguments = instance.arguments.iter();
+                arguments
+                    .any(|it| it.name == "blocked" && value_text(it.value.as_ref()) == "compliant")
+            };
+            if self.called.get(scope).is_some_and(is_compliant) {
+                joints.insert(self.name_of(*scope));
+            }
+            frame = first.place.0;
+        }
+        joints
     }
 
     /// What is said of a parameter of a component in use.

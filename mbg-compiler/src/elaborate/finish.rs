@@ -151,9 +151,7 @@ impl<'a> Builder<'a> {
             });
         }
         self.check_springs();
-        for mistake in self.turned_in_plane() {
-            self.diagnostics.report(mistake);
-        }
+        self.check_turning();
         self.warn_of_idle();
         self.warn_of_moving();
         self.define_unread();

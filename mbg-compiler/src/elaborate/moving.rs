@@ -253,14 +253,11 @@ impl<'a> Builder<'a> {
         let ways = frames.iter().map(|frame| self.giving_way(frame.place.0));
         // What leads to both moves both.
         let joints = ways.reduce(|one, other| &one ^ &other)?;
-        let joints = joints.iter().map(|joint| (*joint).to_owned());
-        let joints = listing(joints);
         if joints.is_empty() {
             return None;
         }
-        let note = format!(
-            "{joints} gives way, and positions behind it do not know by how much, while flows do"
-        );
+        let joints = listing(joints.into_iter().map(str::to_owned));
+        let note = format!("positions behind {joints} leave deflections out, which flows have");
         let help = format!("leave `blocked: compliant` out of {joints}");
         Some((vec![note], help))
     }

@@ -91,15 +91,9 @@ fn terms(junction: &str, name: &str, momentum: &str) -> String {
 impl Builder<'_> {
     /// Warnings of inertias of the user's on all of a frame that turns freely, whose momenta nothing turns.
     pub(super) fn in_turning_axes(&self) -> Vec<Diagnostic> {
-        let inertias = (0..self.graph.elements.len()).map(ElementId);
-        let inertias = inertias.filter(|id| {
-            self.graph.elements[id.0].kind == ElementKind::I && !self.is_of_library(*id)
-        });
-        let warnings = inertias.filter_map(|id| {
-            let (End::Junction(frame, range), _) = beside(&self.graph, id)? else {
-                return None;
-            };
-            let turns = range.len() == IN_SPACE && self.floats(*frame) && !self.has_terms(*frame);
+        let inertias = self.of_user(ElementKind::I).into_iter();
+        let warnings = inertias.filter_map(|(id, frame, size)| {
+            let turns = size == IN_SPACE && self.floats(frame) && !self.has_terms(frame);
             let (scope, element) = self.written.get(&id).filter(|_| turns)?;
             let name = &element.name;
             let message = format!(
@@ -117,30 +111,36 @@ impl Builder<'_> {
         warnings.collect()
     }
 
-    /// Mistakes of every `EJS` of the user's that takes the three components of a frame in a plane for an angular velocity in space.
-    pub(super) fn turned_in_plane(&self) -> Vec<Diagnostic> {
-        let ids = (0..self.graph.elements.len()).map(ElementId);
-        let euler = ids.filter(|id| {
-            self.graph.elements[id.0].kind == ElementKind::EJS && !self.is_of_library(*id)
-        });
-        let mistakes = euler.filter_map(|id| {
-            let (End::Junction(frame, range), _) = beside(&self.graph, id)? else {
-                return None;
+    /// Reports every `EJS` of the user's that takes the three components of a frame in a plane for an angular velocity in space.
+    pub(super) fn check_turning(&mut self) {
+        for (id, frame, size) in self.of_user(ElementKind::EJS) {
+            let junction = &self.graph.junctions[frame.0];
+            let is_whole = size == IN_PLANE && junction.dimension == IN_PLANE;
+            let Some((_, element)) = self.written.get(&id) else {
+                continue;
             };
-            let is_whole = range.len() == IN_PLANE
-                && self.graph.junctions[frame.0].dimension == IN_PLANE;
-            let (_, element) = self.written.get(&id)?;
-            let name = &element.name;
-            (is_whole && self.lies_in_plane(*frame)).then(|| {
+            if is_whole && self.lies_in_plane(frame) {
+                let name = &element.name;
                 let message = format!(
                     "`{name}` turns with an angular velocity in space, and `{}` is a frame in a plane",
-                    self.graph.junctions[frame.0].name
+                    junction.name
                 );
                 let report = error(codes::WRONG_DIMENSION, name.span(), message);
-                report.help(resting(name))
-            })
+                self.diagnostics.report(report.help(resting(name)));
+            }
+        }
+    }
+
+    /// Elements of a kind that no component of the library has, with the junction that each is at and how much of it.
+    fn of_user(&self, kind: ElementKind) -> Vec<(ElementId, JunctionId, usize)> {
+        let ids = (0..self.graph.elements.len()).map(ElementId);
+        let own =
+            ids.filter(|id| self.graph.elements[id.0].kind == kind && !self.is_of_library(*id));
+        let at = own.filter_map(|id| match beside(&self.graph, id)?.0 {
+            End::Junction(junction, range) => Some((id, *junction, range.len())),
+            _ => None,
         });
-        mistakes.collect()
+        at.collect()
     }
 
     /// Whether a component of the library takes a junction for a frame in a plane.

@@ -39,7 +39,7 @@ codes! {
     NO_ROTATION = "MBG0221", "a matrix or quaternion that is no rotation";
     JUNCTION_KIND = "MBG0222", "a junction of the kind that a port does not take";
     UNREAD = "MBG0223", "a name that nothing reads";
-    NO_EFFECT = "MBG0224", "an argument, an element, a component or a loop that has no effect";
+    NO_EFFECT = "MBG0224", "an argument, an element, a component or a loop that has no effect, or a read of what was not given";
     LOOSE_END = "MBG0225", "a junction with one bond, which takes another out of the model";
     STORAGE_DERIVATIVE = "MBG0301", "a storage forced into derivative causality";
     SOURCES_CONFLICT = "MBG0302", "fixed causalities that contradict each other";

@@ -5,6 +5,7 @@ mod models;
 mod told;
 
 use mbg_compiler::compile::Routines;
+use mbg_compiler::diagnostics::Diagnostics;
 use mbg_compiler::graph::Law;
 use mbg_compiler::program::{self, Arguments};
 use mbg_compiler::symbolic::Symbol;
@@ -628,4 +629,65 @@ fn a_spring_in_a_row_with_dry_friction_is_told_to_have_a_law_for_its_flow() {
     );
     assert!(!report.contains("causality componentwise"), "{report}");
     assert_eq!(told(&text("flow: 1e3 * (e - min(max(e, -6.0), 6.0))")), "");
+}
+
+/// The code of a model of two vectors with such a law beside them.
+fn code(law: &str) -> String {
+    let text = format!(
+        "model M {{ input wanted[2]: m/s; input most: m/s; param soft[2]: m/s = [0.1, 0.2];
+        1 v[2] {{ I m {{ inertia: 2.0 }} R r {{ resistance: 1.0 }} }} {law} }}"
+    );
+    let mut diagnostics = Diagnostics::new();
+    let items = mbg_compiler::items(text.parse().unwrap(), &mut diagnostics);
+    assert!(!diagnostics.any(), "{law}: {:?}", diagnostics.list());
+    items.behaviour.to_string()
+}
+
+/// A function of vectors is one of each component, with what is a number counting for all of them.
+#[test]
+fn functions_of_vectors_are_those_of_their_components() {
+    let pairs = [
+        (
+            "min(wanted, most)",
+            "[min(wanted.x, most), min(wanted.y, most)]",
+        ),
+        (
+            "max(min(v.f, most), -wanted)",
+            "[max(min(v.f.x, most), -wanted.x), max(min(v.f.y, most), -wanted.y)]",
+        ),
+        (
+            "most * tanh(3.0 * v.f)",
+            "[most * tanh(3.0 * v.f.x), most * tanh(3.0 * v.f.y)]",
+        ),
+        (
+            "most * sin(pow(3.0 * v.f, 2.0))",
+            "[most * sin(pow(3.0 * v.f.x, 2.0)), most * sin(pow(3.0 * v.f.y, 2.0))]",
+        ),
+        ("mod(v.f, soft)", "[mod(v.f.x, soft.x), mod(v.f.y, soft.y)]"),
+        (
+            "most * atan(floor(3.0 * v.f))",
+            "[most * atan(floor(3.0 * v.f.x)), most * atan(floor(3.0 * v.f.y))]",
+        ),
+        ("wanted.abs()", "[wanted.x.abs(), wanted.y.abs()]"),
+    ];
+    for (whole, apart) in pairs {
+        let integral =
+            |rate: &str| code(&format!("integral way[2] = {rate}; output way[2] = way;"));
+        assert!(integral(whole) == integral(apart), "{whole}");
+    }
+    // In a law the element's own variable stands for one component, and beside a vector for all.
+    let limited = |law: &str| code(&format!("v -> R limited {{ effort: {law} }};"));
+    let apart = "[2.0 * min(f.x, 3.0), 2.0 * min(f.y, 3.0)]";
+    assert!(limited("2.0 * min(f, 3.0)") == limited(apart));
+    let apart = "[2.0 * min(f.x, soft.x), 2.0 * min(f.y, soft.y)]";
+    assert!(limited("2.0 * min(f, soft)") == limited(apart));
+    let told = told(
+        "model M { input u[2]; input w[3]; 1 a[2] { I m { inertia: 1.0 } R r { resistance: 1.0 } }
+        output y[2] = max(u, w); output z = sin(diag(u.x, u.y)); output s[2] = pow(u, w); }",
+    );
+    insta::assert_snapshot!(told, @"
+    2:27 expected a number or a vector of 3, as the other argument is, found a vector of 2 [MBG0204]
+    2:49 expected a number, found a 2×2 matrix [MBG0204]
+    2:84 expected a number or a vector of 3, as the other argument is, found a vector of 2 [MBG0204]
+    ");
 }

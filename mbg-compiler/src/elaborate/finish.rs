@@ -155,6 +155,7 @@ impl<'a> Builder<'a> {
         self.warn_of_idle();
         self.warn_of_moving();
         self.define_unread();
+        self.warn_of_defaults();
     }
 
     fn resolve_law(&mut self, pending: Pending<'a>) -> Result<()> {
@@ -223,6 +224,7 @@ impl<'a> Builder<'a> {
             signals: &mut self.signals,
             own: None,
             claims: self.claims.as_mut(),
+            defaults: &mut self.defaults,
             assumptions: &mut self.assumptions,
             parameters: &self.parameters,
         };

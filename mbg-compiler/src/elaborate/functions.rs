@@ -6,7 +6,9 @@ use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 
 use super::elsewhere;
-use super::expressions::{Evaluator, Names, Result, Value, fail, no_plain_name, whole_vector};
+use super::expressions::{
+    Evaluator, Names, Result, Value, fail, mismatch, no_plain_name, number, whole_vector,
+};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error};
 use crate::symbolic::{Expression, Factor, Function, LARGEST_POWER, Matrix, Product};
@@ -60,34 +62,6 @@ impl<N: Names> Evaluator<'_, N> {
         let text = name.unraw().to_string();
         let count = |expected: usize| check_count(name, expected, arguments);
         match text.as_str() {
-            "sin" | "cos" => {
-                count(1)?;
-                let angle = self.scalar(&arguments[0])?;
-                Ok(Value::Scalar(if text == "sin" {
-                    self.pool.sine(angle)
-                } else {
-                    self.pool.cosine(angle)
-                }))
-            }
-            "atan" => {
-                count(1)?;
-                self.arc_tangent(name, &arguments[0])
-            }
-            "mod" => {
-                count(2)?;
-                let [value, period] = [self.scalar(&arguments[0])?, self.scalar(&arguments[1])?];
-                self.remainder(value, (period, &arguments[1]))
-            }
-            "floor" => {
-                count(1)?;
-                let value = self.scalar(&arguments[0])?;
-                let fraction = self.pool.call(Function::Fraction, &[value]);
-                Ok(Value::Scalar(self.pool.subtract(value, fraction)))
-            }
-            "pow" | "powi" => {
-                count(2)?;
-                self.power(name, arguments)
-            }
             "interpolate" => match arguments {
                 [x, places, values] => self.curve(x, places, values),
                 _ => Err(Box::new(no_curve(name, arguments))),
@@ -132,47 +106,75 @@ impl<N: Names> Evaluator<'_, N> {
             }
             _ => match self.orientation(name, arguments) {
                 Some(value) => value,
-                None => self.elementary(name, arguments),
+                None => self.of_numbers(name, arguments),
             },
         }
     }
 
-    fn elementary(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let known = Function::ALL
-            .into_iter()
-            .find(|function| name == function.name());
-        let Some(function) = known.filter(|function| *function != Function::SelectLess) else {
-            let report = error(
-                codes::UNKNOWN_NAME,
-                name.span(),
-                format!("`{name}` is not a function of the language"),
-            );
-            let text = name.to_string();
-            let instead = elsewhere::instead(&text, arguments);
-            return Err(Box::new(
-                match instead.or_else(|| signals::block(&text, "y")) {
-                    Some(help) => report.help(help),
-                    None => {
-                        let known = format!("functions are {}", FUNCTIONS.join(", "));
-                        report.did_you_mean(&text, &FUNCTIONS).help(known)
-                    }
-                },
-            ));
+    /// A function of numbers; one of vectors is worked out for each component, and a number beside them counts for all.
+    fn of_numbers(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
+        let Some(arity) = arity(name) else {
+            return Err(Box::new(no_function(name, arguments)));
         };
-        check_count(name, function.arity(), arguments)?;
-        let values: Result<Vec<_>> = arguments
+        check_count(name, arity, arguments)?;
+        let values: Result<Vec<Value>> = arguments
             .iter()
-            .map(|argument| self.scalar(argument))
+            .enumerate()
+            .map(|(place, argument)| match is_power(name) && place == 1 {
+                true => self.exponent(argument),
+                false => self.evaluate(argument),
+            })
             .collect();
-        Ok(Value::Scalar(self.pool.call(function, &values?)))
+        let values = values?;
+        let mut columns = Vec::new();
+        for (value, argument) in values.iter().zip(arguments) {
+            columns.push(match value.entries(self.pool) {
+                Some(entries) => entries,
+                None => vec![number(value, argument.span())?],
+            });
+        }
+        let size = columns.iter().map(Vec::len).max().unwrap_or(1);
+        if let Some(odd) = columns.iter().position(|it| ![1, size].contains(&it.len())) {
+            let message = format!(
+                "expected a number or a vector of {size}, as the other argument is, found {}",
+                values[odd].shape()
+            );
+            return mismatch(arguments[odd].span(), message);
+        }
+        let component = |row: usize| {
+            let numbers = columns.iter().map(|it| it[row % it.len()]);
+            self.of_components(name, arguments, &numbers.collect::<Vec<_>>())
+        };
+        let entries: Result<Vec<Expression>> = (0..size).map(component).collect();
+        Ok(Value::column(entries?))
     }
 
-    /// The angle of a slope, which is that of a point above one; a point may have a unit, and a slope has none.
-    fn arc_tangent(&mut self, name: &Ident, slope: &Expr) -> Result<Value> {
-        let slope = self.scalar(slope)?;
-        self.names.takes_pure(name.span(), "atan", slope);
-        let angle = self.pool.call(Function::Atan2, &[slope, Expression::ONE]);
-        Ok(Value::Scalar(angle))
+    /// A function of one component of each argument.
+    fn of_components(
+        &mut self,
+        name: &Ident,
+        written: &[Expr],
+        numbers: &[Expression],
+    ) -> Result<Expression> {
+        match (name.unraw().to_string().as_str(), numbers) {
+            ("sin", [angle]) => Ok(self.pool.sine(*angle)),
+            ("cos", [angle]) => Ok(self.pool.cosine(*angle)),
+            // The angle of a slope is that of a point above one; a point may have a unit, and a slope has none.
+            ("atan", [slope]) => {
+                self.names.takes_pure(name.span(), "atan", *slope);
+                Ok(self.pool.call(Function::Atan2, &[*slope, Expression::ONE]))
+            }
+            ("mod", [value, period]) => self.remainder(*value, (*period, &written[1])),
+            ("floor", [value]) => {
+                let fraction = self.pool.call(Function::Fraction, &[*value]);
+                Ok(self.pool.subtract(*value, fraction))
+            }
+            ("pow" | "powi", [base, exponent]) => self.power(name, written, [*base, *exponent]),
+            (_, numbers) => match elementary(name) {
+                Some(function) => Ok(self.pool.call(function, numbers)),
+                None => Err(Box::new(no_function(name, written))),
+            },
+        }
     }
 
     /// What is left of a value beyond whole periods of it.
@@ -180,44 +182,78 @@ impl<N: Names> Evaluator<'_, N> {
         &mut self,
         value: Expression,
         (period, written): (Expression, &Expr),
-    ) -> Result<Value> {
+    ) -> Result<Expression> {
         let Some(turns) = self.pool.divide(value, period) else {
             let message = "there is nothing between periods that last for zero";
             return Err(Box::new(error(codes::NOT_FINITE, written.span(), message)));
         };
         let fraction = self.pool.call(Function::Fraction, &[turns]);
-        Ok(Value::Scalar(self.pool.multiply(period, fraction)))
+        Ok(self.pool.multiply(period, fraction))
     }
 
     /// `pow`, and `powi`, which takes whole exponents only.
-    fn power(&mut self, name: &Ident, arguments: &[Expr]) -> Result<Value> {
-        let base = self.scalar(&arguments[0])?;
-        let exponent = self.exponent(&arguments[1])?;
+    fn power(
+        &mut self,
+        name: &Ident,
+        written: &[Expr],
+        [base, exponent]: [Expression; 2],
+    ) -> Result<Expression> {
         let value = self.pool.constant_value(exponent);
         let is_whole = value.is_some_and(|it| it.fract() == 0.0 && it.abs() <= LARGEST_POWER);
         if name == "powi" && !is_whole {
             let message = "expected an integer exponent between -64 and 64";
-            let report = error(codes::EXPRESSION, arguments[1].span(), message);
-            let help = elsewhere::power(&arguments[0], &arguments[1]);
+            let report = error(codes::EXPRESSION, written[1].span(), message);
+            let help = elsewhere::power(&written[0], &written[1]);
             return Err(Box::new(report.help(help)));
         }
-        match self.pool.real_power(base, exponent) {
-            Some(power) => Ok(Value::Scalar(power)),
-            None => Err(Box::new(error(
-                codes::NOT_FINITE,
-                arguments[0].span(),
-                "this divides by zero, whatever the state",
-            ))),
-        }
+        self.pool.real_power(base, exponent).ok_or_else(|| {
+            let message = "this divides by zero, whatever the state";
+            Box::new(error(codes::NOT_FINITE, written[0].span(), message))
+        })
     }
 
     /// The exponent of a power. One that is written as a number has no unit, whatever other numbers may carry.
-    fn exponent(&mut self, exponent: &Expr) -> Result<Expression> {
+    fn exponent(&mut self, exponent: &Expr) -> Result<Value> {
         let number = elsewhere::number(exponent);
         let literal = number.and_then(|it| self.pool.literal(&format!("{:?}", it.abs())));
         match (number, literal) {
-            (Some(number), Some(literal)) => Ok(literal.flipped(number < 0.0)),
-            _ => self.scalar(exponent),
+            (Some(number), Some(literal)) => Ok(Value::Scalar(literal.flipped(number < 0.0))),
+            _ => self.evaluate(exponent),
+        }
+    }
+}
+
+/// How many arguments a function of numbers takes, if that is one.
+fn arity(name: &Ident) -> Option<usize> {
+    match name.unraw().to_string().as_str() {
+        "sin" | "cos" | "atan" | "floor" => Some(1),
+        "mod" | "pow" | "powi" => Some(2),
+        _ => elementary(name).map(Function::arity),
+    }
+}
+
+fn is_power(name: &Ident) -> bool {
+    name == "pow" || name == "powi"
+}
+
+/// A function that processors or their libraries work out by itself.
+fn elementary(name: &Ident) -> Option<Function> {
+    let mut functions = Function::ALL.into_iter();
+    let found = functions.find(|function| name == function.name());
+    found.filter(|function| *function != Function::SelectLess)
+}
+
+/// A name that is no function, with what to write in its place.
+fn no_function(name: &Ident, arguments: &[Expr]) -> Diagnostic {
+    let message = format!("`{name}` is not a function of the language");
+    let report = error(codes::UNKNOWN_NAME, name.span(), message);
+    let text = name.to_string();
+    let instead = elsewhere::instead(&text, arguments);
+    match instead.or_else(|| signals::block(&text, "y")) {
+        Some(help) => report.help(help),
+        None => {
+            let known = format!("functions are {}", FUNCTIONS.join(", "));
+            report.did_you_mean(&text, &FUNCTIONS).help(known)
         }
     }
 }

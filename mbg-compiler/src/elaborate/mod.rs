@@ -18,6 +18,7 @@ mod conditions;
 mod constants;
 mod curves;
 mod declare;
+mod defaults;
 mod definitions;
 mod driven;
 mod elsewhere;
@@ -70,6 +71,7 @@ pub use unused::warn;
 
 use self::claims::Claims;
 use self::constants::Constants;
+use self::defaults::DefaultRead;
 use self::definitions::{Definitions, Missing};
 use self::expressions::Value;
 use self::frames::{Frame, LeftOut, Unknown};
@@ -231,6 +233,8 @@ struct Builder<'a> {
     integrals: Vec<(usize, &'a Statement)>,
     /// What the checker of units is told, while it is asked for.
     claims: Option<Claims>,
+    /// Parameters at their defaults that are read from outside.
+    defaults: Vec<DefaultRead<'a>>,
 }
 
 impl<'a> Builder<'a> {
@@ -284,6 +288,7 @@ impl<'a> Builder<'a> {
             pending: Vec::new(),
             integrals: Vec::new(),
             claims: None,
+            defaults: Vec::new(),
         }
     }
 

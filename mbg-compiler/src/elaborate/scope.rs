@@ -8,6 +8,7 @@ use syn::Expr;
 
 use super::claims::{Claim, Claims, Site, Subject};
 use super::constants::Constants;
+use super::defaults::DefaultRead;
 use super::definitions::{Definitions, Missing, Progress};
 use super::expressions::{Names, Result, Step, Value, fail};
 use super::model::{Assumption, Parameter, Place, Quantity, Signals};
@@ -217,6 +218,8 @@ pub(super) struct Lookup<'a, 'm> {
     pub(super) own: Option<Own>,
     /// What the checker of units is told, while it is asked for.
     pub(super) claims: Option<&'a mut Claims>,
+    /// Parameters at their defaults that are read from outside.
+    pub(super) defaults: &'a mut Vec<DefaultRead<'m>>,
     /// What `new` checks of parameters.
     pub(super) assumptions: &'a mut Vec<Assumption>,
     /// Parameters of the model.
@@ -266,7 +269,12 @@ impl Names for Lookup<'_, '_> {
                 Some(fail(last.name.span(), message))
             }
             (Entity::Instance(inner), []) => Some(self.no_value_of(*inner, path)),
-            (entity, []) => Some(self.plain(pool, entity, &last.name)),
+            (entity, []) => {
+                if let Entity::Definition(id) = entity {
+                    self.note_default(path, *id);
+                }
+                Some(self.plain(pool, entity, &last.name))
+            }
             _ => None,
         }
     }

@@ -11,6 +11,7 @@ pub mod blocks;
 mod bodies;
 mod carried;
 mod congruence;
+mod echelon;
 mod eliminate;
 mod floating;
 mod formulation;

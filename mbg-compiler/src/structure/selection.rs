@@ -12,15 +12,15 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 
+use super::echelon::{Echelon, NominalEchelon, Row};
 use super::mesh;
 use crate::codes;
 use crate::diagnostics::{Diagnostic, Diagnostics, error, listing};
 use crate::elaborate::{Elaborated, Ring};
-use crate::entries::merged;
 use crate::equations::{Equation, Owner, Scalars};
 use crate::graph::{ElementId, ElementKind, End, JunctionId, Law};
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Differentiator, Evaluation, Expression, Pool, Symbol, field};
+use crate::symbolic::{Differentiator, Evaluation, Expression, Pool, Symbol};
 
 /// What is a state, and what is not.
 pub struct Selection {
@@ -536,141 +536,4 @@ fn nominal_values(model: &Elaborated, equations: &[Equation], pool: &Pool) -> Rc
         values[coefficient.node()] = evaluation.value(pool, coefficient.magnitude());
     }
     values.into()
-}
-
-/// Coefficients by unknown, which ascend.
-type Row<T> = Vec<(usize, T)>;
-
-/// Rows in echelon form over the field, without zeros, each with the rows it came from.
-#[derive(Clone, Default)]
-struct Echelon {
-    /// By the unknown that leads, with coefficient one.
-    rows: Vec<Option<(Row<u64>, Origin)>>,
-}
-
-/// What a row was made of.
-#[derive(Clone)]
-struct Origin {
-    /// What the equation belongs to, if that is a cause.
-    owner: Option<Owner>,
-    /// Leads of the rows that were taken from it.
-    taken: Vec<usize>,
-}
-
-impl Echelon {
-    /// Adds a row; if it vanishes, gives the rows it is a combination of.
-    fn reduce(&mut self, row: Row<u64>, owner: Option<Owner>) -> Option<BTreeSet<Owner>> {
-        let (mut rest, taken) = self.rest(row);
-        let origin = Origin { owner, taken };
-        let Some(&(lead, value)) = rest.first() else {
-            return Some(self.causes(&origin));
-        };
-        let inverse = field::invert(value).unwrap_or(0);
-        for (_, entry) in &mut rest {
-            *entry = field::multiply(*entry, inverse);
-        }
-        let known = self.rows.len().max(lead + 1);
-        self.rows.resize(known, None);
-        self.rows[lead] = Some((rest, origin));
-        None
-    }
-
-    /// Whether a row vanishes.
-    fn vanishes(&self, row: Row<u64>) -> bool {
-        self.rest(row).0.is_empty()
-    }
-
-    /// All owners of what a row was made of.
-    fn causes(&self, origin: &Origin) -> BTreeSet<Owner> {
-        let mut causes = BTreeSet::from_iter(origin.owner);
-        let mut seen = vec![false; self.rows.len()];
-        let mut pending = origin.taken.clone();
-        while let Some(lead) = pending.pop() {
-            if !std::mem::replace(&mut seen[lead], true)
-                && let Some((_, origin)) = &self.rows[lead]
-            {
-                causes.extend(origin.owner);
-                pending.extend(&origin.taken);
-            }
-        }
-        causes
-    }
-
-    /// What remains of a row up to the first unknown that no earlier row leads with, and the leads of those that were taken
-    /// from it.
-    fn rest(&self, mut row: Row<u64>) -> (Row<u64>, Vec<usize>) {
-        let mut taken = Vec::new();
-        while let Some(&(lead, value)) = row.first() {
-            let Some(Some((pivot, _))) = self.rows.get(lead) else {
-                break;
-            };
-            row = merged(&row, pivot, |own, entry| {
-                let rest = field::subtract(own.unwrap_or(0), field::multiply(value, entry));
-                (rest != 0).then_some(rest)
-            });
-            taken.push(lead);
-        }
-        (row, taken)
-    }
-}
-
-/// Rows at the nominal state, each reduced by those before it, with its largest entry as the lead.
-#[derive(Clone, Default)]
-struct NominalEchelon {
-    /// The lead, its coefficient, and the others.
-    rows: Vec<(usize, f64, Row<f64>)>,
-    /// The row that each unknown leads.
-    leads: Vec<Option<usize>>,
-}
-
-impl NominalEchelon {
-    /// A row is taken to vanish when it has become this much smaller.
-    const VANISHED: f64 = 1e-9;
-
-    /// The row reduced by all others; none if it vanishes. A coefficient without a value counts as one.
-    fn reduced(&self, mut row: Row<f64>) -> Option<Row<f64>> {
-        let mut size = 0.0_f64;
-        for (_, value) in &mut row {
-            if !value.is_finite() {
-                *value = 1.0;
-            }
-            size = size.max(value.abs());
-        }
-        let position = |(unknown, _): &(usize, f64)| self.leads.get(*unknown).copied().flatten();
-        let mut pending: BTreeSet<usize> = row.iter().filter_map(position).collect();
-        while let Some(next) = pending.pop_first() {
-            let (lead, pivot, others) = &self.rows[next];
-            let Ok(place) = row.binary_search_by_key(lead, |(unknown, _)| *unknown) else {
-                continue;
-            };
-            let factor = row.remove(place).1 / pivot;
-            if factor == 0.0 {
-                continue;
-            }
-            row = merged(&row, others, |own, entry| {
-                Some(own.unwrap_or(0.0) - factor * entry)
-            });
-            let later = others.iter().filter_map(position);
-            pending.extend(later.filter(|position| *position > next));
-        }
-        row.retain(|(_, value)| value.abs() > Self::VANISHED * size);
-        (!row.is_empty()).then_some(row)
-    }
-
-    fn insert(&mut self, mut row: Row<f64>) {
-        let size = |place: usize| row[place].1.abs();
-        let larger = |best, place| {
-            if size(place) > size(best) {
-                place
-            } else {
-                best
-            }
-        };
-        let largest = (1..row.len()).fold(0, larger);
-        let (lead, pivot) = row.remove(largest);
-        let known = self.leads.len().max(lead + 1);
-        self.leads.resize(known, None);
-        self.leads[lead] = Some(self.rows.len());
-        self.rows.push((lead, pivot, row));
-    }
 }

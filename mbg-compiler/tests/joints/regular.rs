@@ -1,5 +1,7 @@
 //! Trees whose equations are left whole in part, and that are regular wherever their joints stand.
 
+use std::collections::BTreeSet;
+
 use mbg_compiler::compile::{Compiled, Routines};
 use mbg_compiler::program::{Arguments, evaluate};
 
@@ -115,4 +117,44 @@ fn what_is_solved_with_numbers_alone_says_whether_it_is_singular() {
 fn what_carries_a_free_body_may_be_declared_after_it() {
     regular(BALL, "joint.rotation.gimbal.angle.x");
     regular(RELEASED, "free.position.z");
+}
+
+/// A link without mass between a hinge and a joint that gives way, and one between two bodies, in any order.
+const BARE: [&str; 7] = [
+    "k2: PlanarPrismatic { direction: -0.1, stiffness: 9.7, rest: 0.1 } (crank, slide);",
+    "gap: PlanarOffset { x: -0.5 } (bare, bar);",
+    "b5: PlanarBody { mass: 1.9, inertia: 0.16 } (lower); k5: PlanarRevolute (bar, lower);",
+    "b3: PlanarBody { mass: 0.5, inertia: 0.12 } (upper);",
+    "line: PlanarLineForce { stiffness: 12.0, rest: 0.5, damping: 0.4 } (crank, slide);",
+    "k3: PlanarRevolute { blocked: compliant, blocked_stiffness: 2e3, blocked_damping: 40.0 } (slide, upper);",
+    "k4: PlanarRevolute (upper, bare);",
+];
+
+#[test]
+fn what_depends_on_each_other_is_the_same_in_any_order() {
+    // Which of the hinges of a link counts its motion goes by the order, and makes no difference.
+    let states = |statements: &[&str]| {
+        let model = compiled(&format!(
+            "#[derivative] model M {{ causality componentwise; Sf fixed[3] {{ flow: 0.0 }} -> ground;
+            1 ground[3]; 1 crank[3]; 1 slide[3]; 1 upper[3]; 1 bare[3]; 1 bar[3]; 1 lower[3];
+            k1: PlanarRevolute (ground, crank); {} }}",
+            statements.join(" ")
+        ));
+        let states = model.states.iter();
+        let names = states.map(|it| model.model.states[*it].variable.name.clone());
+        let rate = |name: String| match name.as_str() {
+            "k4.rate.f" | "k5.rate.f" => "the rate of the link".to_owned(),
+            _ => name,
+        };
+        names.map(rate).collect::<BTreeSet<String>>()
+    };
+    let expected = states(&BARE);
+    assert!(expected.contains("k2.spring.q"), "{expected:?}");
+    for turn in 0..BARE.len() {
+        let mut statements = BARE;
+        statements.rotate_left(turn);
+        assert_eq!(states(&statements), expected, "{turn}");
+        statements.reverse();
+        assert_eq!(states(&statements), expected, "{turn} in reverse");
+    }
 }

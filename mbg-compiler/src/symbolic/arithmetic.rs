@@ -3,6 +3,8 @@
 //! What is there already is found by its value, what changes seldom is gathered, and common factors are taken out where
 //! that saves work.
 
+use rustc_hash::FxHashSet;
+
 use super::expression::{Expression, Function, Operation, Rate};
 use super::field::Image;
 use super::pool::Pool;
@@ -350,9 +352,12 @@ impl Pool {
     /// Whether a logarithm is among the terms of a sum, or the factors of a product.
     fn holds_logarithm(&self, sum: Expression) -> bool {
         let mut pending = vec![sum];
+        let mut seen = FxHashSet::default();
         while let Some(term) = pending.pop() {
             match *self.operation(term) {
-                Operation::Add(a, b) | Operation::Multiply(a, b) if pending.len() < MOST_TERMS => {
+                Operation::Add(a, b) | Operation::Multiply(a, b)
+                    if pending.len() < MOST_TERMS && seen.insert(term.node()) =>
+                {
                     pending.extend([a, b]);
                 }
                 Operation::Divide(a, _) => pending.push(a),

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use rustc_hash::FxHashMap;
+
 use super::expression::{Expression, Function, Operation, Rate, Symbol};
 use super::implicit::Method;
 use super::linear::Linear;
@@ -293,19 +295,34 @@ fn chain(pool: &mut Pool, is_steep: bool, outer: Expression, inner: Expression) 
 /// Whether choices may make a derivative zero everywhere around a place. A sum that changes with anything else crosses zero
 /// at most.
 fn may_vanish(pool: &Pool, derivative: Expression) -> bool {
-    match pool.operation(derivative) {
-        Operation::Multiply(a, b) => may_vanish(pool, *a) || may_vanish(pool, *b),
-        Operation::Divide(a, _) => may_vanish(pool, *a),
+    may_vanish_knowing(pool, derivative, &mut FxHashMap::default())
+}
+
+/// The same, each node once: terms of sums share what is in them.
+fn may_vanish_knowing(
+    pool: &Pool,
+    derivative: Expression,
+    known: &mut FxHashMap<usize, bool>,
+) -> bool {
+    if let Some(found) = known.get(&derivative.node()) {
+        return *found;
+    }
+    let mut may_vanish = |part: Expression| may_vanish_knowing(pool, part, known);
+    let found = match pool.operation(derivative) {
+        Operation::Multiply(a, b) => may_vanish(*a) || may_vanish(*b),
+        Operation::Divide(a, _) => may_vanish(*a),
         Operation::Add(a, b) => {
-            let [first, second] = [a, b].map(|term| may_vanish(pool, *term));
+            let [first, second] = [a, b].map(|term| may_vanish(*term));
             let is_fixed = |term: &Expression| pool.rate(*term) != Rate::Varying;
             first && (second || is_fixed(b)) || second && is_fixed(a)
         }
         Operation::Call(Function::SelectLess, arguments) => arguments[2..]
             .iter()
-            .any(|chosen| *chosen == Expression::ZERO || may_vanish(pool, *chosen)),
+            .any(|chosen| *chosen == Expression::ZERO || may_vanish(*chosen)),
         _ => false,
-    }
+    };
+    known.insert(derivative.node(), found);
+    found
 }
 
 /// A factor that is a choice between something and zero, with what it compares and chooses from.

@@ -121,7 +121,11 @@ impl<'a> Reporter<'a> {
     /// function, as a rate does in a sine of time.
     pub(super) fn is_numeric(&self, claim: &Claim) -> bool {
         let mut open = claim.entries.clone();
+        let mut seen = BTreeSet::new();
         while let Some(current) = open.pop() {
+            if !seen.insert(current.node()) {
+                continue;
+            }
             let operation = self.pool.operation(current);
             match operation {
                 Operation::Symbol(symbol) if self.declared.contains(symbol) => return false,
@@ -280,7 +284,11 @@ impl<'a> Reporter<'a> {
         };
         let owner = format!("{}.", self.model.graph.elements[id.0].name);
         let mut open = claim.entries.clone();
+        let mut seen = BTreeSet::new();
         while let Some(current) = open.pop() {
+            if !seen.insert(current.node()) {
+                continue;
+            }
             let operation = self.pool.operation(current);
             if let Operation::Call(function @ (Function::Ln | Function::Exp), arguments) = operation
                 && let [argument] = arguments[..]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use crate::symbolic::choices::choice_of;
-use crate::symbolic::substitute::{operations, replace, symbols, visit};
+use crate::symbolic::substitute::{depends, operations, replace, symbols, visit};
 use crate::symbolic::{
     Differentiator, Expression, Function, Operation, Pool, Rate, Symbol, affine,
 };
@@ -294,27 +294,26 @@ fn slopes(
 
 /// Whether it changes with time, and with nothing but that and inputs while a model runs.
 fn is_driven(pool: &Pool, value: Expression) -> bool {
-    let read = symbols(pool, &[value]);
     let is_given =
         |it: &Symbol| matches!(it, Symbol::Time | Symbol::Input(_) | Symbol::Parameter(_));
-    read.contains(&Symbol::Time) && read.iter().all(is_given)
+    !depends(pool, value, |it| !is_given(it)) && depends(pool, value, is_time)
 }
 
 /// Whether it changes with time, and with nothing else while a model runs.
 fn is_of_time(pool: &Pool, value: Expression) -> bool {
-    let read = symbols(pool, &[value]);
     let is_fixed = |it: &Symbol| matches!(it, Symbol::Time | Symbol::Parameter(_));
-    read.contains(&Symbol::Time) && read.iter().all(is_fixed)
+    !depends(pool, value, |it| !is_fixed(it)) && depends(pool, value, is_time)
+}
+
+fn is_time(symbol: &Symbol) -> bool {
+    *symbol == Symbol::Time
 }
 
 /// Whether it changes with inputs, and with nothing but those and time while a model runs.
 fn is_given(pool: &Pool, value: Expression) -> bool {
-    let read = symbols(pool, &[value]);
+    let is_found = |it: &Symbol| matches!(it, Symbol::State(_) | Symbol::Unknown(_));
     let is_input = |it: &Symbol| matches!(it, Symbol::Input(_));
-    read.iter().any(is_input)
-        && !read
-            .iter()
-            .any(|it| matches!(it, Symbol::State(_) | Symbol::Unknown(_)))
+    !depends(pool, value, is_found) && depends(pool, value, is_input)
 }
 
 /// Whether it begins anew with time at [`times`] that come again, as `mod(t, period) - input` does: between them it hardly changes
@@ -326,9 +325,9 @@ fn comes_again(pool: &mut Pool, value: Expression) -> bool {
 
 /// Whether it changes with the state or an input.
 fn is_moved(pool: &Pool, value: Expression) -> bool {
-    let moves =
-        |it: &Symbol| matches!(it, Symbol::State(_) | Symbol::Unknown(_) | Symbol::Input(_));
-    symbols(pool, &[value]).iter().any(moves)
+    depends(pool, value, |it| {
+        matches!(it, Symbol::State(_) | Symbol::Unknown(_) | Symbol::Input(_))
+    })
 }
 
 /// What grows by one from each end of the way of a wave to the next, for waves over one state alone, or over time and inputs.
@@ -412,6 +411,10 @@ fn branches(pool: &mut Pool, expression: Expression) -> Vec<Expression> {
             None => {}
             Some((part, [_, _, c, d])) => {
                 let chosen = [d, c].map(|branch| replace(pool, expression, &[(part, branch)]));
+                // It stands in the equations of an unknown, in which nothing is replaced.
+                if chosen.contains(&Some(expression)) {
+                    break;
+                }
                 open.extend(chosen.into_iter().flatten());
             }
         }
@@ -434,7 +437,6 @@ fn is_number(pool: &Pool, expression: Expression) -> bool {
 
 /// The time at which an expression of time and parameters is zero, if it is a line.
 fn zero(pool: &mut Pool, expression: Expression) -> Option<Expression> {
-    let is_time = |symbol: &Symbol| *symbol == Symbol::Time;
     let (slope, rest) = affine(pool, expression, Symbol::Time, is_time)?;
     pool.divide(rest.negated(), slope)
 }
@@ -494,7 +496,6 @@ fn repeated(
     places: &[Expression],
     period: Expression,
 ) -> Vec<[Expression; 2]> {
-    let is_time = |symbol: &Symbol| *symbol == Symbol::Time;
     let Some((slope, rest)) = affine(pool, argument, Symbol::Time, is_time) else {
         return Vec::new();
     };

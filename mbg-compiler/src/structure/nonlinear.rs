@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::eliminate::System;
 use super::solve::{Solver, places};
 use super::{Failure, Loop, Undetermined};
-use crate::symbolic::dense::{ADJUGATE, dense};
+use crate::symbolic::dense::{ADJUGATE, Pivots};
 use crate::symbolic::substitute::symbols;
 use crate::symbolic::{
     Expression, Implicit, Matrix, Method, Pool, Rate, Substitution, Symbol, affine, jacobian,
@@ -88,7 +88,6 @@ impl Solver<'_> {
         right: &[Expression],
         unknowns: &[usize],
     ) -> Result<Vec<Expression>, Failure> {
-        let size = left.len();
         let symbols: Vec<Symbol> = left.iter().copied().map(Symbol::Unknown).collect();
         let values: Vec<Expression> = symbols
             .iter()
@@ -102,22 +101,14 @@ impl Solver<'_> {
             .map(|(sum, right)| self.pool.subtract(*sum, *right))
             .collect();
         let jacobian = jacobian(self.pool, &residuals, &symbols);
-        let mut inverse = Vec::with_capacity(size * size);
-        for row in 0..size {
-            let mut unit = vec![Expression::ZERO; size];
-            unit[row] = Expression::ONE;
-            let mut divisor = Expression::ONE;
-            let Some(column) = dense(self.pool, &jacobian, &unit, &mut divisor) else {
-                return Err(Failure::Undetermined(Box::new(Undetermined {
-                    unknowns: unknowns.to_vec(),
-                    left,
-                    residuals,
-                    jacobian,
-                })));
-            };
-            inverse.extend(column);
-        }
-        let inverse = Matrix::new(size, size, inverse).transpose();
+        let Some(inverse) = inverted(self.pool, &jacobian) else {
+            return Err(Failure::Undetermined(Box::new(Undetermined {
+                unknowns: unknowns.to_vec(),
+                left,
+                residuals,
+                jacobian,
+            })));
+        };
         self.pool.define(Implicit {
             unknowns: left,
             method: Method::Newton {
@@ -128,6 +119,19 @@ impl Solver<'_> {
         });
         Ok(values)
     }
+}
+
+/// The inverse of a matrix; none if it is singular.
+fn inverted(pool: &mut Pool, matrix: &Matrix) -> Option<Matrix> {
+    let size = matrix.rows;
+    let pivots = Pivots::of(pool, matrix)?;
+    let mut inverse = Vec::with_capacity(size * size);
+    for row in 0..size {
+        let mut unit = vec![Expression::ZERO; size];
+        unit[row] = Expression::ONE;
+        inverse.extend(pivots.solve(pool, &unit)?);
+    }
+    Some(Matrix::new(size, size, inverse).transpose())
 }
 
 /// The block's own unknown behind a symbol, by place.

@@ -17,8 +17,8 @@ use super::uses::Uses;
 /// Largest numerator and denominator of a number that is told by its image.
 const LARGEST: u64 = 10_000;
 
-/// How many ends of values are told apart.
-const ENDS: usize = 1 << 14;
+/// How many ends of values are told apart, for each value: so many that few others end as one of them does.
+const ENDS: usize = 16;
 
 /// Makes products of what only the roots need, where that saves operations; what the `others` need stays as it is.
 pub fn products(pool: &mut Pool, others: &[Expression], roots: &[Expression]) {
@@ -102,13 +102,14 @@ impl Known {
         let firsts: Vec<u64> = nodes.iter().map(|node| pool.image(*node).0[0]).collect();
         let reciprocals = field::reciprocals(&firsts);
         let mut values = FxHashMap::default();
-        let mut ends = vec![false; ENDS];
+        let mut ends = vec![false; (2 * ENDS * nodes.len()).next_power_of_two()];
+        let last = ends.len() - 1;
         let mut multiples: FxHashMap<u64, Vec<Expression>> = FxHashMap::default();
         for (node, reciprocal) in nodes.iter().zip(&reciprocals) {
             let [first, second, _] = pool.image(*node).0;
             for (value, node) in [(first, *node), (field::negate(first), node.negated())] {
                 values.entry(value).or_insert(node);
-                ends[value as usize % ENDS] = true;
+                ends[value as usize & last] = true;
             }
             let ratio = field::multiply(second, *reciprocal);
             multiples.entry(ratio).or_default().push(*node);
@@ -134,12 +135,13 @@ impl Known {
         };
         let mut forms = Vec::new();
         let image = pool.image(node);
+        let last = self.ends.len() - 1;
         for (factor, reciprocal) in self.nodes.iter().zip(&self.reciprocals) {
             if factor.node() >= node.node() {
                 break;
             }
             let other = field::multiply(image.0[0], *reciprocal);
-            if !self.ends[other as usize % ENDS] {
+            if !self.ends[other as usize & last] {
                 continue;
             }
             let other = self.values.get(&other);

@@ -97,6 +97,22 @@ pub fn symbols(pool: &Pool, expressions: &[Expression]) -> Vec<Symbol> {
     found
 }
 
+/// Whether an expression depends on one of some symbols; looks no further than to the first of them.
+pub fn depends(pool: &Pool, expression: Expression, is_one: impl Fn(&Symbol) -> bool) -> bool {
+    let mut seen = vec![false; pool.len()];
+    let mut pending = vec![expression];
+    while let Some(current) = pending.pop() {
+        if std::mem::replace(&mut seen[current.node()], true) {
+            continue;
+        }
+        if matches!(pool.operation(current), Operation::Symbol(symbol) if is_one(symbol)) {
+            return true;
+        }
+        pending.extend(pool.causes(current).iter().rev());
+    }
+    false
+}
+
 /// How many operations the expressions take, shared ones once.
 #[must_use]
 pub fn operations(pool: &Pool, expressions: &[Expression]) -> usize {

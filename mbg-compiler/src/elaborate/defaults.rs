@@ -80,9 +80,10 @@ impl Builder<'_> {
         });
         let worked_out: Vec<String> = worked_out.collect();
         match (unit, worked_out.is_empty()) {
-            (Some(unit), false) => {
-                report.help(format!("what `{instance}` works out in {unit}: {}", listing(worked_out)))
-            }
+            (Some(unit), false) => report.help(format!(
+                "what `{instance}` works out in {unit}: {}",
+                listing(worked_out)
+            )),
             _ => report,
         }
     }

@@ -129,7 +129,7 @@ fn inverted(pool: &mut Pool, matrix: &Matrix) -> Option<Matrix> {
     for row in 0..size {
         let mut unit = vec![Expression::ZERO; size];
         unit[row] = Expression::ONE;
-        inverse.extend(pivots.solve(pool, &unit)?);
+        inverse.extend(pivots.solve(pool, &unit, &mut Expression::ONE.clone())?);
     }
     Some(Matrix::new(size, size, inverse).transpose())
 }

@@ -260,7 +260,8 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                 Taken::Whole(known, ahead) => {
                     let next = problem.arrive(span.end, known, &ahead)?;
                     let memory = problem.memory;
-                    let mut dense = || steps.samples(problem, &from, (&next, Some(ahead)), used);
+                    let end = (&next, Some(ahead));
+                    let mut dense = |place| steps.samples(problem, &from, end, used, place);
                     let mut step = Step::new(span, (x, next), memory, &mut dense);
                     if observer(&mut step).is_break() {
                         return Ok(Walked::Left);

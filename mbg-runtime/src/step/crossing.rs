@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 use nalgebra::SVector;
 
 use super::control::Control;
-use super::dense::Polynomial;
+use super::dense::{Part, Polynomial};
 use super::explicit::Dop853;
 use super::method::{Estimating, Family, Start, Stepper, Trial};
 use super::over::Place;
@@ -249,22 +249,23 @@ impl<'a, Scheme: Family, T: Real, const N: usize> Crossing<'a, Scheme, T, N> {
         }
     }
 
-    /// The same for what is read there, within a tolerance as the ends of the step are.
+    /// The same for what is read at a place of it, within a tolerance as the ends of the step are.
     pub(super) fn samples<S, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         start: &Start<T, N>,
         end: (&SVector<T, N>, Option<SVector<T, N>>),
         tolerance: &Tolerance<N>,
-    ) -> Polynomial<T, N>
+        place: f64,
+    ) -> Part<T, N>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
         if self.is_across::<S, M, P>() {
-            self.explicit.samples(problem, start, end, tolerance)
+            self.explicit.samples(problem, start, end, tolerance, place)
         } else {
-            self.work.samples(problem, start, end, tolerance)
+            self.work.samples(problem, start, end, tolerance, place)
         }
     }
 

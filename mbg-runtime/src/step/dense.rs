@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::method::Span;
+use super::seen;
 use super::surfaces::Surfaces;
 use crate::Real;
 
@@ -118,6 +119,39 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
     }
 }
 
+/// A polynomial over a part of a step, or over all of it.
+pub struct Part<T, const N: usize> {
+    polynomial: Polynomial<T, N>,
+    /// Where it begins, and its length, by those of the step.
+    start: f64,
+    length: f64,
+}
+
+impl<T: Real, const N: usize> Part<T, N> {
+    pub(super) fn whole(polynomial: Polynomial<T, N>) -> Self {
+        Self::of(polynomial, 0.0, 1.0)
+    }
+
+    pub(super) fn of(polynomial: Polynomial<T, N>, start: f64, length: f64) -> Self {
+        Self {
+            polynomial,
+            start,
+            length,
+        }
+    }
+
+    /// Whether a place is in this part, or nearer to it than to others.
+    fn holds(&self, place: f64) -> bool {
+        let place = place.max(0.0).min(1.0) - self.start;
+        (0.0..=self.length).contains(&place)
+    }
+
+    fn at(&self, place: T) -> SVector<T, N> {
+        let (start, length) = (T::from_f64(self.start), T::from_f64(self.length));
+        self.polynomial.at((place - start) / length)
+    }
+}
+
 /// A polynomial without a constant part, from powers of `s` into the form of [`Polynomial`]: the remainders of divisions by
 /// `s` and by `1 - s` in turns.
 pub(super) const fn in_turns(powers: [f64; DEGREE]) -> [f64; DEGREE] {
@@ -174,8 +208,8 @@ pub struct Step<'a, T, const N: usize, Memory = ()> {
     pub(super) is_clear: bool,
     /// Whether it is a straight line over a threshold, behind which the motion may stay at others.
     pub(super) is_over: bool,
-    polynomial: Option<Polynomial<T, N>>,
-    source: &'a mut dyn FnMut() -> Polynomial<T, N>,
+    part: Option<Part<T, N>>,
+    source: &'a mut dyn FnMut(f64) -> Part<T, N>,
 }
 
 impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
@@ -183,7 +217,7 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
         span: Span<T>,
         (first, state): (SVector<T, N>, SVector<T, N>),
         memory: Memory,
-        source: &'a mut dyn FnMut() -> Polynomial<T, N>,
+        source: &'a mut dyn FnMut(f64) -> Part<T, N>,
     ) -> Self {
         Self {
             span,
@@ -193,7 +227,7 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
             surfaces: None,
             is_clear: false,
             is_over: false,
-            polynomial: None,
+            part: None,
             source,
         }
     }
@@ -263,11 +297,16 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
     /// of the step an extrapolation.
     ///
     /// The first call may evaluate the derivative, up to five times. It is some thirty times where stability limits the steps of
-    /// [`Dop853`](crate::Dop853), so that what settles fast is as exact as at their ends.
+    /// [`Dop853`](crate::Dop853), so that what settles fast is as exact as at their ends. [`Pirk8`](crate::Pirk8) and
+    /// [`Pirk16`](crate::Pirk16) evaluate it up to 150 times for each part of a long step, which may be a sixteenth.
     #[must_use]
     pub fn at(&mut self, t: T) -> SVector<T, N> {
-        let polynomial = self.polynomial.get_or_insert_with(&mut self.source);
-        polynomial.at((t - self.span.start) / self.span.length)
+        let place = (t - self.span.start) / self.span.length;
+        let part = match self.part.take() {
+            Some(part) if part.holds(seen(place)) => part,
+            _ => (self.source)(seen(place)),
+        };
+        self.part.insert(part).at(place)
     }
 
     /// Leaves the part of the step up to a time in it, with the state there. Its length stays that of the polynomial, which is

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::control::Rule;
-use super::dense::Polynomial;
+use super::dense::{Part, Polynomial};
 use super::problem::Problem;
 use super::tolerance::Tolerance;
 use crate::{Columns, Input, Real, System};
@@ -138,19 +138,20 @@ pub trait Stepper<A, T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
 
-    /// The same for what is read there, within a tolerance as the ends of the step are.
+    /// The same for what is read at a place of it, within a tolerance as the ends of the step are.
     fn samples<S, I, const M: usize, const P: usize>(
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         start: &Start<T, N>,
         end: (&SVector<T, N>, Option<SVector<T, N>>),
         _tolerance: &Tolerance<N>,
-    ) -> Polynomial<T, N>
+        _place: f64,
+    ) -> Part<T, N>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        self.polynomial(problem, start, end)
+        Part::whole(self.polynomial(problem, start, end))
     }
 
     /// Where and when the step that has been tried last takes its Jacobian, if the method takes one.

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use nalgebra::SVector;
 
 use super::crossing::Across;
-use super::dense::Step;
+use super::dense::{Part, Step};
 use super::fixed::Fixed;
 use super::grid::{FINEST, Grid, Parts};
 use super::jumps::{Counted, Jump, Ran, Runs, walk_over_jumps};
@@ -197,9 +197,11 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                 x = problem.close(t, x)?;
                 problem.statistics.steps += 1;
                 let memory = problem.memory;
-                let mut dense = || match is_across {
-                    true => across.polynomial(problem, &from, &x),
-                    false => work.polynomial(problem, &from, (&x, None)),
+                let mut dense = |_| {
+                    Part::whole(match is_across {
+                        true => across.polynomial(problem, &from, &x),
+                        false => work.polynomial(problem, &from, (&x, None)),
+                    })
                 };
                 let mut step = Step::new(span, (from.x, x), memory, &mut dense);
                 step.is_clear = is_clear;
@@ -387,7 +389,7 @@ where
     let mut beside = problem.beside();
     let change = across.over(problem, from).change;
     let end = from.x + change;
-    let mut dense = || across.polynomial(problem, from, &end);
+    let mut dense = |_| Part::whole(across.polynomial(problem, from, &end));
     let mut step = Step::new(from.span, (from.x, end), memory, &mut dense);
     let jump = beside.jump_within(&mut step, f64::NEG_INFINITY, Counted::Jumps);
     problem.memory = tried;

@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 
 use nalgebra::SVector;
 
-use super::dense::{Polynomial, Step};
+use super::dense::{Part, Polynomial, Step};
 use super::method::{Span, Start, along};
 use super::problem::Problem;
 use super::thresholds::Point;
@@ -204,7 +204,7 @@ where
         self.statistics.steps += 1;
         self.check(end, &next, &ahead)?;
         // Of the change itself: beside the state it may be little more than rounding.
-        let mut line = || Polynomial::straight(&x, change);
+        let mut line = |_| Part::whole(Polynomial::straight(&x, change));
         let mut step = Step::new(span, (x, next), self.memory, &mut line);
         step.is_over = true;
         Ok(match observer(&mut step) {

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::dense::Polynomial;
 use super::elimination::Shifted;
 use super::method::{Span, Start, along};
 use super::probes::Probes;
@@ -150,7 +151,19 @@ where
         self.slope_as_it_is(t, x)
     }
 
-    /// The same where loops are closed.
+    /// What the polynomial over a step misses of the derivative at a place in it, times the length of the step.
+    pub(super) fn missed(
+        &mut self,
+        start: &Start<T, N>,
+        polynomial: &Polynomial<T, N>,
+        place: T,
+    ) -> SVector<T, N> {
+        let (x, change) = polynomial.with_slope(place);
+        let slope = self.slope(start.span.at(place), &x);
+        slope.zip_map(&change, |slope, change| start.span.length * slope - change)
+    }
+
+    /// The same as [`Self::slope`] where loops are closed.
     #[cold]
     #[inline(never)]
     fn slope_where_closed(&mut self, t: T, x: &SVector<T, N>) -> SVector<T, N> {

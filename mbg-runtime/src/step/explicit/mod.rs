@@ -10,7 +10,7 @@ use core::ops::Range;
 
 use nalgebra::SVector;
 
-use super::dense::Polynomial;
+use super::dense::{Part, Polynomial};
 use super::method::{
     Estimating, Family, Method, Span, Start, Stepper, Trial, ahead, combination, each_stage, row,
 };
@@ -343,24 +343,23 @@ where
         start: &Start<T, N>,
         (end, slope): (&SVector<T, N>, Option<SVector<T, N>>),
         tolerance: &Tolerance<N>,
-    ) -> Polynomial<T, N>
+        _place: f64,
+    ) -> Part<T, N>
     where
         Y: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
         let polynomial = self.polynomial(problem, start, (end, slope));
         if const { F == S + 1 } {
-            return polynomial;
+            return Part::whole(polynomial);
         }
         let half = T::from_f64(0.5);
-        let (x, change) = polynomial.with_slope(half);
-        let slope = problem.slope(start.span.at(half), &x);
-        let missed = slope.zip_map(&change, |slope, change| start.span.length * slope - change);
+        let missed = problem.missed(start, &polynomial, half);
         let measure = tolerance.between(&start.x, &(end - start.x));
-        match measure.norm(&missed) > MISSED {
+        Part::whole(match measure.norm(&missed) > MISSED {
             true => self.between(problem, start, end),
             false => polynomial,
-        }
+        })
     }
 }
 

@@ -644,19 +644,23 @@ fn contacts_on_what_stands_are_told() {
 
 /// A rope's `force` is what it takes besides; a name that is given, or that a component works out, is read as it is meant.
 #[test]
-fn parameters_at_their_defaults_that_are_read_are_told() {
+fn parameters_of_zero_that_are_read_are_told() {
     let rope = |force: &str, read: &str| {
         warned(&format!(
-            "model M {{ 1 crab[3]; 1 load[3]; Sf rail[3] {{ flow: 0.0 }} -> crab;
+            "component Post(port 1 a[3]) {{ param offset: m = 0.0; a -> R r {{ resistance: 1.0 }}; let place = 2.0 * offset; }}
+            model M {{ 1 crab[3]; 1 load[3]; Sf rail[3] {{ flow: 0.0 }} -> crab; post: Post (load);
             level: PlanarFree {{ initial_position: [0.0, -2.0] }} (crab, load); mass: PlanarBody {{ mass: 2.0, inertia: 1.0 }} (load);
             rope: PlanarLineForce {{ kind: rope, stiffness: 1e4, rest: 2.0{force} }} (crab, load);
-            output pull: N = {read}; }}"
+            output read = {read}; }}"
         ))
     };
     insta::assert_snapshot!(rope("", "rope.force + 2.0 * rope.force"), @"
-    4:30 `rope.force` is a parameter that `rope` is not given: it stays 0.0 [MBG0224]
+    5:27 `rope.force` is a parameter that `rope` is not given: it is zero [MBG0224]
       help: what `rope` works out in N: `rope.tension`
     ");
     assert_eq!(rope(", force: 3.0", "rope.force"), "");
     assert_eq!(rope("", "rope.tension"), "");
+    // A default that is something is read as what it is, and so is one of a component of the user's.
+    assert_eq!(rope("", "level.friction_speed"), "");
+    assert_eq!(rope("", "post.offset"), "");
 }

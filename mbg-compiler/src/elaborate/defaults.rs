@@ -1,16 +1,16 @@
-//! Warnings of parameters that are read from outside of a component and were not given to it: the name reads like what the
-//! component works out, and the value stays at its default.
+//! Warnings of parameters of the library's components that are read from outside, were not given and are zero then: the name reads
+//! like what the component works out.
 
 use super::Builder;
 use super::advice::text;
+use super::elsewhere::number;
 use super::expressions::Step;
 use super::scope::{Entity, Lookup};
 use crate::codes;
 use crate::diagnostics::{Diagnostic, error, listing};
 use crate::syntax::ast::{Parameter, Statement};
-use crate::syntax::dump;
 
-/// A path from outside to a parameter at its default.
+/// A path from outside to a parameter that is zero, as it was not given.
 pub(super) struct DefaultRead<'a> {
     path: Vec<Step>,
     /// The scope of the component in use.
@@ -19,7 +19,7 @@ pub(super) struct DefaultRead<'a> {
 }
 
 impl<'a> Lookup<'_, 'a> {
-    /// Remembers a path that leads to a parameter which was not given, once.
+    /// Remembers a path that leads to such a parameter, once.
     pub(super) fn note_default(&mut self, path: &[Step], definition: usize) {
         let (Some(parameter), Some((_, front))) =
             (self.definitions[definition].parameter, path.split_last())
@@ -30,12 +30,14 @@ impl<'a> Lookup<'_, 'a> {
             return;
         };
         let name = parameter.name.to_string();
+        let within_library = self.scopes[*within].library.is_some();
         let is_default = self.scopes[*within].constants.given.get(&name) == Some(&false);
+        let is_zero = parameter.default.as_ref().and_then(number) == Some(0.0);
         let is_told = self.definitions[definition].told.is_some();
         let is_known = (self.defaults.iter())
             .any(|it| (it.within, &it.parameter.name) == (*within, &parameter.name));
-        let is_library = self.scopes[self.scope].library.is_some();
-        if is_default && !is_told && !is_known && !is_library {
+        let is_inside = self.scopes[self.scope].library.is_some();
+        if within_library && is_default && is_zero && !is_told && !is_known && !is_inside {
             self.defaults.push(DefaultRead {
                 path: path.to_vec(),
                 within: *within,
@@ -46,7 +48,7 @@ impl<'a> Lookup<'_, 'a> {
 }
 
 impl Builder<'_> {
-    /// A warning for each parameter that is read and stays at its default, with what the component works out in its unit.
+    /// A warning for each of them, with what the component works out in its unit.
     pub(super) fn warn_of_defaults(&mut self) {
         let warnings: Vec<Diagnostic> =
             self.defaults.iter().map(|it| self.at_default(it)).collect();
@@ -62,11 +64,7 @@ impl Builder<'_> {
             parameter,
         } = read;
         let (path, instance) = (text(path), text(&path[..path.len() - 1]));
-        let value = parameter.default.as_ref().map(dump::expression);
-        let message = format!(
-            "`{path}` is a parameter that `{instance}` is not given: it stays {}",
-            value.unwrap_or_default()
-        );
+        let message = format!("`{path}` is a parameter that `{instance}` is not given: it is zero");
         let report = error(codes::NO_EFFECT, read.path[0].name.span(), message);
         let (_, called) = self.called[within];
         let component = self.components.get(&called.component.to_string());

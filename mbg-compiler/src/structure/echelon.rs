@@ -16,7 +16,7 @@ pub(super) struct Echelon {
     /// By the unknown that leads, with coefficient one.
     rows: Vec<Option<(Row<u64>, Origin)>>,
     /// How many there are.
-    taken: usize,
+    size: usize,
 }
 
 /// Leads of rows, and how many times each.
@@ -54,9 +54,9 @@ impl Echelon {
             owner,
             taken,
             scale,
-            before: self.taken,
+            before: self.size,
         };
-        self.taken += 1;
+        self.size += 1;
         let known = self.rows.len().max(lead + 1);
         self.rows.resize(known, None);
         self.rows[lead] = Some((rest, origin));

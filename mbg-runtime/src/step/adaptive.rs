@@ -250,10 +250,8 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
                 ..Start::of(span, x, slope)
             };
             let memory = problem.memory;
-            let wide = steps.tolerance::<S, M, P>();
-            let used = &wide
-                .unwrap_or(tolerance)
-                .over(seen(span.length) / problem.whole);
+            let wide = steps.tolerance::<S, M, P>().unwrap_or(tolerance);
+            let used = &wide.over(seen(span.length) / problem.whole);
             let trial = steps.attempt(problem, &from, used);
             let taken = steps.taken(problem, &from, &trial, used);
             let come = match pace.met(problem, &from, taken, ends.are_all()) {

@@ -140,10 +140,10 @@ impl<T: Real, const N: usize> Part<T, N> {
         }
     }
 
-    /// Whether a place is in this part, or nearer to it than to others.
+    /// Whether a place is in this part, or outside of the step and next to it.
     fn holds(&self, place: f64) -> bool {
-        let place = place.max(0.0).min(1.0) - self.start;
-        (0.0..=self.length).contains(&place)
+        let end = self.start + self.length;
+        (self.start == 0.0 || place >= self.start) && (end >= 1.0 || place <= end)
     }
 
     fn at(&self, place: T) -> SVector<T, N> {

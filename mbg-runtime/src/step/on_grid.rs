@@ -197,11 +197,9 @@ impl<Scheme: Method, T: Real, const N: usize> Runs<T, N> for OnGrid<'_, Scheme, 
                 x = problem.close(t, x)?;
                 problem.statistics.steps += 1;
                 let memory = problem.memory;
-                let mut dense = |_| {
-                    Part::whole(match is_across {
-                        true => across.polynomial(problem, &from, &x),
-                        false => work.polynomial(problem, &from, (&x, None)),
-                    })
+                let mut dense = |_| match is_across {
+                    true => Part::whole(across.polynomial(problem, &from, &x)),
+                    false => Part::whole(work.polynomial(problem, &from, (&x, None))),
                 };
                 let mut step = Step::new(span, (from.x, x), memory, &mut dense);
                 step.is_clear = is_clear;

@@ -119,36 +119,44 @@ impl<T: Real, const N: usize> Polynomial<T, N> {
     }
 }
 
-/// A polynomial over a part of a step, or over all of it.
+/// A polynomial over a step, or over a part of it.
 pub struct Part<T, const N: usize> {
     polynomial: Polynomial<T, N>,
-    /// Where it begins, and its length, by those of the step.
-    start: f64,
-    length: f64,
+    /// Where the part begins, and its length, by those of the step.
+    within: Option<(f64, f64)>,
 }
 
 impl<T: Real, const N: usize> Part<T, N> {
     pub(super) fn whole(polynomial: Polynomial<T, N>) -> Self {
-        Self::of(polynomial, 0.0, 1.0)
+        Self {
+            polynomial,
+            within: None,
+        }
     }
 
     pub(super) fn of(polynomial: Polynomial<T, N>, start: f64, length: f64) -> Self {
         Self {
             polynomial,
-            start,
-            length,
+            within: Some((start, length)),
         }
     }
 
     /// Whether a place is in this part, or outside of the step and next to it.
-    fn holds(&self, place: f64) -> bool {
-        let end = self.start + self.length;
-        (self.start == 0.0 || place >= self.start) && (end >= 1.0 || place <= end)
+    fn holds(&self, place: T) -> bool {
+        self.within.is_none_or(|(start, length)| {
+            let (place, end) = (seen(place), start + length);
+            (start == 0.0 || place >= start) && (end >= 1.0 || place <= end)
+        })
     }
 
     fn at(&self, place: T) -> SVector<T, N> {
-        let (start, length) = (T::from_f64(self.start), T::from_f64(self.length));
-        self.polynomial.at((place - start) / length)
+        match self.within {
+            None => self.polynomial.at(place),
+            Some((start, length)) => {
+                let ahead = place - T::from_f64(start);
+                self.polynomial.at(ahead / T::from_f64(length))
+            }
+        }
     }
 }
 
@@ -302,11 +310,12 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
     #[must_use]
     pub fn at(&mut self, t: T) -> SVector<T, N> {
         let place = (t - self.span.start) / self.span.length;
-        let part = match self.part.take() {
-            Some(part) if part.holds(seen(place)) => part,
-            _ => (self.source)(seen(place)),
-        };
-        self.part.insert(part).at(place)
+        let source = &mut self.source;
+        let part = self.part.get_or_insert_with(|| source(seen(place)));
+        if !part.holds(place) {
+            *part = source(seen(place));
+        }
+        part.at(place)
     }
 
     /// Leaves the part of the step up to a time in it, with the state there. Its length stays that of the polynomial, which is

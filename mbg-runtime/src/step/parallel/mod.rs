@@ -302,11 +302,12 @@ where
         }
         let nodes = const { &A::TABLEAU.nodes };
         let ratio = step.length / before.length;
+        let offsets = nodes.map(|node| T::Stages::whole(ahead - T::from_f64(node)));
         let mut weights = [[T::Stages::from_f64(0.0); G]; S];
         for group in 0..G {
             let own = array::from_fn(|place| nodes[4 * group + place + 1]);
             let places = scaled::<T>(ratio, own);
-            let distances = nodes.map(|node| places + T::Stages::whole(ahead - T::from_f64(node)));
+            let distances = offsets.map(|offset| places + offset);
             let of_group = lagrange(const { &leading(&A::TABLEAU.nodes) }, &distances);
             for (weights, weight) in weights.iter_mut().zip(of_group) {
                 weights[group] = weight;

@@ -14,6 +14,8 @@ mod falling;
 mod moving;
 #[path = "sliding/networks.rs"]
 mod networks;
+#[path = "sliding/row.rs"]
+mod row;
 #[path = "sliding/several.rs"]
 mod several;
 #[path = "sliding/turning.rs"]

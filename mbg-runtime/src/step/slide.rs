@@ -181,7 +181,7 @@ where
     ) -> Option<Surfaces<T>> {
         let mut is_led_back = false;
         problem.courses(from, to, |course, _| is_led_back |= course.is_led_back());
-        is_led_back.then_some(Surfaces::NONE)
+        is_led_back.then_some(Surfaces::none())
     }
 }
 
@@ -372,7 +372,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let mut surfaces = Surfaces::<T, K>::NONE.with(&surfaces);
+        let mut surfaces = Surfaces::<T, K>::none().with(&surfaces);
         while less(here.0, end) {
             settled.again(here.0)?;
             let model = (problem.system, problem.input);
@@ -389,7 +389,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let holds = |(t, x): Place<T, N>, memory| less(T::from_f64(0.0), hold(t, &x, memory));
             if !holds(here, memory) {
                 problem.statistics.evaluations += sliding.evaluations.get();
-                surfaces = surfaces.with(&problem.at_start(here).unwrap_or(Surfaces::<_>::NONE));
+                surfaces = surfaces.with(&problem.at_start(here).unwrap_or_else(Surfaces::none));
                 continue;
             }
             let (mut along, mut left) = (problem.of(&sliding), None);
@@ -404,7 +404,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     step.cut(time, there);
                     left = Some((time, there));
                 }
-                step.surfaces = Some(Surfaces::NONE.with(&surfaces));
+                step.surfaces = Some(Surfaces::none().with(&surfaces));
                 let goes_on = observer(step);
                 sliding.heed(seen(step.end() - step.start()));
                 match goes_on {
@@ -432,7 +432,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
                 }
                 (Walked::Left, Some(place)) => {
                     surfaces =
-                        surfaces.with(&problem.at_start(place).unwrap_or(Surfaces::<_>::NONE));
+                        surfaces.with(&problem.at_start(place).unwrap_or_else(Surfaces::none));
                     here = place;
                 }
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),

@@ -7,7 +7,7 @@ use crate::lane::{are_alike, lane};
 use crate::{Course, Input, Real, System};
 
 /// So many at once.
-pub(super) const MOST: usize = 16;
+pub(super) const MOST: usize = 64;
 /// A state is at a threshold that it comes to within so many units of the last place of the time.
 const PLACES: f64 = 64.0;
 
@@ -21,26 +21,39 @@ pub(super) struct Surface<T> {
 }
 
 /// Thresholds at which a motion stays, each of an argument of its own, with room for so many.
+// Every step has such room on the stack: numbers of arguments are short, and apart from the levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Surfaces<T, const K: usize = MOST> {
-    list: [Option<Surface<T>>; K],
+    count: usize,
+    courses: [u16; K],
+    levels: [T; K],
 }
 
 impl<T: Real, const K: usize> Surfaces<T, K> {
-    pub(super) const NONE: Self = Self { list: [None; K] };
+    pub(super) fn none() -> Self {
+        Self {
+            count: 0,
+            courses: [0; K],
+            levels: [T::from_f64(0.0); K],
+        }
+    }
 
     pub(super) fn one(surface: Surface<T>) -> Self {
-        let mut one = Self::NONE;
+        let mut one = Self::none();
         one.add(surface);
         one
     }
 
-    pub(super) fn count(&self) -> usize {
-        self.iter().count()
+    pub(super) const fn count(&self) -> usize {
+        self.count
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = &Surface<T>> {
-        self.list.iter().flatten()
+    pub(super) fn iter(&self) -> impl Iterator<Item = Surface<T>> {
+        let all = self.courses.iter().zip(&self.levels).take(self.count);
+        all.map(|(course, level)| Surface {
+            course: usize::from(*course),
+            level: *level,
+        })
     }
 
     /// The place of the one of this argument.
@@ -51,24 +64,29 @@ impl<T: Real, const K: usize> Surfaces<T, K> {
 
     /// Adds one, unless its argument is at one or there is no room.
     pub(super) fn add(&mut self, surface: Surface<T>) {
-        if self.of(surface.course).is_none()
-            && let Some(free) = self.list.iter_mut().find(|it| it.is_none())
+        if self.of(surface.course).is_some() {
+            return;
+        }
+        let mut free = self.courses.iter_mut().zip(&mut self.levels);
+        if let Ok(course) = u16::try_from(surface.course)
+            && let Some(free) = free.nth(self.count)
         {
-            *free = Some(surface);
+            (*free.0, *free.1) = (course, surface.level);
+            self.count += 1;
         }
     }
 
     /// These and others.
     pub(super) fn with<const J: usize>(mut self, others: &Surfaces<T, J>) -> Self {
-        others.iter().for_each(|other| self.add(*other));
+        others.iter().for_each(|other| self.add(other));
         self
     }
 
     /// These without others.
     pub(super) fn without<const J: usize>(&self, others: &Surfaces<T, J>) -> Self {
-        let mut without = Self::NONE;
+        let mut without = Self::none();
         let left = self.iter().filter(|it| others.of(it.course).is_none());
-        left.for_each(|it| without.add(*it));
+        left.for_each(|it| without.add(it));
         without
     }
 }
@@ -142,7 +160,7 @@ where
             for threshold in course.thresholds {
                 let level = course.level(*threshold);
                 if course.is_choice && holds(course, level) {
-                    let surfaces = surfaces.get_or_insert(Surfaces::NONE);
+                    let surfaces = surfaces.get_or_insert_with(Surfaces::none);
                     surfaces.add(Surface {
                         course: number,
                         level,
@@ -178,7 +196,7 @@ mod tests {
             level: course as f64,
         };
         let of = |courses: &[usize]| {
-            let mut surfaces = Surfaces::<_>::NONE;
+            let mut surfaces = Surfaces::<_>::none();
             courses
                 .iter()
                 .for_each(|course| surfaces.add(surface(*course)));
@@ -188,7 +206,7 @@ mod tests {
         assert_eq!(surfaces.count(), 3);
         assert_eq!(surfaces.of(7), Some((2, 7.0)));
         assert_eq!(surfaces.without(&of(&[2, 5])), of(&[4, 7]));
-        let many: [usize; 20] = core::array::from_fn(|number| 10 + number);
+        let many: [usize; MOST] = core::array::from_fn(|number| 10 + number);
         let all = surfaces.with(&of(&many));
         assert_eq!(all.count(), MOST);
         assert_eq!(all.of(10), Some((3, 10.0)));

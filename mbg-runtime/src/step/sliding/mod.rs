@@ -102,7 +102,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             surfaces,
             free: 0,
             shares: Each::all(zero),
-            twins: (Surfaces::NONE, Each::all(Like::NOTHING)),
+            twins: (Surfaces::none(), Each::all(Like::NOTHING)),
             across: none(),
             beyond: none(),
             gradients: none(),

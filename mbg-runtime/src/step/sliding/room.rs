@@ -126,7 +126,7 @@ impl<const K: usize> Rooms for Room<K> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let surfaces = Surfaces::<T, K>::NONE.with(surfaces);
+        let surfaces = Surfaces::<T, K>::none().with(surfaces);
         Sliding::settled(model, times, place, surfaces, known).is_some()
     }
 
@@ -159,7 +159,7 @@ impl<const K: usize> Rooms for Room<K> {
         let (mut x, u) = (*x, input.at(t));
         let times = (t, (t, t), whole);
         let known = (&mut *memory, &mut 0);
-        let surfaces = Surfaces::<T, K>::NONE.with(&surfaces);
+        let surfaces = Surfaces::<T, K>::none().with(&surfaces);
         match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
             Some(sliding) => sliding.output(t, &x, &u, memory),
             None => system.output(t, &x, &u, memory),

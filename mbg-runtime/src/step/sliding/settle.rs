@@ -104,7 +104,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let stays = others.any(|passed| {
             let mut there = start;
             sliding.arrange(all, (&at, &there), memory);
-            sliding.pass(*passed, (&at, &mut there), memory);
+            sliding.pass(passed, (&at, &mut there), memory);
             let found = sliding.search((&at, &mut there), (&mut *memory, &mut *evaluations));
             let stays = found == Found::Stays;
             *x = if stays { there } else { *x };
@@ -128,14 +128,14 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
     {
         let x = &here.state;
         let is_near = |there: &SVector<T, N>| measure.norm(&(there - x)) <= HELD_UP;
-        let mut sliding = Self::of(model, times, Surfaces::NONE);
+        let mut sliding = Self::of(model, times, Surfaces::none());
         let at = sliding.on_piece(here.time);
-        let mut near = Surfaces::NONE;
+        let mut near = Surfaces::none();
         let mut ahead = 0.0_f64;
         for surface in surfaces.iter() {
-            sliding.arrange(Surfaces::one(*surface), (&at, x), memory);
+            sliding.arrange(Surfaces::one(surface), (&at, x), memory);
             if is_near(&sliding.onto(&at, x, memory)) {
-                near.add(*surface);
+                near.add(surface);
                 let [[distances, rates], _] = sliding.told(&at, [(x, &here.slope); 2], memory);
                 let time = seen(distances[0] / rates[0]).abs();
                 ahead = ahead.max(if time.is_finite() { time } else { 0.0 });
@@ -153,7 +153,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let state = sliding.landed(here.time, &sliding.landed(here.time, x, memory), memory);
         (is_root && is_near(&state)).then(|| Rest {
             state,
-            surfaces: Surfaces::NONE.with(&sliding.all()),
+            surfaces: Surfaces::none().with(&sliding.all()),
             ahead: SLOWER * ahead,
         })
     }
@@ -318,7 +318,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let gradients = self.gradients();
         let nothing = SVector::from_element(T::Lane::from_f64(0.0));
         let (mut span, mut units) = (Span::<_, N, K>::of_nothing(), Each::<_, K>::all(nothing));
-        let [mut free, mut bound, mut twins] = [Surfaces::NONE; 3];
+        let [mut free, mut bound, mut twins] = [Surfaces::none(); 3];
         let mut likes = Each::all(Like::NOTHING);
         for (place, surface) in surfaces.iter().enumerate() {
             let Some(unit) = unit(&gradients[place]) else {
@@ -337,11 +337,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                     size: size(place) / size(leader),
                     apart: BESIDE * (1.0 + GROWS * unlike / (ASIDE * T::EPSILON)),
                 };
-                twins.add(*surface);
+                twins.add(surface);
             } else if span.add(&unit).is_some() {
-                free.add(*surface);
+                free.add(surface);
             } else {
-                bound.add(*surface);
+                bound.add(surface);
             }
             units[place] = unit;
         }
@@ -403,7 +403,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let mut only = self.twins.0;
         let staying = self.surfaces.iter().enumerate();
         for (_, surface) in staying.filter(|(place, _)| stays(place)) {
-            only.add(*surface);
+            only.add(surface);
         }
         only
     }
@@ -421,10 +421,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let before = self.surfaces;
         let count = before.count();
         let order = Each::<usize, K>::by(count, |place| -above[place].min(1.0 - above[place]));
-        let mut sorted = Surfaces::NONE;
+        let mut sorted = Surfaces::none();
         for place in order.iter().take(count) {
             if let Some(surface) = before.iter().nth(*place) {
-                sorted.add(*surface);
+                sorted.add(surface);
             }
         }
         self.arrange(sorted.with(&self.twins.0), (at, x), memory);

@@ -6,11 +6,11 @@
 use std::collections::BTreeMap;
 
 use crate::codes;
-use crate::diagnostics::{Diagnostics, error};
+use crate::diagnostics::{Diagnostic, Diagnostics, error};
 use crate::elaborate::Elaborated;
 use crate::graph::Law;
 use crate::symbolic::substitute::symbols;
-use crate::symbolic::{Evaluation, Expression, Pool, Symbol};
+use crate::symbolic::{Evaluation, Expression, Factor, Pool, Symbol};
 
 /// A normalised determinant below this is zero: that of `System::trouble` in double precision.
 const SINGULAR: f64 = 1.5e-8;
@@ -36,7 +36,7 @@ pub fn check(
     }
 }
 
-/// Reports a storage that starts at a pole of its law, where a rate is not finite for that.
+/// Reports a storage that starts at a pole of its law, and warns of a ratio that starts at one, where a rate is not finite for that.
 ///
 /// A law alone may be: the logarithm of no amount of substance, of which only the exponential is read.
 pub fn check_laws(
@@ -85,6 +85,37 @@ pub fn check_laws(
             }
         }
     }
+    // Unlike a law, a line between points that meet is seldom where it is to begin: a start of the run's or `Trim` leads away.
+    if let Some(report) = infinite_ratio(&start, pool) {
+        diagnostics.warn(report);
+    }
+}
+
+/// What is said of a ratio that is not finite at the start, as that along a line between two points that meet.
+fn infinite_ratio(start: &Start, pool: &Pool) -> Option<Diagnostic> {
+    let graph = &start.model.graph;
+    graph.elements.iter().find_map(|element| {
+        let (Law::Transformer(ratio) | Law::Gyrator(ratio)) = &element.law else {
+            return None;
+        };
+        let entries = ratio.factors.iter().flat_map(|factor| match factor {
+            Factor::Dense(matrix) => &matrix.entries[..],
+            _ => &[],
+        });
+        let (state, value) = entries
+            .filter(|entry| !start.value(pool, **entry).is_finite())
+            .find_map(|entry| start.led_away(pool, *entry))?;
+        let message = format!("the ratio of `{}` is not finite at the start", element.name);
+        let report = error(
+            codes::SINGULAR_START,
+            graph.origins.span(element.origin),
+            message,
+        );
+        let state = &start.model.states[state].variable.name;
+        Some(report.help(format!(
+            "let `{state}` start elsewhere, as at {value:?}, where it is finite"
+        )))
+    })
 }
 
 /// Default parameters, and states at the start.
@@ -133,6 +164,19 @@ impl<'a> Start<'a> {
     ) -> f64 {
         let symbol = |symbol| self.symbol(symbol, changed);
         Evaluation::new(&symbol).value(pool, expression)
+    }
+
+    /// A state with another value at which an expression is finite that is not finite at the start.
+    fn led_away(&self, pool: &Pool, expression: Expression) -> Option<(usize, f64)> {
+        let read = symbols(pool, &[expression]).into_iter();
+        let mut others = read.filter_map(|it| match it {
+            Symbol::State(state) => Some((state, self.states[state] + PROPOSED)),
+            _ => None,
+        });
+        others.find(|other| {
+            let changed = BTreeMap::from([*other]);
+            self.changed(pool, expression, &changed).is_finite()
+        })
     }
 
     /// What a symbol is at the start, but with some states changed.

@@ -664,3 +664,33 @@ fn parameters_of_zero_that_are_read_are_told() {
     assert_eq!(rope("", "level.friction_speed"), "");
     assert_eq!(rope("", "post.offset"), "");
 }
+
+#[test]
+fn lines_between_frames_that_meet_at_the_start_are_warned_of() {
+    let rope = |place: &str| {
+        warned(&format!(
+            "model M {{ 1 crab[3]; 1 load[3]; Sf rail[3] {{ flow: 0.0 }} -> crab;
+            level: PlanarFree {{ initial_position: {place} }} (crab, load);
+            mass: PlanarBody {{ mass: 2.0, inertia: 1.0 }} (load);
+            rope: PlanarLineForce {{ stiffness: 10.0, rest: 2.0 }} (crab, load); }}"
+        ))
+    };
+    insta::assert_snapshot!(rope("0.0"), @"
+    4:13 the ratio of `rope.line` is not finite at the start [MBG0404]
+      help: let `level.position.x` start elsewhere, as at 0.5, where it is finite
+    ");
+    assert_eq!(rope("[0.0, -1.0]"), "");
+    let strut = |place: &str| {
+        warned(&format!(
+            "model M {{ 1 ground[6]; 1 stone[6]; Sf fixed[6] {{ flow: 0.0 }} -> ground;
+            free: Free {{ orientation: quaternion, initial_position: {place} }} (ground, stone);
+            rock: Body {{ mass: 0.5, inertia: 0.01 }} (stone);
+            strut: LineForce {{ stiffness: 200.0, rest: 1.0 }} (ground, stone); }}"
+        ))
+    };
+    insta::assert_snapshot!(strut("0.0"), @"
+    4:13 the ratio of `strut.line` is not finite at the start [MBG0404]
+      help: let `free.position.x` start elsewhere, as at 0.5, where it is finite
+    ");
+    assert_eq!(strut("[0.0, 0.0, -1.0]"), "");
+}

@@ -222,6 +222,55 @@ fn sweeps_go_to_rounding_where_they_turn() {
     assert!((found - strict).norm() < 2e-3, "{found:?} {strict:?}");
 }
 
+/// Two reactions that are almost in balance: forward and reverse rates cancel out but for some 1e-7 of each, and
+/// rounding is another one in each equation (Enright and Pryce,
+/// *Two FORTRAN packages for assessing initial value methods*, ACM TOMS 13, 1987, problem F5).
+#[derive(Clone, Copy)]
+struct Balanced;
+
+impl Law<4, 0> for Balanced {
+    const STATES: &'static [Variable] = &[state("a"), state("b"), state("c"), state("d")];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 4>, _: &SVector<T, 0>) -> SVector<T, 4> {
+        let of = T::from_f64;
+        let (first, second) = (of(3.0) * x[0] * x[1], of(9.0) * x[0] * x[2]);
+        let a = of(1e11) * (of(0.0012) * x[3] - first - second);
+        SVector::from([
+            a,
+            of(2e7) * x[3] - of(3e11) * x[0] * x[1],
+            of(1e11) * (of(0.001) * x[3] - second),
+            -a,
+        ])
+    }
+}
+
+/// What rounding leaves of the rates no sweep makes smaller: it is more than sweeps may leave, and less than the tolerance.
+#[test]
+fn sweeps_end_where_only_rounding_is_left() {
+    fn assert_cheap<S: Estimating>(method: S) {
+        let start = SVector::from([3.365e-7, 8.261e-3, 1.642e-3, 9.38e-6]);
+        let solver = Adaptive::new(method, 1e-9, 1e-19);
+        let (x, statistics) = end(Balanced, solver, 100.0, start);
+        println!("{}: {statistics:?} {x:?}", S::NAME);
+        let expected = SVector::from([
+            1.713564284685705e-07,
+            0.003713563071171698,
+            0.006189271785286162,
+            9.54514357153137e-06,
+        ]);
+        let error = x
+            .zip_map(&expected, |x, expected| (x / expected - 1.0).abs())
+            .amax();
+        assert!(error < 1e-8, "{}: {error:e}", S::NAME);
+        assert!(
+            statistics.steps + statistics.rejected < 1000,
+            "{statistics:?}"
+        );
+    }
+    assert_cheap(Radau5);
+    assert_cheap(Radau9);
+}
+
 /// Sweeps to rounding take one more than what they need, and the Jacobian is as good in the next step.
 #[test]
 fn steps_of_radau_cost_little_where_the_law_is_linear() {

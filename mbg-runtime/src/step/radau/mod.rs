@@ -205,7 +205,9 @@ where
         let mut newton =
             Newton::<A, _, _, _, N, M, P, S, PAIRS>::new(problem, start, &self.factors);
         let found = match tolerance {
-            Some(tolerance) => newton.controlled(&mut stages, tolerance, &mut self.rate),
+            Some(tolerance) => {
+                newton.controlled(&mut stages, (tolerance, &self.jacobian), &mut self.rate)
+            }
             None => {
                 self.sizes.note(&start.x);
                 newton.settled(&mut stages, &self.sizes)

@@ -16,6 +16,8 @@ use crate::{Input, Real, System};
 const SWEEPS: i32 = 10;
 /// Sweeps may leave this part of the tolerance, and less where the tolerance is strict: then the error is far below it.
 const ENOUGH: f64 = 3e-3;
+/// Changes by rounding may be this part of the tolerance.
+const ROUNDED: f64 = 0.1;
 /// Most sweeps to rounding.
 const MOST: u32 = 20;
 /// Changes that become smaller by no more than this are looked at: they may stay.
@@ -148,7 +150,7 @@ where
     pub(super) fn controlled(
         &mut self,
         stages: &mut [SVector<T, N>; S],
-        tolerance: &Tolerance<N>,
+        (tolerance, jacobian): (&Tolerance<N>, &SMatrix<T, N, N>),
         rate: &mut f64,
     ) -> Result<f64, f64> {
         let relative = tolerance.relative.max(1e-300);
@@ -177,23 +179,51 @@ where
                 } else {
                     Real::sqrt(square * before)
                 });
-                if theta >= 0.99 {
-                    return Err(FAR);
-                }
                 let rest = (1.0 - theta).max(0.01);
-                if theta * size <= enough * rest {
+                if theta < 0.99 && theta * size <= enough * rest {
                     *rate = theta / rest;
                     return Ok(theta);
                 }
                 let left = theta * size / (enough * rest);
                 let ahead = (sweep..SWEEPS).fold(left, |left, _| left * theta);
-                if ahead > 1.0 {
-                    return Err(ahead.min(FAR));
+                if theta >= 0.99 || ahead > 1.0 {
+                    let known = (&stages[S - 1], jacobian);
+                    return if size <= ROUNDED && self.are_rounded(&changes, known) {
+                        Ok(FAST)
+                    } else if theta >= 0.99 {
+                        Err(FAR)
+                    } else {
+                        Err(ahead.min(FAR))
+                    };
                 }
             }
             (before, last) = (last, 1.0 / square);
         }
         Err(f64::INFINITY)
+    }
+
+    /// Whether changes are no more than what rounding of the states does to the slopes: then no sweep makes them smaller.
+    #[cold]
+    #[inline(never)]
+    fn are_rounded(
+        &self,
+        changes: &[SVector<T, N>; S],
+        (end, jacobian): (&SVector<T, N>, &SMatrix<T, N, N>),
+    ) -> bool {
+        let (shift, _) = &self.factors.real;
+        let x = self.start.x + end;
+        let rounding = rounding(jacobian, &x);
+        changes.iter().all(|change| {
+            let mut found = change.map(|it| *shift * it);
+            for (column, change) in jacobian.column_iter().zip(change) {
+                found.zip_apply(&column, |sum, entry| *sum -= entry * *change);
+            }
+            let mut rows = found.iter().zip(x.iter().zip(&rounding));
+            rows.all(|(found, (x, rounding))| {
+                let size = (*shift * *x).abs() + *rounding;
+                found.magnitude() <= ROUNDING * T::EPSILON * size.magnitude()
+            })
+        })
     }
 
     /// Sweeps to rounding; gives what a step leaves for the next like [`Newton::controlled`], or a failure where it does
@@ -285,12 +315,7 @@ where
             return false;
         }
         // What rounding of the states does to the slope.
-        let mut rounding = SVector::<T, N>::from_element(T::from_f64(0.0));
-        for (column, x) in jacobian.column_iter().zip((x + end).as_slice()) {
-            rounding.zip_apply(&column, |sum, entry| {
-                *sum += span.length * (entry * *x).abs()
-            });
-        }
+        let rounding = rounding(jacobian, &(x + end)).map(|it| span.length * it);
         if found <= NOISE * T::EPSILON * measure.norm(&rounding) {
             return false;
         }
@@ -326,6 +351,18 @@ where
         self.problem.memory = last;
         measure.norm(&real.solved::<Y, M, P>(&(sum + slope)))
     }
+}
+
+/// The sizes of what makes up the slopes: rounding of the states changes them by so many units of the precision.
+fn rounding<T: Real, const N: usize>(
+    jacobian: &SMatrix<T, N, N>,
+    x: &SVector<T, N>,
+) -> SVector<T, N> {
+    let mut rounding = SVector::<T, N>::from_element(T::from_f64(0.0));
+    for (column, x) in jacobian.column_iter().zip(x) {
+        rounding.zip_apply(&column, |sum, entry| *sum += (entry * *x).abs());
+    }
+    rounding
 }
 
 /// Whether the change after the last of two would be less than rounding.

@@ -168,15 +168,11 @@ fn projection(
 ) -> TokenStream {
     let closures = closed.iter().copied().map(Literal::usize_suffixed);
     // Flows of which each is the rate of a displacement are measured as these are.
-    let rows = if are_alike(compiled) {
+    let is_measured = closed == compiled.closed[0] || are_alike(compiled);
+    let rows = if is_measured {
         compiled.closed[0].len()
     } else {
         0
-    };
-    let rows = if closed == compiled.closed[0] {
-        closed.len()
-    } else {
-        rows
     };
     let (units, linear) = (units(compiled, 0..rows), linear(compiled));
     quote! {

@@ -134,16 +134,21 @@ fn corrected<T: Real, const M: usize, const N: usize>(
         }
         let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
         let along = |step| descend(&point, &residual, &step, limits, residual_at);
-        let least = || along(correction(&jacobian, &residual, softening, rank));
-        let next = if is_balanced { None } else { least() }.or_else(|| {
+        let least = match is_balanced {
+            false => along(correction(&jacobian, &residual, softening, rank)),
+            true => None,
+        };
+        let next = least.or_else(|| {
             if met || softening > 0.0 {
                 return None;
             }
+            let balanced = || along(balanced_correction(&jacobian, &residual, rank));
+            if is_balanced {
+                return balanced();
+            }
             // A constraint of small numbers was taken for rounding of one of large numbers.
             let (rows, right) = in_proportion(&jacobian, &residual);
-            let in_proportion = || along(correction(&rows, &right, 0.0, rank));
-            if is_balanced { None } else { in_proportion() }
-                .or_else(|| along(balanced_correction(&jacobian, &residual, rank)))
+            along(correction(&rows, &right, 0.0, rank)).or_else(balanced)
         });
         if let Some((next, left)) = next {
             iterations += 1;

@@ -103,7 +103,7 @@ mbg! {
         Sf fixed[6] { flow: 0.0 } -> ground;
         above: Free { orientation: quaternion, force: [0.0, 0.0, lift] } (ground, craft);
         hull: Body { mass: 10.0, inertia: 0.4 } (craft);
-        below: Free (ground, load);
+        below: Free { initial_position: [0.0, 0.0, -5.0] } (ground, load);
         freight: Body { mass: 4.0, inertia: 0.2 } (load);
         rope: LineForce { kind: rope, stiffness: 1e5, rest: 4.99, damping: 2000.0 } (craft, load);
         output tension: N = rope.spring.e;

@@ -19,7 +19,6 @@ pub use crate::{
 };
 pub use sweeps::{columns, rows};
 use units::largest_of;
-pub(crate) use units::moved;
 pub use units::{Level, Measure, units};
 
 /// What the chosen causality relies on; each condition implies that the value is finite.

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::Real;
+use crate::solve::moved;
 
 /// How far from the start residuals are looked at: angles in radians, displacements in parts of themselves.
 const AROUND: f64 = 0.03;
@@ -161,28 +162,6 @@ pub fn units<T: Real, const M: usize, const N: usize>(
         }
     }
     units.map(|unit| or_one(unit).with_slopes_of(zero))
-}
-
-/// Other states nearby.
-pub(crate) fn moved<T: Real, const N: usize>(
-    start: &SVector<T, N>,
-    (most, point): (f64, usize),
-    linear: &[usize],
-) -> SVector<T, N> {
-    if point == 0 {
-        return *start;
-    }
-    SVector::from_fn(|state, _| {
-        let part = (0.618 * (state + 1) as f64 + 0.414 * point as f64) % 1.0;
-        let by = T::from_f64(most * (2.0 * part - 1.0));
-        let own = start[state];
-        let size = if linear.contains(&state) {
-            own.abs()
-        } else {
-            T::from_f64(1.0)
-        };
-        own + by * size
-    })
 }
 
 /// A number if it is larger than zero, else one.

@@ -6,7 +6,6 @@ use nalgebra::{SMatrix, SVector};
 
 use super::least_norm::{Semidefinite, rank};
 use super::{dot, everywhere, largest};
-use crate::__private::moved;
 use crate::Real;
 
 /// Corrections at most.
@@ -264,6 +263,29 @@ fn gram<T: Real, const M: usize, const N: usize>(jacobian: &SMatrix<T, M, N>) ->
 const AROUND: f64 = 0.03;
 /// At how many points.
 const POINTS: usize = 4;
+
+/// A point near the start by its number, the start itself by zero: each coordinate is elsewhere by so much at most, and one in which
+/// constraints are linear by this part of itself.
+pub(crate) fn moved<T: Real, const N: usize>(
+    start: &SVector<T, N>,
+    (most, point): (f64, usize),
+    linear: &[usize],
+) -> SVector<T, N> {
+    if point == 0 {
+        return *start;
+    }
+    SVector::from_fn(|state, _| {
+        let part = (0.618 * (state + 1) as f64 + 0.414 * point as f64) % 1.0;
+        let by = T::from_f64(most * (2.0 * part - 1.0));
+        let own = start[state];
+        let size = if linear.contains(&state) {
+            own.abs()
+        } else {
+            T::from_f64(1.0)
+        };
+        own + by * size
+    })
+}
 
 /// The rank that `G` has where the constraints hold, near `start`: of all of them, and of some, by their numbers.
 ///

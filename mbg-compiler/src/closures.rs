@@ -32,8 +32,6 @@ pub struct Residuals {
     pub jacobian: Matrix,
     /// The closure of each residual.
     pub closures: Vec<usize>,
-    /// Places of states that no derivative by themselves depends on, such as the way of a slide; of positions alone.
-    pub linear: Vec<usize>,
 }
 
 impl Residuals {
@@ -160,10 +158,8 @@ pub fn positions(
     pool: &mut Pool,
 ) -> Residuals {
     let values: Vec<Expression> = displacements.iter().map(|(_, _, value)| *value).collect();
-    let jacobian = jacobian(pool, &values, by);
     Residuals {
-        linear: linear(&jacobian, by, pool),
-        jacobian,
+        jacobian: jacobian(pool, &values, by),
         values,
         closures: displacements.iter().map(|(number, _, _)| *number).collect(),
     }
@@ -176,16 +172,13 @@ pub struct Ranks {
     pub groups: Vec<Vec<usize>>,
     /// The group of the multipliers that a definition of the pool solves for, by its number.
     pub of: BTreeMap<usize, usize>,
-    /// Places of states in which all displacements are linear.
-    pub linear: Vec<usize>,
 }
 
-/// The groups of those multipliers that are solved together, as far as each has a displacement, of which residuals are.
+/// The groups of those multipliers that are solved together, as far as each has a displacement.
 #[must_use]
 pub fn ranks(
     scalars: &Scalars,
     displacements: &[(usize, usize, Expression)],
-    residuals: &Residuals,
     pool: &Pool,
 ) -> Ranks {
     let multiplier =
@@ -195,10 +188,7 @@ pub fn ranks(
         .enumerate()
         .map(|(row, (number, component, _))| (multiplier(*number, *component), row))
         .collect();
-    let mut ranks = Ranks {
-        linear: residuals.linear.clone(),
-        ..Ranks::default()
-    };
+    let mut ranks = Ranks::default();
     if !displacements.is_empty() {
         ranks.groups.push((0..displacements.len()).collect());
     }
@@ -218,15 +208,6 @@ pub fn ranks(
     ranks
 }
 
-fn linear(jacobian: &Matrix, by: &[Symbol], pool: &Pool) -> Vec<usize> {
-    let is_linear = |(column, symbol): (usize, &Symbol)| {
-        let slopes = jacobian.entries.iter().skip(column);
-        let slopes: Vec<_> = slopes.step_by(by.len()).copied().collect();
-        (!symbols(pool, &slopes).contains(symbol)).then_some(column)
-    };
-    by.iter().enumerate().filter_map(is_linear).collect()
-}
-
 /// Leaves of derivatives by the entries of attitudes what is along them: a matrix X of orthonormal rows stays one to
 /// first order when G is changed by G − ½ (G Xᵀ + X Gᵀ) X. `places` are the columns of each attitude's entries by row.
 pub fn tangential(
@@ -236,8 +217,6 @@ pub fn tangential(
     pool: &mut Pool,
 ) {
     for places in places {
-        let is_entry = |state: &usize| places.iter().flatten().any(|it| it == state);
-        residuals.linear.retain(|state| !is_entry(state));
         let (rows, columns) = (places.len(), places[0].len());
         let matrix = |entry: &mut dyn FnMut(usize) -> Expression| {
             let entries = places.iter().flatten().map(|place| entry(*place)).collect();
@@ -314,7 +293,6 @@ fn moved(
         values,
         jacobian,
         closures,
-        linear: Vec::new(),
     }
 }
 

@@ -251,7 +251,7 @@ fn finish(
         loops: loops(&model, scalars, solution),
         eliminated: eliminated.collect(),
         attitudes,
-        ranks: closures::ranks(scalars, &answers.displacements, &positions, &pool),
+        ranks: closures::ranks(scalars, &answers.displacements, &pool),
         driven: closures::are_driven(&model, &flows, &mut pool),
         closed: [positions.closures, flows.closures],
         started: started.closures,

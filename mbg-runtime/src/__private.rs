@@ -2,7 +2,6 @@
 
 pub mod locals;
 mod sweeps;
-mod units;
 
 use ::core::cell::Cell;
 
@@ -18,8 +17,6 @@ pub use crate::{
     Bond, Columns, Meta, Operations, ParameterError, Power, Real, Stroke, System, Trouble, Variable,
 };
 pub use sweeps::{columns, rows};
-use units::largest_of;
-pub use units::{Level, Measure, units};
 
 /// What the chosen causality relies on; each condition implies that the value is finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -239,6 +236,27 @@ const CLOSED: f64 = 16.0;
 /// no correction. States that are only looked at may, too.
 const NEARLY: f64 = 64.0;
 
+/// What a displacement counts at least: residuals of positions turn with angles that may be zero, and are as long as links
+/// are then.
+const DISPLACEMENT: f64 = 1.0;
+
+/// The size that rounding has in residuals with this Jacobian, in units of precision, where states count so much at least.
+fn size<T: Real, const M: usize, const N: usize>(
+    x: &SVector<T, N>,
+    jacobian: &SMatrix<T, M, N>,
+    least: f64,
+) -> f64 {
+    let mut sums = [0.0; M];
+    for (column, state) in jacobian.data.0.iter().zip(x.as_slice()) {
+        let least = T::from_f64(least);
+        let state = state.abs().max(least);
+        for (sum, slope) in sums.iter_mut().zip(column) {
+            *sum += (*slope * state).magnitude();
+        }
+    }
+    sums.into_iter().fold(0.0, f64::max)
+}
+
 /// At how many parts of the flows their rounding is looked at.
 const PARTS: usize = 12;
 
@@ -271,18 +289,23 @@ fn rounding_of_flows<T: Real, const M: usize, const N: usize>(
     (1..=PARTS).map(distance).fold(0.0, f64::max)
 }
 
-/// Ranks of the Jacobian of residuals of positions where they are zero, near `start`: of groups of them.
+/// Ranks of the Jacobian of residuals where they are zero, near `start`: of groups of them.
 pub fn ranks<T: Real, const M: usize, const N: usize, const B: usize>(
     start: SVector<T, N>,
     groups: [&[usize]; B],
-    measure: &Measure<T>,
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> [T; B] {
-    let by = measure.factors::<M>();
-    let measured = |x: &SVector<T, N>| by.both(evaluate(x));
-    let rounding = T::EPSILON * largest_of(measure.sizes(&start, &measured(&start)));
-    let tolerance = NEARLY * CLOSED * rounding;
-    crate::solve::ranks(&start, tolerance, (groups, measure.linear), measured)
+    let tolerance = NEARLY * CLOSED * T::EPSILON * size(&start, &evaluate(&start).1, DISPLACEMENT);
+    crate::solve::ranks(&start, tolerance, groups, evaluate)
+}
+
+/// Residuals of positions or of flows.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Level {
+    /// Of displacements.
+    Positions,
+    /// Of rates and momenta, in which they are linear.
+    Flows,
 }
 
 /// What a generated model gives for [`System::examined`]: its determinants are worked out once.
@@ -315,22 +338,27 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     closures: &[usize; M],
     x: SVector<T, N>,
     fixed: &[usize],
-    (measure, rank): (&Measure<T>, T),
+    (level, rank): (Level, T),
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
     residuals: impl Fn(&SVector<T, N>) -> SVector<T, M>,
 ) -> Result<SVector<T, N>, Trouble> {
-    let start = evaluate(&x);
-    let by = measure.factors_at(&x, &start);
-    let evaluate = |x: &SVector<T, N>| by.both(evaluate(x));
-    let residuals = |x: &SVector<T, N>| by.values(residuals(x));
     let hold = |(residuals, mut jacobian): (SVector<T, M>, SMatrix<T, M, N>)| {
         for state in fixed.iter().filter(|state| **state < N) {
             jacobian.column_mut(*state).fill(T::from_f64(0.0));
         }
         (residuals, jacobian)
     };
-    let start = by.both(start);
-    let rounding = T::EPSILON * largest_of(measure.sizes(&x, &start));
+    let start = evaluate(&x);
+    let rounding = T::EPSILON
+        * match level {
+            Level::Positions => size(&x, &start.1, DISPLACEMENT),
+            // What drives a loop is no state, and is all there is where rates are zero before.
+            Level::Flows => start
+                .0
+                .as_slice()
+                .iter()
+                .fold(size(&x, &start.1, 0.0), |size, it| size + it.magnitude()),
+        };
     let tolerance = (CLOSED * rounding).max(least::<T>());
     let held = |x: &SVector<T, N>| hold(evaluate(x));
     let found = project_from(x, hold(start), (tolerance, rank), (held, &residuals));
@@ -343,7 +371,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     }
     let closure = closures.get(found.worst).copied().unwrap_or(0);
     let residual = found.residual.magnitude();
-    let positions = measure.level == Level::Positions;
+    let positions = level == Level::Positions;
     let jacobians = [x, found.point].map(|x| evaluate(&x).1);
     if !positions && residual <= CLOSED * rounding_of_flows(&found.point, &jacobians[1], &residuals)
     {
@@ -352,7 +380,7 @@ pub fn close<T: Real, const M: usize, const N: usize>(
     let (constraints, coordinates) = together(&jacobians, found.worst);
     Err(Trouble::Open {
         name: meta.closures.get(closure).copied().unwrap_or(""),
-        residual: by.undone(found.worst, found.residual).magnitude(),
+        residual,
         // From so near, corrections end in rounding but where the Jacobian has lost its rank.
         singular: positions && residual < rounding / T::EPSILON * T::SINGULAR,
         locked: (positions && constraints >= coordinates).then_some((constraints, coordinates)),

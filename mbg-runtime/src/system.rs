@@ -311,9 +311,9 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     /// initial values are found from a part of them; an attitude stays of which one state is fixed. Integrators close at the
     /// start and after each step, with nothing fixed.
     ///
-    /// Each residual g is measured in what it is made of near the start, so that units decide on nothing. What is left of each is below
-    /// 16 ε Σ |∂g/∂xᵢ xᵢ| of the one for which that is largest in its unit; an angle counts as one at least, being zero somewhere.
-    /// Flows that cancel may leave more, as near a dead centre: 16 times what rounding is seen to leave of them.
+    /// What is left of each residual g is below 16 ε Σ |∂g/∂xᵢ xᵢ| of the one for which that is largest; a displacement counts as
+    /// one at least, an angle being zero somewhere. Flows that cancel may leave more, as near a dead centre: 16 times what rounding
+    /// is seen to leave of them.
     ///
     /// # Errors
     ///

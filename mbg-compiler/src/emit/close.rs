@@ -23,13 +23,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             |x: &mbg_runtime::__private::SVector<T, #n>| self.closed_positions(t, x, u, fixed),
             |x: &mbg_runtime::__private::SVector<T, #n>| { #body }
         };
-        projection(
-            compiled,
-            &compiled.closed[0],
-            &quote!(Positions),
-            &rank,
-            &evaluated,
-        )
+        projection(&compiled.closed[0], &quote!(Positions), &rank, &evaluated)
     });
     let flows = (!compiled.closed[1].is_empty()).then(|| {
         let [both, alone] = [Routines::CLOSED_FLOWS, Routines::RESIDUALS_OF_FLOWS].map(&body);
@@ -38,13 +32,7 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
             |x: &mbg_runtime::__private::SVector<T, #n>| { #both },
             |x: &mbg_runtime::__private::SVector<T, #n>| { #alone }
         };
-        projection(
-            compiled,
-            &compiled.closed[1],
-            &quote!(Flows),
-            &rank,
-            &evaluated,
-        )
+        projection(&compiled.closed[1], &quote!(Flows), &rank, &evaluated)
     });
     Some(quote! {
         fn close(
@@ -64,16 +52,11 @@ pub(super) fn close(compiled: &Compiled) -> Option<TokenStream> {
 
 /// Flows are as dependent as positions are.
 fn rank_of_flows(compiled: &Compiled) -> TokenStream {
-    if are_alike(compiled) {
+    if compiled.closed[0] == compiled.closed[1] {
         rank(compiled, 0)
     } else {
         full(compiled.closed[1].len())
     }
-}
-
-/// Whether each residual of the flows is the rate of one of the positions.
-fn are_alike(compiled: &Compiled) -> bool {
-    compiled.closed[0] == compiled.closed[1]
 }
 
 /// The state at the start, of which `initial` is what was given: where loops are closed, so that rates that were given stay and
@@ -123,13 +106,7 @@ fn projection_of_start(compiled: &Compiled) -> TokenStream {
         |x: &mbg_runtime::__private::SVector<T, #n>| { #both },
         |x: &mbg_runtime::__private::SVector<T, #n>| { #alone }
     };
-    projection(
-        compiled,
-        &compiled.started,
-        &quote!(Flows),
-        &rank,
-        &evaluated,
-    )
+    projection(&compiled.started, &quote!(Flows), &rank, &evaluated)
 }
 
 /// The attitudes alone, for methods that linearise at the start of a step.
@@ -160,27 +137,15 @@ fn attitude(rows: &[Vec<usize>]) -> TokenStream {
 
 /// Projects onto residuals, which are those of the closures given.
 fn projection(
-    compiled: &Compiled,
     closed: &[usize],
     level: &TokenStream,
     rank: &TokenStream,
     evaluated: &TokenStream,
 ) -> TokenStream {
     let closures = closed.iter().copied().map(Literal::usize_suffixed);
-    // Flows of which each is the rate of a displacement are measured as these are.
-    let is_measured = closed == compiled.closed[0] || are_alike(compiled);
-    let rows = if is_measured {
-        compiled.closed[0].len()
-    } else {
-        0
-    };
-    let (units, linear) = (units(compiled, 0..rows), linear(compiled));
     quote! {
-        let measure = mbg_runtime::__private::Measure {
-            level: mbg_runtime::__private::Level::#level, units: &#units, linear: #linear,
-        };
         let x = mbg_runtime::__private::close(
-            Self::META, &[#(#closures),*], x, fixed, (&measure, #rank), #evaluated,
+            Self::META, &[#(#closures),*], x, fixed, (mbg_runtime::__private::Level::#level, #rank), #evaluated,
         )?;
     }
 }
@@ -274,35 +239,20 @@ pub(super) fn ranks(compiled: &Compiled) -> Option<TokenStream> {
         let rows = group.iter().copied().map(Literal::usize_suffixed);
         quote!(&[#(#rows),*][..])
     });
-    let rows = 0..compiled.closed[0].len();
-    let of_units = rows.clone().map(|row| unit(compiled, row));
-    let found_units = rows.map(Literal::usize_suffixed);
-    let linear = linear(compiled);
     Some(quote! {
         let u = mbg_runtime::__private::SVector::<T, #m>::from_element(T::from_f64(0.0));
-        let start = <Self as mbg_runtime::System<T, #n, #m, #p>>::initial_state(&model);
-        let units = mbg_runtime::__private::units(
-            &start, #linear, |x| model.closed_positions(T::from_f64(0.0), x, &u, &[]),
-        );
-        #(model.folded[#of_units] = units[#found_units];)*
-        let start = <Self as mbg_runtime::System<T, #n, #m, #p>>::initial_state(&model);
-        let measure = mbg_runtime::__private::Measure {
-            level: mbg_runtime::__private::Level::Positions, units: &units, linear: #linear,
-        };
         let ranks = mbg_runtime::__private::ranks(
-            start,
+            <Self as mbg_runtime::System<T, #n, #m, #p>>::initial_state(&model),
             [#(#groups),*],
-            &measure,
             |x| model.closed_positions(T::from_f64(0.0), x, &u, &[]),
         );
         #(model.folded[#places] = ranks[#found];)*
     })
 }
 
-/// Ranks before `new` has found them, full ones, and units.
+/// Ranks before `new` has found them: full ones.
 pub(super) fn unknown_ranks(compiled: &Compiled) -> impl Iterator<Item = TokenStream> {
-    let ranks = compiled.ranks.groups.iter().map(|group| full(group.len()));
-    ranks.chain(compiled.closed[0].iter().map(|_| full(1)))
+    compiled.ranks.groups.iter().map(|group| full(group.len()))
 }
 
 fn full(rank: usize) -> TokenStream {
@@ -311,36 +261,11 @@ fn full(rank: usize) -> TokenStream {
 }
 
 /// The rank of a group, where a method reads it: behind all that is folded.
-fn rank(compiled: &Compiled, group: usize) -> TokenStream {
+pub(super) fn rank(compiled: &Compiled, group: usize) -> TokenStream {
     let place = place(compiled, group);
     quote!(self.folded[#place])
 }
 
-/// The rank of a group with what its residuals are measured in.
-pub(super) fn rank_and_units(compiled: &Compiled, group: usize) -> TokenStream {
-    let rows = compiled.ranks.groups[group].iter().copied();
-    let (rank, units) = (rank(compiled, group), units(compiled, rows));
-    quote!(#rank, #units)
-}
-
-/// What residuals of positions are measured in, where a method reads it.
-fn units(compiled: &Compiled, rows: impl IntoIterator<Item = usize>) -> TokenStream {
-    let places = rows.into_iter().map(|row| unit(compiled, row));
-    quote!([#(self.folded[#places]),*])
-}
-
-/// States in which residuals of positions are linear.
-fn linear(compiled: &Compiled) -> TokenStream {
-    let linear = compiled.ranks.linear.iter().copied();
-    let linear = linear.map(Literal::usize_suffixed);
-    quote!(&[#(#linear),*])
-}
-
 fn place(compiled: &Compiled, group: usize) -> Literal {
     Literal::usize_suffixed(compiled.program.folded.results.len() + group)
-}
-
-/// Units are behind the ranks.
-fn unit(compiled: &Compiled, row: usize) -> Literal {
-    place(compiled, compiled.ranks.groups.len() + row)
 }

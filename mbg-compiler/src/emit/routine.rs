@@ -552,8 +552,8 @@ impl<'a> Writer<'a> {
         };
         let (new, rank) = match self.compiled.ranks.of.get(&solve.number) {
             Some(group) => (
-                quote!(measured),
-                Some(super::close::rank_and_units(self.compiled, *group)),
+                quote!(of_rank),
+                Some(super::close::rank(self.compiled, *group)),
             ),
             None => (quote!(new), None),
         };

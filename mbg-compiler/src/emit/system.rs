@@ -31,9 +31,7 @@ fn structure(compiled: &Compiled) -> TokenStream {
     let model = &compiled.model;
     let (visibility, name, documentation) = (&model.visibility, &model.name, &model.documentation);
     let parameters = format_ident!("{}Parameters", name);
-    let folded = compiled.program.folded.results.len()
-        + compiled.ranks.groups.len()
-        + compiled.closed[0].len();
+    let folded = compiled.program.folded.results.len() + compiled.ranks.groups.len();
     let folded = Literal::usize_suffixed(folded);
     let summary = meta::documentation(compiled);
     let fields = quote!(folded: [T; #folded], parameters: #parameters<T>);

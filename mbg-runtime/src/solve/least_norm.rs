@@ -102,16 +102,7 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     #[must_use]
     #[inline]
     pub fn of_rank(matrix: SMatrix<T, K, K>, rank: T) -> Self {
-        Self::measured(matrix, rank, [T::from_f64(1.0); K])
-    }
-
-    /// The same of constraints that are measured in these units. What is rounding is then told in these, and least is the norm of a
-    /// solution that is multiplied by them.
-    #[doc(hidden)]
-    #[must_use]
-    #[inline]
-    pub fn measured(matrix: SMatrix<T, K, K>, rank: T, units: [T; K]) -> Self {
-        let careful = || Careful::new(matrix, rank, units);
+        let careful = || Careful::new(matrix, rank);
         let factors = if K <= SHORT && everywhere(rank, |rank| rank >= K as f64) {
             let bound = T::from_f64(REGULAR) * largest((0..K).map(|i| matrix[(i, i)]));
             let one = T::from_f64(1.0);
@@ -128,10 +119,7 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
     pub fn solve(&self, right: &SVector<T, K>) -> LeastNorm<T, K> {
         let solution = self.solution(right);
         let rank = match &self.factors {
-            Factors::Other(Careful {
-                factors: Factors::Other(pivoted),
-                ..
-            }) => pivoted.rank,
+            Factors::Other(Careful(Factors::Other(pivoted))) => pivoted.rank,
             _ => K,
         };
         let zero = T::from_f64(0.0);
@@ -166,45 +154,30 @@ impl<T: Real, const K: usize> Semidefinite<T, K> {
 /// Factors of a matrix whose pivots differ much, because of the units of its rows or next to a singular position: without
 /// exchanges where each pivot is large beside its own diagonal element, and that is no rounding.
 #[derive(Clone, Debug)]
-struct Careful<T, const K: usize> {
-    factors: Factors<T, Pivoted<T, K>, K>,
-    /// One over each unit.
-    by: SVector<T, K>,
-}
+struct Careful<T, const K: usize>(Factors<T, Pivoted<T, K>, K>);
 
 impl<T: Real, const K: usize> Careful<T, K> {
     #[cold]
     #[inline(never)]
-    fn new(matrix: SMatrix<T, K, K>, rank: T, units: [T; K]) -> Self {
-        let by = SVector::from(units.map(|unit| T::from_f64(1.0) / unit));
-        let matrix = SMatrix::from_fn(|i, j| by[i] * by[j] * matrix[(i, j)]);
+    fn new(matrix: SMatrix<T, K, K>, rank: T) -> Self {
         let pivoted = || Pivoted::new(matrix, rank);
-        let factors = if K > SHORT || !everywhere(rank, |rank| rank >= K as f64) {
-            Factors::Other(pivoted())
-        } else {
-            let lost = T::from_f64(rounding::<T, K>()) * largest((0..K).map(|i| matrix[(i, i)]));
-            let [one, part, never] = [1.0, REGULAR, f64::INFINITY].map(T::from_f64);
-            let bound = |own: T| lost.select_less(own, part * own, never);
-            Factors::of(Definite::new(&matrix, one, bound), pivoted)
-        };
-        Self { factors, by }
+        if K > SHORT || !everywhere(rank, |rank| rank >= K as f64) {
+            return Self(Factors::Other(pivoted()));
+        }
+        let lost = T::from_f64(rounding::<T, K>()) * largest((0..K).map(|i| matrix[(i, i)]));
+        let [one, part, never] = [1.0, REGULAR, f64::INFINITY].map(T::from_f64);
+        let bound = |own: T| lost.select_less(own, part * own, never);
+        Self(Factors::of(Definite::new(&matrix, one, bound), pivoted))
     }
 
     /// The solution of least norm after one step of iterative refinement.
     #[cold]
     #[inline(never)]
     fn refined(&self, matrix: &SMatrix<T, K, K>, right: &SVector<T, K>) -> SVector<T, K> {
-        let in_units = |x: &SVector<T, K>| x.zip_map(&self.by, |x, by| by * x);
-        let solution = |right: &SVector<T, K>| {
-            in_units(
-                &self
-                    .factors
-                    .solution(&in_units(right), Pivoted::least_squares),
-            )
-        };
-        let first = solution(right);
+        let first = self.0.solution(right, Pivoted::least_squares);
         let left = remainder(matrix, &first, right);
-        first.zip_map(&solution(&left), |first, refinement| first + refinement)
+        let refinement = self.0.solution(&left, Pivoted::least_squares);
+        first.zip_map(&refinement, |first, refinement| first + refinement)
     }
 }
 
@@ -554,27 +527,6 @@ mod tests {
         }
     }
 
-    /// What is measured in its own units is no rounding, however small it is; what is that in these units is.
-    #[test]
-    fn rows_are_measured_in_their_units() {
-        for arm in [1e-4_f32, 1e-6, 1e-9, 1e-12] {
-            let rows = [
-                [0.0, 0.5, 1.0],
-                [arm, 2.0 * arm, 0.0],
-                [arm, 2.0 * arm, arm * 1e-7],
-            ];
-            let matrix = SMatrix::<f32, 3, 3>::from_fn(|i, j| dot(&rows[i], &rows[j]));
-            let right = matrix * SVector::from([2.0, 3.0 / arm, 3.0 / arm]);
-            let found = Semidefinite::measured(matrix, 3.0, [1.0, arm, arm]).solve(&right);
-            assert_eq!(found.rank, 2, "{arm:e}");
-            let [turning, first, second] = found.solution.into();
-            assert!((turning / 2.0 - 1.0).abs() < 1e-4, "{arm:e} {turning}");
-            for force in [first, second] {
-                assert!((force * arm / 3.0 - 1.0).abs() < 1e-4, "{arm:e} {force}");
-            }
-        }
-    }
-
     /// Neither a row that is small nor one large beside it takes an exchange; one that is rounding, or nearly depends on the one
     /// before, does.
     #[test]
@@ -584,11 +536,7 @@ mod tests {
             let matrix = SMatrix::<f64, 2, 2>::from_fn(|i, j| dot(&rows[i], &rows[j]));
             matches!(
                 Semidefinite::new(matrix).factors,
-                Factors::Definite(_)
-                    | Factors::Other(Careful {
-                        factors: Factors::Definite(_),
-                        ..
-                    })
+                Factors::Definite(_) | Factors::Other(Careful(Factors::Definite(_)))
             )
         };
         for length in [1e-12, 1e-6, 1e-2, 1.0, 1e4, 1e12] {

@@ -22,7 +22,7 @@ pub use least_norm::{LeastNorm, Semidefinite, least_norm};
 pub use memory::{LoopMemory, Memory, Outcome};
 pub use newton::{ITERATIONS, Solved, newton};
 pub use project::{Projected, project, project_velocity};
-pub(crate) use project::{moved, project_from, ranks};
+pub(crate) use project::{project_from, ranks};
 pub(crate) use rows::{Row, Rows, Sizes};
 pub use symmetric::Symmetric;
 

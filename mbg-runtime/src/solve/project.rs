@@ -42,8 +42,7 @@ pub struct Projected<T, const N: usize> {
 /// damped until `|g|` falls, which a short enough one always achieves unless `g` is at a local minimum. There are at
 /// most 32 corrections; after a step of integration it takes one or two. Where it does not lower `|g|`, constraints are
 /// first divided by the largest number of their rows, since momenta of small machines stand beside rates and lengths, and where
-/// that does not do either, it is of least norm in coordinates that are multiplied by the largest number of their columns. Where 32
-/// are not enough, there are 32 more from the start that are all of this kind.
+/// that does not do either, it is of least norm in coordinates that are multiplied by the largest number of their columns.
 ///
 /// **Near a singular position** rounding in `g` divided by a small singular value `σ` of `G` moves the point by far
 /// more than `g` itself, and the velocities that fit the point by as much over `σ²`. So the first correction is softened:
@@ -91,31 +90,11 @@ pub fn project<T: Real, const M: usize, const N: usize>(
 /// [`ranks`]. The last function gives `g` alone.
 pub(crate) fn project_from<T: Real, const M: usize, const N: usize>(
     start: SVector<T, N>,
-    known: (SVector<T, M>, SMatrix<T, M, N>),
-    bounds: (f64, T),
+    (mut residual, mut jacobian): (SVector<T, M>, SMatrix<T, M, N>),
+    (tolerance, rank): (f64, T),
     (evaluate, residual_at): (
         impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
         impl Fn(&SVector<T, N>) -> SVector<T, M>,
-    ),
-) -> Projected<T, N> {
-    let found = corrected(start, known, bounds, false, (&evaluate, &residual_at));
-    if found.converged || found.iterations + 1 < ITERATIONS {
-        return found;
-    }
-    // Corrections that lower `|g|` by little each are of least norm in coordinates whose units are too far apart.
-    let balanced = corrected(start, known, bounds, true, (&evaluate, &residual_at));
-    if balanced.converged { balanced } else { found }
-}
-
-/// By corrections of least norm, or all of them balanced.
-fn corrected<T: Real, const M: usize, const N: usize>(
-    start: SVector<T, N>,
-    (mut residual, mut jacobian): (SVector<T, M>, SMatrix<T, M, N>),
-    (tolerance, rank): (f64, T),
-    is_balanced: bool,
-    (evaluate, residual_at): (
-        &impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
-        &impl Fn(&SVector<T, N>) -> SVector<T, M>,
     ),
 ) -> Projected<T, N> {
     let mut point = start;
@@ -132,22 +111,15 @@ fn corrected<T: Real, const M: usize, const N: usize>(
             is_here = true;
         }
         let limits = if met { (0.0, 1) } else { (tolerance, DAMPINGS) };
-        let along = |step| descend(&point, &residual, &step, limits, residual_at);
-        let least = match is_balanced {
-            false => along(correction(&jacobian, &residual, softening, rank)),
-            true => None,
-        };
-        let next = least.or_else(|| {
+        let along = |step| descend(&point, &residual, &step, limits, &residual_at);
+        let next = along(correction(&jacobian, &residual, softening, rank)).or_else(|| {
             if met || softening > 0.0 {
                 return None;
             }
-            let balanced = || along(balanced_correction(&jacobian, &residual, rank));
-            if is_balanced {
-                return balanced();
-            }
             // A constraint of small numbers was taken for rounding of one of large numbers.
             let (rows, right) = in_proportion(&jacobian, &residual);
-            along(correction(&rows, &right, 0.0, rank)).or_else(balanced)
+            along(correction(&rows, &right, 0.0, rank))
+                .or_else(|| along(balanced_correction(&jacobian, &residual, rank)))
         });
         if let Some((next, left)) = next {
             iterations += 1;
@@ -259,33 +231,10 @@ fn gram<T: Real, const M: usize, const N: usize>(jacobian: &SMatrix<T, M, N>) ->
     SMatrix::from(sums)
 }
 
-/// How far from the start constraints are looked at, as [`moved`] counts it.
+/// How far from the start constraints are looked at, in each coordinate.
 const AROUND: f64 = 0.03;
 /// At how many points.
 const POINTS: usize = 4;
-
-/// A point near the start by its number, the start itself by zero: each coordinate is elsewhere by so much at most, and one in which
-/// constraints are linear by this part of itself.
-pub(crate) fn moved<T: Real, const N: usize>(
-    start: &SVector<T, N>,
-    (most, point): (f64, usize),
-    linear: &[usize],
-) -> SVector<T, N> {
-    if point == 0 {
-        return *start;
-    }
-    SVector::from_fn(|state, _| {
-        let part = (0.618 * (state + 1) as f64 + 0.414 * point as f64) % 1.0;
-        let by = T::from_f64(most * (2.0 * part - 1.0));
-        let own = start[state];
-        let size = if linear.contains(&state) {
-            own.abs()
-        } else {
-            T::from_f64(1.0)
-        };
-        own + by * size
-    })
-}
 
 /// The rank that `G` has where the constraints hold, near `start`: of all of them, and of some, by their numbers.
 ///
@@ -296,14 +245,22 @@ pub(crate) fn moved<T: Real, const N: usize>(
 pub(crate) fn ranks<T: Real, const M: usize, const N: usize, const B: usize>(
     start: &SVector<T, N>,
     tolerance: f64,
-    (groups, linear): ([&[usize]; B], &[usize]),
+    groups: [&[usize]; B],
     evaluate: impl Fn(&SVector<T, N>) -> (SVector<T, M>, SMatrix<T, M, N>),
 ) -> [T; B] {
     let full = groups.map(|group| T::from_f64(group.len() as f64));
     let mut found = [T::from_f64(0.0); B];
     let mut closed_around = false;
     for point in 0..=POINTS {
-        let moved = moved(start, (AROUND, point), linear);
+        let moved = SVector::from_fn(|i, _| {
+            let part = (0.618 * (i + 1) as f64 + 0.414 * point as f64) % 1.0;
+            let by = if point == 0 {
+                0.0
+            } else {
+                AROUND * (2.0 * part - 1.0)
+            };
+            start[i] + T::from_f64(by)
+        });
         let closed = project(moved, tolerance, &evaluate);
         if !closed.converged {
             continue;
@@ -616,7 +573,7 @@ mod tests {
             ranks(
                 &start.into(),
                 1e-12,
-                ([&[0, 1, 2, 3][..], &[1, 3]], &[]),
+                [&[0, 1, 2, 3][..], &[1, 3]],
                 four_bar::<4>,
             )
         };
@@ -631,7 +588,7 @@ mod tests {
         };
         let all = [&[0, 1, 2][..]];
         assert_eq!(
-            super::ranks(&SVector::from([0.1, 0.2, 0.3]), 1e-12, (all, &[]), squared),
+            super::ranks(&SVector::from([0.1, 0.2, 0.3]), 1e-12, all, squared),
             [2.0]
         );
         // Two hinges and a slide of a machine of a hundredth of a millimetre, whose units do not make it redundant.
@@ -641,7 +598,7 @@ mod tests {
             (jacobian * q, jacobian)
         };
         assert_eq!(
-            super::ranks(&SVector::zeros(), 1e-6, ([&[0, 1][..]], &[]), small),
+            super::ranks(&SVector::zeros(), 1e-6, [&[0, 1][..]], small),
             [2.0]
         );
         // What cannot be closed may be regular.
@@ -652,7 +609,7 @@ mod tests {
             )
         };
         assert_eq!(
-            super::ranks(&SVector::from([0.0]), 1e-12, ([&[0, 1][..]], &[]), open),
+            super::ranks(&SVector::from([0.0]), 1e-12, [&[0, 1][..]], open),
             [2.0]
         );
     }

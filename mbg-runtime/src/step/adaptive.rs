@@ -72,7 +72,7 @@ use crate::{Input, Real, System};
 /// Where a law jumps so that the motion leads back to the threshold from both sides, it stays there: dry friction that holds a load, a
 /// clutch whose sides turn together, a controller that switches its force. From there on the state goes along the threshold, by the
 /// mean of the derivatives at both sides that does not leave it (Filippov, *Differential Equations with Discontinuous Righthand
-/// Sides*, Kluwer 1988, §4), or along up to 64 thresholds at once, by the share of each in the mean (Utkin, *Sliding Modes in
+/// Sides*, Kluwer 1988, §4), or along up to 32 thresholds at once, by the share of each in the mean (Utkin, *Sliding Modes in
 /// Control and Optimization*, Springer 1992, §2). At which of several thresholds it stays is a linear complementarity problem
 /// (Murty, *Linear Complementarity*, Heldermann 1988): it may leave one where it meets another, and arguments may depend on each
 /// other, as slips of clutches in a ring do. Steps end where a share is used up, as where a force tears a load loose.

@@ -7,7 +7,7 @@ use crate::lane::{are_alike, lane};
 use crate::{Course, Input, Real, System};
 
 /// So many at once.
-pub(super) const MOST: usize = 64;
+pub(super) const MOST: usize = 32;
 /// A state is at a threshold that it comes to within so many units of the last place of the time.
 const PLACES: f64 = 64.0;
 

@@ -1,7 +1,7 @@
 //! Stage 5d, start: a model must not start where something that it divides by is zero, nor where a law is infinite.
 //!
 //! A proper Euler sequence, such as z-x-z, is singular where its middle angle is zero, which is where angles start
-//! unless they are told otherwise. Errors: `MBG0404`.
+//! unless they are told otherwise. Errors: `MBG0404`. Where a ratio is infinite there is a warning of that code.
 
 use std::collections::BTreeMap;
 

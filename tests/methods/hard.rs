@@ -222,9 +222,8 @@ fn sweeps_go_to_rounding_where_they_turn() {
     assert!((found - strict).norm() < 2e-3, "{found:?} {strict:?}");
 }
 
-/// Two reactions that are almost in balance: forward and reverse rates cancel out but for some 1e-7 of each, and
-/// rounding is another one in each equation (Enright and Pryce,
-/// *Two FORTRAN packages for assessing initial value methods*, ACM TOMS 13, 1987, problem F5).
+/// Two reactions that are almost in balance: forward and reverse rates cancel out but for some 1e-7 of each, and rounding is another
+/// one in each equation (Enright and Pryce, *Two FORTRAN packages for assessing initial value methods*, ACM TOMS 13, 1987, problem F5).
 #[derive(Clone, Copy)]
 struct Balanced;
 
